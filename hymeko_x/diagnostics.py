@@ -1,0 +1,140 @@
+"""What the program says to its user: codes, places, messages, and the report that collects them.
+
+Every statement is one :class:`Diagnostic` with a stable :class:`Code`. A stage that can go on reports
+and uses the documented default; a stage that cannot raises :class:`Refusal`, which the shell catches once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+
+class Severity(Enum):
+    """How bad it is: ``NOTE`` informs, ``WARNING`` means that something was changed or guessed, ``ERROR`` that something was lost."""
+
+    NOTE = "note"
+    WARNING = "warning"
+    ERROR = "error"
+
+    @property
+    def rank(self) -> int:
+        """0 for a note, 1 for a warning, 2 for an error."""
+        return _RANKS[self]
+
+
+_RANKS = {Severity.NOTE: 0, Severity.WARNING: 1, Severity.ERROR: 2}
+
+
+@dataclass(frozen=True, slots=True)
+class Code:
+    """A stable name for one kind of statement.
+
+    ``id`` is ``HX`` and three digits: 0xx reading, 1xx loss and rewriting, 2xx assets, 3xx verification,
+    9xx a bug of ours. ``title`` is a short sentence, ``explanation`` what `hymeko-x explain` prints.
+    """
+
+    id: str
+    title: str
+    explanation: str
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """A place in an input: the file as the user named it, and one-based line and column (None = unknown)."""
+
+    file: str
+    line: int | None = None
+    column: int | None = None
+
+    def __str__(self) -> str:
+        return ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnostic:
+    """One statement. ``element`` is what it is about (``joint 'elbow'``), ``hint`` what the user can do.
+
+    ``excerpt`` holds ready lines to show below the message, such as a source line and its caret.
+    """
+
+    code: Code
+    severity: Severity
+    message: str
+    origin: Origin | None = None
+    element: str = ""
+    hint: str = ""
+    excerpt: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """``arm.urdf:41: error[HX012]: message`` with excerpt and hint on lines of their own."""
+        place = f"{self.origin}: " if self.origin else ""
+        lines = [f"{place}{self.severity.value}[{self.code.id}]: {self.message}", *self.excerpt]
+        if self.hint:
+            lines.append(f"  hint: {self.hint}")
+        return "\n".join(lines)
+
+    def as_json(self) -> dict[str, str | int | None]:
+        """The keys of the `--report` and `--json` contract."""
+        return {
+            "code": self.code.id,
+            "severity": self.severity.value,
+            "message": self.message,
+            "file": self.origin.file if self.origin else None,
+            "line": self.origin.line if self.origin else None,
+            "element": self.element,
+            "hint": self.hint,
+        }
+
+
+@dataclass(slots=True)
+class Report:
+    """The diagnostics of one run, in the order in which they were made. The only thing that a stage may append to."""
+
+    diagnostics: list[Diagnostic] = field(default_factory=list)
+
+    def note(self, code: Code, message: str, origin: Origin | None = None, *, element: str = "", hint: str = "") -> None:
+        """Record something that the user may want to know."""
+        self.diagnostics.append(Diagnostic(code, Severity.NOTE, message, origin, element, hint))
+
+    def warn(self, code: Code, message: str, origin: Origin | None = None, *, element: str = "", hint: str = "") -> None:
+        """Record something that was repaired, guessed or left out; the message says which."""
+        self.diagnostics.append(Diagnostic(code, Severity.WARNING, message, origin, element, hint))
+
+    def error(self, code: Code, message: str, origin: Origin | None = None, *, element: str = "", hint: str = "") -> None:
+        """Record an error after which the program goes on with the documented default."""
+        self.diagnostics.append(Diagnostic(code, Severity.ERROR, message, origin, element, hint))
+
+    def extend(self, diagnostics: Iterable[Diagnostic]) -> None:
+        """Append the diagnostics of another stage."""
+        self.diagnostics.extend(diagnostics)
+
+    def __iter__(self) -> Iterator[Diagnostic]:
+        return iter(self.diagnostics)
+
+    def __len__(self) -> int:
+        return len(self.diagnostics)
+
+    @property
+    def worst(self) -> Severity | None:
+        """The highest severity said so far, or None when nothing was said."""
+        return max((d.severity for d in self.diagnostics), key=lambda s: s.rank, default=None)
+
+
+class Refusal(Exception):
+    """The one exception for input that cannot be processed. Carries the diagnostic that says why."""
+
+    def __init__(self, diagnostic: Diagnostic) -> None:
+        super().__init__(str(diagnostic))
+        self.diagnostic = diagnostic
+
+
+def refuse(
+    code: Code, message: str, origin: Origin | None = None, *, element: str = "", hint: str = "", excerpt: tuple[str, ...] = ()
+) -> Refusal:
+    """A :class:`Refusal` to raise: ``raise refuse(codes.NOT_XML, "...", origin) from error``."""
+    return Refusal(Diagnostic(code, Severity.ERROR, message, origin, element, hint, excerpt))

@@ -1,0 +1,61 @@
+"""Bytes in and bytes out: what a frontend reads from and what a backend returns.
+
+Nothing here touches a disk. The shell gives a frontend a :class:`Source` whose ``files`` can look things up
+(a folder, a wheel, a dictionary in a test), and takes from a backend a :class:`Package` to write.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Protocol
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Files(Protocol):
+    """The files that a robot description may refer to."""
+
+    def find(self, uri: str) -> str | None:
+        """The path of the file that ``uri`` names (``package://pkg/a.stl``, ``../b.obj``), or None when there is none."""
+        ...
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned.
+
+        Raises: OSError when the file vanished or may not be read.
+        """
+        ...
+
+
+class NoFiles:
+    """A world without files: every look-up fails. For text from a pipe or a string."""
+
+    def find(self, uri: str) -> str | None:
+        """None for every uri."""
+        return None
+
+    def read(self, path: str) -> bytes:
+        """Raises: FileNotFoundError, always."""
+        raise FileNotFoundError(path)
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """One input: its name as the user typed it (used in messages), its bytes, and the files around it."""
+
+    name: str
+    data: bytes
+    files: Files = field(default_factory=NoFiles)
+
+
+@dataclass(frozen=True, slots=True)
+class Package:
+    """One output: the main file's bytes and the files beside it, by relative path with forward slashes.
+
+    ``copies`` names files that are to be copied as they are: relative path -> path in the source's ``files``.
+    """
+
+    main: bytes
+    files: Mapping[str, bytes] = field(default_factory=dict)
+    copies: Mapping[str, str] = field(default_factory=dict)
