@@ -1,0 +1,184 @@
+"""Two mechanisms compared element by element and field by field. The ledger, `hymeko-x diff` and the tests all use it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields, is_dataclass
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
+from hymeko_x.ir.values import Pose, number_text, rotation_angle
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One field of one element that differs; ``before`` or ``after`` is None where it is not there at all."""
+
+    element: Id
+    field: str
+    before: str | None
+    after: str | None
+
+    def __str__(self) -> str:
+        where = "mechanism" if self.element == ROOT else str(self.element)
+        place = f"{where} {self.field}".rstrip()
+        if self.before is None:
+            return f"{place}: added {self.after}"
+        if self.after is None:
+            return f"{place}: removed {self.before}"
+        return f"{place}: {self.before} -> {self.after}"
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """How far numbers may be apart: |a - b| <= absolute + relative * max(|a|, |b|); rotations by their angle in rad."""
+
+    absolute: float = 0.0
+    relative: float = 0.0
+
+    def accepts(self, a: float, b: float) -> bool:
+        """Whether two numbers count as equal; infinities and NaN equal themselves."""
+        if a == b or (a != a and b != b):
+            return True
+        return abs(a - b) <= self.absolute + self.relative * max(abs(a), abs(b))
+
+
+EXACT = Tolerance()
+
+
+def diff(a: Mechanism, b: Mechanism, tolerance: Tolerance = EXACT) -> tuple[Difference, ...]:
+    """Everything that differs from ``a`` to ``b``: the name, elements, their fields and arcs, and their extras.
+
+    Order, places and notations do not count. Linear in the size of both.
+    """
+    return tuple(_differences(a, b, tolerance))
+
+
+def _differences(a: Mechanism, b: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
+    if a.name != b.name:
+        yield Difference(ROOT, "name", repr(a.name), repr(b.name))
+    yield from _elements(a.graph.vertices, b.graph.vertices, tolerance)
+    yield from _elements(a.graph.edges, b.graph.edges, tolerance)
+    for key in _union(a.extras, b.extras):
+        yield from _extras(key, a.extras.get(key, ()), b.extras.get(key, ()))
+
+
+def _elements(a: object, b: object, tolerance: Tolerance) -> Iterator[Difference]:
+    from collections.abc import Mapping
+
+    assert isinstance(a, Mapping)
+    assert isinstance(b, Mapping)
+    for key in _union(a, b):
+        if key not in b:
+            yield Difference(key, "", _short(a[key]), None)
+        elif key not in a:
+            yield Difference(key, "", None, _short(b[key]))
+        elif a[key] != b[key]:
+            yield from (Difference(key, where, before, after) for where, before, after in _values("", a[key], b[key], tolerance))
+
+
+Found = tuple[str, str | None, str | None]
+
+
+def _values(where: str, a: object, b: object, tolerance: Tolerance) -> Iterator[Found]:
+    """The differing leaves of two values, with the path to each. Depth is that of the parts, which is small."""
+    if isinstance(a, float | int) and isinstance(b, float | int) and not isinstance(a, bool):
+        if not tolerance.accepts(a, b):
+            yield where, number_text(a), number_text(b)
+    elif isinstance(a, Pose) and isinstance(b, Pose):
+        yield from _poses(where, a, b, tolerance)
+    elif is_dataclass(a) and type(a) is type(b):
+        for item in fields(a):
+            if item.compare:
+                name = item.name if item.name not in ("data", "arcs") else ""
+                yield from _values(_join(where, name), getattr(a, item.name), getattr(b, item.name), tolerance)
+    elif isinstance(a, tuple) and isinstance(b, tuple) and not isinstance(a, Id):
+        yield from _tuples(where, a, b, tolerance)
+    elif a != b:
+        yield where, _short(a), _short(b)
+
+
+def _poses(where: str, a: Pose, b: Pose, tolerance: Tolerance) -> Iterator[Found]:
+    yield from _values(_join(where, "xyz"), a.xyz, b.xyz, tolerance)
+    if a.quat != b.quat and rotation_angle(a.quat, b.quat) > tolerance.absolute + tolerance.relative:
+        yield _join(where, "rotation"), _short(a.quat), _short(b.quat)
+
+
+def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance: Tolerance) -> Iterator[Found]:
+    if all(isinstance(x, float | int) for x in (*a, *b)):
+        if len(a) != len(b) or not all(tolerance.accepts(x, y) for x, y in zip(a, b, strict=True)):  # type: ignore[arg-type]
+            yield where, _short(a), _short(b)
+        return
+    for number in range(max(len(a), len(b))):
+        path = f"{where}[{number}]"
+        if number >= len(a):
+            yield path, None, _short(b[number])
+        elif number >= len(b):
+            yield path, _short(a[number]), None
+        else:
+            yield from _values(path, a[number], b[number], tolerance)
+
+
+def _extras(key: Id, a: tuple[Extra, ...], b: tuple[Extra, ...]) -> Iterator[Difference]:
+    """Extras have no identity beyond format, path and text: they are compared as multisets."""
+    rest = list(b)
+    for extra in a:
+        if extra in rest:
+            rest.remove(extra)
+        else:
+            yield Difference(key, f"{extra.format} {extra.path or 'content'}", extra.text, None)
+    for extra in rest:
+        yield Difference(key, f"{extra.format} {extra.path or 'content'}", None, extra.text)
+
+
+def _union(a: Iterable[Id], b: Iterable[Id]) -> list[Id]:
+    """The keys of both, those of the first one first."""
+    return list(dict.fromkeys([*a, *b]))
+
+
+def _join(where: str, name: str) -> str:
+    return f"{where}.{name}" if where and name else where or name
+
+
+def _short(value: object) -> str:
+    """A value in a few words."""
+    if value is None:
+        return "none"
+    if isinstance(value, float):
+        return number_text(value)
+    if isinstance(value, Enum):
+        return str(value.value)
+    if isinstance(value, Id):
+        return str(value)
+    if isinstance(value, tuple):
+        return "[" + " ".join(_short(item) for item in value) + "]"
+    if is_dataclass(value):
+        return _short_part(value)
+    return repr(value) if isinstance(value, str) else str(value)
+
+
+def _short_part(value: object) -> str:
+    from hymeko_x.ir.graph import Arc, Edge
+
+    match value:
+        case Edge():
+            return _short_edge(value)
+        case Arc():
+            return _short_arc(value)
+        case _:
+            said = [f"{f.name} {_short(getattr(value, f.name))}" for f in fields(value) if f.compare]  # type: ignore[arg-type]
+            return f"{type(value).__name__.lower()}({', '.join(said)})"
+
+
+def _short_edge(edge: RobotEdge) -> str:
+    return f"{_short(edge.data)} {{{', '.join(_short_arc(arc) for arc in edge.arcs)}}}"
+
+
+def _short_arc(arc: RobotArc) -> str:
+    weight = "" if arc.weight is None else f"{_short(arc.weight)} "
+    return f"{weight}{'-~+'[arc.sign + 1]} {arc.target}"

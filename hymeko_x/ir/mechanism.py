@@ -1,0 +1,305 @@
+"""A mechanism: a named hypergraph of robot parts with what was said beside it.
+
+Everything that a frontend returns and a backend takes. Ids are unique per kind, so a body and a joint may share a name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
+
+from hymeko_x.ir import parts
+from hymeko_x.ir.graph import Arc, Edge, Hypergraph
+from hymeko_x.ir.values import IDENTITY, Pose
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.diagnostics import Origin
+
+P = TypeVar("P")
+
+
+class Id(NamedTuple):
+    """The key of an element: its kind (``body``, ``joint``, ``shape``, ...) and a name unique among its kind."""
+
+    kind: str
+    name: str
+
+    def __str__(self) -> str:
+        return f"{self.kind} '{self.name}'"
+
+
+WORLD = Id("world", "world")
+ROOT = Id("mechanism", "")
+"""The key under which side tables keep what belongs to the mechanism as a whole."""
+
+KINDS: Mapping[type, str] = MappingProxyType(
+    {
+        parts.Body: "body",
+        parts.World: "world",
+        parts.Frame: "frame",
+        parts.Material: "material",
+        parts.Texture: "texture",
+        parts.Mesh: "mesh",
+        parts.Actuator: "actuator",
+        parts.Sensor: "sensor",
+        parts.Camera: "camera",
+        parts.Light: "light",
+        parts.PoseSet: "pose",
+        parts.Spring: "spring",
+        parts.Damper: "damper",
+        parts.Mass: "mass",
+        parts.Port: "port",
+        parts.Datum: "datum",
+        parts.Shape: "shape",
+        parts.Mount: "mount",
+        parts.Layer: "layer",
+        parts.Joint: "joint",
+        parts.Coupling: "coupling",
+        parts.Loop: "loop",
+        parts.Tendon: "tendon",
+        parts.Drive: "drive",
+        parts.Sense: "sense",
+        parts.Stance: "stance",
+        parts.Contact: "contact",
+        parts.Constitutive: "constitutive",
+        parts.Relation: "relation",
+    }
+)
+"""The kind of every part: an element's id has the kind of its part."""
+
+RobotArc = Arc[Id, parts.Weight]
+RobotEdge = Edge[Id, parts.EdgePart, parts.Weight]
+RobotGraph = Hypergraph[Id, parts.VertexPart, parts.EdgePart, parts.Weight]
+
+
+@dataclass(frozen=True, slots=True)
+class Extra:
+    """Something that a format said about an element and that has no word in the IR, verbatim.
+
+    ``path`` leads from the element's own node to where it stood: ``""`` is the node itself, ``limit`` its child of that
+    name, ``limit/@foo`` an attribute of it (``text`` is then the attribute's value). ``text`` of a child is the whole
+    XML element with the namespaces that it needs. ``index`` is its place among the children of its parent node.
+    """
+
+    format: str
+    path: str
+    text: str
+    index: int = 0
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Name, graph and side tables. Equality looks at name, graph and extras; places and notations do not count.
+
+    ``notations`` keeps, by element and key, how an author wrote what he wrote where the value itself cannot remember
+    it; ``stereotypes`` the classes, macros and templates that elements were made from; ``layout`` the order in
+    which the author wrote the elements (of any kind), as far as known.
+    """
+
+    name: str
+    graph: RobotGraph = field(default_factory=Hypergraph)
+    extras: Mapping[Id, tuple[Extra, ...]] = field(default_factory=dict)
+    origins: Mapping[Id, Origin] = field(default_factory=dict, compare=False)
+    notations: Mapping[Id, Mapping[str, str]] = field(default_factory=dict, compare=False)
+    stereotypes: Mapping[Id, tuple[str, ...]] = field(default_factory=dict, compare=False)
+    layout: tuple[Id, ...] = field(default=(), compare=False)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    # ---- elements by kind ------------------------------------------------------------------------------------------------
+
+    def vertices(self, part: type[P]) -> Iterator[tuple[Id, P]]:
+        """The vertices that carry this kind of part, in order."""
+        for key, data in self.graph.vertices.items():
+            if isinstance(data, part):
+                yield key, data
+
+    def edges(self, part: type[P]) -> Iterator[tuple[Id, P, tuple[RobotArc, ...]]]:
+        """The edges of this kind with their arcs, in order."""
+        for key, edge in self.graph.edges.items():
+            if isinstance(edge.data, part):
+                yield key, edge.data, edge.arcs
+
+    # ---- the tree --------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def joints(self) -> Mapping[Id, JointView]:
+        """Every joint with its two ends, in order. Joints without exactly one parent and one child arc are left out."""
+        found: dict[Id, JointView] = {}
+        for key, joint, arcs in self.edges(parts.Joint):
+            above = next((arc for arc in arcs if arc.sign > 0), None)
+            below = next((arc for arc in arcs if arc.sign < 0), None)
+            if above is not None and below is not None:
+                found[key] = JointView(key, joint, above.target, below.target, pose_weight(above), pose_weight(below))
+        return found
+
+    @cached_property
+    def children(self) -> Mapping[Id, tuple[JointView, ...]]:
+        """For each body (and the world) the joints below it, in order."""
+        found: dict[Id, list[JointView]] = {}
+        for joint in self.joints.values():
+            found.setdefault(joint.parent, []).append(joint)
+        return {key: tuple(below) for key, below in found.items()}
+
+    @cached_property
+    def parent_joint(self) -> Mapping[Id, JointView]:
+        """For each body the joint above it; the first one where there are several."""
+        found: dict[Id, JointView] = {}
+        for joint in self.joints.values():
+            found.setdefault(joint.child, joint)
+        return found
+
+    @cached_property
+    def roots(self) -> tuple[Id, ...]:
+        """The bodies that no joint leads to from another body: the world's children and the open bases, in order."""
+        above = self.parent_joint
+        return tuple(key for key, _ in self.vertices(parts.Body) if key not in above or above[key].parent == WORLD)
+
+    def depth_first(self) -> Iterator[Id]:
+        """The bodies, parents before children, each subtree in one piece, siblings in joint order. Not recursive."""
+        stack = list(reversed(self.roots))
+        seen: set[Id] = set()
+        while stack:
+            body = stack.pop()
+            if body in seen:
+                continue
+            seen.add(body)
+            yield body
+            stack.extend(joint.child for joint in reversed(self.children.get(body, ())))
+
+    # ---- what hangs on an element ----------------------------------------------------------------------------------------
+
+    @cached_property
+    def shapes(self) -> Mapping[Id, tuple[ShapeView, ...]]:
+        """For each body (and the world) its shapes in order."""
+        found: dict[Id, list[ShapeView]] = {}
+        for key, shape, arcs in self.edges(parts.Shape):
+            body = next((arc for arc in arcs if arc.sign > 0), None)
+            if body is None:
+                continue
+            roles = {arc.role: arc.target for arc in arcs if arc.role}
+            view = ShapeView(key, shape, body.target, pose_weight(body), roles.get("mesh"), roles.get("material"))
+            found.setdefault(body.target, []).append(view)
+        return {key: tuple(views) for key, views in found.items()}
+
+    def vertex(self, key: Id, part: type[P]) -> P:
+        """The part of a vertex, which must be of this kind.
+
+        Raises: KeyError when there is no such vertex, TypeError when it carries something else.
+        """
+        data = self.graph.vertices[key]
+        if not isinstance(data, part):
+            raise TypeError(f"{key} carries {type(data).__name__}, not {part.__name__}")
+        return data
+
+    def origin(self, key: Id) -> Origin | None:
+        """Where the element stands in its source, if known."""
+        return self.origins.get(key)
+
+    def notation(self, key: Id, name: str) -> str | None:
+        """How the author wrote something of an element, or None."""
+        return self.notations.get(key, {}).get(name)
+
+    def with_graph(self, graph: RobotGraph) -> Mechanism:
+        """The same mechanism with another graph."""
+        return replace(self, graph=graph)
+
+
+class JointView(NamedTuple):
+    """A joint with its two ends: T_parent_child(q) = parent_pose * motion(q) * inverse(child_pose)."""
+
+    id: Id
+    joint: parts.Joint
+    parent: Id
+    child: Id
+    parent_pose: Pose
+    child_pose: Pose
+
+
+class ShapeView(NamedTuple):
+    """A shape with what it hangs on: its pose in the body, and its mesh and material if it has them."""
+
+    id: Id
+    shape: parts.Shape
+    body: Id
+    pose: Pose
+    mesh: Id | None
+    material: Id | None
+
+
+# ---- making edges --------------------------------------------------------------------------------------------------------
+
+
+def pose_weight(arc: RobotArc) -> Pose:
+    """The arc's weight as a pose; an arc without one stands for the identity."""
+    return arc.weight if isinstance(arc.weight, Pose) else IDENTITY
+
+
+def numbers_weight(arc: RobotArc) -> tuple[float, ...]:
+    """The arc's weight as numbers; an arc without one has none."""
+    return arc.weight if isinstance(arc.weight, tuple) else ()
+
+
+def joint_edge(joint: parts.Joint, parent: Id, child: Id, parent_pose: Pose = IDENTITY, child_pose: Pose = IDENTITY) -> RobotEdge:
+    """The edge of a joint; identity poses are left out, so that equal joints are equal edges."""
+    return Edge(joint, (_posed(parent, 1, parent_pose), _posed(child, -1, child_pose)))
+
+
+def shape_edge(
+    shape: parts.Shape, body: Id, pose: Pose = IDENTITY, mesh: Id | None = None, material: Id | None = None
+) -> RobotEdge:
+    """The edge of a shape on a body."""
+    arcs = [_posed(body, 1, pose)]
+    if mesh is not None:
+        arcs.append(Arc(mesh, 0, None, "mesh"))
+    if material is not None:
+        arcs.append(Arc(material, 0, None, "material"))
+    return Edge(shape, tuple(arcs))
+
+
+def mount_edge(body: Id, thing: Id, pose: Pose = IDENTITY) -> RobotEdge:
+    """The edge that puts a frame, camera, light or sensor on a body."""
+    return Edge(parts.Mount(), (_posed(body, 1, pose), Arc(thing, -1)))
+
+
+def layer_edge(texture: Id, material: Id, use: str = "rgb") -> RobotEdge:
+    """The edge that puts a texture on a material."""
+    return Edge(parts.Layer(use), (Arc(texture, 1), Arc(material, -1)))
+
+
+def coupling_edge(follower: Id, leaders: tuple[tuple[Id, tuple[float, ...]], ...], *, active: bool = True) -> RobotEdge:
+    """The edge that makes a joint follow others, each by a polynomial's coefficients (constant first)."""
+    arcs: list[RobotArc] = [Arc(follower, 1, (1.0,))]
+    arcs += [Arc(leader, -1, coefficients) for leader, coefficients in leaders]
+    return Edge(parts.Coupling(active), tuple(arcs))
+
+
+def _posed(target: Id, sign: int, pose: Pose) -> RobotArc:
+    return Arc(target, sign, None if pose == IDENTITY and pose.written is None else pose)
+
+
+class Names:
+    """Gives out ids that are unique per kind: a name that is taken gets ``#2``, ``#3``, ... behind it."""
+
+    def __init__(self) -> None:
+        self._taken: set[Id] = set()
+        self._next: dict[Id, int] = {}
+
+    def take(self, kind: str, name: str) -> Id:
+        """An id of this kind that nobody has, as close to the name as possible."""
+        wanted = Id(kind, name)
+        if wanted not in self._taken:
+            self._taken.add(wanted)
+            return wanted
+        number = self._next.get(wanted, 2)
+        while Id(kind, f"{name}#{number}") in self._taken:
+            number += 1
+        self._next[wanted] = number + 1
+        unique = Id(kind, f"{name}#{number}")
+        self._taken.add(unique)
+        return unique

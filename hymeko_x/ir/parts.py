@@ -1,0 +1,457 @@
+"""What the vertices and edges of a mechanism mean: frozen values that say *what*, never *whom*.
+
+A property is not a connection: no part names another element; all connections are arcs. Which arcs an edge has,
+with which sign, weight and role, stands in the docstring of its part.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from enum import Enum
+
+from hymeko_x.ir.values import ZERO, Pose, Tensor, Vec3, Written, X
+
+Rgba = tuple[float, float, float, float]
+Parameters = tuple[tuple[str, "float | str | tuple[float, ...]"], ...]
+"""Named parameters of kinds that differ too much to be typed (an actuator's gains, a sensor's noise), in order."""
+
+
+# ---- vertices: bodies ----------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Inertial:
+    """Mass in kg, centre of mass in m in the body frame, inertia tensor in kg m^2 about it in body axes. None = unspecified.
+
+    ``written`` remembers the turned axes (``Pose.written`` style rotation) and the tensor as given in them.
+    """
+
+    mass: float | None = None
+    com: Vec3 = ZERO
+    tensor: Tensor | None = None
+    written: InertialWritten | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class InertialWritten:
+    """An inertia tensor as its author gave it: in the axes of ``frame`` (a pose at the centre of mass)."""
+
+    frame: Pose
+    tensor: Tensor
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A rigid body. ``inertial`` None means that nothing was said about its mass."""
+
+    inertial: Inertial | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class World:
+    """The inertial frame. Exactly one vertex, ``WORLD``, carries it; its shapes are the world's geometry."""
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A named pose on a body (an MJCF site, an SDF frame): a :class:`Mount` says where. ``size`` in m is for display."""
+
+    size: tuple[float, ...] = ()
+
+
+# ---- vertices: looks and assets --------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A surface. ``name`` is what the author called it (ids are unique, names need not be); None colours are unspecified."""
+
+    name: str | None = None
+    rgba: Rgba | None = None
+    specular: float | None = None
+    shininess: float | None = None
+    reflectance: float | None = None
+    emission: float | None = None
+    metallic: float | None = None
+    roughness: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Texture:
+    """An image, by uri as the source wrote it; a :class:`Layer` puts it on a material."""
+
+    uri: str | None = None
+    name: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Mesh:
+    """A triangle mesh: a file by uri as the source wrote it, or inline data; ``scale`` applies to its points.
+
+    ``vertices`` and ``faces`` are flat (3 numbers each); ``name`` is set where the format names its meshes.
+    """
+
+    uri: str | None = None
+    scale: Vec3 = (1.0, 1.0, 1.0)
+    name: str | None = None
+    vertices: tuple[float, ...] = ()
+    faces: tuple[int, ...] = ()
+
+
+# ---- vertices: things on a mechanism -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Actuator:
+    """What drives: ``kind`` (motor, position, velocity, transmission, muscle, ...) and its parameters in order."""
+
+    kind: str = "motor"
+    parameters: Parameters = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Sensor:
+    """What measures: ``kind`` (imu, force, jointpos, ...), update ``rate`` in Hz, and its parameters in order."""
+
+    kind: str
+    rate: float | None = None
+    parameters: Parameters = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A camera looking along its own -z, y up. ``fovy`` is the vertical field of view in rad."""
+
+    fovy: float | None = None
+    resolution: tuple[int, int] | None = None
+    parameters: Parameters = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Light:
+    """A light shining along its own -z. ``kind``: spot, directional, point, image."""
+
+    kind: str = "spot"
+    diffuse: Vec3 | None = None
+    parameters: Parameters = ()
+
+
+@dataclass(frozen=True, slots=True)
+class PoseSet:
+    """A named configuration (keyframe, group state): a :class:`Stance` edge says the value of each joint. ``time`` in s."""
+
+    group: str | None = None
+    time: float | None = None
+    parameters: Parameters = ()
+
+
+# ---- vertices: lumped elements of the dynamics dialect -----------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Spring:
+    """A lumped spring: ``stiffness`` in N/m or Nm/rad, ``rest`` length or angle."""
+
+    stiffness: float
+    rest: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Damper:
+    """A lumped damper: ``damping`` in Ns/m or Nms/rad."""
+
+    damping: float
+
+
+@dataclass(frozen=True, slots=True)
+class Mass:
+    """A lumped mass in kg, or moment of inertia in kg m^2."""
+
+    mass: float
+
+
+@dataclass(frozen=True, slots=True)
+class Port:
+    """Where effort or flow enters from outside: ``kind`` is ground, effort or flow; ``value`` its constant part."""
+
+    kind: str = "ground"
+    value: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Datum:
+    """A vertex that only carries data: whatever a hypergraph says that no robot part means."""
+
+    parameters: Parameters = ()
+
+
+# ---- edges: shapes and mounts --------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """Full edge lengths in m, centred."""
+
+    size: Vec3
+
+
+@dataclass(frozen=True, slots=True)
+class Sphere:
+    """Radius in m, centred."""
+
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Cylinder:
+    """Radius and full length in m along z, centred."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
+class Capsule:
+    """Radius and length in m along z without the caps, centred."""
+
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True, slots=True)
+class Ellipsoid:
+    """The three half axes in m, centred."""
+
+    radii: Vec3
+
+
+@dataclass(frozen=True, slots=True)
+class Plane:
+    """The xy plane with normal z; half extents in m for display, 0 = infinite."""
+
+    half_size: tuple[float, float] = (0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class MeshShape:
+    """The mesh that the shape's arc of role ``mesh`` points at."""
+
+
+@dataclass(frozen=True, slots=True)
+class NoShape:
+    """A geometry that the source left empty or wrote in a way that nobody understands; its text is an Extra."""
+
+
+Geometry = Box | Sphere | Cylinder | Capsule | Ellipsoid | Plane | MeshShape | NoShape
+
+
+class Role(Enum):
+    """What a shape is for."""
+
+    VISUAL = "visual"
+    COLLISION = "collision"
+    BOTH = "both"
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """A geometry on a body. Arcs: ``+ body`` weight Pose (shape frame in the body); ``~ mesh``; ``~ material`` (roles so named).
+
+    ``name`` as its author gave it, not necessarily unique; ``rgba`` overrides the material; ``mass`` in kg and
+    ``density`` in kg/m^3 count where the body's inertial comes from its shapes; ``friction`` is sliding, torsional, rolling.
+    """
+
+    geometry: Geometry
+    role: Role
+    name: str | None = None
+    rgba: Rgba | None = None
+    mass: float | None = None
+    density: float | None = None
+    friction: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Mount:
+    """Where a frame, camera, light or sensor sits. Arcs: ``+ body`` weight Pose (its frame in the body), ``- thing``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """A texture on a material. Arcs: ``+ texture``, ``- material``. ``use``: rgb, normal, occlusion, roughness, metallic, ..."""
+
+    use: str = "rgb"
+
+
+# ---- edges: kinematics -----------------------------------------------------------------------------------------------------------
+
+
+class DofKind(Enum):
+    """How one degree of freedom moves; ball has three and free six coordinates' worth of velocity."""
+
+    HINGE = "hinge"
+    SLIDE = "slide"
+    SCREW = "screw"
+    BALL = "ball"
+    FREE = "free"
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Bounds of one dof in rad or m and s, N or Nm; None = unlimited."""
+
+    lower: float | None = None
+    upper: float | None = None
+    velocity: float | None = None
+    effort: float | None = None
+    acceleration: float | None = None
+    jerk: float | None = None
+
+
+UNLIMITED = Limits()
+
+
+@dataclass(frozen=True, slots=True)
+class Safety:
+    """A soft-limit controller (URDF <safety_controller>): soft bounds in rad or m, gains in 1/s and Nms/rad or Ns/m."""
+
+    k_velocity: float
+    k_position: float = 0.0
+    soft_lower: float = 0.0
+    soft_upper: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """Reference positions for homing (URDF <calibration>), in rad or m."""
+
+    rising: float | None = None
+    falling: float | None = None
+    reference: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Dof:
+    """One degree of freedom of a joint, given in the joint frame.
+
+    ``axis`` is unit (its notation in ``written``), ``anchor`` in m the point that a rotation keeps in place, ``ref`` the
+    coordinate at which the child is where the arcs put it. Damping in Nms/rad or Ns/m, ``friction`` in Nm or N,
+    ``stiffness`` in Nm/rad or N/m about ``spring_ref``, ``armature`` in kg m^2 or kg, ``pitch`` of a screw in m/rad.
+    ``name`` where its format names it apart from the joint.
+    """
+
+    kind: DofKind = DofKind.HINGE
+    axis: Vec3 = X
+    limits: Limits = UNLIMITED
+    damping: float = 0.0
+    friction: float = 0.0
+    stiffness: float = 0.0
+    spring_ref: float = 0.0
+    armature: float = 0.0
+    ref: float = 0.0
+    anchor: Vec3 = ZERO
+    pitch: float = 0.0
+    safety: Safety | None = None
+    calibration: Calibration | None = None
+    name: str | None = None
+    written: Written | None = field(default=None, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Joint:
+    """A connection in the tree with ordered dofs; none = fixed.
+
+    Arcs: ``+ parent`` weight Pose P (joint frame in the parent), ``- child`` weight Pose C (joint frame in the child), so that
+    T_parent_child(q) = P * prod_i( Tr(a_i) M_i(q_i - ref_i) Tr(-a_i) ) * C^-1.
+    """
+
+    dofs: tuple[Dof, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """A joint or tendon that follows others. Arcs: ``+ follower`` weight (1,), ``- leader`` weight (c0, c1, ...).
+
+    q_follower = sum over leaders of c0 + c1 q + c2 q^2 + ...; a dof of a joint with several is named by the arc's role.
+    """
+
+    active: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """A closure of the tree. Arcs: ``~`` two or more bodies or frames, weight Pose (the closure's frame in each).
+
+    ``kind``: connect (points coincide), weld (frames coincide), or joint: the dofs that stay free are ``dofs``.
+    """
+
+    kind: str = "connect"
+    dofs: tuple[Dof, ...] = ()
+    active: bool = True
+    parameters: Parameters = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Tendon:
+    """A cable or a linear combination. ``kind`` fixed: arcs ``+ joint`` weight (coefficient,).
+
+    ``kind`` spatial: arcs in path order, ``~ frame`` (site), ``~ shape`` of role ``wrap`` with an optional arc of role
+    ``side`` after it; a pulley is an arc of role ``pulley`` to the tendon itself with weight (divisor,). Lengths in m.
+    """
+
+    kind: str = "spatial"
+    limits: Limits = UNLIMITED
+    damping: float = 0.0
+    stiffness: float = 0.0
+    friction: float = 0.0
+    armature: float = 0.0
+    width: float | None = None
+    rgba: Rgba | None = None
+    parameters: Parameters = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """Who drives what. Arcs: ``+ actuator``, ``- joint | tendon | frame | body`` weight gear numbers."""
+
+    kind: str = ""
+    parameters: Parameters = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Sense:
+    """Who measures what. Arcs: ``+ body | frame | joint | ...``, ``- sensor``; a reference is an arc of role ``reference``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stance:
+    """The values of a named configuration. Arcs: ``+ pose set``, ``~ joint`` weight its coordinates in rad or m."""
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """``kind`` pair (these shapes collide) or exclude (these bodies do not). Arcs: ``~`` the two shapes or bodies."""
+
+    kind: str = "exclude"
+    parameters: Parameters = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Constitutive:
+    """An n-ary relation of the dynamics dialect: ``+`` effort enters through this element, ``-`` it acts on that one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Relation:
+    """An edge of a plain hypergraph that means nothing in particular."""
+
+    parameters: Parameters = ()
+
+
+VertexPart = (
+    Body | World | Frame | Material | Texture | Mesh | Actuator | Sensor | Camera | Light | PoseSet | Spring | Damper | Mass | Port | Datum
+)
+EdgePart = (
+    Shape | Mount | Layer | Joint | Coupling | Loop | Tendon | Drive | Sense | Stance | Contact | Constitutive | Relation
+)
+Weight = Pose | tuple[float, ...]
+

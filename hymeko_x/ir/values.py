@@ -1,0 +1,283 @@
+"""Numbers of the IR: vectors, rotations, poses and tensors as plain tuples of doubles.
+
+SI units and radians throughout. Quaternions are (w, x, y, z) with unit norm and w >= 0, tensors are
+(xx, yy, zz, xy, xz, yz). How an author wrote a rotation is kept beside it as :class:`Written`, so that the same
+format writes it back digit by digit; no comparison looks at it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+Vec3 = tuple[float, float, float]
+Quat = tuple[float, float, float, float]
+Tensor = tuple[float, float, float, float, float, float]
+Matrix3 = tuple[Vec3, Vec3, Vec3]
+
+ZERO: Vec3 = (0.0, 0.0, 0.0)
+X: Vec3 = (1.0, 0.0, 0.0)
+Y: Vec3 = (0.0, 1.0, 0.0)
+Z: Vec3 = (0.0, 0.0, 1.0)
+NO_ROTATION: Quat = (1.0, 0.0, 0.0, 0.0)
+
+_UNIT_TOLERANCE = 4e-15  # a normalised vector is this close to unit norm; normalising it again must not change a bit
+
+
+class Written(NamedTuple):
+    """How a rotation was written: the kind of notation (``rpy``, ``quat``, ``euler``, ...) and its numbers, angles in rad."""
+
+    kind: str
+    numbers: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Pose:
+    """A rigid transformation: position ``xyz`` in m and unit quaternion ``quat`` (w, x, y, z) of the rotation.
+
+    Make it with :func:`pose` and its siblings, which normalise; two equal rotations then have equal numbers.
+    """
+
+    xyz: Vec3 = ZERO
+    quat: Quat = NO_ROTATION
+    written: Written | None = field(default=None, compare=False)
+
+
+IDENTITY = Pose()
+
+
+# ---- making values -----------------------------------------------------------------------------------------------------
+
+
+def unit(vector: Vec3) -> Vec3:
+    """The vector with length 1. A vector that has it already comes back bit by bit.
+
+    Raises: ZeroDivisionError for a vector too short to have a direction.
+    """
+    x, y, z = vector
+    square = x * x + y * y + z * z
+    if abs(square - 1.0) < _UNIT_TOLERANCE:
+        return vector
+    length = math.hypot(x, y, z)
+    if length < 1e-300 or not math.isfinite(length):
+        raise ZeroDivisionError(f"{vector} has no direction")
+    return (x / length, y / length, z / length)
+
+
+def unit_quat(quat: Quat) -> Quat:
+    """The unit quaternion of the same rotation with w >= 0 (for w = 0: first non-zero component positive).
+
+    Raises: ZeroDivisionError for a zero quaternion.
+    """
+    w, x, y, z = quat
+    square = w * w + x * x + y * y + z * z
+    if abs(square - 1.0) >= _UNIT_TOLERANCE:
+        length = math.hypot(w, x, y, z)
+        if length < 1e-300 or not math.isfinite(length):
+            raise ZeroDivisionError(f"{quat} is no rotation")
+        w, x, y, z = w / length, x / length, y / length, z / length
+    if w < 0.0 or (w == 0.0 and (x, y, z) < (0.0, 0.0, 0.0)):
+        w, x, y, z = -w, -x, -y, -z
+    return (w + 0.0, x + 0.0, y + 0.0, z + 0.0)  # + 0.0 turns -0.0 into 0.0
+
+
+def pose(xyz: Vec3 = ZERO, quat: Quat = NO_ROTATION) -> Pose:
+    """A pose from a position in m and any non-zero quaternion (w, x, y, z); unusual notation is remembered."""
+    normal = unit_quat(quat)
+    return Pose(xyz, normal, None if normal == quat else Written("quat", quat))
+
+
+def pose_from_rpy(xyz: Vec3, rpy: Vec3) -> Pose:
+    """A pose from a position in m and fixed-axis roll, pitch, yaw in rad; the angles are remembered as written."""
+    if rpy == ZERO:
+        return Pose(xyz)
+    return Pose(xyz, quat_from_rpy(rpy), Written("rpy", rpy))
+
+
+def quat_from_rpy(rpy: Vec3) -> Quat:
+    """The rotation Rz(yaw) Ry(pitch) Rx(roll) as a unit quaternion (w, x, y, z), w >= 0. Angles in rad.
+
+    Source: URDF <origin rpy>: fixed axes, roll about x first.
+    """
+    roll, pitch, yaw = (angle / 2.0 for angle in rpy)
+    cr, sr, cp, sp, cy, sy = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch), math.cos(yaw), math.sin(yaw)
+    return unit_quat(
+        (
+            cr * cp * cy + sr * sp * sy,
+            sr * cp * cy - cr * sp * sy,
+            cr * sp * cy + sr * cp * sy,
+            cr * cp * sy - sr * sp * cy,
+        )
+    )
+
+
+def quat_about(axis: Vec3, angle: float) -> Quat:
+    """The rotation by ``angle`` rad about the unit vector ``axis``."""
+    s = math.sin(angle / 2.0)
+    return unit_quat((math.cos(angle / 2.0), axis[0] * s, axis[1] * s, axis[2] * s))
+
+
+def quat_from_z(direction: Vec3) -> Quat:
+    """The smallest rotation that turns the z axis into the unit vector ``direction`` (about x for the opposite of z)."""
+    x, y, z = direction
+    if z > -1.0 + 1e-14:
+        return unit_quat((1.0 + z, -y, x, 0.0))
+    return (0.0, 1.0, 0.0, 0.0)
+
+
+# ---- reading values ----------------------------------------------------------------------------------------------------
+
+
+def rpy_of(value: Pose) -> Vec3:
+    """Fixed-axis roll, pitch, yaw in rad of the pose's rotation: as written if it was written so, else computed.
+
+    At pitch = +-pi/2, where roll and yaw are not unique, yaw is 0. Exact to rounding everywhere.
+    """
+    if value.written is not None and value.written.kind == "rpy":
+        roll, pitch, yaw = value.written.numbers
+        return (roll, pitch, yaw)
+    return rpy_from_quat(value.quat)
+
+
+def rpy_from_quat(quat: Quat) -> Vec3:
+    """Fixed-axis roll, pitch, yaw in rad of a unit quaternion (w, x, y, z)."""
+    if quat == NO_ROTATION:
+        return ZERO
+    r = matrix_from_quat(quat)
+    flat = math.hypot(r[0][0], r[1][0])
+    pitch = math.atan2(-r[2][0], flat)
+    yaw = math.atan2(r[1][0], r[0][0]) if flat > 1e-12 else 0.0
+    turn = quat_product(quat_about(Y, pitch), quat_about(Z, 0.0))
+    turn = quat_product(quat_about(Z, yaw), turn)
+    rest = quat_product(quat_inverse(turn), quat)  # what is left is a rotation about x, even where pitch is near +-pi/2
+    roll = 2.0 * math.atan2(rest[1], rest[0])
+    if roll > math.pi:
+        roll -= 2.0 * math.pi
+    elif roll <= -math.pi:
+        roll += 2.0 * math.pi
+    return (roll + 0.0, pitch + 0.0, yaw + 0.0)
+
+
+def matrix_from_quat(quat: Quat) -> Matrix3:
+    """The rotation matrix of a unit quaternion (w, x, y, z), row by row."""
+    w, x, y, z = quat
+    return (
+        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+    )
+
+
+# ---- calculating -------------------------------------------------------------------------------------------------------
+
+
+def quat_product(a: Quat, b: Quat) -> Quat:
+    """The rotation ``b`` followed by ``a``: R(a) R(b). Not normalised."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+def quat_inverse(quat: Quat) -> Quat:
+    """The inverse of a unit quaternion."""
+    w, x, y, z = quat
+    return (w, -x, -y, -z)
+
+
+def rotate(quat: Quat, vector: Vec3) -> Vec3:
+    """The vector turned by a unit quaternion."""
+    if quat == NO_ROTATION:
+        return vector
+    r = matrix_from_quat(quat)
+    x, y, z = vector
+    return (
+        r[0][0] * x + r[0][1] * y + r[0][2] * z,
+        r[1][0] * x + r[1][1] * y + r[1][2] * z,
+        r[2][0] * x + r[2][1] * y + r[2][2] * z,
+    )
+
+
+def add(a: Vec3, b: Vec3) -> Vec3:
+    """a + b."""
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def scaled(vector: Vec3, factor: float) -> Vec3:
+    """factor * vector."""
+    return (vector[0] * factor, vector[1] * factor, vector[2] * factor)
+
+
+def cross(a: Vec3, b: Vec3) -> Vec3:
+    """a x b."""
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def compose(a: Pose, b: Pose) -> Pose:
+    """a * b: the pose b, given in the frame a, seen from where a is given."""
+    if b == IDENTITY:
+        return a
+    if a == IDENTITY:
+        return b
+    return Pose(add(a.xyz, rotate(a.quat, b.xyz)), unit_quat(quat_product(a.quat, b.quat)))
+
+
+def inverse(a: Pose) -> Pose:
+    """The pose with compose(a, inverse(a)) = identity."""
+    if a == IDENTITY:
+        return a
+    back = quat_inverse(a.quat)
+    x, y, z = rotate(back, a.xyz)
+    return Pose((-x + 0.0, -y + 0.0, -z + 0.0), unit_quat(back))
+
+
+def apply(a: Pose, point: Vec3) -> Vec3:
+    """The point, given in the frame a, seen from where a is given."""
+    return add(a.xyz, rotate(a.quat, point))
+
+
+def rotate_tensor(quat: Quat, tensor: Tensor) -> Tensor:
+    """R I R^T: a symmetric tensor given in turned axes, seen in the axes in which ``quat`` is given."""
+    if quat == NO_ROTATION:
+        return tensor
+    r = matrix_from_quat(quat)
+    xx, yy, zz, xy, xz, yz = tensor
+    rows = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+    half = [[sum(r[i][k] * rows[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+    full = [[sum(half[i][k] * r[j][k] for k in range(3)) for j in range(3)] for i in range(3)]
+    return (full[0][0], full[1][1], full[2][2], full[0][1], full[0][2], full[1][2])
+
+
+def same_rotation(a: Quat, b: Quat, tolerance: float) -> bool:
+    """Whether two unit quaternions turn alike up to an angle of ``tolerance`` rad; the sign does not matter."""
+    return rotation_angle(a, b) <= tolerance
+
+
+def rotation_angle(a: Quat, b: Quat) -> float:
+    """The angle in rad, 0..pi, of the rotation between two unit quaternions."""
+    w, x, y, z = quat_product(quat_inverse(a), b)
+    return 2.0 * math.atan2(math.hypot(x, y, z), abs(w))
+
+
+# ---- writing numbers ---------------------------------------------------------------------------------------------------
+
+
+def number_text(value: float) -> str:
+    """The shortest decimal text that reads back to the same double: ``0.1``, ``2``, ``-1e-7``."""
+    text = repr(float(value))
+    if text.endswith(".0"):
+        return text[:-2]
+    if "e" not in text:
+        return text
+    mantissa, exponent = text.split("e")
+    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+
+
+def numbers_text(values: tuple[float, ...]) -> str:
+    """Numbers separated by blanks, each as :func:`number_text` writes it."""
+    return " ".join(map(number_text, values))
