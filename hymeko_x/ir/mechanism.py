@@ -83,13 +83,14 @@ class Extra:
 
     ``path`` leads from the element's own node to where it stood: ``""`` is the node itself, ``limit`` its child of that
     name, ``limit/@foo`` an attribute of it (``text`` is then the attribute's value). ``text`` of a child is the whole
-    XML element with the namespaces that it needs. ``index`` is its place among the children of its parent node.
+    XML element with the namespaces that it needs. ``index`` is its place among the children of its parent node (for the
+    mechanism as a whole: among everything that stands at top level); no comparison looks at it.
     """
 
     format: str
     path: str
     text: str
-    index: int = 0
+    index: int = field(default=0, compare=False)
 
 
 @dataclass(frozen=True)
