@@ -54,6 +54,9 @@ NOT_SAID = Code("HX104", "the target has no word for this", "The target cannot s
 ASSET_NOT_FOUND = Code("HX201", "a file that the robot refers to was not found", "The mesh or texture is missing. The conversion goes on, and the reference is kept. Tell where a package is with --package NAME=DIR.")
 ASSET_CONVERTED = Code("HX202", "a mesh was converted", "The target does not read this type of mesh file.")
 ASSET_UNREADABLE = Code("HX203", "a mesh cannot be read", "The file exists but its content is damaged or of another type than its name says.")
+PACKAGE_UNAVAILABLE = Code("HX210", "a corpus package cannot be downloaded", "`hymeko-x corpus fetch` downloads wheels through pip. The package index could not be reached, or does not have this version; pip's own words are shown. What was fetched before stays usable.")
+PACKAGE_UNKNOWN = Code("HX211", "the corpus has no such package", "`hymeko-x corpus list` shows the packages of the catalogue.")
+PACKAGE_DAMAGED = Code("HX212", "a corpus package is not what the catalogue says", "The wheel's checksum differs from the catalogue's, or the archive is damaged or would write outside its folder. Nothing of it was unpacked.")
 
 # ---- HX3xx: verification ---------------------------------------------------------------------------------------------
 ENGINE_MISSING = Code("HX301", "an engine is not installed", "The verifier needs the format's own reference reader. The message says which extra installs it.")

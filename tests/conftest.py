@@ -1,0 +1,62 @@
+"""Real robots for the tests, from the cache that `hymeko-x corpus fetch` fills."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import pytest
+
+from hymeko_x import codes
+from hymeko_x.corpus import cache, catalog
+from hymeko_x.diagnostics import Refusal
+
+
+@pytest.fixture(scope="session")
+def corpus_root() -> Path:
+    """The corpus cache of the user who runs the tests."""
+    return cache.cache_root(os.environ)
+
+
+@pytest.fixture(scope="session")
+def real_robot(corpus_root: Path) -> RealRobots:
+    """Call it with a development file to get its path; the package is downloaded on first use, whichever worker is first."""
+    return RealRobots(corpus_root)
+
+
+class RealRobots:
+    """Development files by their path on this machine. Without a network the test is skipped; any other failure fails it."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+        self._unavailable: str | None = None
+
+    def __call__(self, file: catalog.DevelopmentFile) -> Path:
+        return self.package(file.package) / file.path
+
+    def package(self, package: catalog.WheelPackage) -> Path:
+        """The folder of a package of the catalogue."""
+        if self._unavailable and not cache.is_fetched(package, self._root):
+            pytest.skip(self._unavailable)
+        try:
+            return cache.fetch(package, self._root)
+        except Refusal as refusal:
+            if refusal.diagnostic.code != codes.PACKAGE_UNAVAILABLE:
+                raise
+            self._unavailable = refusal.diagnostic.message
+            pytest.skip(refusal.diagnostic.message)
+
+
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """`@pytest.mark.robots("urdf")` runs a test once for each development file of that format, as its argument ``robot`` (a path)."""
+    mark = metafunc.definition.get_closest_marker("robots")
+    if mark is None:
+        return
+    files = [file for format in mark.args for file in catalog.development_files(format)]
+    metafunc.parametrize("robot", [pytest.param(file, id=file.id, marks=pytest.mark.corpus) for file in files], indirect=True)
+
+
+@pytest.fixture
+def robot(request: pytest.FixtureRequest, real_robot: RealRobots) -> Path:
+    """The path of the development file that this run of the test is about."""
+    return real_robot(request.param)
