@@ -1,0 +1,145 @@
+"""Finding the files that a robot refers to: `package://`, `model://`, `file://`, relative and absolute.
+
+Nothing here looks at the environment: the shell passes in what the user and ROS say about packages.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import re
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+from urllib.parse import unquote
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+MOST_BYTES = 2**30
+MOST_FOLDERS = 20_000
+"""How many folders below the search path are looked at for packages."""
+
+_SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):/*")  # one letter would be a Windows drive
+_PACKAGE_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
+
+
+@dataclass(frozen=True)
+class DiskFiles:
+    """The files around a description in ``base``; a :class:`hymeko_x.source.Files`.
+
+    ``packages`` are the user's own NAME=DIR, ``search_path`` the folders in which packages stand (ROS_PACKAGE_PATH,
+    AMENT_PREFIX_PATH/share). With ``confine`` no file outside that folder is found or read, wherever links lead.
+    """
+
+    base: Path
+    packages: Mapping[str, Path] = field(default_factory=dict)
+    search_path: tuple[Path, ...] = ()
+    confine: Path | None = None
+
+    def find(self, uri: str) -> str | None:
+        """The path of the file that ``uri`` names, or None.
+
+        A package is looked for in ``packages``, then in the search path, then upwards from ``base``, nearest first: a
+        folder whose `package.xml` bears the name, and a folder of that name above or beside.
+        """
+        for candidate in self._candidates(uri.strip().replace("\\", "/")):
+            if self._may_read(candidate):
+                return str(_tidy(candidate))
+        return None
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned.
+
+        Raises: OSError when the file vanished, is no regular file, may not be read, or is larger than 1 GiB.
+        """
+        if not self._may_read(Path(path)):
+            raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
+        if Path(path).stat().st_size > MOST_BYTES:
+            raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), path)
+        return Path(path).read_bytes()
+
+    def _candidates(self, uri: str) -> Iterator[Path]:
+        scheme = _SCHEME.match(uri)
+        if scheme is None:
+            yield self.base / uri
+        elif scheme[1].lower() == "file":
+            yield from self._file_url(uri[len("file:") :])
+        elif scheme[1].lower() in ("package", "model"):
+            name, _, rest = uri[scheme.end() :].partition("/")
+            yield from (folder / rest for folder in self._package_folders(name))
+
+    def _file_url(self, rest: str) -> Iterator[Path]:
+        """`file:///a`, `file://localhost/a` and `file:/a` are absolute; `file://a` is a common slip and taken as relative."""
+        path = rest.removeprefix("//localhost").removeprefix("//")
+        yield from (self.base / text for text in dict.fromkeys((unquote(path), path)))
+
+    def _package_folders(self, name: str) -> Iterator[Path]:
+        if name in ("", ".", ".."):
+            return
+        if name in self.packages:
+            yield self.packages[name]
+        yield from (folder / name for folder in self.search_path)
+        if name in self._named_on_search_path:
+            yield self._named_on_search_path[name]
+        for folder in self._upwards:
+            if folder.name == name or self._package_name(folder) == name:
+                yield folder
+            yield folder / name
+
+    @cached_property
+    def _upwards(self) -> tuple[Path, ...]:
+        """The description's folder and all above it, nearest first, as far as reading is allowed."""
+        start = Path(os.path.abspath(self.base))
+        return tuple(folder for folder in (start, *start.parents) if self._is_inside(folder))
+
+    @cached_property
+    def _named_on_search_path(self) -> Mapping[str, Path]:
+        """The packages below the search path by the name in their `package.xml`; the first one of a name counts."""
+        found: dict[str, Path] = {}
+        folders = (place for root in self.search_path if self._is_inside(root) for place in os.walk(root))
+        for folder, below, files in islice(folders, MOST_FOLDERS):
+            below.sort()
+            if "package.xml" in files:
+                found.setdefault(self._package_name(Path(folder)) or "", Path(folder))
+                below.clear()
+        return found
+
+    def _package_name(self, folder: Path) -> str | None:
+        """The <name> in the folder's `package.xml`, or None."""
+        path = folder / "package.xml"
+        if not self._may_read(path):
+            return None
+        with path.open("rb") as file:
+            found = _PACKAGE_NAME.search(file.read(2**16))
+        return found[1].decode("utf-8", "replace") if found else None
+
+    def _may_read(self, path: Path) -> bool:
+        """Whether this is a readable regular file inside the border. Odd names (NUL bytes, too long) are just not there."""
+        try:
+            return path.is_file() and os.access(path, os.R_OK) and self._is_inside(path)
+        except (OSError, ValueError):
+            return False
+
+    def _is_inside(self, path: Path) -> bool:
+        return self.confine is None or path.resolve().is_relative_to(self.confine.resolve())
+
+
+def _tidy(path: Path) -> Path:
+    """The path without `..` where that does not lead through a link to another file."""
+    short = Path(os.path.normpath(path))
+    return short if short.exists() and short.samefile(path) else path
+
+
+def search_path(environ: Mapping[str, str]) -> tuple[Path, ...]:
+    """The folders in which packages stand, as ROS and Gazebo tell their tools in these environment variables."""
+    ros = [Path(text) for text in _entries(environ, "ROS_PACKAGE_PATH")]
+    ament = [Path(text) / "share" for text in _entries(environ, "AMENT_PREFIX_PATH")]
+    gazebo = [Path(text) for name in ("GZ_SIM_RESOURCE_PATH", "GAZEBO_MODEL_PATH") for text in _entries(environ, name)]
+    return tuple(dict.fromkeys((*ros, *ament, *gazebo)))
+
+
+def _entries(environ: Mapping[str, str], name: str) -> list[str]:
+    return [text for text in environ.get(name, "").split(os.pathsep) if text]
