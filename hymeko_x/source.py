@@ -42,11 +42,15 @@ class NoFiles:
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """One input: its name as the user typed it (used in messages), its bytes, and the files around it."""
+    """One input: its name as the user typed it (used in messages), its bytes, and the files around it.
+
+    ``arguments`` are the user's values for a format that takes some (xacro's NAME:=VALUE).
+    """
 
     name: str
     data: bytes
     files: Files = field(default_factory=NoFiles)
+    arguments: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

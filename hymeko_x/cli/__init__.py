@@ -1,0 +1,85 @@
+"""The command line: a table of verbs, each in a module of its own that is loaded when it is used.
+
+Data goes to standard output, words to standard error. Exit codes are in :mod:`hymeko_x.cli.exits`.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+from hymeko_x.cli import exits
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+VERBS = {
+    "import": ("hymeko_x.cli.import_", "read any format, print HyMeKo"),
+    "export": ("hymeko_x.cli.export", "read HyMeKo (standard input by default), write another format"),
+    "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
+    "diff": ("hymeko_x.cli.diff", "what differs between two robots, element by element"),
+    "info": ("hymeko_x.cli.info", "what is in a file"),
+    "formats": ("hymeko_x.cli.formats", "the formats that can be read and written"),
+    "explain": ("hymeko_x.cli.explain", "what a code such as HX044 means"),
+    "corpus": ("hymeko_x.cli.corpus", "real robots from published packages: fetch, list"),
+}
+"""Verb -> module with ``arguments(parser)`` and ``run(arguments) -> exit code``, and what it does in a few words."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command; return its exit code. The console script passes it to the shell."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    if words[:1] in (["--version"], ["-V"]):
+        return _print_version()
+    if not words or words[0] in ("-h", "--help", "help"):
+        print(overview(), file=sys.stdout if words else sys.stderr)
+        return exits.DONE if words else exits.USAGE
+    if words[0] not in VERBS:
+        return _unknown_verb(words[0])
+    from hymeko_x.cli import guard
+
+    return guard.run(words[0], lambda: _run_verb(words[0], words[1:]))
+
+
+def _run_verb(verb: str, words: list[str]) -> int:
+    import argparse
+
+    module_name, summary = VERBS[verb]
+    module = import_module(module_name)
+    parser = argparse.ArgumentParser(f"hymeko-x {verb}", description=f"{summary[0].upper()}{summary[1:]}.", allow_abbrev=False)
+    module.arguments(parser)
+    code: int = module.run(parser.parse_args(words))
+    sys.stdout.flush()
+    return code
+
+
+def overview() -> str:
+    """The text of `hymeko-x --help`."""
+    verbs = "\n".join(f"  {verb:<10} {summary}" for verb, (_, summary) in VERBS.items())
+    return f"usage: hymeko-x VERB ...   (hymeko-x VERB --help says more)\n\n{verbs}\n\n{exits.TABLE}"
+
+
+def _unknown_verb(word: str) -> int:
+    from difflib import get_close_matches
+
+    near = get_close_matches(word, VERBS, 1)
+    meant = f"did you mean '{near[0]}'?" if near else f"verbs: {', '.join(VERBS)}"
+    print(f"hymeko-x: there is no verb '{word}'; {meant}", file=sys.stderr)
+    return exits.USAGE
+
+
+def _print_version() -> int:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        print(f"hymeko-x {version('hymeko-x')}")
+    except PackageNotFoundError:
+        print("hymeko-x (running from a checkout that is not installed)")
+    return exits.DONE
+
+
+def debugging() -> bool:
+    """Whether the user wants to see tracebacks: HYMEKO_X_DEBUG is set."""
+    return bool(os.environ.get("HYMEKO_X_DEBUG"))

@@ -1,0 +1,7 @@
+"""`python -m hymeko_x.cli` is `hymeko-x`."""
+
+import sys
+
+from hymeko_x.cli import main
+
+sys.exit(main())

@@ -1,0 +1,78 @@
+"""The words on the command line that say what to read, and the reading."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x import disk, formats, pipeline
+from hymeko_x.assets.resolve import DiskFiles, search_path
+from hymeko_x.cli.guard import UsageError
+from hymeko_x.source import Source
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.formats import Format
+    from hymeko_x.ir.mechanism import Mechanism
+
+
+class Input(NamedTuple):
+    """One input as it was read."""
+
+    mechanism: Mechanism
+    format: Format
+    source: Source
+
+
+def input_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of every verb that reads a robot."""
+    parser.add_argument("--from", dest="from_format", metavar="FORMAT", help="the input's format, where suffix and content do not tell")
+    where = {"action": "append", "default": [], "type": _package, "metavar": "NAME=DIR"}
+    parser.add_argument("--package", **where, help="where package://NAME and model://NAME are (repeatable)")
+    parser.add_argument("--confine", type=_folder, metavar="DIR", help="read no file outside this folder")
+    parser.add_argument("--arg", action="append", default=[], type=_argument, metavar="NAME:=VALUE", help="an argument of a xacro file")
+
+
+def read_input(path: str, chosen: argparse.Namespace, report: Report) -> Input:
+    """Read a file, or standard input for `-`.
+
+    Raises: Refusal when it cannot be read.
+    """
+    source = _standard_input(chosen) if path == "-" else _file(path, chosen)
+    format = formats.by_name(chosen.from_format) if chosen.from_format else formats.of_input(source.name, source.data)
+    if chosen.arg and not format.has_arguments:
+        raise UsageError(f"--arg is for formats that take arguments, and {source.name} is {format.name}")
+    return Input(pipeline.read(replace(source, arguments=dict(chosen.arg)), format, report), format, source)
+
+
+def _file(path: str, chosen: argparse.Namespace) -> Source:
+    return disk.open_source(path, packages=dict(chosen.package), search_path=search_path(os.environ), confine=chosen.confine)
+
+
+def _standard_input(chosen: argparse.Namespace) -> Source:
+    files = DiskFiles(Path(), dict(chosen.package), search_path(os.environ), chosen.confine)
+    return Source("<stdin>", sys.stdin.buffer.read(disk.MOST_BYTES), files)
+
+
+def _package(text: str) -> tuple[str, Path]:
+    name, equals, folder = text.partition("=")
+    if not (name and equals and folder):
+        raise argparse.ArgumentTypeError(f"expected NAME=DIR, found '{text}'")
+    return name, _folder(folder)
+
+
+def _folder(text: str) -> Path:
+    if not Path(text).is_dir():
+        raise argparse.ArgumentTypeError(f"there is no folder '{text}'")
+    return Path(text)
+
+
+def _argument(text: str) -> tuple[str, str]:
+    name, sign, value = text.partition(":=")
+    if not (name and sign):
+        raise argparse.ArgumentTypeError(f"expected NAME:=VALUE, found '{text}'")
+    return name, value

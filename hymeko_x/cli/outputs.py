@@ -1,0 +1,105 @@
+"""The words on the command line that say what to write, and the writing: output, report, exit code."""
+
+from __future__ import annotations
+
+import json
+import sys
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x import codes, disk, pipeline
+from hymeko_x.cli import exits
+from hymeko_x.cli.terminal import MOST_LINES, show
+from hymeko_x.diagnostics import Severity
+from hymeko_x.ir.legalize import Options
+from hymeko_x.source import NoFiles, Package
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterable
+
+    from hymeko_x.cli.inputs import Input
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.formats import Format
+    from hymeko_x.pipeline import Loss, Result
+
+FAIL_ON = ("error", "loss", "warning")
+
+
+class Output(NamedTuple):
+    """Where the result goes: its format, and a path (`-` is standard output)."""
+
+    format: Format
+    path: str
+
+
+def output_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of every verb that writes a robot."""
+    parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the source leaves open")
+    parser.add_argument("--actuators", choices=("none", "motor", "position", "velocity"), help="the actuators to write")
+    parser.add_argument("--pure", action="store_true", help="write no residue of what the format cannot say itself")
+    parser.add_argument("--report", metavar="FILE.json", help="write diagnostics and losses to a file")
+    parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
+
+
+def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Report) -> int:
+    """Write the mechanism that was read, say what there is to say, and return the exit code."""
+    options = Options(base=chosen.base, actuators=chosen.actuators)
+    result = pipeline.convert(given.mechanism, output.format, options, given.source.files, report)
+    if output.path == "-" and (result.package.files or result.package.copies):
+        count = len(result.package.files) + len(result.package.copies)
+        report.warn(codes.ASSET_NOT_WRITTEN, f"{count} files that belong beside the output were not written", hint="use -o FILE")
+    failed = is_reached(chosen.fail_on, report, result.losses)
+    if not failed:
+        _write(result.package, output.path, given)
+    show(report)
+    _show_losses(result.losses or ())
+    if chosen.report:
+        document = json.dumps(as_json(given, output, report, result.losses), indent=2, ensure_ascii=False)
+        disk.write_package(Package(f"{document}\n".encode()), chosen.report, NoFiles())
+    return exits.FAIL_ON if failed else exits.DONE
+
+
+def _write(package: Package, path: str, given: Input) -> None:
+    if path != "-":
+        return disk.write_package(package, path, given.source.files)
+    sys.stdout.buffer.write(package.main)
+    return None
+
+
+def as_json(given: Input, output: Output, report: Report, losses: Iterable[Loss] | None) -> dict[str, object]:
+    """The document of `--report` and of `convert --json`."""
+    return {
+        "source": {"path": given.source.name, "format": given.format.name},
+        "target": {"path": output.path, "format": output.format.name},
+        "diagnostics": [diagnostic.as_json() for diagnostic in report],
+        "losses": [loss.as_json() for loss in losses or ()],
+    }
+
+
+def is_reached(threshold: str | None, report: Report, losses: tuple[Loss, ...] | None) -> bool:
+    """Whether something at least as bad as the threshold happened; an error is worse than a loss, and that than a warning.
+
+    Where nothing could be measured, what the writer said it could not say counts as a loss.
+    """
+    if threshold is None:
+        return False
+    happened = {
+        "error": report.worst == Severity.ERROR,
+        "loss": any(loss.fate != "carried" for loss in losses or ()) or any(said.code == codes.NOT_SAID for said in report),
+        "warning": report.worst == Severity.WARNING,
+    }
+    return any(happened[level] for level in FAIL_ON[: FAIL_ON.index(threshold) + 1])
+
+
+def _show_losses(losses: tuple[Loss, ...]) -> None:
+    for loss in losses[:MOST_LINES]:
+        print(loss, file=sys.stderr)
+    if len(losses) > MOST_LINES:
+        print(f"... and {len(losses) - MOST_LINES} more losses (--report FILE.json lists all)", file=sys.stderr)
+
+
+def summary(result: Result, output: Output) -> str:
+    """What was written, in one line."""
+    beside = len(result.package.files) + len(result.package.copies)
+    files = f" and {beside} files beside it" if beside else ""
+    return f"wrote {output.path} ({output.format.name}){files}"

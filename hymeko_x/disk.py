@@ -1,0 +1,137 @@
+"""The disk: reading one input with the files around it, and writing one output so that it is there whole or not at all."""
+
+from __future__ import annotations
+
+import errno
+import secrets
+import shutil
+from contextlib import suppress
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.source import Source
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.source import Files, Package
+
+MOST_BYTES = 2**30
+
+
+def open_source(
+    path: str, *, packages: Mapping[str, Path] | None = None, search_path: tuple[Path, ...] = (), confine: Path | None = None
+) -> Source:
+    """The input at ``path`` with the files that it may refer to.
+
+    Raises: Refusal HX001 when it cannot be read or is outside ``confine``, HX007 when it is larger than 1 GiB.
+    """
+    place = Path(path)
+    files = DiskFiles(place.parent, packages or {}, search_path, confine)
+    origin = Origin(path)
+    try:
+        if place.is_dir():
+            raise refuse(codes.CANNOT_READ, "this is a folder, and a file was expected", origin)
+        if confine is not None and not place.resolve().is_relative_to(confine.resolve()):
+            raise refuse(codes.CANNOT_READ, f"the file is outside '{confine}', to which reading is confined", origin)
+        if place.stat().st_size > MOST_BYTES:
+            raise refuse(codes.TOO_LARGE, f"the file has {place.stat().st_size} bytes; at most {MOST_BYTES} are read", origin)
+        return Source(path, place.read_bytes(), files)
+    except (OSError, ValueError) as error:
+        raise refuse(codes.CANNOT_READ, f"cannot be read: {_reason(error)}", origin) from error
+
+
+def write_package(package: Package, path: str, files: Files) -> None:
+    """Write the main file to ``path`` and its assets beside it: first everything as temporary siblings, then all renamed.
+
+    Raises: Refusal HX002; then no file of an earlier run has been touched, unless the very renaming failed.
+    """
+    target = Path(path)
+    staged: list[tuple[Path, Path]] = []
+    made: list[Path] = []
+    try:
+        for name, data in _assets(package, target, files):
+            _make_folders(_beside(target, name).parent, made)
+            staged.append(_stage(_beside(target, name), data))
+        if _is_stream(target):
+            target.write_bytes(package.main)
+        else:
+            staged.append(_stage(target, package.main))
+        for temporary, final in staged:
+            temporary.replace(final)
+    except (OSError, ValueError) as error:
+        raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
+    finally:
+        _clean([temporary for temporary, _ in staged], made)
+
+
+def _assets(package: Package, target: Path, files: Files) -> Iterator[tuple[str, bytes]]:
+    """Every asset with its content, except those that already are the very file that they would be copied from."""
+    yield from package.files.items()
+    for name, source in package.copies.items():
+        if not _is_same(_beside(target, name), source):
+            yield name, files.read(source)
+
+
+def _make_folders(folder: Path, made: list[Path]) -> None:
+    """Make the folders of an asset below the output's own folder, which must exist; note those that are new."""
+    missing = [place for place in (folder, *folder.parents) if not place.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    made += missing
+
+
+def _stage(final: Path, data: bytes) -> tuple[Path, Path]:
+    """Put the data into a temporary sibling with the permissions of the file that it replaces, or of a new file."""
+    real = final.resolve() if final.is_symlink() else final
+    if real.is_dir():
+        raise IsADirectoryError(errno.EISDIR, f"'{final}' is a folder")
+    temporary = real.with_name(f".{real.name[:100]}.{secrets.token_hex(6)}.part")
+    try:
+        with temporary.open("xb") as file:
+            file.write(data)
+        if real.exists():
+            shutil.copymode(real, temporary)
+    except OSError:
+        temporary.unlink(missing_ok=True)
+        raise
+    return temporary, real
+
+
+def _clean(temporaries: list[Path], made: list[Path]) -> None:
+    """Remove what a failed run left: temporary files, and folders of its own that stayed empty."""
+    for temporary in temporaries:
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+    for folder in made:
+        with suppress(OSError):
+            folder.rmdir()
+
+
+def _is_stream(target: Path) -> bool:
+    """Whether the output is a pipe or a device (`/dev/stdout`), which must be written into and never replaced."""
+    return target.exists() and not target.is_file() and not target.is_dir()
+
+
+def _beside(target: Path, name: str) -> Path:
+    """Where an asset of this relative name goes.
+
+    Raises: ValueError when the name would lead elsewhere, which a backend must never let happen.
+    """
+    relative = PurePosixPath(name)
+    if relative.is_absolute() or ".." in relative.parts or "\\" in name:
+        raise ValueError(f"the asset name '{name}' leads out of the output folder")
+    return target.parent / relative
+
+
+def _is_same(final: Path, source: str) -> bool:
+    """Whether the asset already is the very file that it would be copied from."""
+    with suppress(OSError):
+        return final.samefile(source)
+    return False
+
+
+def _reason(error: OSError | ValueError) -> str:
+    return error.strerror if isinstance(error, OSError) and error.strerror else str(error)

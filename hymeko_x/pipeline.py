@@ -1,0 +1,164 @@
+"""The pipeline: read -> legalize -> write -> read back -> ledger. Values in, values out; the disk is the caller's business."""
+
+from __future__ import annotations
+
+import posixpath
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import TYPE_CHECKING, Literal, Protocol
+
+from hymeko_x import codes, formats
+from hymeko_x.diagnostics import Refusal, Report, refuse
+from hymeko_x.ir.diff import Difference, Tolerance, diff
+from hymeko_x.ir.legalize import Options, legalize
+from hymeko_x.source import Package, Source
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Origin
+    from hymeko_x.formats import Format
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.source import Files
+
+LEDGER_TOLERANCE = Tolerance(absolute=1e-12, relative=1e-12)
+"""Numbers that differ by less are not a loss: turning degrees into radians and back moves the last digit."""
+
+
+class Reader(Protocol):
+    """What every frontend has."""
+
+    def __call__(self, source: Source, report: Report) -> Mechanism:
+        """The mechanism that the source describes. Raises: Refusal."""
+        ...
+
+
+class Writer(Protocol):
+    """What every backend has."""
+
+    def __call__(self, mechanism: Mechanism, report: Report) -> Package:
+        """The files that describe the mechanism, which must be legal for the format."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """One line of the ledger: what is not the same in the result."""
+
+    element: str
+    field: str
+    before: str | None
+    after: str | None
+    fate: Literal["carried", "approximated", "dropped"]
+    origin: Origin | None = None
+
+    def __str__(self) -> str:
+        place = f"{self.origin}: " if self.origin else ""
+        what = f"{self.element} {self.field}".rstrip()
+        values = f"{self.before or 'nothing'} -> {self.after or 'nothing'}"
+        return f"{place}loss: {what} {self.fate}: {values}"
+
+    def as_json(self) -> dict[str, str | int | None]:
+        """The keys of the `--report` contract."""
+        return {
+            "element": self.element,
+            "field": self.field,
+            "before": self.before,
+            "after": self.after,
+            "fate": self.fate,
+            "file": self.origin.file if self.origin else None,
+            "line": self.origin.line if self.origin else None,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What a conversion made. ``losses`` is None when the target cannot be read back, so that nothing was measured."""
+
+    mechanism: Mechanism
+    package: Package
+    losses: tuple[Loss, ...] | None
+
+
+def read(source: Source, format: Format, report: Report) -> Mechanism:
+    """The mechanism in a source of this format.
+
+    Raises: Refusal when the input cannot be read at all.
+    """
+    return reader(format)(source, report)
+
+
+def write(mechanism: Mechanism, format: Format, options: Options, report: Report) -> Package:
+    """The mechanism in a format: rewritten into what the format can say, then printed.
+
+    Raises: Refusal when the format cannot be written.
+    """
+    backend = writer(format)
+    return backend(legalize(mechanism, format.name, options, report), report)
+
+
+def convert(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> Result:
+    """Write a mechanism, read the result back, and measure what got lost.
+
+    Raises: Refusal when the format cannot be written; HX901 when our own reader refuses what we wrote.
+    """
+    package = write(mechanism, format, options, report)
+    losses = ledger(mechanism, package, format, files) if format.frontend else None
+    return Result(mechanism, package, losses)
+
+
+def ledger(mechanism: Mechanism, package: Package, format: Format, files: Files) -> tuple[Loss, ...]:
+    """Everything in which the written package, read by its format's own frontend, differs from the mechanism."""
+    result = Source(f"<written {format.name}>", package.main, PackageFiles(package, files))
+    try:
+        back = reader(format)(result, Report())
+    except Refusal as error:
+        raise refuse(codes.BUG, f"what was written as {format.name} cannot be read back: {error}") from error
+    return tuple(_loss(difference, mechanism) for difference in diff(mechanism, back, LEDGER_TOLERANCE))
+
+
+def _loss(difference: Difference, mechanism: Mechanism) -> Loss:
+    fate: Literal["approximated", "dropped"] = "dropped" if difference.after is None else "approximated"
+    origin = mechanism.origin(difference.element)
+    return Loss(str(difference.element), difference.field, difference.before, difference.after, fate, origin)
+
+
+def reader(format: Format) -> Reader:
+    """The format's frontend, loaded now.
+
+    Raises: Refusal HX003 when the format can only be written.
+    """
+    if format.frontend is None:
+        readable = ", ".join(row.name for row in formats.FORMATS if row.frontend)
+        raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be read, only written", hint=f"readable: {readable}")
+    found: Reader = import_module(format.frontend).read
+    return found
+
+
+def writer(format: Format) -> Writer:
+    """The format's backend, loaded now.
+
+    Raises: Refusal HX003 when the format can only be read.
+    """
+    if format.backend is None:
+        writable = ", ".join(row.name for row in formats.FORMATS if row.backend)
+        raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be written, only read", hint=f"writable: {writable}")
+    found: Writer = import_module(format.backend).write
+    return found
+
+
+@dataclass(frozen=True, slots=True)
+class PackageFiles:
+    """The files of a package that has not been written yet; a :class:`hymeko_x.source.Files`."""
+
+    package: Package
+    behind: Files = field(repr=False)
+
+    def find(self, uri: str) -> str | None:
+        """The normalised relative name if the package has it."""
+        name = posixpath.normpath(uri)
+        return name if name in self.package.files or name in self.package.copies else self.behind.find(uri)
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        if path in self.package.files:
+            return self.package.files[path]
+        return self.behind.read(self.package.copies.get(path, path))
