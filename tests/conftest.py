@@ -41,7 +41,7 @@ class RealRobots:
         try:
             return cache.fetch(package, self._root)
         except Refusal as refusal:
-            if refusal.diagnostic.code != codes.PACKAGE_UNAVAILABLE:
+            if refusal.diagnostic.code not in (codes.PACKAGE_UNAVAILABLE, codes.OFFLINE):
                 raise
             self._unavailable = refusal.diagnostic.message
             pytest.skip(refusal.diagnostic.message)

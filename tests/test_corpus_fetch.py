@@ -167,6 +167,7 @@ def test_being_offline_is_said_in_one_line(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setenv("PIP_RETRIES", "1")
     with pytest.raises(Refusal) as refusal:
         cache.fetch(catalog.select(("newton",))[0], tmp_path)
+    assert refusal.value.diagnostic.code == codes.OFFLINE
     assert refusal.value.diagnostic.message == "newton==1.8.0 cannot be downloaded: the package index cannot be reached"
 
 

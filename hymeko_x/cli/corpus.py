@@ -56,7 +56,7 @@ def _fetch(packages: tuple[WheelPackage, ...], root: Path) -> int:
             except Refusal as refusal:
                 failed = True
                 show([refusal.diagnostic])
-                if refusal.diagnostic.code == codes.PACKAGE_UNAVAILABLE and "cannot be reached" in refusal.diagnostic.message:
+                if refusal.diagnostic.code == codes.OFFLINE:
                     break
     return exits.FAILED if failed else exits.DONE
 

@@ -31,8 +31,8 @@ class Input(NamedTuple):
 def input_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of every verb that reads a robot."""
     parser.add_argument("--from", dest="from_format", metavar="FORMAT", help="the input's format, where suffix and content do not tell")
-    where = {"action": "append", "default": [], "type": _package, "metavar": "NAME=DIR"}
-    parser.add_argument("--package", **where, help="where package://NAME and model://NAME are (repeatable)")
+    where = "where package://NAME and model://NAME are (repeatable)"
+    parser.add_argument("--package", action="append", default=[], type=_package, metavar="NAME=DIR", help=where)
     parser.add_argument("--confine", type=_folder, metavar="DIR", help="read no file outside this folder")
     parser.add_argument("--arg", action="append", default=[], type=_argument, metavar="NAME:=VALUE", help="an argument of a xacro file")
 

@@ -66,7 +66,7 @@ def is_fetched(package: WheelPackage, root: Path) -> bool:
 def fetch(package: WheelPackage, root: Path, *, watch: Watch = _unwatched) -> Path:
     """Download and unpack a package unless it is there; return its folder. Safe when several processes do it at once.
 
-    Raises: Refusal HX210 when pip cannot download it, HX212 when the wheel is not the catalogue's, HX002 when the cache
+    Raises: Refusal HX210 or HX213 when pip cannot download it, HX212 when the wheel is not the catalogue's, HX002 when the cache
     cannot be written.
     """
     final = package_path(package, root)
@@ -111,7 +111,7 @@ def _fill(package: WheelPackage, part: Path, watch: Watch) -> Path:
 def download(package: WheelPackage, folder: Path, watch: Watch = _unwatched) -> Path:
     """Let pip put the package's wheel into ``folder``; return its path.
 
-    Raises: Refusal HX210 with pip's own last words.
+    Raises: Refusal HX213 when the index cannot be reached, else HX210 with pip's own last words.
     """
     temporary = folder / "tmp"
     temporary.mkdir(parents=True)
@@ -139,7 +139,7 @@ def pip_command(package: WheelPackage, folder: Path) -> list[str]:
     and serves everywhere.
     """
     python, abi, platforms = package.wheel.removesuffix(".whl").rsplit("-", 3)[1:]
-    command = [sys.executable, "-m", "pip", "download", "--no-deps", "--only-binary", ":all:", "--ignore-requires-python"]
+    command = [sys.executable, "-W", "ignore", "-m", "pip", "download", "--no-deps", "--only-binary", ":all:", "--ignore-requires-python"]
     command += ["--no-input", "--disable-pip-version-check", "--progress-bar", "off", "--dest", str(folder)]
     if platforms != "any":
         command += ["--python-version", python.removeprefix("cp"), "--implementation", "cp", "--abi", abi]
@@ -170,9 +170,8 @@ def check(package: WheelPackage, wheel: Path) -> None:
 def _download_refusal(package: WheelPackage, log: str) -> Exception:
     wanted = f"{package.name}=={package.version}"
     if is_offline(log):
-        return refuse(
-            codes.PACKAGE_UNAVAILABLE, f"{wanted} cannot be downloaded: the package index cannot be reached", hint="are you online?"
-        )
+        message = f"{wanted} cannot be downloaded: the package index cannot be reached"
+        return refuse(codes.OFFLINE, message, hint="are you online? what was fetched before stays usable")
     errors = [line.removeprefix("ERROR: ") for line in log.splitlines() if line.startswith("ERROR: ")]
     words = errors[-1] if errors else (log.strip().splitlines() or ["pip said nothing"])[-1]
     return refuse(codes.PACKAGE_UNAVAILABLE, f"{wanted} cannot be downloaded: {words}", hint=f"the index must have {package.wheel}")

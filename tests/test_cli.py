@@ -1,0 +1,203 @@
+"""The command line itself: verbs, exit codes, what goes where, and what a user sees when something is wrong."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from hymeko_x import codes
+from hymeko_x.cli import VERBS, exits, guard, main, terminal
+from hymeko_x.diagnostics import Diagnostic, Origin, Severity, refuse
+
+
+def hymeko_x(*words: str, stdin: bytes = b"", cwd: Path | None = None, **environ: str) -> subprocess.CompletedProcess[bytes]:
+    """Run the program as a user does."""
+    here = str(Path(__file__).parents[1])
+    environment = {**os.environ, "PYTHONPATH": here, "PYTHONWARNINGS": "error", **environ}
+    command = [sys.executable, "-m", "hymeko_x.cli", *words]
+    return subprocess.run(command, input=stdin, capture_output=True, cwd=cwd, env=environment, timeout=120, check=False)
+
+
+# ---- verbs ---------------------------------------------------------------------------------------------------------------
+
+
+def test_help_lists_every_verb_and_exit_code(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["--help"]) == exits.DONE
+    said = capsys.readouterr().out
+    assert [verb for verb, (_, summary) in VERBS.items() if f"  {verb:<10} {summary}\n" not in said] == []
+    assert "70 a bug of ours" in said
+
+
+def test_no_words_at_all_are_a_usage_error_that_shows_the_help(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([]) == exits.USAGE
+    assert capsys.readouterr().err.startswith("usage: hymeko-x VERB")
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_every_verb_has_help(verb: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main([verb, "--help"])
+    assert stop.value.code == exits.DONE
+    assert capsys.readouterr().out.startswith(f"usage: hymeko-x {verb}")
+
+
+def test_a_mistyped_verb_is_a_usage_error_with_the_nearest_one(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["conver", "a", "b"]) == exits.USAGE
+    assert capsys.readouterr().err == "hymeko-x: there is no verb 'conver'; did you mean 'convert'?\n"
+
+
+def test_an_unknown_option_is_a_usage_error(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as stop:
+        main(["formats", "--jsn"])
+    assert stop.value.code == exits.USAGE
+    assert capsys.readouterr().out == ""
+
+
+def test_formats_prints_the_table(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["formats"]) == exits.DONE
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["format", "read", "write", "suffixes", "title"]
+    assert lines[1].split()[:5] == ["hymeko", "yes", "yes", ".hymeko", ".himeko"]
+    assert lines[2].split()[:4] == ["urdf", "yes", "yes", ".urdf"]
+
+
+def test_formats_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["formats", "--json"]) == exits.DONE
+    rows = {row["name"]: row for row in json.loads(capsys.readouterr().out)}
+    assert rows["urdf"] == {
+        "name": "urdf",
+        "title": "Unified Robot Description Format (ROS)",
+        "suffixes": [".urdf"],
+        "read": True,
+        "write": True,
+    }
+
+
+@pytest.mark.parametrize("word", ["HX044", "hx044", "hx44", "44"])
+def test_explain_prints_what_a_code_means(word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", word]) == exits.DONE
+    assert capsys.readouterr().out.startswith("HX044: a limit is missing\n\nURDF requires <limit>")
+
+
+def test_explain_without_a_code_lists_all(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain"]) == exits.DONE
+    lines = capsys.readouterr().out.splitlines()
+    assert lines == sorted(lines)
+    assert {line.split()[0] for line in lines} == set(codes.CODES)
+
+
+def test_explaining_an_unknown_code_is_a_usage_error(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", "HX999"]) == exits.USAGE
+    assert capsys.readouterr().err == "hymeko-x explain: there is no code 'HX999'; `hymeko-x explain` lists all\n"
+
+
+def test_the_codes_are_a_table_without_doubles() -> None:
+    assert len(codes.CODES) == len([name for name in vars(codes) if isinstance(getattr(codes, name), codes.Code)])
+    assert all(code.title and code.explanation.endswith(".") for code in codes.CODES.values())
+
+
+def test_corpus_list_tells_what_is_here(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HYMEKO_X_CACHE", str(tmp_path))
+    assert main(["corpus", "list"]) == exits.DONE
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["newton", "1.8.0", "8.6", "no", "Apache-2.0"] in [row[:5] for row in rows]
+
+
+def test_corpus_fetch_of_an_unknown_package_fails_in_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["corpus", "fetch", "no-such-robot"]) == exits.FAILED
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith("error[HX211]: the catalogue has no package 'no_such_robot'\n  hint: it has: example_robot_data, ")
+
+
+def test_corpus_fetch_without_a_network_stops_at_the_first_package(tmp_path: Path) -> None:
+    closed = {"PIP_CONFIG_FILE": os.devnull, "PIP_INDEX_URL": "http://127.0.0.1:9/simple", "PIP_RETRIES": "1"}
+    run = hymeko_x("corpus", "fetch", "newton", "upkie_description", HYMEKO_X_CACHE=str(tmp_path), **closed)
+    assert run.returncode == exits.FAILED
+    assert run.stdout == b""
+    assert run.stderr.decode() == (
+        "error[HX213]: newton==1.8.0 cannot be downloaded: the package index cannot be reached\n"
+        "  hint: are you online? what was fetched before stays usable\n"
+    )
+
+
+# ---- what goes wrong -----------------------------------------------------------------------------------------------------
+
+
+def test_a_refusal_is_one_diagnostic_and_exit_1(capsys: pytest.CaptureFixture[str]) -> None:
+    def body() -> int:
+        raise refuse(codes.CANNOT_READ, "cannot be read: No such file", Origin("a.urdf", 3), hint="look again")
+
+    assert guard.run("import", body) == exits.FAILED
+    assert capsys.readouterr().err == "a.urdf:3: error[HX001]: cannot be read: No such file\n  hint: look again\n"
+
+
+def test_a_bug_is_one_diagnostic_with_its_place_and_exit_70(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("HYMEKO_X_DEBUG", raising=False)
+    assert guard.run("import", lambda: len(terminal.render(None, True))) == exits.BUG  # type: ignore[arg-type]
+    said = capsys.readouterr().err
+    assert said.startswith("error[HX901]: AttributeError at cli/terminal.py:")
+    assert "Traceback" not in said
+
+
+def test_a_bug_shows_its_traceback_to_whoever_asks(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HYMEKO_X_DEBUG", "1")
+    with pytest.raises(ZeroDivisionError):
+        guard.run("import", lambda: 1 // 0)
+
+
+def test_an_interrupt_is_silent(capsys: pytest.CaptureFixture[str]) -> None:
+    def body() -> int:
+        raise KeyboardInterrupt
+
+    assert guard.run("import", body) == exits.INTERRUPTED
+    assert capsys.readouterr().err == ""
+
+
+def test_a_reader_that_leaves_early_is_no_error() -> None:
+    program = "import sys; from hymeko_x.cli import guard; sys.exit(guard.run('x', lambda: [print('y' * 99) for _ in range(10000)] and 0))"
+    run = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=Path(__file__).parents[1])
+    assert run.stdout is not None
+    assert run.stderr is not None
+    run.stdout.readline()
+    run.stdout.close()
+    assert run.stderr.read() == b""
+    assert run.wait(30) == exits.DONE
+    run.stderr.close()
+
+
+# ---- what a diagnostic looks like ----------------------------------------------------------------------------------------
+
+
+def test_a_diagnostic_in_colour_says_the_same_as_a_plain_one() -> None:
+    said = Diagnostic(
+        codes.ZERO_AXIS, Severity.WARNING, "an axis is zero", Origin("a.urdf", 7), hint="say which", excerpt=("  7 | <axis/>",)
+    )
+    coloured = terminal.render(said, True)
+    assert coloured != str(said)
+    for style in ("1;33", "1;32", "1", "0"):
+        coloured = coloured.replace(f"\x1b[{style}m", "")
+    assert coloured == str(said) == terminal.render(said, False)
+
+
+def test_a_long_list_of_one_severity_is_cut_and_counted(capsys: pytest.CaptureFixture[str]) -> None:
+    terminal.show([Diagnostic(codes.BAD_NUMBER, Severity.WARNING, f"number {i}") for i in range(50)])
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 41
+    assert lines[-1] == "... and 10 more of severity warning (--report FILE.json lists all)"
+
+
+# ---- how fast it starts --------------------------------------------------------------------------------------------------
+
+HEAVY = ("numpy", "scipy", "mujoco", "pinocchio", "pxr", "trimesh", "rich", "yourdfpy", "xacro", "lxml", "lark")
+
+
+def test_the_small_verbs_load_nothing_heavy() -> None:
+    program = f"import sys; from hymeko_x.cli import main; main(['formats']); main(['explain', '44']); print([m for m in {HEAVY} if m in sys.modules])"
+    run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=Path(__file__).parents[1], check=True)
+    assert run.stdout.splitlines()[-1] == "[]"
