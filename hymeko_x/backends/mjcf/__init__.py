@@ -1,0 +1,34 @@
+"""Prints a legal mechanism as MJCF for MuJoCo 4.0: radians, named elements, the sections in their usual order.
+
+Everything that MJCF cannot say was rewritten by `ir.legalize` for the target ``mjcf``, and `assets.pack` gave every
+mesh and texture a relative path; nothing is decided here.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends.mjcf.assets import write_assets
+from hymeko_x.backends.mjcf.bodies import write_worldbody
+from hymeko_x.backends.mjcf.geoms import write_defaults
+from hymeko_x.backends.mjcf.names import printed_names
+from hymeko_x.backends.mjcf.relations import write_actuators, write_contacts, write_equalities
+from hymeko_x.backends.mjcf.text import Text
+from hymeko_x.source import Package
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Mechanism
+
+
+def write(mechanism: Mechanism, report: Report) -> Package:
+    """The MJCF of the mechanism. Files that it refers to are not part of it: `assets.pack` returns them."""
+    del report
+    names = printed_names(mechanism)
+    text = Text()
+    text.open("mujoco", {"model": mechanism.name or None})
+    text.leaf("compiler", {"angle": "radian", "autolimits": "true"})
+    for section in (write_defaults, write_assets, write_worldbody, write_contacts, write_equalities, write_actuators):
+        section(text, mechanism, names)
+    text.close()
+    return Package(text.bytes())

@@ -1,0 +1,77 @@
+"""XML text, line by line and without a tree, so that depth costs nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+from xml.sax.saxutils import quoteattr
+
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, numbers_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.values import Pose
+
+Attributes = dict[str, str | None]
+"""The attributes of an element in the order of printing; None is not printed."""
+
+
+class Text:
+    """XML under construction: elements are opened, closed and left in document order; two blanks per level."""
+
+    def __init__(self) -> None:
+        self._lines: list[str] = []
+        self._open: list[str] = []
+
+    def open(self, tag: str, attributes: Mapping[str, str | None]) -> None:
+        """Start an element that has children."""
+        self._line(f"<{tag}{_attributes_text(attributes)}>")
+        self._open.append(tag)
+
+    def close(self) -> None:
+        """End the innermost open element."""
+        tag = self._open.pop()
+        self._line(f"</{tag}>")
+
+    def leaf(self, tag: str, attributes: Mapping[str, str | None]) -> None:
+        """Add an element without children."""
+        self._line(f"<{tag}{_attributes_text(attributes)}/>")
+
+    def section(self, tag: str) -> None:
+        """Start a section: an element with an empty line before it."""
+        self._lines.append("")
+        self.open(tag, {})
+
+    def bytes(self) -> bytes:
+        """The text so far in UTF-8, with a newline at its end."""
+        return ("\n".join(self._lines) + "\n").encode()
+
+    def _line(self, text: str) -> None:
+        self._lines.append("  " * len(self._open) + text)
+
+
+def _attributes_text(attributes: Mapping[str, str | None]) -> str:
+    return "".join(f" {name}={quoteattr(value, _ESCAPES)}" for name, value in attributes.items() if value is not None)
+
+
+_ESCAPES = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+
+
+def numbers(*values: float) -> str:
+    """Numbers separated by blanks, each the shortest that reads back to the same double; no negative zero."""
+    return numbers_text(tuple(value + 0.0 for value in values))
+
+
+def number(value: float | None, default: float | None = None) -> str | None:
+    """One number, or None where it is unspecified or the target's own default."""
+    return None if value is None or value == default else numbers(value)
+
+
+def pose_attributes(pose: Pose) -> Attributes:
+    """``pos`` in m and ``quat`` (w, x, y, z), each only where it is not the default."""
+    if pose == IDENTITY:
+        return {}
+    return {
+        "pos": None if pose.xyz == ZERO else numbers(*pose.xyz),
+        "quat": None if pose.quat == NO_ROTATION else numbers(*pose.quat),
+    }

@@ -1,0 +1,74 @@
+"""What a target cannot say, rewritten into what it can: one pure function per feature, in a fixed order per target.
+
+A rule takes a mechanism and returns one that is legal in its respect; it says in the report what it changed, and a
+second application changes nothing. Backends receive the result and only print.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Literal
+
+from hymeko_x.ir.legalize_actuators import choose_actuators
+from hymeko_x.ir.legalize_base import choose_base, put_world_link_into_world
+from hymeko_x.ir.legalize_couplings import make_couplings_scalar
+from hymeko_x.ir.legalize_inertia import give_moving_bodies_mass, make_tensors_physical
+from hymeko_x.ir.legalize_joints import expand_screws, lower_inner_free_joints, name_dofs, split_overfull_joints
+from hymeko_x.ir.legalize_limits import make_limits_intervals
+from hymeko_x.ir.legalize_loops import anchor_closures, open_second_parents
+from hymeko_x.ir.legalize_names import make_names_usable
+from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Mechanism
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """What the user chose for the output.
+
+    ``base``: what becomes of an open base (None = the target's own default). ``actuators``: which kind to give every
+    driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows.
+    """
+
+    base: Literal["fixed", "free"] | None = None
+    actuators: Literal["none", "motor", "position", "velocity"] | None = None
+
+
+Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]
+
+RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
+    {
+        "mjcf": (
+            make_names_usable,
+            open_second_parents,
+            anchor_closures,
+            put_world_link_into_world,
+            choose_base,
+            expand_screws,
+            lower_inner_free_joints,
+            name_dofs,
+            split_overfull_joints,
+            make_limits_intervals,
+            make_couplings_scalar,
+            make_tensors_physical,
+            give_moving_bodies_mass,
+            drop_empty_shapes,
+            make_sizes_positive,
+            keep_planes_static,
+            name_shapes_once,
+            choose_actuators,
+        ),
+    }
+)
+"""The rules of each target, in order. A target that is not here takes every mechanism as it is."""
+
+
+def legalize(mechanism: Mechanism, target: str, options: Options, report: Report) -> Mechanism:
+    """The mechanism rewritten so that the target's backend can print all of it. Idempotent."""
+    for rule in RULES.get(target, ()):
+        mechanism = rule(mechanism, options, report)
+    return mechanism

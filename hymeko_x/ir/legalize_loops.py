@@ -1,0 +1,100 @@
+"""Graphs that are no forest, for formats that nest bodies: what closes a loop leaves the tree and becomes a closure."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import Id, JointView, Mechanism, mount_edge, pose_weight
+from hymeko_x.ir.parts import Body, DofKind, Frame, Loop
+from hymeko_x.ir.rename import names_in_use
+from hymeko_x.ir.values import IDENTITY, Pose, add, compose, scaled
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.legalize import Options
+    from hymeko_x.ir.mechanism import RobotEdge
+
+_APART = 0.1
+"""Distance in m of the two points on a hinge's axis that are held together."""
+
+
+def open_second_parents(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """A joint that leads to a body which another joint holds already, or that closes a cycle, becomes closures."""
+    del options
+    extra = [view for view in mechanism.joints.values() if mechanism.parent_joint[view.child] != view]
+    extra += _closing_cycles(mechanism)
+    if not extra:
+        return mechanism
+    names = names_in_use(mechanism)
+    edges: dict[Id, RobotEdge] = {}
+    for view in extra:
+        closures = _closures(view)
+        words = "it is written as a closure of the loop" if closures else "a loop cannot be closed by such a joint, which is left out"
+        say = report.note if closures else report.warn
+        code = codes.REWRITTEN if closures else codes.NOT_SAID
+        say(code, f"{view.id} holds {view.child}, which has another parent; {words}", mechanism.origin(view.id), element=str(view.id))
+        edges |= {names.take("loop", view.id.name): closure for closure in closures}
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=[view.id for view in extra]))
+
+
+def anchor_closures(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """The points that a ``connect`` holds together become frames on their bodies, so that both are said exactly.
+
+    Nothing is lost and nothing is said: the closure is the same one.
+    """
+    del options, report
+    names = names_in_use(mechanism)
+    frames: dict[Id, Frame] = {}
+    edges: dict[Id, RobotEdge] = {}
+    for key, loop, arcs in mechanism.edges(Loop):
+        if loop.kind != "connect" or all(arc.target.kind == "frame" for arc in arcs):
+            continue
+        anchored = []
+        for arc in arcs:
+            if arc.target.kind == "frame":
+                anchored.append(arc)
+                continue
+            frame = names.take("frame", f"{key.name}_{arc.target.name}")
+            frames[frame] = Frame()
+            edges[names.take("mount", frame.name)] = mount_edge(arc.target, frame, Pose(pose_weight(arc).xyz))
+            anchored.append(Arc(frame))
+        edges[key] = Edge(loop, tuple(anchored))
+    return mechanism.with_graph(mechanism.graph.replace(vertices=frames, edges=edges)) if edges else mechanism
+
+
+def _closing_cycles(mechanism: Mechanism) -> list[JointView]:
+    """Of every cycle of bodies that no root leads to, the joint above its first body."""
+    reached = set(mechanism.depth_first())
+    found = []
+    for body, _ in mechanism.vertices(Body):
+        if body in reached:
+            continue
+        found.append(mechanism.parent_joint[body])
+        stack = [body]
+        while stack:
+            key = stack.pop()
+            if key not in reached:
+                reached.add(key)
+                stack.extend(joint.child for joint in mechanism.children.get(key, ()))
+    return found
+
+
+def _closures(view: JointView) -> list[RobotEdge]:
+    """A fixed joint is a weld, a ball one point that stays together, a hinge two points on its axis; else nothing."""
+    kinds = [dof.kind for dof in view.joint.dofs]
+    if not kinds:
+        return [_closure("weld", view, IDENTITY)]
+    if len(kinds) > 1 or kinds[0] not in (DofKind.BALL, DofKind.HINGE):
+        return []
+    dof = view.joint.dofs[0]
+    points = [dof.anchor]
+    if kinds[0] is DofKind.HINGE:
+        points.append(add(dof.anchor, scaled(dof.axis, _APART)))
+    return [_closure("connect", view, Pose(point)) for point in points]
+
+
+def _closure(kind: str, view: JointView, offset: Pose) -> RobotEdge:
+    ends = ((view.parent, view.parent_pose), (view.child, view.child_pose))
+    return Edge(Loop(kind), tuple(Arc(body, 0, compose(pose, offset)) for body, pose in ends))
