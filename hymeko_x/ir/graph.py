@@ -105,9 +105,7 @@ class Hypergraph(Generic[K, V, E, W]):
         gone = set(without)
         new_vertices = {**self.vertices, **(vertices or {})}
         new_edges = {**self.edges, **(edges or {})}
-        return Hypergraph(
-            {k: v for k, v in new_vertices.items() if k not in gone}, {k: e for k, e in new_edges.items() if k not in gone}
-        )
+        return Hypergraph({k: v for k, v in new_vertices.items() if k not in gone}, {k: e for k, e in new_edges.items() if k not in gone})
 
     # ---- the formalism's matrices (scipy.sparse) -----------------------------------------------------------------------------
 

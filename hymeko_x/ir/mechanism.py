@@ -5,7 +5,6 @@ Everything that a frontend returns and a backend takes. Ids are unique per kind,
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
@@ -16,7 +15,7 @@ from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.values import IDENTITY, Pose
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.diagnostics import Origin
 
@@ -251,9 +250,7 @@ def joint_edge(joint: parts.Joint, parent: Id, child: Id, parent_pose: Pose = ID
     return Edge(joint, (_posed(parent, 1, parent_pose), _posed(child, -1, child_pose)))
 
 
-def shape_edge(
-    shape: parts.Shape, body: Id, pose: Pose = IDENTITY, mesh: Id | None = None, material: Id | None = None
-) -> RobotEdge:
+def shape_edge(shape: parts.Shape, body: Id, pose: Pose = IDENTITY, mesh: Id | None = None, material: Id | None = None) -> RobotEdge:
     """The edge of a shape on a body."""
     arcs = [_posed(body, 1, pose)]
     if mesh is not None:
@@ -304,3 +301,9 @@ class Names:
         unique = Id(kind, f"{name}#{number}")
         self._taken.add(unique)
         return unique
+
+
+def file_stem(uri: str) -> str:
+    """The name of an asset after its file: the last part of the path without its suffix (``package://a/b/hip.stl`` -> ``hip``)."""
+    last = uri.replace("\\", "/").rstrip("/").rsplit("/", 1)[-1]
+    return last.rsplit(".", 1)[0] or last or "file"

@@ -450,8 +450,5 @@ class Relation:
 VertexPart = (
     Body | World | Frame | Material | Texture | Mesh | Actuator | Sensor | Camera | Light | PoseSet | Spring | Damper | Mass | Port | Datum
 )
-EdgePart = (
-    Shape | Mount | Layer | Joint | Coupling | Loop | Tendon | Drive | Sense | Stance | Contact | Constitutive | Relation
-)
+EdgePart = Shape | Mount | Layer | Joint | Coupling | Loop | Tendon | Drive | Sense | Stance | Contact | Constitutive | Relation
 Weight = Pose | tuple[float, ...]
-

@@ -1,0 +1,116 @@
+"""Mechanism to canonical HyMeKo text: what is a default is not said, what is used once stands where it is used.
+
+Elements stand in the order in which their author wrote them (``Mechanism.layout``), all others behind, by kind.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, inline_assets
+from hymeko_x.backends.hymeko.joints import joint_items, mimic_arcs
+from hymeko_x.backends.hymeko.parts import Context, extra_fields, part_items, typed, written_field
+from hymeko_x.ir import parts
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id
+from hymeko_x.language.printer import print_document
+from hymeko_x.language.syntax import Document, Field, Item, Node, QuotedName, Ref, Stereotype
+from hymeko_x.source import Package
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Mechanism
+
+_INLINE_EDGES = frozenset({"shape"})
+_PLAIN = frozenset({"datum", "relation"})
+_ORDER = ("world", "material", "texture", "layer", "mesh", "body", "joint", "frame", "camera", "light", "sensor", "mount")
+
+
+def write(mechanism: Mechanism, report: Report) -> Package:
+    """The text as the only file of a package; other files stay where they are and are referred to."""
+    return Package(print_document(document(mechanism)).encode("utf-8"))
+
+
+def document(mechanism: Mechanism) -> Document:
+    """The syntax tree of a mechanism."""
+    plain = _is_plain(mechanism)
+    context = Context(mechanism, files_prefix(mechanism), inline_assets(mechanism), mimic_arcs(mechanism))
+    items = [*_settings(context, plain), *_elements(context)]
+    root = mechanism.notation(ROOT, "hymeko.root")
+    name = root if root is not None else mechanism.name
+    header = mechanism.name if root is not None else ""
+    kind = Stereotype(Ref(("graph" if plain else "robot",)))
+    node = Node(name if name else QuotedName(name), tuple(items), (kind,))
+    return Document((node,), header)
+
+
+def _is_plain(mechanism: Mechanism) -> bool:
+    """Whether the graph has no robot in it: data and relations only."""
+    keys = [*mechanism.graph.vertices, *mechanism.graph.edges]
+    return bool(keys) and all(key.kind in _PLAIN for key in keys)
+
+
+def _settings(context: Context, plain: bool) -> list[Item]:
+    """What stands at the head of the root: units, the prefix of files, notations of the whole."""
+    items: list[Item] = []
+    if not plain:
+        items.append(Node("units", (Field("angle"), Field("rad"))))
+    if context.files:
+        items.append(Field("files", context.files))
+    notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key != "hymeko.root"}
+    if notations:
+        items.append(written_field(notations))
+    items.extend(extra_fields(extra for extra in context.mechanism.extras.get(ROOT, ()) if extra.path))
+    return items
+
+
+def _elements(context: Context) -> list[Item]:
+    """The elements in layout order, with what a format said about the whole mechanism in its place among them."""
+    standing = sorted((extra for extra in context.mechanism.extras.get(ROOT, ()) if not extra.path), key=lambda extra: extra.index)
+    items: list[Item] = []
+    place = 0
+    queue = list(reversed(standing))
+    for key in _order(context):
+        while queue and queue[-1].index <= place:
+            items.extend(extra_fields([queue.pop()], at_root=True))
+            place += 1
+        items.append(_element(context, key))
+        place += 1
+    items.extend(extra_fields(reversed(queue), at_root=True))
+    return items
+
+
+def _order(context: Context) -> list[Id]:
+    """Every element that stands at top level: as its author ordered them, then the rest by kind in graph order."""
+    graph = context.mechanism.graph
+    shown = [key for key in (*graph.vertices, *graph.edges) if _stands_alone(context, key)]
+    known = set(shown)
+    first = [key for key in dict.fromkeys(context.mechanism.layout) if key in known]
+    placed = set(first)
+    rank = {kind: number for number, kind in enumerate(_ORDER)}
+    rest = sorted((key for key in shown if key not in placed), key=lambda key: rank.get(key.kind, len(_ORDER)))
+    return [*first, *rest]
+
+
+def _stands_alone(context: Context, key: Id) -> bool:
+    if key in context.inline or key.kind in _INLINE_EDGES or key in context.mimics:
+        return False
+    return key != WORLD or bool(context.mechanism.shapes.get(WORLD)) or WORLD in context.mechanism.extras
+
+
+def _element(context: Context, key: Id) -> Item:
+    graph = context.mechanism.graph
+    if key in graph.vertices:
+        return _vertex(context, key, graph.vertices[key])
+    edge = graph.edges[key]
+    if isinstance(edge.data, parts.Joint):
+        kind, items = joint_items(context, key)
+        return context.node(key, items, kind, edge=True)
+    return context.node(key, part_items(context, key, edge.data, edge.arcs), typed(key.kind), edge=True)
+
+
+def _vertex(context: Context, key: Id, part: parts.VertexPart) -> Item:
+    if isinstance(part, parts.Body | parts.World):
+        return context.node(key, body_items(context, key, part), "")
+    if isinstance(part, parts.Datum) and not part.parameters and key not in context.mechanism.extras:
+        return Field(key.name)
+    return context.node(key, part_items(context, key, part, ()), typed(key.kind))

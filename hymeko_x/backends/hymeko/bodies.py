@@ -1,0 +1,170 @@
+"""Bodies, inertials and shapes as HyMeKo text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends.hymeko.parts import Context, extra_fields, pose_value, short_uri, word_fields, written_field
+from hymeko_x.formats.hymeko import SHAPE_WORDS
+from hymeko_x.ir import parts
+from hymeko_x.ir.mechanism import Id, Names, file_stem
+from hymeko_x.ir.values import IDENTITY, ZERO
+from hymeko_x.language.syntax import Field, Item, Node, Value
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.mechanism import Mechanism, ShapeView
+
+_PLACES = {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts.Role.BOTH: "shape"}
+
+
+def body_items(context: Context, key: Id, part: parts.Body | parts.World) -> list[Item]:
+    """The block of a body or of the world: inertial, then shapes in order."""
+    items = _inertial_items(part.inertial) if isinstance(part, parts.Body) and part.inertial is not None else []
+    names = Names()
+    for view in context.mechanism.shapes.get(key, ()):
+        items.append(_shape(context, view, names))
+    return items
+
+
+def _inertial_items(inertial: parts.Inertial) -> list[Item]:
+    items: list[Item] = []
+    if inertial.mass is not None:
+        items.append(Field("mass", inertial.mass))
+    if inertial.com != ZERO:
+        items.append(Field("com", inertial.com))
+    tensor = inertial.tensor
+    if tensor is not None:
+        if inertial.written is not None:
+            rotation = pose_value(inertial.written.frame)
+            items.append(Field("axes", rotation[1] if len(rotation) == 2 else (0.0, 0.0, 0.0)))
+            tensor = inertial.written.tensor
+        items.append(Field("inertia", tensor[:3] if tensor[3:] == ZERO else tensor))
+    return items or [Node("inertial")]
+
+
+# ---- shapes --------------------------------------------------------------------------------------------------------------
+
+
+def _shape(context: Context, view: ShapeView, names: Names) -> Item:
+    """``visual { .. }``, or ``visual "file"`` and ``visual=mesh`` where there is nothing else to say."""
+    word = _PLACES[view.shape.role]
+    items = _shape_items(context, view)
+    expected = names.take("shape", f"{view.body.name}/{word}")
+    if expected != view.id:
+        items.append(Field("id", view.id.name))
+    notations = context.mechanism.notations.get(view.id)
+    if notations:
+        items.append(written_field(notations))
+    items.extend(extra_fields(context.mechanism.extras.get(view.id, ())))
+    if len(items) == 1 and isinstance(items[0], Field) and items[0].name == "mesh":
+        return Field(word, items[0].value)
+    return Node(word, tuple(items))
+
+
+def _shape_items(context: Context, view: ShapeView) -> list[Item]:
+    items = _geometry(context, view)
+    if view.pose != IDENTITY or view.pose.written is not None:
+        items.append(Field("at", pose_value(view.pose)))
+    if view.material is not None:
+        items.append(_material(context, view.material))
+    items.extend(word_fields(view.shape, SHAPE_WORDS))
+    return items
+
+
+def _geometry(context: Context, view: ShapeView) -> list[Item]:
+    match view.shape.geometry:
+        case parts.Box(size):
+            return [Field("box", size)]
+        case parts.Sphere(radius):
+            return [Field("sphere", radius)]
+        case parts.Cylinder(radius, length):
+            return [Field("cylinder", (radius, length))]
+        case parts.Capsule(radius, length):
+            return [Field("capsule", (radius, length))]
+        case parts.Ellipsoid(radii):
+            return [Field("ellipsoid", radii)]
+        case parts.Plane(half_size):
+            return [Field("plane", half_size)]
+        case parts.MeshShape():
+            return _mesh(context, view)
+        case parts.NoShape():
+            return []
+
+
+def _mesh(context: Context, view: ShapeView) -> list[Item]:
+    """The mesh where it is used first: its file; elsewhere a reference."""
+    if view.mesh is None:
+        return []
+    if context.inline.get(view.mesh) != view.id:
+        return [Field("mesh", context.ref(view.mesh, ("mesh",)))]
+    mesh = context.mechanism.vertex(view.mesh, parts.Mesh)
+    assert mesh.uri is not None
+    items: list[Item] = [Field("mesh", short_uri(context, mesh.uri))]
+    x, y, z = mesh.scale
+    if mesh.scale != (1.0, 1.0, 1.0):
+        scale: Value = x if x == y == z else mesh.scale
+        items.append(Field("scale", scale))
+    if file_stem(mesh.uri) != view.mesh.name:
+        items.append(Field("mesh_id", view.mesh.name))
+    return items
+
+
+def _material(context: Context, key: Id) -> Item:
+    """An unnamed colour of this shape alone, or a reference."""
+    if key not in context.inline:
+        return Field("material", context.ref(key, ("material",)))
+    rgba = context.mechanism.vertex(key, parts.Material).rgba
+    assert rgba is not None
+    return Field("color", rgba[:3] if rgba[3] == 1.0 else rgba)
+
+
+# ---- what is said in place -----------------------------------------------------------------------------------------------
+
+
+def _first_uses(mechanism: Mechanism) -> dict[Id, Id]:
+    """For every mesh and material the first shape that uses it, in the order in which shapes are printed."""
+    graph = mechanism.graph
+    order = [key for key in dict.fromkeys(mechanism.layout) if key.kind in ("body", "world")]
+    placed = set(order)
+    order += [key for key in graph.vertices if key.kind == "world" and key not in placed]
+    order += [key for key in graph.vertices if key.kind == "body" and key not in placed]
+    found: dict[Id, Id] = {}
+    for body in order:
+        for view in mechanism.shapes.get(body, ()):
+            for used in (view.mesh, view.material):
+                if used is not None:
+                    found.setdefault(used, view.id)
+    return found
+
+
+def inline_assets(mechanism: Mechanism) -> dict[Id, Id]:
+    """Meshes given by a file alone, and nameless colours of one shape, with the shape in which they are defined."""
+    side = {key for table in (mechanism.extras, mechanism.notations) for key in table} | set(mechanism.layout)
+    inline: dict[Id, Id] = {}
+    for key, shape in _first_uses(mechanism).items():
+        if key in side or key not in mechanism.graph.vertices:
+            continue
+        part = mechanism.graph.vertices[key]
+        if isinstance(part, parts.Mesh):
+            plain = part == parts.Mesh(part.uri, part.scale) and part.uri is not None and not part.uri.startswith("~/")
+        else:
+            users = [arc for _, edge, arc in mechanism.graph.edges_at(key)]
+            bare = isinstance(part, parts.Material) and part == parts.Material(None, part.rgba) and part.rgba is not None
+            plain = bare and len(users) == 1 and key.name == f"{shape.name}/material"
+        if plain:
+            inline[key] = shape
+    return inline
+
+
+def files_prefix(mechanism: Mechanism) -> str:
+    """The folder that most files share, when saying it once is shorter; empty when there is none."""
+    uris = [part.uri for part in mechanism.graph.vertices.values() if isinstance(part, parts.Mesh | parts.Texture) and part.uri]
+    folders: dict[str, int] = {}
+    for uri in uris:
+        folder = uri[: uri.rfind("/") + 1]
+        while folder:
+            folders[folder] = folders.get(folder, 0) + 1
+            folder = folder[: folder.rfind("/", 0, len(folder) - 1) + 1]
+    saved = {folder: (len(folder) - 2) * count - len(folder) - 7 for folder, count in folders.items() if not folder.endswith("//")}
+    best = max(saved, key=lambda folder: (saved[folder], folder), default="")
+    return best if best and saved[best] > 0 and not any(uri.startswith("~/") for uri in uris) else ""

@@ -1,0 +1,106 @@
+"""Joints as HyMeKo text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends.hymeko.parts import Context, pose_value, word_fields
+from hymeko_x.formats.hymeko import (
+    AXES,
+    CALIBRATION_WORDS,
+    DEFAULT_AXIS,
+    DOF_WORDS,
+    JOINT_TYPES,
+    LIMIT_WORDS,
+    MOVES,
+    SAFETY_WORDS,
+    TARGETS,
+    Word,
+)
+from hymeko_x.ir import parts
+from hymeko_x.ir.mechanism import Id, numbers_weight
+from hymeko_x.ir.values import IDENTITY, Pose
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Ref
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc
+
+_BODIES = TARGETS["joint"]
+_SHORT_AXES = {direction: (name, "") for name, direction in AXES.items() if len(name) == 1}
+_SHORT_AXES |= {(-x + 0.0, -y + 0.0, -z + 0.0): (name, "-") for (x, y, z), (name, _) in list(_SHORT_AXES.items())}
+_MOVE_NAMES = {kinds[0]: name for name, kinds in MOVES.items() if kinds}
+
+
+def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
+    """The type's name (empty for a hinge) and the block of a joint: ends, dofs, what it follows."""
+    view = context.mechanism.joints[key]
+    items: list[Item] = [_end(context, view.parent, "+", view.parent_pose, "")]
+    framed = view.child_pose != IDENTITY or view.child_pose.written is not None
+    items.append(_end(context, view.child, "-", view.child_pose, "at" if framed else ""))
+    dofs = view.joint.dofs
+    kind = JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
+    if kind == "compound":
+        items.extend(_dof_node(dof) for dof in dofs)
+    else:
+        items.extend(item for dof in dofs for item in _dof_items(dof))
+    items.extend(_mimic(context, arc) for arc in context.mimics.get(Id("coupling", key.name), ()))
+    return kind, items
+
+
+def _end(context: Context, body: Id, direction: str, pose: Pose, role: str) -> ArcItem:
+    said = pose != IDENTITY or pose.written is not None
+    return ArcItem(context.ref(body, _BODIES, direction), role, pose_value(pose) if said else None)
+
+
+def _mimic(context: Context, arc: RobotArc) -> ArcItem:
+    coefficients = numbers_weight(arc)
+    weight = None if coefficients == (0.0, 1.0) else coefficients
+    return ArcItem(context.ref(arc.target, TARGETS["coupling"], "-"), "mimic", weight)
+
+
+def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
+    """The couplings that the following joint itself can say: named like it, active, with nothing beside them."""
+    found: dict[Id, tuple[RobotArc, ...]] = {}
+    for key, coupling, arcs in mechanism.edges(parts.Coupling):
+        if key in mechanism.extras or key in mechanism.notations or not coupling.active or len(arcs) < 2:
+            continue
+        follower, *leaders = arcs
+        sound = follower.sign > 0 and numbers_weight(follower) == (1.0,) and not follower.role
+        named = follower.target.name == key.name and follower.target in mechanism.joints
+        if sound and named and all(arc.sign < 0 and not arc.role and numbers_weight(arc) for arc in leaders):
+            found[key] = tuple(leaders)
+    return found
+
+
+# ---- dofs ----------------------------------------------------------------------------------------------------------------
+
+
+def _dof_node(dof: parts.Dof) -> Node:
+    return Node("dof", (Field("moves", _MOVE_NAMES[dof.kind]), *_dof_items(dof)))
+
+
+def _dof_items(dof: parts.Dof) -> list[Item]:
+    items = _axis(dof)
+    limits = dof.limits
+    words: tuple[Word, ...] = LIMIT_WORDS
+    if limits.lower is not None and limits.upper is not None:
+        items.append(Field("limit", (limits.lower, limits.upper)))
+        words = LIMIT_WORDS[2:]
+    items.extend(word_fields(limits, words))
+    items.extend(word_fields(dof, DOF_WORDS))
+    if dof.safety is not None:
+        items.append(Node("safety", tuple(word_fields(dof.safety, SAFETY_WORDS))))
+    if dof.calibration is not None:
+        items.append(Node("calibration", tuple(word_fields(dof.calibration, CALIBRATION_WORDS))))
+    return items
+
+
+def _axis(dof: parts.Dof) -> list[Item]:
+    if dof.written is not None and dof.written.kind == "axis":
+        return [Field("axis", dof.written.numbers)]
+    if dof.axis == DEFAULT_AXIS:
+        return []
+    short = _SHORT_AXES.get(dof.axis)
+    return [Field("axis", Ref((short[0],), short[1]) if short else dof.axis)]

@@ -1,0 +1,164 @@
+"""What every element's text is made of: names, references, poses, fields, extras and notations."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, dataclass, field, fields
+from typing import TYPE_CHECKING, cast
+
+from hymeko_x.formats.hymeko import PARTS, POSED_EDGES, RESERVED, TARGETS, Word
+from hymeko_x.ir import parts
+from hymeko_x.ir.mechanism import KINDS, WORLD, Id
+from hymeko_x.ir.values import NO_ROTATION, Pose
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from hymeko_x.ir.mechanism import Extra, Mechanism, RobotArc
+
+_ALL_KINDS = tuple(KINDS.values())
+_DIRECTIONS = {1: "+", 0: "~", -1: "-"}
+_FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
+
+
+@dataclass(frozen=True)
+class Context:
+    """What the printers need to know: the mechanism, the files' common prefix, and what is said in place.
+
+    ``inline``: meshes and colours that are defined where a shape uses them, with the shape that uses them first;
+    ``mimics``: couplings that are said in the joint that follows.
+    """
+
+    mechanism: Mechanism
+    files: str
+    inline: Mapping[Id, Id]
+    mimics: Mapping[Id, tuple[RobotArc, ...]]
+    names: dict[str, list[str]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        graph = self.mechanism.graph
+        for key in (*graph.vertices, *graph.edges):
+            self.names.setdefault(key.name, []).append(key.kind)
+
+    def node(self, key: Id, items: list[Item], kind: str, *, edge: bool = False) -> Node:
+        """An element's node with its notations and extras at the end of its block."""
+        notations = self.mechanism.notations.get(key)
+        if notations:
+            items.append(written_field(notations))
+        items.extend(extra_fields(self.mechanism.extras.get(key, ())))
+        stereotypes = (Stereotype(Ref((kind,))),) if kind else ()
+        return Node(name_of(key), tuple(items), stereotypes, edge="@" if edge else "")
+
+    def ref(self, target: Id, kinds: tuple[str, ...], direction: str = "") -> Ref:
+        """A reference: by name alone where the name means the target, else with its kind before it."""
+        if target == WORLD:
+            path = ("world",) if "body" not in kinds or "body" not in self.names.get("world", ()) else ("world", "world")
+            return Ref(path, direction)
+        first = next((kind for kind in kinds or _ALL_KINDS if kind in self.names.get(target.name, ())), None)
+        name = name_of(target)
+        return Ref((name,) if first == target.kind else (target.kind, name), direction)
+
+    def arc(self, kind: str, arc: RobotArc) -> ArcItem:
+        """An arc of an edge of this kind."""
+        weight = None
+        if isinstance(arc.weight, Pose):
+            weight = pose_value(arc.weight)
+        elif arc.weight is not None:
+            weight = cast("tuple[Value, ...]", arc.weight)
+        elif kind in POSED_EDGES:
+            weight = None
+        return ArcItem(self.ref(arc.target, TARGETS[kind], _DIRECTIONS[arc.sign]), arc.role, weight)
+
+
+def name_of(key: Id) -> str:
+    """The name, quoted where it would mean something else."""
+    return QuotedName(key.name) if key.name in RESERVED else key.name
+
+
+def typed(kind: str) -> str:
+    """The type's name for a kind."""
+    return kind
+
+
+def pose_value(pose: Pose) -> tuple[Value, ...]:
+    """``[x y z]`` for a translation, else ``[[x y z] rotation]``, roll-pitch-yaw if written so, else a quaternion."""
+    if pose.written is not None and pose.written.kind in ("rpy", "quat"):
+        return (pose.xyz, pose.written.numbers)
+    if pose.quat == NO_ROTATION:
+        return pose.xyz
+    return (pose.xyz, pose.quat)
+
+
+def word_fields(part: object, words: Iterable[Word]) -> list[Item]:
+    """A field for every attribute that differs from its default."""
+    defaults = _defaults(type(part))
+    found: list[Item] = []
+    for word in words:
+        value = getattr(part, word.attribute)
+        if value != defaults.get(word.attribute, MISSING):
+            found.append(Field(word.word, value_of(value)))
+    return found
+
+
+def _defaults(part: type) -> dict[str, object]:
+    return {item.name: item.default for item in fields(part)}
+
+
+def value_of(value: object) -> Value:
+    """A part's value as a value of the language."""
+    if isinstance(value, bool):
+        return Ref(("true" if value else "false",))
+    if isinstance(value, int):
+        return float(value)
+    if isinstance(value, tuple):
+        return tuple(map(value_of, value))
+    assert isinstance(value, float | str), value
+    return value
+
+
+def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePart, arcs: tuple[RobotArc, ...]) -> list[Item]:
+    """The block of an element that its words describe completely."""
+    words = PARTS[key.kind]
+    items: list[Item] = [context.arc(key.kind, arc) for arc in arcs]
+    items.extend(_uri_fields(context, word_fields(part, words.words), key.kind))
+    if isinstance(part, parts.Tendon):
+        items.extend(Field(name, value) for name in ("lower", "upper", "effort") if (value := getattr(part.limits, name)) is not None)
+    if words.open:
+        items.extend(Field(name, value_of(value)) for name, value in part.parameters)  # type: ignore[union-attr]
+    return items
+
+
+def _uri_fields(context: Context, items: list[Item], kind: str) -> list[Item]:
+    if kind not in ("mesh", "texture"):
+        return items
+    return [
+        item._replace(value=short_uri(context, str(item.value))) if isinstance(item, Field) and item.name == "file" else item
+        for item in items
+    ]
+
+
+def short_uri(context: Context, uri: str) -> str:
+    """A file's uri behind the common prefix, where it has it."""
+    return f"~/{uri.removeprefix(context.files)}" if context.files and uri.startswith(context.files) else uri
+
+
+def extra_fields(extras: Iterable[Extra], *, at_root: bool = False) -> list[Item]:
+    """What formats said verbatim, one field each; the place is written where it is not the first."""
+    found: list[Item] = []
+    for extra in extras:
+        named = extra.format in _FOREIGN
+        values: list[Value] = [] if named else [extra.format]
+        place = 0 if at_root else extra.index
+        if extra.path or place or not named:
+            values.append(extra.path)
+        if place:
+            values.append(float(place))
+        values.append(extra.text)
+        name = extra.format if named else "extra"
+        found.append(Field(name, values[0] if len(values) == 1 else tuple(values)))
+    return found
+
+
+def written_field(notations: Mapping[str, str]) -> Field:
+    """``written ["key" "text" ...]``."""
+    return Field("written", tuple(text for pair in notations.items() for text in pair))

@@ -1,0 +1,251 @@
+"""HyMeKo text to mechanism: parse, expand, find out what each element is, and read it.
+
+An element is what its type says. Untyped elements follow the root: in a ``robot`` nodes are bodies and edges are joints,
+in a ``graph`` they are plain; in an untyped root they are what their place in the edges makes them (infer.py).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, cast
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.formats.hymeko import ALIASES, AXES, PARTS, TARGETS
+from hymeko_x.frontends.hymeko.block import Block, Context, read_extra, read_units, read_written
+from hymeko_x.frontends.hymeko.bodies import read_body
+from hymeko_x.frontends.hymeko.build import Build
+from hymeko_x.frontends.hymeko.infer import infer_kinds
+from hymeko_x.frontends.hymeko.joints import read_joint
+from hymeko_x.ir import parts
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id
+from hymeko_x.language.expand import Element, Expanded, expand
+from hymeko_x.language.parser import parse
+from hymeko_x.language.syntax import Field, Node, QuotedName, Ref, is_list
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.graph import Arc
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.language.syntax import Item, Value
+    from hymeko_x.source import Source
+
+_EDGE_KINDS = frozenset(TARGETS)
+_PARTS_WITH_READERS = frozenset({"body", "joint", "shape"})
+
+
+def read(source: Source, report: Report) -> Mechanism:
+    """The mechanism that a HyMeKo text describes.
+
+    Raises: Refusal with the place in the text: HX060 syntax, HX061 types, HX062 values, HX063 templates, HX064 expressions,
+    HX023 duplicate names, HX040 references, HX045 joints without ends.
+    """
+    try:
+        text = source.data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise refuse(codes.SYNTAX, f"byte {error.start} is not UTF-8", Origin(source.name)) from error
+
+    def fetch(path: str) -> bytes | None:
+        found = source.files.find(path)
+        return None if found is None else source.files.read(found)
+
+    return build(expand(parse(text, source.name), source.name, fetch), source.name, report)
+
+
+def build(expanded: Expanded, file: str, report: Report) -> Mechanism:
+    """The mechanism of an expanded text."""
+    build = Build(_context(expanded, file, report))
+    elements = [item for item in expanded.items if isinstance(item, Element) and not _is_units(item.node)]
+    kinds = infer_kinds(expanded, elements)
+    _read_settings(build, expanded)
+    declared = _declare(build, elements, kinds)
+    for key, element in declared:
+        _read_element(build, key, element)
+    if expanded.root and expanded.root != expanded.name:
+        build.notations.setdefault(ROOT, {})["hymeko.root"] = expanded.root
+    return build.mechanism(expanded.name)
+
+
+# ---- settings and statements of the root -------------------------------------------------------------------------------------
+
+
+def _context(expanded: Expanded, file: str, report: Report) -> Context:
+    context = Context(file, report)
+    for item in expanded.items:
+        if isinstance(item, Element) and _is_units(item.node):
+            context.units = read_units(item.node, context)
+    return context
+
+
+def _is_units(node: Node) -> bool:
+    return node.name == "units" and not isinstance(node.name, QuotedName) and not node.edge and not node.stereotypes
+
+
+def _read_settings(build: Build, expanded: Expanded) -> None:
+    """Fields that stand in the root itself: the prefix of files, and what a format said about the whole mechanism."""
+    place = 0
+    for item in expanded.items:
+        if isinstance(item, Element):
+            place += not _is_units(item.node)
+        elif isinstance(item.item, Field):
+            place += _read_setting(build, item.item, place)
+
+
+def _read_setting(build: Build, field: Field, place: int) -> int:
+    """Read one; returns how many places at top level it takes."""
+    from hymeko_x.frontends.hymeko.block import FOREIGN
+
+    if field.name == "files" and isinstance(field.value, str):
+        build.files = field.value
+    elif field.name == "written":
+        build.notations.setdefault(ROOT, {}).update(read_written(field, build.context))
+    elif field.name in FOREIGN or field.name == "extra":
+        extra = read_extra(field, build.context)
+        build.extras[ROOT] = (*build.extras.get(ROOT, ()), extra if extra.path else replace(extra, index=place))
+        return 0 if extra.path else 1
+    elif field.name not in ("scope",):
+        _read_loose(build, field)
+    return 0
+
+
+def _read_loose(build: Build, field: Field) -> None:
+    """A field of the root that is none of the settings: a vertex of its own when it is bare, else data of the root."""
+    if field.value is None:
+        key = build.reserve("datum", field.name, field)
+        build.vertices[key] = parts.Datum()
+        build.layout.append(key)
+        return
+    value = _parameter(build, field)
+    key = build.reserve("datum", field.name, field)
+    build.vertices[key] = parts.Datum((("value", value),))
+    build.layout.append(key)
+
+
+# ---- elements ----------------------------------------------------------------------------------------------------------------
+
+
+def _declare(build: Build, elements: list[Element], kinds: list[str]) -> list[tuple[Id, Element]]:
+    """Every element's id, before anything is read, so that references may look ahead."""
+    declared: list[tuple[Id, Element]] = []
+    for element, kind in zip(elements, kinds, strict=True):
+        if kind == "axis":
+            build.directions[element.name] = _direction(build, element)
+            continue
+        if kind == "world":
+            build.vertices[WORLD] = parts.World()
+            declared.append((WORLD, element))
+            continue
+        declared.append((build.declare(kind, element), element))
+    return declared
+
+
+def _direction(build: Build, element: Element) -> tuple[float, float, float]:
+    block = Block(element.node.items, build.context)
+    item = block.take("direction", "axis", "ax")
+    if item is not None:
+        return build.context.vec3(item.value, "", item)
+    return AXES[element.name]
+
+
+def _read_element(build: Build, key: Id, element: Element) -> None:
+    if key.kind in ("body", "world"):
+        read_body(build, key, _without(element, "kind"))
+    elif key.kind == "joint":
+        moves = _preset(element, "moves")
+        read_joint(build, key, element, moves)
+    elif key.kind == "shape":
+        raise build.context.refuse(element.node, "a shape stands in the block of its body")
+    else:
+        _read_part(build, key, element)
+
+
+def _preset(element: Element, name: str) -> str | None:
+    for item in element.node.items:
+        if isinstance(item, Field) and item.name == name and isinstance(item.value, str):
+            return str(item.value)
+    return None
+
+
+def _without(element: Element, name: str) -> Element:
+    items = tuple(item for item in element.node.items if not (isinstance(item, Field) and item.name == name))
+    return element._replace(node=element.node._replace(items=items))
+
+
+def _read_part(build: Build, key: Id, element: Element) -> None:
+    """A vertex or edge that its words describe completely (formats/hymeko.py)."""
+    words = PARTS[key.kind]
+    block = Block(_renamed(element.node.items, key.kind), build.context)
+    block.take("kind")
+    values = block.take_words(words.words)
+    if words.open:
+        values["parameters"] = tuple((name, _parameter(build, field)) for name, field in block.fields.items())
+        block.fields.clear()
+        values["parameters"] += tuple(_nested_parameters(build, block))  # type: ignore[operator]
+    if key.kind in ("tendon",):
+        values["limits"] = _tendon_limits(values)
+    if key.kind == "loop":
+        values["dofs"] = ()
+    try:
+        part = words.part(**{name: value for name, value in values.items() if not (name == "dofs" and value == ())})
+    except TypeError as error:
+        missing = ", ".join(f"'{word.word}'" for word in words.words if word.attribute not in values)
+        raise build.context.refuse(element.node, f"{key} needs {missing}") from error
+    if key.kind in _EDGE_KINDS:
+        arcs = tuple(_arc(build, key, arc, element) for arc in block.arcs)
+        block.arcs = []
+        build.add_edge(key, part, arcs)
+    else:
+        build.vertices[key] = part
+    block.rest(str(key))
+    build.keep(key, block)
+
+
+def _arc(build: Build, key: Id, item: object, element: Element) -> Arc[Id, parts.Weight]:
+    from hymeko_x.language.syntax import ArcItem
+
+    return build.arc(key.kind, cast("ArcItem", item), element.scope)
+
+
+def _tendon_limits(values: dict[str, object]) -> parts.Limits:
+    """``limits`` of a tendon stand among its parameters as lower, upper, effort."""
+    found = dict(cast("parts.Parameters", values.get("parameters", ())))
+    limits = {name: found.pop(name) for name in ("lower", "upper", "effort") if name in found}
+    values["parameters"] = tuple(found.items())
+    return parts.Limits(**limits)  # type: ignore[arg-type]
+
+
+def _renamed(items: tuple[Item, ...], kind: str) -> tuple[Item, ...]:
+    """The items with published synonyms of fields replaced by our words."""
+    aliases = ALIASES.get(kind)
+    if not aliases:
+        return items
+    return tuple(item._replace(name=aliases.get(item.name, item.name)) if isinstance(item, Field) else item for item in items)
+
+
+def _nested_parameters(build: Build, block: Block) -> list[tuple[str, float | str | tuple[float, ...]]]:
+    """Fields of nested nodes as parameters with dotted names; arcs of a vertex are left to be reported."""
+    found: list[tuple[str, float | str | tuple[float, ...]]] = []
+    stack = [(node.name, node) for node in reversed(block.nodes)]
+    block.nodes = []
+    while stack:
+        path, node = stack.pop()
+        for item in node.items:
+            if isinstance(item, Field):
+                found.append((f"{path}.{item.name}", _parameter(build, item)))
+            elif isinstance(item, Node):
+                stack.append((f"{path}.{item.name}", item))
+    return found
+
+
+def _parameter(build: Build, field: Field) -> float | str | tuple[float, ...]:
+    """A free value: a number, a text, or a list of numbers."""
+    value: Value | None = field.value
+    if value is None:
+        return ""
+    if is_list(value):
+        return build.context.numbers(value, "", field)
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Ref):
+        return value.dotted
+    return build.context.number(value, "", field)

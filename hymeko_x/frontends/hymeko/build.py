@@ -1,0 +1,155 @@
+"""The mechanism under construction: what the readers of HyMeKo text put their elements into."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
+from hymeko_x.ir.graph import Arc, Edge, Hypergraph
+from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id, Mechanism, Names
+from hymeko_x.ir.parts import EdgePart, VertexPart, Weight, World
+from hymeko_x.language.syntax import ArcItem, is_list
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Origin
+    from hymeko_x.frontends.hymeko.block import Block, Context
+    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+    from hymeko_x.ir.values import Vec3
+    from hymeko_x.language.expand import Element, Scope
+    from hymeko_x.language.syntax import Item, Ref
+
+_ALL_KINDS = tuple(KINDS.values())
+_SIGNS = {"+": 1, "<-": 1, "-": -1, "->": -1, "~": 0, "<>": 0}
+
+
+@dataclass(slots=True)
+class Build:
+    """Vertices, edges and side tables so far, and which names exist of which kind."""
+
+    context: Context
+    vertices: dict[Id, VertexPart] = field(default_factory=dict)
+    edges: dict[Id, RobotEdge] = field(default_factory=dict)
+    extras: dict[Id, tuple[Extra, ...]] = field(default_factory=dict)
+    origins: dict[Id, Origin] = field(default_factory=dict)
+    notations: dict[Id, dict[str, str]] = field(default_factory=dict)
+    stereotypes: dict[Id, tuple[str, ...]] = field(default_factory=dict)
+    layout: list[Id] = field(default_factory=list)
+    files: str = ""
+    names: Names = field(default_factory=Names)
+    kinds: dict[str, list[str]] = field(default_factory=dict)
+    directions: dict[str, Vec3] = field(default_factory=dict)
+
+    # ---- adding ----------------------------------------------------------------------------------------------------------
+
+    def declare(self, kind: str, element: Element) -> Id:
+        """Reserve the id of an element, so that references find it.
+
+        Raises: Refusal (HX023) when the name is taken by an element of the same kind.
+        """
+        key = self.reserve(kind, element.name, element.node)
+        self.layout.append(key)
+        if element.types:
+            own = tuple(name for name in element.types if name != kind)
+            if own:
+                self.stereotypes[key] = own
+        return key
+
+    def reserve(self, kind: str, name: str, item: Item) -> Id:
+        """Reserve an id for something that stands inside an element."""
+        taken = self.kinds.setdefault(name, [])
+        key = Id(kind, name)
+        if kind in taken:
+            first = self.origins[key].line
+            message = f"{key} is defined twice; the first definition is in line {first}"
+            raise refuse(codes.DUPLICATE_NAME, message, self.context.origin(item))
+        taken.append(kind)
+        self.names.take(kind, name)
+        self.origins[key] = self.context.origin(item)
+        return key
+
+    def add_edge(self, key: Id, data: EdgePart, arcs: tuple[RobotArc, ...]) -> None:
+        """Put an edge in."""
+        self.edges[key] = Edge(data, arcs)
+
+    def keep(self, key: Id, block: Block) -> None:
+        """Keep the block's extras and notations beside its element."""
+        if block.extras:
+            self.extras[key] = (*self.extras.get(key, ()), *block.extras)
+        if block.written:
+            self.notations[key] = {**self.notations.get(key, {}), **block.written}
+
+    # ---- references --------------------------------------------------------------------------------------------------------
+
+    def target(self, ref: Ref, scope: Scope, kinds: tuple[str, ...], item: Item) -> Id:
+        """The element behind a reference: the first of these kinds that has the name.
+
+        Raises: Refusal (HX040) when there is none.
+        """
+        found = self.find(ref, scope, kinds)
+        if found is None:
+            raise refuse(
+                codes.UNDEFINED_REFERENCE,
+                f"'{ref.dotted}' is not defined; expected a {' or '.join(kinds or ('element',))}",
+                self.context.origin(item),
+                hint=self._near(ref.path[-1], kinds),
+            )
+        return found
+
+    def find(self, ref: Ref, scope: Scope, kinds: tuple[str, ...]) -> Id | None:
+        """The element behind a reference, or None."""
+        path = ref.path
+        if len(path) > 1 and path[0] in _ALL_KINDS and (not kinds or path[0] in kinds):
+            kinds, path = (path[0],), path[1:]
+        name = scope.resolve(path) or ".".join(path)
+        for kind in kinds or _ALL_KINDS:
+            if kind in self.kinds.get(name, ()):
+                return Id(kind, name)
+            if kind == "world" and name == "world":
+                self.vertices.setdefault(WORLD, World())
+                return WORLD
+        return None
+
+    def _near(self, name: str, kinds: tuple[str, ...]) -> str:
+        from difflib import get_close_matches
+
+        candidates = [known for known, of in self.kinds.items() if not kinds or set(of) & set(kinds)]
+        near = get_close_matches(name, candidates, n=3)
+        return f"did you mean {' or '.join(near)}?" if near else ""
+
+    def arc(self, kind: str, item: ArcItem, scope: Scope) -> RobotArc:
+        """An arc of an edge of this kind, with its weight read as the kind wants it."""
+        target = self.target(item.ref, scope, TARGETS[kind], item)
+        return Arc(target, sign_of(item), self.weight(kind, item), item.role)
+
+    def weight(self, kind: str, item: ArcItem) -> Weight | None:
+        """An arc's weight: a pose for the edges that join bodies, numbers for the others."""
+        if item.weight is None:
+            return None
+        if kind in POSED_EDGES:
+            return self.context.pose(item.weight, item)
+        flat = tuple(part for part in item.weight if not is_list(part))
+        if len(flat) != len(item.weight):
+            raise self.context.refuse(item, f"the weight of the arc to '{item.ref.dotted}' is a list of numbers")
+        return self.context.numbers(item.weight, "", item)
+
+    # ---- finishing ---------------------------------------------------------------------------------------------------------
+
+    def mechanism(self, name: str) -> Mechanism:
+        """All of it."""
+        return Mechanism(
+            name=name,
+            graph=Hypergraph(self.vertices, self.edges),
+            extras=self.extras,
+            origins=self.origins,
+            notations=self.notations,
+            stereotypes=self.stereotypes,
+            layout=tuple(self.layout),
+        )
+
+
+def sign_of(item: ArcItem) -> int:
+    """+1 into the edge, -1 out of it, 0 undirected."""
+    return _SIGNS[item.ref.direction]

@@ -1,0 +1,111 @@
+"""What an element is that does not say so: from its root, its fields, and its place in the edges."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.hymeko import AXES
+from hymeko_x.ir.mechanism import KINDS
+from hymeko_x.language.syntax import ArcItem, Field, Node
+
+if TYPE_CHECKING:
+    from hymeko_x.language.expand import Element, Expanded
+
+_EDGES = {"+": 1, "<-": 1, "-": -1, "->": -1}
+_SPRING = frozenset({"spring_constant", "stiffness", "k"})
+_DAMPER = frozenset({"damping_const", "damping", "c"})
+_BODY_WORDS = frozenset({"mass", "com", "inertia", "visual", "collision", "geometry", "shape", "translation"})
+_ALL = frozenset(KINDS.values()) | {"axis"}
+
+
+def infer_kinds(expanded: Expanded, elements: list[Element]) -> list[str]:
+    """The kind of every element, in order."""
+    by_name: dict[str, list[int]] = {}
+    for number, element in enumerate(elements):
+        by_name.setdefault(element.name, []).append(number)
+    kinds = [_said(element) for element in elements]
+    mode = next((name for name in expanded.types if name in ("robot", "graph")), "")
+    if not mode:
+        _infer_from_edges(elements, kinds, by_name)
+    for number, element in enumerate(elements):
+        if not kinds[number]:
+            kinds[number] = _default(element, mode)
+    return kinds
+
+
+def is_direction(element: Element) -> bool:
+    """Whether an untyped node is one of the standard directions, or gives a direction by `axis` or `ax`."""
+    node = element.node
+    if node.edge or any(isinstance(item, Node | ArcItem) for item in node.items):
+        return False
+    fields = {item.name for item in node.items if isinstance(item, Field)}
+    return (not fields and element.name in AXES) or (len(fields) == 1 and bool(fields & {"axis", "ax", "direction"}))
+
+
+def _said(element: Element) -> str:
+    """The kind that the element's types preset, or nothing."""
+    for item in element.node.items:
+        if isinstance(item, Field) and item.name == "kind" and isinstance(item.value, str) and element.types:
+            return item.value if item.value in _ALL else ""
+    if element.name == "world" and not element.node.edge and not element.types:
+        from hymeko_x.language.syntax import QuotedName
+
+        return "" if isinstance(element.node.name, QuotedName) else "world"
+    return ""
+
+
+def _default(element: Element, mode: str) -> str:
+    if element.node.edge:
+        return "joint" if mode == "robot" else "relation"
+    if is_direction(element):
+        return "axis"
+    return "body" if mode == "robot" else "datum"
+
+
+def _infer_from_edges(elements: list[Element], kinds: list[str], by_name: dict[str, list[int]]) -> None:
+    """In an untyped root: an edge with one body on each side is a joint, one with a spring or damper is constitutive."""
+    for number, element in enumerate(elements):
+        if not element.node.edge or kinds[number]:
+            continue
+        ends = [(arc, _target(arc, element, by_name)) for arc in element.node.items if isinstance(arc, ArcItem)]
+        lumped = any(end is not None and _lumped(elements[end]) in ("spring", "damper") for _, end in ends)
+        if lumped:
+            kinds[number] = "constitutive"
+            for _, end in ends:
+                if end is not None and not kinds[end]:
+                    kinds[end] = _lumped(elements[end]) or "port"
+        elif _is_joint(ends, elements):
+            kinds[number] = "joint"
+            for _, end in ends:
+                if end is not None and not kinds[end] and not is_direction(elements[end]):
+                    kinds[end] = "body"
+    for number, element in enumerate(elements):
+        fields = {getattr(item, "name", "") for item in element.node.items}
+        if not kinds[number] and not element.node.edge and fields & _BODY_WORDS:
+            kinds[number] = "body"
+
+
+def _target(arc: ArcItem, element: Element, by_name: dict[str, list[int]]) -> int | None:
+    name = element.scope.resolve(arc.ref.path)
+    found = by_name.get(name or "", [])
+    return found[0] if found else None
+
+
+def _is_joint(ends: list[tuple[ArcItem, int | None]], elements: list[Element]) -> bool:
+    """One tail and one head that are no directions, and nothing else but directions."""
+    signs: list[int] = []
+    for arc, end in ends:
+        names_axis = arc.ref.path[-1] in AXES if end is None else is_direction(elements[end])
+        if not names_axis and arc.role not in ("axis", "mimic"):
+            signs.append(_EDGES.get(arc.ref.direction, 0))
+    return sorted(signs) == [-1, 1]
+
+
+def _lumped(element: Element) -> str:
+    """Which lumped element of the dynamics dialect a node's fields make it, or nothing."""
+    fields = {item.name for item in element.node.items if isinstance(item, Field)}
+    if fields & _SPRING:
+        return "spring"
+    if fields & _DAMPER:
+        return "damper"
+    return "mass" if fields == {"mass"} else ""

@@ -1,0 +1,210 @@
+"""Joints and their dofs from HyMeKo text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats.hymeko import AXES, CALIBRATION_WORDS, DEFAULT_AXIS, DOF_WORDS, LIMIT_WORDS, MOVES, ROLE_MOVES, SAFETY_WORDS
+from hymeko_x.frontends.hymeko.block import Block
+from hymeko_x.frontends.hymeko.build import sign_of
+from hymeko_x.ir import parts
+from hymeko_x.ir.mechanism import coupling_edge, joint_edge
+from hymeko_x.ir.values import IDENTITY, Pose, Vec3, Written, rotate, scaled, unit
+from hymeko_x.language.syntax import Field, Ref
+
+if TYPE_CHECKING:
+    from hymeko_x.frontends.hymeko.build import Build
+    from hymeko_x.ir.mechanism import Id
+    from hymeko_x.language.expand import Element, Scope
+    from hymeko_x.language.syntax import ArcItem, Item
+
+_BODIES = ("body", "world")
+_TURNING = frozenset({parts.DofKind.HINGE, parts.DofKind.BALL, parts.DofKind.SCREW})
+
+
+def read_joint(build: Build, key: Id, element: Element, moves: str | None) -> None:
+    """A joint: its ends, its dofs, and the coupling that `mimic` adds. ``moves`` is what its type says, if anything."""
+    block = Block(element.node.items, build.context)
+    scope = element.scope
+    block.take("kind"), block.take("moves")
+    mimic = _take_all(block, "mimic")
+    child_frame = block.take_role("at")
+    axis_arc = _take_axis_arc(build, block, scope)
+    parent, child, told = _ends(build, key, block, scope, element.node)
+    pose, child_pose = _poses(build, parent, child, child_frame, key)
+    target = build.target(child_frame.ref if child_frame and child is None else child.ref, scope, _BODIES, element.node)  # type: ignore[union-attr]
+    dofs = _dofs(build, block, scope, told or moves, axis_arc, element.node)
+    above = build.target(parent.ref, scope, _BODIES, parent)
+    build.edges[key] = joint_edge(parts.Joint(dofs), above, target, pose, child_pose)
+    if mimic:
+        leaders = tuple((build.target(arc.ref, scope, ("joint", "tendon"), arc), _polynomial(build, arc)) for arc in mimic)
+        build.edges[build.reserve("coupling", key.name, element.node)] = coupling_edge(key, leaders)
+    block.rest(str(key))
+    build.keep(key, block)
+
+
+def _take_all(block: Block, role: str) -> list[ArcItem]:
+    found = [arc for arc in block.arcs if arc.role == role]
+    block.arcs = [arc for arc in block.arcs if arc.role != role]
+    return found
+
+
+def _polynomial(build: Build, arc: ArcItem) -> tuple[float, ...]:
+    return (0.0, 1.0) if arc.weight is None else build.context.numbers(arc.weight, "", arc)
+
+
+# ---- ends ----------------------------------------------------------------------------------------------------------------
+
+
+def _ends(build: Build, key: Id, block: Block, scope: Scope, item: Item) -> tuple[ArcItem, ArcItem | None, str | None]:
+    """The parent's arc, the child's arc, and what the child's role tells about the joint's type."""
+    parents = [arc for arc in block.arcs if sign_of(arc) > 0 and arc.role in ("", "parent")]
+    children = [arc for arc in block.arcs if sign_of(arc) < 0 and (arc.role in ("", "child") or arc.role.upper() in ROLE_MOVES)]
+    has_framed_child = any(arc.role == "at" for arc in block.arcs)
+    if len(parents) != 1 or (len(children) != 1 and not has_framed_child):
+        message = f"{key} has {len(parents)} parents and {len(children)} children; a joint joins one '+ parent' and one '- child'"
+        raise refuse(codes.MISSING_PART, message, build.context.origin(item), element=str(key))
+    for arc in (*parents, *children):
+        block.arcs.remove(arc)
+    child = children[0]
+    return parents[0], child, ROLE_MOVES.get(child.role.upper())
+
+
+def _poses(build: Build, parent: ArcItem, child: ArcItem | None, framed: ArcItem | None, key: Id) -> tuple[Pose, Pose]:
+    """The joint frame in the parent, and in the child.
+
+    A weight on the parent's arc is the joint frame in the parent; so is one on the child's arc, as other published
+    examples write it. The joint frame in the child is the weight of an arc of role ``at``.
+    """
+    context = build.context
+    weighted = [arc for arc in (parent, child) if arc is not None and arc.weight is not None]
+    if len(weighted) == 2:
+        hint = "write the joint frame in the child as [pose] at - child"
+        raise context.refuse(weighted[1], f"{key} has a pose on both arcs; it is not clear which of them is meant", hint=hint)
+    pose = context.pose(weighted[0].weight, weighted[0]) if weighted else IDENTITY
+    child_pose = context.pose(framed.weight, framed) if framed is not None else IDENTITY
+    return pose, child_pose
+
+
+# ---- dofs ----------------------------------------------------------------------------------------------------------------
+
+
+def _dofs(
+    build: Build, block: Block, scope: Scope, moves: str | None, axis_arc: tuple[Vec3, Written | None] | None, item: Item
+) -> tuple[parts.Dof, ...]:
+    """The dofs in order: from `dof` blocks, or the single one that the joint's type and fields describe."""
+    nodes = [node for node in block.nodes if node.name == "dof"]
+    if nodes or moves == "several":
+        block.nodes = [node for node in block.nodes if node.name != "dof"]
+        return tuple(_dof_block(build, Block(node.items, build.context), scope, node) for node in nodes)
+    return tuple(_dof(build, block, scope, kind, axis_arc, item) for kind in MOVES[moves or "hinge"])
+
+
+def _dof_block(build: Build, block: Block, scope: Scope, item: Item) -> parts.Dof:
+    moves = block.take_text("moves") or "hinge"
+    if moves not in MOVES or not MOVES[moves]:
+        raise build.context.refuse(item, f"a dof moves as {', '.join(name for name in MOVES if name != 'none')}, not as '{moves}'")
+    dof = _dof(build, block, scope, MOVES[moves][0], None, item)
+    block.rest("a dof")
+    return dof
+
+
+def _dof(
+    build: Build, block: Block, scope: Scope, kind: parts.DofKind, axis_arc: tuple[Vec3, Written | None] | None, item: Item
+) -> parts.Dof:
+    motion = "angle" if kind in _TURNING else "length"
+    axis, written = axis_arc or _axis(build, block, scope) or (DEFAULT_AXIS, None)
+    return parts.Dof(
+        kind,
+        axis,
+        _limits(block, motion),
+        safety=_safety(block, motion, item),
+        calibration=_calibration(block, motion),
+        written=written,
+        **block.take_words(DOF_WORDS, motion),  # type: ignore[arg-type]
+    )
+
+
+def _limits(block: Block, motion: str) -> parts.Limits:
+    context = block.context
+    span = block.take("limit", "limits", "range")
+    found = block.take_words(LIMIT_WORDS, motion)
+    if span is not None:
+        found["lower"], found["upper"] = context.numbers(span.value, motion, span, 2)
+    return parts.Limits(**found) if found else parts.UNLIMITED  # type: ignore[arg-type]
+
+
+def _safety(block: Block, motion: str, item: Item) -> parts.Safety | None:
+    node = block.take_node("safety")
+    if node is None:
+        return None
+    inner = Block(node.items, block.context)
+    found = inner.take_words(SAFETY_WORDS, motion)
+    inner.rest("a safety controller")
+    if "k_velocity" not in found:
+        raise block.context.refuse(node, "a safety controller needs 'k_velocity'")
+    return parts.Safety(**found)  # type: ignore[arg-type]
+
+
+def _calibration(block: Block, motion: str) -> parts.Calibration | None:
+    node = block.take_node("calibration")
+    if node is None:
+        return None
+    inner = Block(node.items, block.context)
+    found = inner.take_words(CALIBRATION_WORDS, motion)
+    inner.rest("a calibration")
+    return parts.Calibration(**found)  # type: ignore[arg-type]
+
+
+# ---- axes ----------------------------------------------------------------------------------------------------------------
+
+
+def _axis(build: Build, block: Block, scope: Scope) -> tuple[Vec3, Written | None] | None:
+    """``axis [x y z]`` (normalised, as written remembered), ``axis=Y`` or ``axis=-Z``."""
+    item = block.take("axis")
+    if item is None:
+        return None
+    if isinstance(item.value, Ref):
+        sign = -1.0 if item.value.direction == "-" else 1.0
+        found = _direction(build, item.value, scope)
+        if found is None:
+            raise build.context.refuse(item, f"'{item.value.dotted}' is not a direction; there are {', '.join(AXES)} and [x y z]")
+        return _signed(found, sign), None
+    return _normalised(build, build.context.vec3(item.value, "", item), item)
+
+
+def _signed(axis: Vec3, sign: float) -> Vec3:
+    return axis if sign > 0 else (-axis[0] + 0.0, -axis[1] + 0.0, -axis[2] + 0.0)
+
+
+def _normalised(build: Build, vector: Vec3, item: Field) -> tuple[Vec3, Written | None]:
+    try:
+        axis = unit(vector)
+    except ZeroDivisionError as error:
+        raise build.context.refuse(item, "the axis [0 0 0] has no direction") from error
+    return axis, None if axis == vector else Written("axis", vector)
+
+
+def _take_axis_arc(build: Build, block: Block, scope: Scope) -> tuple[Vec3, Written | None] | None:
+    """An arc to a direction (``+ AXIS_Z``, ``axis -> AXIS_Z``), its weight the rotation that turns it, taken out of the block."""
+    for arc in block.arcs:
+        direction = _direction(build, arc.ref, scope)
+        if direction is None or (arc.role not in ("", "axis")):
+            continue
+        block.arcs.remove(arc)
+        sign = -1.0 if sign_of(arc) < 0 and arc.ref.direction == "-" else 1.0
+        turned = rotate(build.context.pose(arc.weight, arc).quat, direction) if arc.weight is not None else direction
+        return (_signed(turned, sign) if sign < 0 else scaled(turned, 1.0)), None
+    return None
+
+
+def _direction(build: Build, ref: Ref, scope: Scope) -> Vec3 | None:
+    """The direction that a reference means: one defined in the text, or a standard one that no body takes the name of."""
+    name = scope.resolve(ref.path) or ref.path[-1]
+    if name in build.directions:
+        return build.directions[name]
+    if build.find(ref, scope, _BODIES) is not None:
+        return None
+    return AXES.get(ref.path[-1])

@@ -1,0 +1,179 @@
+"""What a syntax error says: the place, the line with a caret, what was expected, and a hint."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from lark.exceptions import UnexpectedCharacters, UnexpectedToken
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin, refuse
+
+if TYPE_CHECKING:
+    from lark.exceptions import UnexpectedInput
+
+    from hymeko_x.diagnostics import Refusal
+
+# Terminals in the words of a user, in the order in which they are listed; several terminals may share one wording.
+_WORDS = {
+    "NAME": "a name",
+    "NUMBER": "a value",
+    "QUANTITY": "a value",
+    "STRING": "a value",
+    "NUMBERS": "a value",
+    "MATRIX": "a value",
+    "EXPRESSION": "a value",
+    "QUERY": "a value",
+    "LSQB": "a value",
+    "DIRECTION": "a direction (+ - ~ -> <- <>)",
+    "EQUAL": "'='",
+    "COLON": "':'",
+    "LBRACE": "'{'",
+    "RBRACE": "'}'",
+    "RSQB": "']'",
+    "LPAR": "'('",
+    "RPAR": "')'",
+    "COMMA": "','",
+    "DOT": "'.'",
+    "LESSTHAN": "'<'",
+    "MORETHAN": "'>'",
+    "EDGE_WORD": "'@'",
+    "USE": "'use'",
+    "IMPORT": "'import'",
+    "AS": "'as'",
+    "QUOTED_REF": "'@>\"name\"'",
+    "$END": "the end of the text",
+}
+_IGNORED = {"MODIFIER", "LEGACY_HEADER", "COMMENT"}
+_KEYWORDS = {"USE", "IMPORT", "AS", "EDGE_WORD"}
+_PAIRS = {"}": "{", "]": "[", ")": "("}
+_SKIPPED = re.compile(
+    r'"""[\s\S]*?"""|"[^"\\]*(?:\\[\s\S][^"\\]*)*"|\'[^\'\\]*(?:\\[\s\S][^\'\\]*)*\'|`[^`\\\n]*(?:\\.[^`\\\n]*)*`'
+    r"|#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/|[{}\[\]()]"
+)
+_MAX_LINE = 160
+
+_CHARACTER_HINTS = {
+    '"': "the string that begins here is never closed",
+    "'": "the string that begins here is never closed",
+    "`": "the quoted name that begins here is not closed in the same line",
+    ";": "items are separated by white space or commas",
+    "/": "a name with characters other than letters, digits and _ is written in backticks: `left/arm`",
+    ".": "a name with characters other than letters, digits and _ is written in backticks: `arm.1`",
+    "$": "an expression is written ${2 * length}",
+    "%": "a comment begins with # or //",
+    "&": "two references are two arcs, each with its own direction: + a, + b",
+    "!": "a comment begins with # or //",
+    "*": "calculations are written ${a * b}",
+}
+
+
+def explain_syntax_error(error: UnexpectedInput, text: str, name: str) -> Refusal:
+    """The refusal (HX060) for what lark found, with line, caret, expectation and hint."""
+    if isinstance(error, UnexpectedToken):
+        return _unexpected_token(error, text, name)
+    assert isinstance(error, UnexpectedCharacters), error
+    character = text[error.pos_in_stream or 0]
+    message = f"the character {character!r} means nothing here; expected {_list(error.allowed or set())}"
+    hint = _CHARACTER_HINTS.get(character, "")
+    return refuse(
+        codes.SYNTAX, message, Origin(name, error.line, error.column), hint=hint, excerpt=_excerpt(text, error.line, error.column, 1)
+    )
+
+
+def _unexpected_token(error: UnexpectedToken, text: str, name: str) -> Refusal:
+    token = error.token
+    at_end = token.type == "$END"
+    line, column = _end_of(text) if at_end else (token.line or 1, token.column or 1)
+    found = "the text ends" if at_end else f"unexpected {_shown(str(token))}"
+    expected = _list(error.accepts or error.expected)
+    width = 1 if at_end else len(str(token).split("\n", 1)[0])
+    return refuse(
+        codes.SYNTAX,
+        f"{found}; expected {expected}",
+        Origin(name, line, column),
+        hint=_token_hint(error, text, at_end),
+        excerpt=_excerpt(text, line, column, width),
+    )
+
+
+def _token_hint(error: UnexpectedToken, text: str, at_end: bool) -> str:
+    """What the user may have meant."""
+    token = str(error.token)
+    unclosed, unopened = _brackets(text)
+    if at_end and unclosed is not None:
+        bracket, line = unclosed
+        return f"the '{bracket}' in line {line} is never closed"
+    if error.token.type in _KEYWORDS and token.isidentifier():
+        return f"'{token}' is a word of the language; as a name it is written in backticks: `{token}`"
+    if token in _PAIRS and unclosed is not None:
+        bracket, line = unclosed
+        return f"the '{bracket}' in line {line} is still open"
+    if token in _PAIRS and unopened == error.token.start_pos:
+        return f"there is no '{_PAIRS[token]}' for this '{token}'"
+    return _expectation_hint(error.accepts or error.expected, token)
+
+
+def _expectation_hint(expected: set[str], token: str) -> str:
+    if token == "=":
+        return "one '=' is enough, and only a name stands before it"
+    if token == "{" and "NAME" in expected:
+        return "a block follows a name: name { ... }"
+    if "LBRACE" in expected and "EQUAL" not in expected:
+        return "a node or edge has a block, even if it is empty: name : type { }"
+    if expected <= {"NAME", "QUOTED_REF"}:
+        return "a direction is followed by the name of an element"
+    return ""
+
+
+def _brackets(text: str) -> tuple[tuple[str, int] | None, int | None]:
+    """The innermost bracket that is never closed, with its line, and the position of the first one that closes nothing."""
+    stack: list[tuple[str, int]] = []
+    for match in _SKIPPED.finditer(text):
+        word = match[0]
+        if word in _PAIRS.values():
+            stack.append((word, match.start()))
+        elif word in _PAIRS:
+            if not stack or stack[-1][0] != _PAIRS[word]:
+                return _with_line(stack, text), match.start()
+            stack.pop()
+    return _with_line(stack, text), None
+
+
+def _with_line(stack: list[tuple[str, int]], text: str) -> tuple[str, int] | None:
+    if not stack:
+        return None
+    bracket, position = stack[-1]
+    return bracket, text.count("\n", 0, position) + 1
+
+
+def _list(terminals: set[str]) -> str:
+    """What was expected, in words, in a fixed order."""
+    words = list(dict.fromkeys(word for terminal, word in _WORDS.items() if terminal in terminals))
+    unknown = terminals - set(_WORDS) - _IGNORED
+    words += sorted(f"'{terminal.lower()}'" for terminal in unknown)
+    if len(words) < 2:
+        return words[0] if words else "nothing more"
+    return f"{', '.join(words[:-1])} or {words[-1]}"
+
+
+def _shown(token: str) -> str:
+    first = token.split("\n", 1)[0]
+    return f"'{first[:40]}...'" if len(first) > 40 or first != token else f"'{token}'"
+
+
+def _end_of(text: str) -> tuple[int, int]:
+    """Line and column behind the last character that is not white space."""
+    rest = text.rstrip()
+    return rest.count("\n") + 1, len(rest) - (rest.rfind("\n") + 1) + 1
+
+
+def _excerpt(text: str, line: int, column: int, width: int) -> tuple[str, ...]:
+    """The source line and a caret line below it; a long line is cut around the place."""
+    source = text.split("\n")[line - 1].rstrip("\r").replace("\t", " ")
+    start = max(0, column - 1 - _MAX_LINE // 2) if len(source) > _MAX_LINE else 0
+    shown = source[start : start + _MAX_LINE]
+    room = max(1, min(width, len(shown) - (column - 1 - start)))
+    gutter = f"{line:>5}"
+    return (f"{gutter} | {shown}", f"{' ' * len(gutter)} | {' ' * (column - 1 - start)}{'^' * room}")

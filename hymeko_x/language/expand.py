@@ -1,0 +1,393 @@
+"""Templates, stereotypes and imports resolved: from a syntax tree to flat elements with plain values.
+
+An element keeps the chain of types that it was made from and the scope in which its references are looked up.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib.resources import files
+from typing import NamedTuple
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin, Refusal, refuse
+from hymeko_x.language.expressions import ExpressionError, evaluate
+from hymeko_x.language.parser import parse
+from hymeko_x.language.syntax import (
+    ArcItem,
+    Document,
+    Expression,
+    Field,
+    Import,
+    Item,
+    Node,
+    QuotedName,
+    Ref,
+    Stereotype,
+    Value,
+)
+
+MAX_ELEMENTS = 2_000_000
+MAX_DEPTH = 64
+_INTERPOLATION = re.compile(r"\$\{([^{}]*)\}")
+
+Fetch = Callable[[str], bytes | None]
+Environment = Mapping[str, float | str]
+
+
+@dataclass(slots=True)
+class Scope:
+    """Where names are looked up: the elements of one assembly instance, inside those of its parent."""
+
+    prefix: str = ""
+    parent: Scope | None = None
+    elements: set[str] = field(default_factory=set)
+    scopes: dict[str, Scope] = field(default_factory=dict)
+
+    def full(self, name: str) -> str:
+        """The name of an element of this scope as the whole mechanism knows it."""
+        return f"{self.prefix}{name}"
+
+    def resolve(self, path: tuple[str, ...]) -> str | None:
+        """The full name behind a path, looked up here and then outwards; None when there is none."""
+        here: Scope | None = self
+        while here is not None:
+            found = here._inside(path)
+            if found is not None:
+                return found
+            here = here.parent
+        return None
+
+    def _inside(self, path: tuple[str, ...]) -> str | None:
+        scope = self
+        for step in path[:-1]:
+            if step not in scope.scopes:
+                return None
+            scope = scope.scopes[step]
+        return scope.full(path[-1]) if path[-1] in scope.elements else None
+
+
+class Element(NamedTuple):
+    """A node or edge after expansion: full name, its node with plain values, its types from the nearest to the base."""
+
+    name: str
+    node: Node
+    types: tuple[str, ...]
+    scope: Scope
+
+
+class Statement(NamedTuple):
+    """A field or arc that stands in the root's block itself."""
+
+    item: Field | ArcItem
+    scope: Scope
+
+
+class Expanded(NamedTuple):
+    """A whole text, expanded: the root's name and types, and what it holds in order."""
+
+    name: str
+    types: tuple[str, ...]
+    items: tuple[Element | Statement, ...]
+    scope: Scope
+    root: str
+
+
+class _Type(NamedTuple):
+    """A type's chain of names and the items that it presets."""
+
+    names: tuple[str, ...]
+    items: tuple[Item, ...]
+
+
+NO_TYPE = _Type((), ())
+
+
+def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
+    """The elements of a text. ``fetch`` gives the bytes of an imported file, or None.
+
+    Raises: Refusal (HX061, HX063, HX064, HX040) at the place in the text.
+    """
+    header, roots, loose = _split(document)
+    templates = dict(standard_templates())
+    _import(document.items, file, fetch, templates, depth=0)
+    for node in roots:
+        _define(node.items, templates)
+    _define(document.items, templates)
+    root = roots[0] if len(roots) == 1 and not loose else None
+    work = _Expansion(file, templates)
+    scope = Scope()
+    if root is None:
+        items = [*loose, *roots]
+        return Expanded(header, (), tuple(work.elements(items, {}, scope)), scope, "")
+    kind = work.type_of(root, {})
+    merged = _merge(kind.items, root.items)
+    name = header or root.name
+    return Expanded(name, kind.names, tuple(work.elements(list(merged), {}, scope)), scope, root.name)
+
+
+@cache
+def standard_templates() -> Mapping[str, Node]:
+    """The types of the standard vocabulary by name."""
+    text = files("hymeko_x.language").joinpath("std/kinematics.hymeko").read_text(encoding="utf-8")
+    return {item.name: item for item in parse(text, "std/kinematics.hymeko").items if isinstance(item, Node)}
+
+
+def _split(document: Document) -> tuple[str, list[Node], list[Item]]:
+    """The header name, the root nodes, and what stands beside them."""
+    header = document.header
+    roots: list[Node] = []
+    loose: list[Item] = []
+    for position, item in enumerate(document.items):
+        if position == 0 and isinstance(item, Field) and item.value is None:
+            header = item.name
+        elif isinstance(item, Import) or (isinstance(item, Node) and item.parameters is not None):
+            continue
+        elif isinstance(item, Node) and not item.edge:
+            roots.append(item)
+        else:
+            loose.append(item)
+    settings = [node for node in roots if node.name == "units" and not isinstance(node.name, QuotedName)]
+    bodies = [node for node in roots if node not in settings]
+    if len(bodies) == 1 and not loose:
+        return header, [bodies[0]._replace(items=(*settings, *bodies[0].items))], []
+    return header, roots, loose
+
+
+def _define(items: tuple[Item, ...], templates: dict[str, Node]) -> None:
+    for item in items:
+        if isinstance(item, Node) and item.parameters is not None:
+            templates[item.name] = item
+
+
+def _import(items: tuple[Item, ...], file: str, fetch: Fetch, templates: dict[str, Node], depth: int) -> None:
+    """Define what imported files define: by name, and by alias and name."""
+    for item in items:
+        if not isinstance(item, Import) or item.path.startswith("std/") or item.path == "std":
+            continue
+        origin = Origin(file, item.line or None, item.column or None)
+        if depth > MAX_DEPTH:
+            raise refuse(codes.BAD_TEMPLATE, f"the import of '{item.path}' leads back to itself", origin)
+        data = fetch(item.path)
+        if data is None:
+            raise refuse(codes.UNDEFINED_REFERENCE, f"the imported file '{item.path}' was not found", origin)
+        imported = parse(_decode(data, item.path), item.path)
+        _import(imported.items, item.path, fetch, templates, depth + 1)
+        found: dict[str, Node] = {}
+        _define(imported.items, found)
+        templates.update(found)
+        if item.alias:
+            templates.update({f"{item.alias}.{name}": node for name, node in found.items()})
+
+
+def _decode(data: bytes, name: str) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise refuse(codes.SYNTAX, f"byte {error.start} is not UTF-8", Origin(name)) from error
+
+
+class _Expansion:
+    """One run: the templates, and how many elements were made."""
+
+    def __init__(self, file: str, templates: Mapping[str, Node]) -> None:
+        self._file = file
+        self._templates = templates
+        self._made = 0
+
+    # ---- elements ----------------------------------------------------------------------------------------------------------
+
+    def elements(self, items: list[Item], environment: Environment, scope: Scope, depth: int = 0) -> list[Element | Statement]:
+        """The elements of a block, with those of the assemblies in it in their place."""
+        found: list[Element | Statement] = []
+        for item in items:
+            if isinstance(item, Import) or (isinstance(item, Node) and item.parameters is not None):
+                continue
+            if isinstance(item, Node):
+                found.extend(self._element(item, environment, scope, depth))
+            else:
+                found.append(Statement(self._plain(item, environment), scope))
+        return found
+
+    def _element(self, node: Node, environment: Environment, scope: Scope, depth: int) -> list[Element | Statement]:
+        self._count(node)
+        name = self._text(node.name, environment, node)
+        kind = self.type_of(node, environment)
+        merged = _merge(kind.items, node.items)
+        if "assembly" in kind.names:
+            return self._assembly(node, name, merged, environment, scope, depth)
+        scope.elements.add(name)
+        plain = tuple(self._plain(item, environment) for item in merged if not isinstance(item, Import))
+        return [Element(scope.full(name), node._replace(name=name, items=plain, stereotypes=()), kind.names, scope)]
+
+    def _assembly(
+        self, node: Node, name: str, items: tuple[Item, ...], environment: Environment, scope: Scope, depth: int
+    ) -> list[Element | Statement]:
+        if depth > MAX_DEPTH:
+            raise self._refuse(node, f"'{name}' is nested more than {MAX_DEPTH} levels deep")
+        inner = Scope(f"{scope.full(name)}_", scope)
+        scope.scopes[name] = inner
+        nodes: list[Item] = [item for item in items if isinstance(item, Node)]
+        return self.elements(nodes, environment, inner, depth + 1)
+
+    def _count(self, node: Node) -> None:
+        self._made += 1
+        if self._made > MAX_ELEMENTS:
+            origin = Origin(self._file, node.line, node.column)
+            raise refuse(codes.TOO_LARGE, f"the templates make more than {MAX_ELEMENTS} elements", origin)
+
+    # ---- types -------------------------------------------------------------------------------------------------------------
+
+    def type_of(self, node: Node, environment: Environment) -> _Type:
+        """All types of a node merged, the first one strongest, with their parameters filled in."""
+        result = NO_TYPE
+        for stereotype in node.stereotypes:
+            kind = self._stereotype(stereotype, environment, node, ())
+            result = _Type((*result.names, *kind.names), _merge(kind.items, result.items))
+        return result
+
+    def _stereotype(self, stereotype: Stereotype, environment: Environment, node: Node, chain: tuple[str, ...]) -> _Type:
+        name, preset = self._find(stereotype.ref, node)
+        if name in chain or len(chain) > MAX_DEPTH:
+            raise self._refuse(node, f"the template '{name}' applies itself: {' -> '.join([*chain, name])}")
+        template = self._templates[name]
+        inner = self._bind(template, stereotype, environment, node)
+        base = NO_TYPE
+        for parent in template.stereotypes:
+            kind = self._stereotype(parent, inner, node, (*chain, name))
+            base = _Type((*base.names, *kind.names), _merge(kind.items, base.items))
+        own = tuple(self._item(item, inner) for item in template.items)
+        return _Type((name, *base.names), (*_merge(base.items, own), *preset))
+
+    def _find(self, ref: Ref, node: Node) -> tuple[str, tuple[Item, ...]]:
+        """The template's name behind a type, and the ``type`` preset of a dotted one (``sensor.imu``)."""
+        dotted = ref.dotted
+        if dotted in self._templates:
+            return dotted, ()
+        path = ref.path[1:] if len(ref.path) > 1 and ref.path[0] not in self._templates else ref.path
+        if ".".join(path) in self._templates:
+            return ".".join(path), ()
+        if len(path) == 2 and path[0] in self._templates:
+            return path[0], (Field("type", path[1]),)
+        raise self._unknown(dotted, node)
+
+    def _unknown(self, name: str, node: Node) -> Refusal:
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, self._templates, n=3)
+        hint = f"did you mean {' or '.join(near)}?" if near else "the vocabulary is listed in the language reference"
+        origin = Origin(self._file, node.line, node.column)
+        return refuse(codes.UNKNOWN_TYPE, f"'{node.name}' has the type '{name}', which is not known", origin, hint=hint)
+
+    def _bind(self, template: Node, stereotype: Stereotype, environment: Environment, node: Node) -> Environment:
+        """The parameters of a template with the values of one application."""
+        given = dict(stereotype.arguments or ())
+        bound: dict[str, float | str] = {}
+        for parameter in template.parameters or ():
+            value = given.pop(parameter.name, parameter.default)
+            if value is None:
+                raise self._refuse(node, f"'{node.name}' applies '{template.name}' without its parameter '{parameter.name}'")
+            scope = environment if parameter.name in dict(stereotype.arguments or ()) else bound
+            bound[parameter.name] = self._scalar(value, scope, node)
+        if given:
+            known = ", ".join(parameter.name for parameter in template.parameters or ()) or "no parameters"
+            unknown = ", ".join(f"'{name}'" for name in given)
+            raise self._refuse(node, f"'{node.name}' gives '{template.name}' the unknown parameter {unknown}; it has {known}")
+        return bound
+
+    def _scalar(self, value: Value, environment: Environment, node: Node) -> float | str:
+        plain = self._value(value, environment, node)
+        if isinstance(plain, float | str):
+            return plain
+        if isinstance(plain, Ref) and len(plain.path) == 1:
+            return plain.path[0]
+        raise self._refuse(node, "a template's parameter is a number or a text")
+
+    # ---- plain values ------------------------------------------------------------------------------------------------------
+
+    def _plain(self, item: Item, environment: Environment) -> Field | ArcItem:
+        return self._item(item, environment)  # type: ignore[return-value]
+
+    def _item(self, item: Item, environment: Environment) -> Item:
+        """The item with every expression replaced by its value; with no parameters in sight, only if it has any."""
+        match item:
+            case Field(value=None) | Import():
+                return item
+            case Field():
+                assert item.value is not None
+                return item._replace(value=self._value(item.value, environment, item))
+            case ArcItem():
+                return self._arc(item, environment)
+            case Node():
+                items = tuple(self._item(inner, environment) for inner in item.items)
+                types = tuple(self._arguments(stereotype, environment, item) for stereotype in item.stereotypes)
+                return item._replace(name=self._text(item.name, environment, item), items=items, stereotypes=types)
+
+    def _arguments(self, stereotype: Stereotype, environment: Environment, node: Node) -> Stereotype:
+        if not stereotype.arguments:
+            return stereotype
+        return stereotype._replace(arguments=tuple((name, self._value(value, environment, node)) for name, value in stereotype.arguments))
+
+    def _arc(self, arc: ArcItem, environment: Environment) -> ArcItem:
+        weight = arc.weight
+        if weight is not None:
+            weight = tuple(self._value(value, environment, arc) for value in weight)
+        path = tuple(self._text(step, environment, arc) for step in arc.ref.path)
+        items = tuple(self._item(inner, environment) for inner in arc.items)
+        return arc._replace(ref=arc.ref._replace(path=path), weight=weight, items=items)
+
+    def _value(self, value: Value, environment: Environment, place: Item) -> Value:
+        if type(value) is float:
+            return value
+        if type(value) is str:
+            return self._text(value, environment, place)
+        if isinstance(value, Expression):
+            return self._evaluate(value.text, environment, place)
+        if type(value) is tuple:
+            return tuple(self._value(part, environment, place) for part in value)
+        return value
+
+    def _text(self, text: str, environment: Environment, place: Item) -> str:
+        """A name or string with its ``${ }`` filled in, inside a template."""
+        if not environment or "${" not in text:
+            return text
+
+        def fill(match: re.Match[str]) -> str:
+            value = self._evaluate(match[1], environment, place)
+            if isinstance(value, str):
+                return value
+            return str(int(value)) if value.is_integer() else repr(value)
+
+        return type(text)(_INTERPOLATION.sub(fill, text))
+
+    def _evaluate(self, text: str, environment: Environment, place: Item) -> float | str:
+        try:
+            return evaluate(text.strip(), environment)
+        except ExpressionError as error:
+            origin = Origin(self._file, place.line, place.column)
+            raise refuse(codes.BAD_EXPRESSION, f"${{{text}}}: {error}", origin) from error
+
+    def _refuse(self, node: Node, message: str) -> Refusal:
+        return refuse(codes.BAD_TEMPLATE, message, Origin(self._file, node.line, node.column))
+
+
+def _merge(base: tuple[Item, ...], own: tuple[Item, ...]) -> tuple[Item, ...]:
+    """The items of a type with those of its instance: a field given again replaces the preset, all else is added."""
+    if not base:
+        return own
+    said = {_slot(item) for item in own} - {None}
+    return (*(item for item in base if _slot(item) not in said), *own)
+
+
+def _slot(item: Item) -> str | None:
+    """What a field or role fills; None for items of which there may be many."""
+    match item:
+        case Field(name=name, value=value) if value is not None:
+            return name
+        case ArcItem(role=role) if role:
+            return role
+        case _:
+            return None

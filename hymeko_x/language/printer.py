@@ -1,0 +1,218 @@
+"""Syntax tree to canonical HyMeKo text: one layout, the shortest numbers, commas only where the grammar needs them."""
+
+from __future__ import annotations
+
+import re
+
+from hymeko_x.ir.values import number_text
+from hymeko_x.language.syntax import (
+    ArcItem,
+    Document,
+    Expression,
+    Field,
+    Import,
+    Item,
+    Node,
+    Parameter,
+    Quantity,
+    Query,
+    QuotedName,
+    Ref,
+    Value,
+)
+
+WIDTH = 120
+INDENT = "  "
+_PLAIN_NAME = re.compile(r"[^\W\d]\w*")
+_WORDS = frozenset({"rel", "seq", "concurrent", "use", "import", "as", "inf", "nan"})
+_ESCAPES = {"\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\0": "\\0"}
+
+
+def print_document(document: Document) -> str:
+    """The text of a whole document, ending in a newline."""
+    lines: list[str] = []
+    if document.header:
+        lines.append(print_name(document.header))
+    for item in document.items:
+        lines.extend(_lines(item))
+    return "\n".join(lines) + "\n"
+
+
+def print_item(item: Item) -> str:
+    """The text of one item in one line."""
+    match item:
+        case Field():
+            return _field(item)
+        case ArcItem():
+            return _arc(item)
+        case Import():
+            return f"import {print_text(item.path)}" + (f" as {print_name(item.alias)}" if item.alias else "")
+        case Node():
+            inner = _joined(item.items)
+            return f"{_signature(item)} {{ {inner} }}" if inner else f"{_signature(item)} {{}}"
+
+
+def print_name(name: str) -> str:
+    """A name, in backticks unless it is a plain word (or was quoted by its author)."""
+    if _PLAIN_NAME.fullmatch(name) and name not in _WORDS and not isinstance(name, QuotedName):
+        return name
+    escaped = "".join(_ESCAPES.get(character, character) for character in name).replace("`", "\\`")
+    return f"`{escaped}`"
+
+
+def print_text(text: str) -> str:
+    """A string literal with as few escapes as possible."""
+    if '"' in text and "\\" not in text and '"""' not in text and not text.endswith('"'):
+        return f"'{text}'" if "'" not in text else f'"""{text}"""'
+    quote = "'" if '"' in text and "'" not in text else '"'
+    escaped = "".join(_ESCAPES.get(character, character) if character in "\\\0\r" else character for character in text)
+    return f"{quote}{escaped.replace(quote, chr(92) + quote)}{quote}"
+
+
+def print_value(value: Value) -> str:
+    """A value as it stands behind a field's name."""
+    if type(value) is float:
+        return number_text(value)
+    if isinstance(value, str):
+        return print_text(value)
+    match value:
+        case Ref():
+            return _ref(value)
+        case Quantity():
+            return f"{number_text(value.number)}{value.unit}"
+        case Expression():
+            return f"${{{value.text}}}"
+        case Query():
+            return "<?>"
+    assert isinstance(value, tuple)
+    return "[" + " ".join(map(print_value, value)) + "]"
+
+
+# ---- layout ------------------------------------------------------------------------------------------------------------
+
+
+def _lines(item: Item) -> list[str]:
+    """The lines of an item: one if it fits, else its parts indented. Works through nested blocks with a stack."""
+    lines: list[str] = []
+    stack: list[tuple[int, Item | str]] = [(0, item)]
+    while stack:
+        depth, part = stack.pop()
+        indent = INDENT * depth
+        if isinstance(part, str):
+            lines.append(indent + part)
+            continue
+        if not isinstance(part, Node) or not part.items:
+            lines.append(indent + print_item(part))
+            continue
+        if not _is_long(part) and len(text := print_item(part)) + len(indent) <= WIDTH and "\n" not in text:
+            lines.append(indent + text)
+            continue
+        lines.append(f"{indent}{_signature(part)} {{")
+        stack.append((depth, "}"))
+        stack.extend(reversed([(depth + 1, inner) for inner in _broken(part.items, WIDTH - len(indent) - len(INDENT))]))
+    return lines
+
+
+def _is_long(node: Node) -> bool:
+    """Whether a node surely needs several lines; spares printing a whole robot to find out."""
+    return len(node.items) > WIDTH // 2
+
+
+def _broken(items: tuple[Item, ...], width: int) -> list[Item | str]:
+    """The items of a block for several lines: nodes each on its own, runs of fields and arcs filled up to the width."""
+    parts: list[Item | str] = []
+    run: list[Item] = []
+    for item in items:
+        if isinstance(item, Node):
+            parts.extend(_filled(run, width))
+            run = []
+            parts.append(item)
+        else:
+            run.append(item)
+    parts.extend(_filled(run, width))
+    return parts
+
+
+def _filled(items: list[Item], width: int) -> list[Item | str]:
+    lines: list[Item | str] = []
+    line = ""
+    for position, item in enumerate(items):
+        text = print_item(item)
+        if position + 1 < len(items) and _needs_comma(item, items[position + 1]):
+            text += ","
+        if line and len(line) + 1 + len(text) > width:
+            lines.append(line)
+            line = text
+        else:
+            line = f"{line} {text}" if line else text
+    return [*lines, line] if line else lines
+
+
+def _joined(items: tuple[Item, ...]) -> str:
+    texts = [print_item(item) for item in items]
+    for position, following in enumerate(items[1:]):
+        if _needs_comma(items[position], following):
+            texts[position] += ","
+    return " ".join(texts)
+
+
+def _needs_comma(item: Item, following: Item) -> bool:
+    """After a bare name an arc or a quoted edge type could be taken for its value."""
+    if not isinstance(item, Field) or item.value is not None:
+        return False
+    return isinstance(following, ArcItem) or (isinstance(following, Node) and following.edge not in ("", "@", "rel", "seq", "concurrent"))
+
+
+# ---- items -------------------------------------------------------------------------------------------------------------
+
+
+def _signature(node: Node) -> str:
+    head = f"{_edge_word(node.edge)}{print_name(node.name)}"
+    if node.parameters is not None:
+        head += f"({', '.join(map(_parameter, node.parameters))})"
+    if node.stereotypes:
+        types = [_ref(kind.ref) + _arguments(kind.arguments) for kind in node.stereotypes]
+        head += f" : {', '.join(types)}"
+    return head + "".join(f" use {_ref(scope)}" for scope in node.uses)
+
+
+def _edge_word(edge: str) -> str:
+    if edge in ("", "@"):
+        return edge
+    return f"{edge} " if edge in ("rel", "seq", "concurrent") else f"{print_text(edge)} "
+
+
+def _parameter(parameter: Parameter) -> str:
+    name = print_name(parameter.name)
+    return name if parameter.default is None else f"{name}={print_value(parameter.default)}"
+
+
+def _arguments(arguments: tuple[tuple[str, Value], ...] | None) -> str:
+    if arguments is None:
+        return ""
+    return f"({' '.join(f'{print_name(name)}={print_value(value)}' for name, value in arguments)})"
+
+
+def _field(field: Field) -> str:
+    name = print_name(field.name) + (f" <{field.type}>" if field.type else "")
+    if field.value is None:
+        return name
+    text = print_value(field.value)
+    between = "=" if isinstance(field.value, Ref) else " "
+    return f"{name}{between}{text}"
+
+
+def _arc(arc: ArcItem) -> str:
+    parts = [] if arc.weight is None else [print_value(arc.weight)]
+    if arc.role:
+        parts.append(print_name(arc.role))
+    parts.append(_ref(arc.ref))
+    if arc.items:
+        parts.append(f"{{ {_joined(arc.items)} }}")
+    return " ".join(parts)
+
+
+def _ref(ref: Ref) -> str:
+    path = ".".join(map(print_name, ref.path))
+    modifier = f"{ref.modifier} " if ref.modifier else ""
+    return f"{modifier}{ref.direction} {path}" if ref.direction else path

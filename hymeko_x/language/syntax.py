@@ -1,0 +1,122 @@
+"""The syntax tree of the HyMeKo language: what a text says before anybody knows what it means.
+
+Plain named tuples, because a large robot has many of them. Lines and columns are one-based.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class QuotedName(str):
+    """A name that stood in backticks: never a keyword, a path or a word of the vocabulary."""
+
+    __slots__ = ()
+
+
+class Ref(NamedTuple):
+    """A reference by path, with the direction it was written with: ``X``, ``- Z``, ``-> leg.foot``."""
+
+    path: tuple[str, ...]
+    direction: str = ""
+    modifier: str = ""
+
+    @property
+    def dotted(self) -> str:
+        """The path as one text, for messages."""
+        return ".".join(self.path)
+
+
+class Quantity(NamedTuple):
+    """A number with a unit: ``90deg``."""
+
+    number: float
+    unit: str
+
+
+class Expression(NamedTuple):
+    """The text between ``${`` and ``}``."""
+
+    text: str
+
+
+class Query(NamedTuple):
+    """``<?>``: a value that is asked for."""
+
+
+class Parameter(NamedTuple):
+    """A template parameter; default None = required."""
+
+    name: str
+    default: Value | None = None
+
+
+class Stereotype(NamedTuple):
+    """A type behind the colon, with arguments when it is a template."""
+
+    ref: Ref
+    arguments: tuple[tuple[str, Value], ...] | None = None
+
+
+class Node(NamedTuple):
+    """A vertex, an edge, or a definition: ``name (parameters) : stereotypes use scope { items }``.
+
+    ``edge`` is empty for a vertex, else the word that makes it an edge (``@``, ``rel``, ... or a quoted edge type).
+    ``parameters`` is None where there were no parentheses; a node with parentheses is a template.
+    """
+
+    name: str
+    items: tuple[Item, ...] = ()
+    stereotypes: tuple[Stereotype, ...] = ()
+    parameters: tuple[Parameter, ...] | None = None
+    uses: tuple[Ref, ...] = ()
+    edge: str = ""
+    line: int = 0
+    column: int = 0
+
+
+class Field(NamedTuple):
+    """``name value``, ``name = value``, or a bare ``name`` (value None)."""
+
+    name: str
+    value: Value | None = None
+    type: str = ""
+    line: int = 0
+    column: int = 0
+
+
+class ArcItem(NamedTuple):
+    """``[weight] role direction target { items }``. In a vertex's body this is a field that holds a reference."""
+
+    ref: Ref
+    role: str = ""
+    weight: tuple[Value, ...] | None = None
+    items: tuple[Item, ...] = ()
+    line: int = 0
+    column: int = 0
+
+
+class Import(NamedTuple):
+    """``import "path" as alias``."""
+
+    path: str
+    alias: str = ""
+    line: int = 0
+    column: int = 0
+
+
+Value = float | str | Ref | Quantity | Expression | Query | tuple["Value", ...]
+"""Numbers are float, strings str, lists plain tuples (never named ones)."""
+Item = Node | Field | ArcItem | Import
+
+
+class Document(NamedTuple):
+    """A whole text: the items at top level. ``header`` is the legacy ``[ name ]``."""
+
+    items: tuple[Item, ...]
+    header: str = ""
+
+
+def is_list(value: Value | None) -> bool:
+    """Whether the value is a list (and not a reference or a quantity, which are tuples as well)."""
+    return type(value) is tuple
