@@ -53,6 +53,8 @@ def write_package(package: Package, path: str, files: Files) -> None:
     staged: list[tuple[Path, Path]] = []
     made: list[Path] = []
     try:
+        if not target.parent.is_dir():
+            raise FileNotFoundError(errno.ENOENT, f"there is no folder '{target.parent}'")
         for name, data in _assets(package, target, files):
             _make_folders(_beside(target, name).parent, made)
             staged.append(_stage(_beside(target, name), data))
