@@ -1,0 +1,41 @@
+"""hymeko-x: robot descriptions in, robot descriptions out, over one hypergraph.
+
+    import hymeko_x as hx
+
+    robot = hx.load("robot.urdf")
+    hx.dump(robot, "robot.xml")
+    print(hx.dumps(robot, "hymeko"))
+    result = hx.convert("a.urdf", "b.xml", packages={"a_description": "..."})
+
+The words are those of `json` and `yaml`. Everything is loaded when it is first used.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from hymeko_x.api import convert, dump, dumps, load, loads
+    from hymeko_x.diagnostics import Diagnostic, Refusal, Report, Severity
+    from hymeko_x.ir.diff import diff
+    from hymeko_x.ir.mechanism import Id, Mechanism
+
+__all__ = ["Diagnostic", "Id", "Mechanism", "Refusal", "Report", "Severity", "convert", "diff", "dump", "dumps", "load", "loads"]
+
+_HOMES = {
+    **dict.fromkeys(("convert", "dump", "dumps", "load", "loads"), "hymeko_x.api"),
+    **dict.fromkeys(("Diagnostic", "Refusal", "Report", "Severity"), "hymeko_x.diagnostics"),
+    "diff": "hymeko_x.ir.diff",
+    **dict.fromkeys(("Id", "Mechanism"), "hymeko_x.ir.mechanism"),
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'hymeko_x' has no attribute '{name}'")
+    return getattr(import_module(_HOMES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

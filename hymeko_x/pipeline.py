@@ -75,6 +75,7 @@ class Result:
 
     mechanism: Mechanism
     package: Package
+    report: Report
     losses: tuple[Loss, ...] | None
 
 
@@ -86,7 +87,7 @@ def read(source: Source, format: Format, report: Report) -> Mechanism:
     return reader(format)(source, report)
 
 
-def write(mechanism: Mechanism, format: Format, options: Options, report: Report) -> Package:
+def write(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> Package:
     """The mechanism in a format: rewritten into what the format can say, then printed.
 
     Raises: Refusal when the format cannot be written.
@@ -100,9 +101,9 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
 
     Raises: Refusal when the format cannot be written; HX901 when our own reader refuses what we wrote.
     """
-    package = write(mechanism, format, options, report)
+    package = write(mechanism, format, options, files, report)
     losses = ledger(mechanism, package, format, files) if format.frontend else None
-    return Result(mechanism, package, losses)
+    return Result(mechanism, package, report, losses)
 
 
 def ledger(mechanism: Mechanism, package: Package, format: Format, files: Files) -> tuple[Loss, ...]:

@@ -1,0 +1,113 @@
+"""The public functions, on files and on bytes: load, loads, dump, dumps, convert."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+from hymeko_x import disk, formats, pipeline
+from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.legalize import Options
+from hymeko_x.source import NoFiles, Source
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.source import Files
+
+    Place = str | os.PathLike[str]
+    Base = Literal["fixed", "free"] | None
+    Actuators = Literal["none", "motor", "position", "velocity"] | None
+
+
+def load(path: Place, format: str | None = None, *, packages: Mapping[str, Place] | None = None, report: Report | None = None) -> Mechanism:
+    """The robot in a file. The format is taken from suffix and content unless it is given.
+
+    ``packages`` says where `package://NAME` is. What there is to say goes into ``report``.
+
+    Raises: Refusal when the file cannot be read.
+    """
+    source = disk.open_source(os.fspath(path), packages=_folders(packages))
+    return pipeline.read(source, _input_format(source, format), Report() if report is None else report)
+
+
+def loads(data: bytes | str, format: str | None = None, *, files: Files | None = None, report: Report | None = None) -> Mechanism:
+    """The robot in a text or in bytes. ``files`` are those that it may refer to (none by default).
+
+    Raises: Refusal when it cannot be read.
+    """
+    source = Source("<text>", data.encode() if isinstance(data, str) else data, NoFiles() if files is None else files)
+    return pipeline.read(source, _input_format(source, format), Report() if report is None else report)
+
+
+def dump(
+    robot: Mechanism,
+    path: Place,
+    format: str | None = None,
+    *,
+    packages: Mapping[str, Place] | None = None,
+    base: Base = None,
+    actuators: Actuators = None,
+) -> Report:
+    """Write a robot with its meshes to a file; return what there is to say. The format is taken from the suffix unless given.
+
+    Relative meshes are looked for beside the file that the robot was read from.
+
+    Raises: Refusal when it cannot be written; then nothing was changed.
+    """
+    report = Report()
+    target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
+    files = _files_of(robot, packages)
+    package = pipeline.write(robot, target, Options(base=base, actuators=actuators), files, report)
+    disk.write_package(package, os.fspath(path), files)
+    return report
+
+
+def dumps(robot: Mechanism, format: str, *, base: Base = None, actuators: Actuators = None, report: Report | None = None) -> str:
+    """A robot as text; files that belong beside it are referred to, and not written.
+
+    Raises: Refusal when the format cannot be written.
+    """
+    said = Report() if report is None else report
+    options = Options(base=base, actuators=actuators)
+    return pipeline.write(robot, formats.by_name(format), options, _files_of(robot, None), said).main.decode()
+
+
+def convert(
+    source: Place,
+    target: Place,
+    *,
+    from_format: str | None = None,
+    to_format: str | None = None,
+    packages: Mapping[str, Place] | None = None,
+    base: Base = None,
+    actuators: Actuators = None,
+) -> pipeline.Result:
+    """Convert a file with its meshes; return the mechanism, what was written, what there is to say and what got lost.
+
+    Raises: Refusal when the input cannot be read or the output not written; then nothing was changed.
+    """
+    report = Report()
+    given = disk.open_source(os.fspath(source), packages=_folders(packages))
+    robot = pipeline.read(given, _input_format(given, from_format), report)
+    form = formats.by_name(to_format) if to_format else formats.of_output(os.fspath(target))
+    result = pipeline.convert(robot, form, Options(base=base, actuators=actuators), given.files, report)
+    disk.write_package(result.package, os.fspath(target), given.files)
+    return result
+
+
+def _input_format(source: Source, format: str | None) -> formats.Format:
+    return formats.by_name(format) if format else formats.of_input(source.name, source.data)
+
+
+def _folders(packages: Mapping[str, Place] | None) -> dict[str, Path]:
+    return {name: Path(folder) for name, folder in (packages or {}).items()}
+
+
+def _files_of(robot: Mechanism, packages: Mapping[str, Place] | None) -> Files:
+    """The files beside the one that the robot was read from, as its elements remember it; the working folder if none does."""
+    origin = next(iter(robot.origins.values()), None)
+    return DiskFiles(Path(origin.file).parent if origin else Path(), _folders(packages))

@@ -1,0 +1,126 @@
+"""Who may import whom: layers point one way, and heavy libraries stay where they belong."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+LAYERS = (
+    ("diagnostics", "codes", "source"),
+    ("ir",),
+    ("assets", "formats", "language"),
+    ("frontends", "backends"),
+    ("pipeline", "disk", "verify", "draw", "corpus"),
+    ("api",),
+    ("cli",),
+)
+"""A module may import from its own part of the program and from the layers before its own; within a layer see BESIDE."""
+
+BESIDE = {("codes", "diagnostics"), ("language", "formats"), ("corpus", "verify"), ("corpus", "pipeline"), ("corpus", "disk")}
+"""Imports within a layer that are meant to be: (who, whom)."""
+
+HOMES = {
+    "pxr": ("frontends/usd", "backends/usd", "verify/"),
+    "mujoco": ("frontends/mjcf", "verify/", "draw/"),
+    "pinocchio": ("verify/",),
+    "trimesh": ("assets/", "verify/", "draw/"),
+    "collada": ("assets/",),
+    "lark": ("language/",),
+    "xacro": ("frontends/xacro",),
+    "rich": ("cli/",),
+}
+"""Heavy libraries and the only places that may import them."""
+
+MODULES = sorted(path for path in (ROOT / "hymeko_x").rglob("*.py"))
+
+
+def imports(path: Path) -> Iterator[str]:
+    """The full names of all modules that a file imports, at whatever level of nesting."""
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{path}: relative import"
+            names = (f"{node.module}.{alias.name}" for alias in node.names) if node.module == "hymeko_x" else (str(node.module),)
+            yield from names
+
+
+def part(module: str) -> str:
+    """The part of the program that a module belongs to: `ir` of `hymeko_x.ir.graph`."""
+    return module.split(".")[1]
+
+
+def layer(name: str) -> int:
+    return next(number for number, names in enumerate(LAYERS) if name in names)
+
+
+def is_allowed(who: str, whom: str) -> bool:
+    if who == whom or layer(whom) < layer(who):
+        return True
+    return (who, whom) in BESIDE
+
+
+def named(path: Path) -> str:
+    return path.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".").removesuffix(".__init__")
+
+
+def test_imports_point_one_way() -> None:
+    wrong = [
+        f"{named(path)} imports {module}"
+        for path in MODULES
+        if path.parent != ROOT / "hymeko_x" or path.stem != "__init__"
+        for module in imports(path)
+        if module.startswith("hymeko_x.") and not is_allowed(part(named(path)), part(module))
+    ]
+    assert wrong == []
+
+
+def test_formats_do_not_know_each_other() -> None:
+    """`frontends/urdf` may not import `frontends/mjcf`, and likewise for backends; xacro is a preprocessor of URDF."""
+    wrong = []
+    for path in MODULES:
+        who = named(path).split(".")
+        for module in imports(path):
+            whom = module.split(".")
+            if len(who) > 2 and len(whom) > 2 and who[:2] == whom[:2] and who[1] in ("frontends", "backends"):
+                allowed = who[2] == whom[2] or (who[2], whom[2]) == ("xacro", "urdf")
+                wrong += [] if allowed else [f"{named(path)} imports {module}"]
+    assert wrong == []
+
+
+def test_the_verifier_does_not_use_our_own_readers_and_writers() -> None:
+    ours = ("hymeko_x.frontends", "hymeko_x.backends", "hymeko_x.pipeline")
+    wrong = [
+        f"{named(path)} imports {m}" for path in MODULES if part(named(path) + ".") == "verify" for m in imports(path) if m.startswith(ours)
+    ]
+    assert wrong == []
+
+
+def test_heavy_libraries_are_imported_only_where_they_belong() -> None:
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {module}"
+        for path in MODULES
+        for module in imports(path)
+        for homes in [HOMES.get(module.split(".")[0])]
+        if homes is not None and not path.relative_to(ROOT / "hymeko_x").as_posix().startswith(homes)
+    ]
+    assert wrong == []
+
+
+@pytest.mark.parametrize(
+    "words", [["formats"], ["import", "robot.urdf"], ["info", "robot.urdf"], ["convert", "robot.urdf", "robot.hymeko"]]
+)
+def test_reading_a_robot_loads_no_heavy_library(words: list[str], tmp_path: Path) -> None:
+    heavy = {"numpy", "scipy", "mujoco", "pinocchio", "pxr", "trimesh", "rich"}
+    (tmp_path / "robot.urdf").write_text("<robot name='r'><link name='base'/></robot>")
+    program = f"import sys; from hymeko_x.cli import main; code = main({words!r}); print(code, {heavy!r} & {{*sys.modules}})"
+    run = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path, env={"PYTHONPATH": str(ROOT)}, check=True
+    )
+    assert run.stdout.splitlines()[-1] == "0 set()"
