@@ -1,0 +1,92 @@
+"""URDF out. Prints a legal mechanism as URDF 1.0: one root, joints with at most one dof (or planar, or free).
+
+Deterministic; numbers as the shortest decimals that read back to the same doubles; what a URDF file said and the
+mechanism carries as extras stands again where it stood. docs/mapping/urdf.md says what is written how.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends.urdf.joints import joint_tag
+from hymeko_x.backends.urdf.links import link_tag
+from hymeko_x.backends.urdf.materials import robot_material_tag
+from hymeko_x.backends.urdf.order import order
+from hymeko_x.backends.urdf.sheet import Sheet
+from hymeko_x.backends.urdf.transmissions import transmission_tag
+from hymeko_x.formats import urdf as words
+from hymeko_x.formats.xml import FOLLOWING, PRECEDING
+from hymeko_x.formats.xml_print import Tag, escaped, put_back, render, without_declared
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.source import Package
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+
+
+def write(mechanism: Mechanism, report: Report) -> Package:
+    """The URDF file of a mechanism. Meshes are referred to by their uris as they are.
+
+    Raises: Refusal with HX104 for a joint or a shape that URDF cannot say; legalising beforehand rewrites those.
+    """
+    del report  # printing takes no decisions, so there is nothing to say
+    root = _root_tag(mechanism)
+    sheet = Sheet(mechanism, _declared(root))
+    extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format == words.FORMAT]
+    root.children += _merged(_typed(sheet), extras, sheet)
+    lines = ['<?xml version="1.0"?>', *_around(extras, PRECEDING), *render(root), *_around(extras, FOLLOWING), ""]
+    return Package("\n".join(lines).encode("utf-8", "surrogatepass"))
+
+
+def _root_tag(mechanism: Mechanism) -> Tag:
+    root = Tag("robot", {"name": mechanism.name})
+    if words.STYLE_VERSION in (mechanism.notation(ROOT, words.STYLE) or "").split():
+        root.attributes["version"] = "1.0"
+    own = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format == words.FORMAT and extra.path.startswith("@")]
+    put_back(root, own, {})
+    return root
+
+
+def _declared(root: Tag) -> dict[str, str]:
+    return {name: uri for name, uri in root.attributes.items() if name.startswith("xmlns")}
+
+
+def _typed(sheet: Sheet) -> list[Tag]:
+    """The top-level elements in their order, each with its extras."""
+    return [_tag(key, sheet) for key in order(sheet)]
+
+
+def _tag(key: Id, sheet: Sheet) -> Tag:
+    tag = _WRITERS[key.kind](key, sheet)
+    sheet.put_back(tag, key)
+    return tag
+
+
+_WRITERS = {"body": link_tag, "joint": joint_tag, "material": robot_material_tag, "drive": transmission_tag}
+
+
+def _merged(typed: list[Tag], extras: list[Extra], sheet: Sheet) -> list[Tag | str]:
+    """Typed elements and extras in one row: an extra stands where it stood, as far as there is something before it."""
+    foreign = sorted((extra for extra in extras if extra.path in ("", "text()")), key=lambda extra: extra.index)
+    row: list[Tag | str] = []
+    waiting = iter(foreign)
+    extra = next(waiting, None)
+    for tag in typed:
+        while extra is not None and extra.index <= len(row):
+            row.append(_text(extra, sheet))
+            extra = next(waiting, None)
+        row.append(tag)
+    while extra is not None:
+        row.append(_text(extra, sheet))
+        extra = next(waiting, None)
+    return row
+
+
+def _text(extra: Extra, sheet: Sheet) -> str:
+    return escaped(extra.text) if extra.path else without_declared(extra.text, sheet.declared)
+
+
+def _around(extras: list[Extra], path: str) -> list[str]:
+    """The comments before or after the root element."""
+    return [extra.text for extra in sorted(extras, key=lambda extra: extra.index) if extra.path == path]

@@ -1,0 +1,117 @@
+"""<joint>: its type, ends, axis, limits and dynamics."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.backends.urdf.sheet import add_origin
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats import urdf as words
+from hymeko_x.formats.xml_print import Tag
+from hymeko_x.ir.mechanism import numbers_weight
+from hymeko_x.ir.parts import DofKind, Joint
+from hymeko_x.ir.values import IDENTITY, number_text, numbers_text, unit
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.urdf.sheet import Sheet
+    from hymeko_x.ir.mechanism import Id, JointView
+    from hymeko_x.ir.parts import Calibration, Dof, Limits, Safety
+
+
+def joint_tag(key: Id, sheet: Sheet) -> Tag:
+    """The <joint> of a joint.
+
+    Raises: Refusal with HX104 when URDF cannot say the joint.
+    """
+    view = sheet.mechanism.joints[key]
+    word = _type(view, sheet)
+    tag = Tag("joint", {"name": key.name, "type": word})
+    add_origin(tag, view.parent_pose, always=words.STYLE_JOINT_ORIGIN in sheet.style)
+    tag.add("parent", link=view.parent.name)
+    tag.add("child", link=view.child.name)
+    if view.joint.dofs:
+        _add_dofs(tag, view.joint.dofs, word, sheet)
+    else:
+        tag.children += [text for name, text in sheet.usual_if_fixed if not sheet.has_own(key, name)]
+    _add_mimic(tag, key, sheet)
+    return tag
+
+
+def _type(view: JointView, sheet: Sheet) -> str:
+    """The word for the joint: its author's if it still fits, else the usual one."""
+    usual = words.default_type(view.joint)
+    if usual is None or view.child_pose != IDENTITY or not _is_standard(view.joint):
+        said = f"{view.id} has dofs or a frame that URDF has no word for"
+        raise refuse(codes.NOT_SAID, said, sheet.mechanism.origin(view.id), element=str(view.id))
+    own = words.JOINT_TYPES.get(sheet.mechanism.notation(view.id, words.TYPE) or "")
+    fits = own is not None and own.dofs == words.JOINT_TYPES[usual].dofs and (own.bounded or not words.JOINT_TYPES[usual].bounded)
+    return (sheet.mechanism.notation(view.id, words.TYPE) or usual) if fits else usual
+
+
+def _is_standard(joint: Joint) -> bool:
+    """Whether a joint with several dofs moves as URDF's planar joint does, and no axis passes beside the origin."""
+    if any(any(dof.anchor) or dof.ref for dof in joint.dofs):
+        return False
+    return len(joint.dofs) < 3 or tuple(dof.axis for dof in joint.dofs[:2]) == words.planar_axes(joint.dofs[2].axis)
+
+
+def _add_dofs(tag: Tag, dofs: tuple[Dof, ...], word: str, sheet: Sheet) -> None:
+    dof = dofs[-1]
+    if dof.kind in (DofKind.HINGE, DofKind.SLIDE):
+        tag.add("axis", xyz=numbers_text(_written_axis(dof)))
+    if len(dofs) > 1:
+        return
+    if dof.calibration is not None:
+        _add_calibration(tag, dof.calibration)
+    if dof.kind in (DofKind.HINGE, DofKind.SLIDE) and (dof.damping or dof.friction or words.STYLE_DYNAMICS in sheet.style):
+        tag.add("dynamics", damping=number_text(dof.damping), friction=number_text(dof.friction))
+    _add_limits(tag, dof.limits, bounded=words.JOINT_TYPES[word].bounded)
+    if dof.safety is not None:
+        _add_safety(tag, dof.safety)
+
+
+def _written_axis(dof: Dof) -> tuple[float, ...]:
+    """The axis as its author wrote it, if that still is the same direction."""
+    if dof.written is None or dof.written.kind != "axis":
+        return dof.axis
+    x, y, z = dof.written.numbers
+    return dof.written.numbers if unit((x, y, z)) == dof.axis else dof.axis
+
+
+def _add_limits(tag: Tag, limits: Limits, *, bounded: bool) -> None:
+    """<limit>, with the largest numbers where URDF requires one and there is none."""
+    said: dict[str, float | None] = {}
+    if bounded:
+        said["lower"] = -words.NO_LIMIT if limits.lower is None else limits.lower
+        said["upper"] = words.NO_LIMIT if limits.upper is None else limits.upper
+    required = bounded or limits.effort is not None or limits.velocity is not None
+    for name, value in (("effort", limits.effort), ("velocity", limits.velocity)):
+        said[name] = words.NO_LIMIT if value is None and required else value
+    said |= {"acceleration": limits.acceleration, "jerk": limits.jerk}
+    attributes = {name: number_text(value) for name, value in said.items() if value is not None}
+    if attributes:
+        tag.add("limit", **attributes)
+
+
+def _add_safety(tag: Tag, safety: Safety) -> None:
+    tag.add(
+        "safety_controller",
+        soft_lower_limit=number_text(safety.soft_lower),
+        soft_upper_limit=number_text(safety.soft_upper),
+        k_position=number_text(safety.k_position),
+        k_velocity=number_text(safety.k_velocity),
+    )
+
+
+def _add_calibration(tag: Tag, calibration: Calibration) -> None:
+    values = {"rising": calibration.rising, "falling": calibration.falling, "reference_position": calibration.reference}
+    tag.add("calibration", **{name: number_text(value) for name, value in values.items() if value is not None})
+
+
+def _add_mimic(tag: Tag, key: Id, sheet: Sheet) -> None:
+    leader = sheet.leaders.get(key)
+    if leader is None:
+        return
+    offset, multiplier = (*numbers_weight(leader), 0.0, 0.0)[:2]
+    tag.add("mimic", joint=leader.target.name, multiplier=number_text(multiplier), offset=number_text(offset))

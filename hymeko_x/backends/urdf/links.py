@@ -1,0 +1,95 @@
+"""<link>: inertial, visuals and collisions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.backends.urdf.materials import add_shape_material
+from hymeko_x.backends.urdf.sheet import add_origin
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats import urdf as words
+from hymeko_x.formats.xml_print import Tag
+from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
+from hymeko_x.ir.values import Pose, number_text, numbers_text, rotate_tensor
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.urdf.sheet import Sheet
+    from hymeko_x.ir.mechanism import Id, ShapeView
+    from hymeko_x.ir.parts import Inertial
+    from hymeko_x.ir.values import Tensor
+
+_TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+_ORIGIN_STYLES = {"visual": words.STYLE_VISUAL_ORIGIN, "collision": words.STYLE_COLLISION_ORIGIN}
+
+
+def link_tag(key: Id, sheet: Sheet) -> Tag:
+    """The <link> of a body."""
+    tag = Tag("link", {"name": key.name})
+    inertial = sheet.mechanism.vertex(key, Body).inertial
+    if inertial is not None:
+        _add_inertial(tag, inertial, sheet)
+    shapes = sheet.mechanism.shapes.get(key, ())
+    for name, role in words.ROLES.items():
+        for view in shapes:
+            if view.shape.role is role:
+                _add_shape(tag, name, view, sheet)
+    return tag
+
+
+def _add_inertial(link: Tag, inertial: Inertial, sheet: Sheet) -> None:
+    tag = link.add("inertial")
+    frame, tensor = _as_written(inertial)
+    add_origin(tag, frame, always=words.STYLE_INERTIAL_ORIGIN in sheet.style)
+    if inertial.mass is not None:
+        tag.add("mass", value=number_text(inertial.mass))
+    if tensor is not None:
+        values = dict(zip(_TENSOR, tensor, strict=True))
+        tag.add("inertia", **{name: number_text(values[name]) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")})
+
+
+def _as_written(inertial: Inertial) -> tuple[Pose, Tensor | None]:
+    """The tensor in its author's axes if it still is the same one, else in those of the body."""
+    written = inertial.written
+    if written is None or written.frame.xyz != inertial.com or rotate_tensor(written.frame.quat, written.tensor) != inertial.tensor:
+        return Pose(inertial.com), inertial.tensor
+    return written.frame, written.tensor
+
+
+def _add_shape(link: Tag, name: str, view: ShapeView, sheet: Sheet) -> None:
+    tag = link.add(name)
+    if view.shape.name is not None:
+        tag.attributes["name"] = view.shape.name
+    add_origin(tag, view.pose, always=_ORIGIN_STYLES[name] in sheet.style)
+    _add_geometry(tag.add("geometry"), view, sheet)
+    add_shape_material(tag, view, sheet)
+    sheet.put_back(tag, view.id)
+
+
+def _add_geometry(tag: Tag, view: ShapeView, sheet: Sheet) -> None:
+    match view.shape.geometry:
+        case Box(size):
+            tag.add("box", size=numbers_text(size))
+        case Sphere(radius):
+            tag.add("sphere", radius=number_text(radius))
+        case Cylinder(radius, length):
+            tag.add("cylinder", radius=number_text(radius), length=number_text(length))
+        case Capsule(radius, length):
+            tag.add("capsule", radius=number_text(radius), length=number_text(length))
+        case MeshShape():
+            _add_mesh(tag, view, sheet)
+        case NoShape():
+            pass
+        case other:
+            raise refuse(codes.NOT_SAID, f"{view.id} is a {type(other).__name__.lower()}, for which URDF has no word", element=str(view.id))
+
+
+def _add_mesh(tag: Tag, view: ShapeView, sheet: Sheet) -> None:
+    if view.mesh is None:
+        return
+    mesh = sheet.mechanism.vertex(view.mesh, Mesh)
+    child = tag.add("mesh")
+    if mesh.uri is not None:
+        child.attributes["filename"] = mesh.uri
+    if mesh.scale != (1.0, 1.0, 1.0) or words.STYLE_SCALE in sheet.style:
+        child.attributes["scale"] = numbers_text(mesh.scale)

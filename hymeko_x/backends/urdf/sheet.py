@@ -1,0 +1,117 @@
+"""What the printers of links, joints, materials and transmissions look up: one index over the mechanism."""
+
+from __future__ import annotations
+
+import re
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf import Defined
+from hymeko_x.formats.xml_print import Tag, put_back
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Coupling, Layer, Material, Texture
+from hymeko_x.ir.values import IDENTITY, numbers_text, rpy_of
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc
+    from hymeko_x.ir.values import Pose
+
+
+class Sheet:
+    """A mechanism to be printed, with its style and the look-ups that printing needs; all of them linear to build."""
+
+    def __init__(self, mechanism: Mechanism, declared: Mapping[str, str]) -> None:
+        self.mechanism = mechanism
+        self.declared = declared
+        self.style = frozenset((mechanism.notation(ROOT, words.STYLE) or "").split())
+        self._chosen = dict(word.split("=", 1) for word in self.style if "=" in word)
+        self._defined_before: set[Id] = set()
+
+    # ---- style -----------------------------------------------------------------------------------------------------------
+
+    def choice(self, key: Id, choice: str) -> str:
+        """Which of several ways of writing an element's author took: its own, else the usual one, else the default."""
+        own = self.mechanism.notation(key, words.notation(choice))
+        return own or self._chosen.get(choice) or words.DEFAULT_CHOICES[choice]
+
+    @cached_property
+    def usual_if_fixed(self) -> tuple[tuple[str, str], ...]:
+        """Name and text of the elements that fixed joints carry unless they have their own."""
+        text = self.mechanism.notation(ROOT, words.FIXED) or ""
+        return tuple((found[1], found[0]) for found in re.finditer(r"<([\w:.-]+)[^>]*/>", text))
+
+    # ---- materials -------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def textures(self) -> Mapping[Id, str]:
+        """The file of each material's texture."""
+        vertices = self.mechanism.graph.vertices
+        found: dict[Id, str] = {}
+        for _, _, arcs in self.mechanism.edges(Layer):
+            image = next((vertices[arc.target] for arc in arcs if arc.sign > 0), None)
+            if isinstance(image, Texture) and image.uri is not None:
+                found.update({arc.target: image.uri for arc in arcs if arc.sign < 0})
+        return found
+
+    @cached_property
+    def first_of_name(self) -> Mapping[str, Id]:
+        """For each material name the material that it means: the one with that id, else the first one."""
+        found: dict[str, Id] = {}
+        for key, material in self.mechanism.vertices(Material):
+            if material.name is not None and (material.name not in found or key.name == material.name):
+                found[material.name] = key
+        return found
+
+    def place_of(self, key: Id) -> Defined | None:
+        """Where a material is defined; None where it is only referred to."""
+        material = self.mechanism.vertex(key, Material)
+        explicit = self.mechanism.notation(key, words.notation(words.DEFINED))
+        if material.name is None:
+            return Defined.INLINE
+        if material.rgba is None and key not in self.textures:
+            return Defined(explicit) if explicit else None
+        if self.first_of_name[material.name] != key:
+            return Defined(explicit or Defined.INLINE)
+        return Defined(self.choice(key, words.DEFINED))
+
+    def defined_now(self, key: Id) -> bool:
+        """Whether a shape that uses the material has to define it; asked once for each shape, in printing order."""
+        place = self.place_of(key)
+        first = key not in self._defined_before
+        self._defined_before.add(key)
+        return place in (Defined.INLINE, Defined.BOTH) or (place is Defined.FIRST and first)
+
+    # ---- joints ----------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def leaders(self) -> Mapping[Id, RobotArc]:
+        """For each joint that mimics another one, the arc to its leader with the coefficients."""
+        found: dict[Id, RobotArc] = {}
+        for _, _, arcs in self.mechanism.edges(Coupling):
+            followers = [arc.target for arc in arcs if arc.sign > 0]
+            leaders = [arc for arc in arcs if arc.sign < 0]
+            if len(followers) == len(leaders) == 1:
+                found[followers[0]] = leaders[0]
+        return found
+
+    # ---- extras ----------------------------------------------------------------------------------------------------------
+
+    def put_back(self, tag: Tag, key: Id) -> None:
+        """Write the extras of an element into its tag."""
+        extras = self.mechanism.extras.get(key)
+        if extras:
+            put_back(tag, [extra for extra in extras if extra.format == words.FORMAT], self.declared)
+
+    def has_own(self, key: Id, tag: str) -> bool:
+        """Whether an extra of the element is a child of this name."""
+        start = re.compile(rf"<{re.escape(tag)}[\s/>]")
+        return any(extra.path == "" and start.match(extra.text) for extra in self.mechanism.extras.get(key, ()))
+
+
+def add_origin(tag: Tag, pose: Pose, *, always: bool) -> None:
+    """Add <origin>: position in m and roll, pitch, yaw in rad, as written where they were written so."""
+    if always or pose.written is not None or pose != IDENTITY:
+        tag.add("origin", xyz=numbers_text(pose.xyz), rpy=numbers_text(rpy_of(pose)))

@@ -1,0 +1,66 @@
+"""<transmission> (ROS 1): type, joints and actuators with what they say of themselves."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats import urdf as words
+from hymeko_x.formats.xml_print import Tag, escaped
+from hymeko_x.ir.mechanism import numbers_weight
+from hymeko_x.ir.parts import Actuator, Drive
+from hymeko_x.ir.values import number_text, numbers_text
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.urdf.sheet import Sheet
+    from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.ir.parts import Parameters
+
+
+def transmission_tag(key: Id, sheet: Sheet) -> Tag:
+    """The <transmission> of a drive."""
+    edge = sheet.mechanism.graph.edges[key]
+    assert isinstance(edge.data, Drive)
+    tag = Tag("transmission", {"name": key.name})
+    _add_kind(tag, edge.data.kind, sheet.choice(key, words.TYPE_AS))
+    joints = [arc for arc in edge.arcs if arc.sign < 0 and arc.target.kind == "joint"]
+    actuators = [arc for arc in edge.arcs if arc.sign > 0]
+    for arc in joints:
+        _add_end(tag, "joint", arc, edge.data.parameters if len(joints) == 1 else ())
+    for arc in actuators:
+        part = sheet.mechanism.vertex(arc.target, Actuator)
+        _add_end(tag, "actuator", arc, part.parameters)
+    _add_reductions(tag, joints, actuators, sheet.choice(key, words.REDUCTION))
+    return tag
+
+
+def _add_kind(tag: Tag, kind: str, place: str) -> None:
+    if place == "attribute":
+        tag.attributes["type"] = kind
+    elif kind:
+        tag.children.append(_element("type", kind))
+
+
+def _add_end(tag: Tag, name: str, arc: RobotArc, parameters: Parameters) -> None:
+    end = tag.add(name, name=arc.target.name)
+    if arc.role:
+        end.children.append(_element("role", arc.role))
+    for key, value in parameters:
+        text = value if isinstance(value, str) else numbers_text(value) if isinstance(value, tuple) else number_text(value)
+        end.children.append(_element(key, text))
+
+
+def _add_reductions(tag: Tag, joints: list[RobotArc], actuators: list[RobotArc], place: str) -> None:
+    """The reductions: each where it weighs, but the only one of a simple transmission where its author put it."""
+    ends = [child for child in tag.children if isinstance(child, Tag) and child.name in ("joint", "actuator")]
+    weights = [numbers_weight(arc) for arc in (*joints, *actuators)]
+    if len(joints) == len(actuators) == 1 and weights[0] and not weights[1]:
+        target = {"actuator": ends[1], "joint": ends[0], "transmission": tag}[place]
+        target.children.append(_element("mechanicalReduction", number_text(weights[0][0])))
+        return
+    for end, weight in zip(ends, weights, strict=True):
+        if weight:
+            end.children.append(_element("mechanicalReduction", number_text(weight[0])))
+
+
+def _element(name: str, text: str) -> Tag:
+    return Tag(name, {}, [escaped(text)] if text else [])

@@ -1,0 +1,117 @@
+"""The words of URDF that its reader and its writer share, and the few rules that both go by.
+
+Source: the urdfdom schema and its parser; URDF 1.0.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.ir.parts import UNLIMITED, DofKind, Role
+from hymeko_x.ir.values import X, Y, quat_from_z, rotate
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.parts import Joint
+    from hymeko_x.ir.values import Vec3
+
+FORMAT = "urdf"
+
+
+class JointType(NamedTuple):
+    """A word of ``<joint type>``: the kinds of the joint's dofs, and whether ``<limit>`` bounds the position."""
+
+    dofs: tuple[DofKind, ...] = ()
+    bounded: bool = False
+
+
+JOINT_TYPES: Mapping[str, JointType] = MappingProxyType(
+    {
+        "fixed": JointType(),
+        "revolute": JointType((DofKind.HINGE,), bounded=True),
+        "continuous": JointType((DofKind.HINGE,)),
+        "prismatic": JointType((DofKind.SLIDE,), bounded=True),
+        "floating": JointType((DofKind.FREE,)),
+        "planar": JointType((DofKind.SLIDE, DofKind.SLIDE, DofKind.HINGE)),
+        "spherical": JointType((DofKind.BALL,)),  # not in the standard: MuJoCo and Bullet read it
+        "ball": JointType((DofKind.BALL,)),
+    }
+)
+
+
+def default_type(joint: Joint) -> str | None:
+    """The word for a joint by its dofs: the first one that fits; None when URDF has none."""
+    kinds = tuple(dof.kind for dof in joint.dofs)
+    limits = joint.dofs[0].limits if joint.dofs else UNLIMITED
+    bounded = kinds == (DofKind.SLIDE,) or limits.lower is not None or limits.upper is not None
+    fitting = (word for word, known in JOINT_TYPES.items() if known.dofs == kinds and (known.bounded or not bounded))
+    return next((word for word in fitting if JOINT_TYPES[word].bounded == bounded), next(fitting, None))
+
+
+def planar_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
+    """The directions in which a planar joint slides: x and y turned by the smallest rotation from z to the normal."""
+    turn = quat_from_z(normal)
+    return rotate(turn, X), rotate(turn, Y)
+
+
+NO_LIMIT = 1.7976931348623157e308
+"""The largest double: what Pinocchio takes for "no limit", and what is written where URDF requires a number."""
+
+ROLES: Mapping[str, Role] = MappingProxyType({"visual": Role.VISUAL, "collision": Role.COLLISION})
+"""The elements of a link that hold a shape."""
+
+VERSIONS = ("1.0", "1.1", "1.2")
+"""Known values of ``<robot version>``; from 1.1 on readers of 1.1 understand ``quat_xyzw`` and ``<capsule>``."""
+
+MEANINGLESS_IF_FIXED = ("axis", "limit", "dynamics")
+"""What many exporters write into fixed joints, where it means nothing."""
+
+# ---- notations ---------------------------------------------------------------------------------------------------------------
+
+STYLE = "urdf.style"
+"""Mechanism: words for what the author wrote although he could have left it out. The writer then always writes it."""
+
+STYLE_JOINT_ORIGIN = "joint-origin"
+STYLE_VISUAL_ORIGIN = "visual-origin"
+STYLE_COLLISION_ORIGIN = "collision-origin"
+STYLE_INERTIAL_ORIGIN = "inertial-origin"
+STYLE_DYNAMICS = "dynamics"
+STYLE_SCALE = "scale"
+STYLE_VERSION = "version"
+
+FIXED = "urdf.fixed"
+"""Mechanism: the meaningless elements that most fixed joints carry, verbatim."""
+
+TYPE = "urdf.type"
+"""Joint: the word of its type where another one would be written by default."""
+
+# Choices that most elements make alike. The usual one is a word of the style (``defined=inline``), and an element that
+# differs has a notation (``urdf.defined``). The first value of each is the default.
+
+DEFINED = "defined"
+"""Material: where it is defined, a value of :class:`Defined`."""
+
+REDUCTION = "reduction"
+"""Drive: which element says the mechanical reduction of a simple transmission: actuator, joint or transmission."""
+
+TYPE_AS = "type-as"
+"""Drive: whether the transmission's type is a ``child`` (ROS 1) or an ``attribute`` (PR2)."""
+
+DEFAULT_CHOICES: Mapping[str, str] = MappingProxyType({DEFINED: "robot", REDUCTION: "actuator", TYPE_AS: "child"})
+
+
+def notation(choice: str) -> str:
+    """The key of the notation of an element that chose differently."""
+    return f"urdf.{choice}"
+
+
+class Defined(Enum):
+    """Where a named material's colour and texture stand."""
+
+    ROBOT = "robot"
+    INLINE = "inline"
+    FIRST = "first"
+    BOTH = "both"

@@ -1,0 +1,105 @@
+"""Printing XML: small tags that a backend fills, foreign text put back where it stood, and the text of it all.
+
+Shared by the backends of all XML formats.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from hymeko_x.ir.mechanism import Extra
+
+_INDENT = "  "
+_SPECIAL = re.compile(r'[&<>"\n\r\t]')
+_ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+_UNSAYABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+
+@dataclass(slots=True)
+class Tag:
+    """An XML element to be: name, attributes in order, and children that are tags or ready text."""
+
+    name: str
+    attributes: dict[str, str] = field(default_factory=dict)
+    children: list[Tag | str] = field(default_factory=list)
+
+    def add(self, name: str, /, **attributes: str) -> Tag:
+        """A new child with these attributes."""
+        child = Tag(name, attributes)
+        self.children.append(child)
+        return child
+
+    def child(self, step: str) -> Tag:
+        """The child that a path's step (``joint``, ``joint[2]``) leads to; made when it is not there."""
+        name, _, number = step.partition("[")
+        wanted = int(number.rstrip("]")) if number else 1
+        found = [child for child in self.children if isinstance(child, Tag) and child.name == name]
+        return found[wanted - 1] if wanted <= len(found) else self.add(name)
+
+
+def put_back(tag: Tag, extras: Iterable[Extra], declared: Mapping[str, str]) -> None:
+    """Write extras into a tag: attributes win over what is there, text and elements go to their place.
+
+    ``declared`` are the namespace declarations of the root, which extras then need not repeat.
+    """
+    for extra in sorted(extras, key=lambda e: e.index):
+        *steps, last = extra.path.split("/") if extra.path else [""]
+        target = tag
+        for step in steps:
+            target = target.child(step)
+        if last.startswith("@"):
+            target.attributes[last[1:]] = extra.text
+        elif last == "text()":
+            target.children.insert(extra.index, escaped(extra.text))
+        else:
+            target = target.child(last) if last else target
+            target.children.insert(extra.index, without_declared(extra.text, declared))
+
+
+def without_declared(text: str, declared: Mapping[str, str]) -> str:
+    """An element's text without those namespace declarations (attribute -> uri) that stand further up already."""
+    for name, uri in declared.items():
+        declaration = f' {name}="{escaped(uri)}"'
+        start, end, rest = text.partition(">")
+        text = start.replace(declaration, "", 1) + end + rest
+    return text
+
+
+def render(tag: Tag, depth: int = 0) -> list[str]:
+    """The lines of a tag, two blanks per level. Foreign text keeps its own inner indentation."""
+    indent = _INDENT * depth
+    start = f"{indent}<{tag.name}{attributes_text(tag.attributes)}"
+    if not tag.children:
+        return [start + "/>"]
+    if len(tag.children) == 1 and isinstance(tag.children[0], str) and not tag.children[0].startswith("<"):
+        return [f"{start}>{tag.children[0]}</{tag.name}>"]
+    lines = [start + ">"]
+    for child in tag.children:
+        if isinstance(child, Tag):
+            lines += render(child, depth + 1)
+        else:
+            lines.append(f"{indent}{_INDENT}{child}")
+    lines.append(f"{indent}</{tag.name}>")
+    return lines
+
+
+def attributes_text(attributes: dict[str, str]) -> str:
+    """Attributes as they stand in a start tag, each with a blank before it."""
+    return "".join([f' {name}="{escaped(value)}"' for name, value in attributes.items()])
+
+
+def escaped(text: str) -> str:
+    """A text for an attribute or an element; every character that XML can hold reads back as it was."""
+    if _SPECIAL.search(text):
+        text = _SPECIAL.sub(lambda found: _ESCAPES[found[0]], text)
+    return text
+
+
+def unsayable(text: str) -> bool:
+    """Whether a text holds characters that XML 1.0 cannot hold in any way."""
+    return _UNSAYABLE.search(text) is not None

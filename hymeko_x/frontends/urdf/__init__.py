@@ -1,0 +1,114 @@
+"""URDF in. Everything in a file becomes typed parts of a mechanism, or an extra, or a diagnostic with its place.
+
+Source: URDF 1.0 as urdfdom reads it; docs/mapping/urdf.md says what becomes what.
+"""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats import urdf as words
+from hymeko_x.formats.xml import FOLLOWING, PRECEDING, leftovers
+from hymeko_x.formats.xml_parse import parse
+from hymeko_x.frontends.urdf.draft import Draft
+from hymeko_x.frontends.urdf.fixed import gather_meaningless
+from hymeko_x.frontends.urdf.joints import read_joints
+from hymeko_x.frontends.urdf.links import read_link
+from hymeko_x.frontends.urdf.materials import finish_materials, read_robot_material
+from hymeko_x.frontends.urdf.structure import check_structure
+from hymeko_x.frontends.urdf.transmissions import read_transmission
+from hymeko_x.ir.mechanism import ROOT, Extra, Mechanism
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.formats.xml import Node
+    from hymeko_x.formats.xml_parse import Document
+    from hymeko_x.ir.mechanism import Id
+    from hymeko_x.source import Source
+
+
+def read(source: Source, report: Report) -> Mechanism:
+    """The mechanism that a URDF file describes.
+
+    Raises: Refusal with HX004 (not XML), HX006 (the root is not <robot>), HX007 (too large), HX008 (entities).
+    """
+    document = parse(source, report)
+    root = document.root
+    _check_root(root)
+    draft = Draft(report)
+    name = _read_name(root, source, draft)
+    _read_version(root, draft)
+    for node in root.children("material"):
+        read_robot_material(node, draft)
+    for node in root.children("link"):
+        read_link(node, draft)
+    joints = read_joints(root, draft)
+    for node in root.children("transmission"):
+        read_transmission(node, draft)
+    finish_materials(draft)
+    gather_meaningless(joints, draft)
+    check_structure(root, draft)
+    _check_templates(root, draft)
+    return draft.mechanism(name, _extras(document), _layout(root))
+
+
+def _check_root(root: Node) -> None:
+    if root.tag == "robot":
+        return
+    known = {"mujoco": "it looks like MJCF: read it with --from mjcf", "sdf": "it looks like SDF: read it with --from sdf"}
+    raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <robot>", root.origin, hint=known.get(root.tag, ""))
+
+
+def _read_name(root: Node, source: Source, draft: Draft) -> str:
+    name = root.take("name")
+    if name:
+        return name
+    stem = PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
+    draft.report.error(codes.BAD_NAME, f"the robot has no name; it is called '{stem}' after its file", root.origin)
+    return stem
+
+
+def _read_version(root: Node, draft: Draft) -> None:
+    version = root.attributes.get("version")
+    if version is None:
+        return
+    if version not in words.VERSIONS:
+        said = f"<robot version> is '{version}', known are {', '.join(words.VERSIONS)}; read as 1.0, and the text is kept as written"
+        draft.report.warn(codes.UNKNOWN_WORD, said, root.origin)
+        return
+    if version == "1.0":
+        root.take("version")
+        draft.style.add(words.STYLE_VERSION)
+    draft.version = version
+
+
+def _check_templates(root: Node, draft: Draft) -> None:
+    """Say it once when the file was meant for xacro: templates in names, or xacro's elements."""
+    named = next((key.name for key in (*draft.vertices, *draft.edges) if "${" in key.name or "$(" in key.name), None)
+    tag = next((element.tag for element in root.elements() if "}" in element.tag and "xacro" in element.tag), None)
+    if named is None and tag is None:
+        return
+    found = f"the name '{named}'" if named is not None else f"<xacro:{str(tag).rpartition('}')[2]}>"
+    draft.report.warn(
+        codes.LEFTOVER_TEMPLATE,
+        f"{found} is text for xacro; it is kept as it is",
+        root.origin,
+        hint="if this is a xacro file, read it with --from xacro",
+    )
+
+
+def _extras(document: Document) -> dict[Id, tuple[Extra, ...]]:
+    extras = leftovers(document.root, words.FORMAT)
+    around = [Extra(words.FORMAT, PRECEDING, text, place) for place, text in enumerate(document.preceding)]
+    around += [Extra(words.FORMAT, FOLLOWING, text, place) for place, text in enumerate(document.following)]
+    if around:
+        extras[ROOT] = (*extras.get(ROOT, ()), *around)
+    return extras
+
+
+def _layout(root: Node) -> tuple[Id, ...]:
+    """The elements at top level in the order of the file."""
+    return tuple(node.owner for node in root.entered() if node.owner is not None)

@@ -1,0 +1,153 @@
+"""A mechanism in the making: what the readers of links, joints, materials and transmissions add to."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.formats import urdf as words
+from hymeko_x.formats.xml import take_numbers
+from hymeko_x.ir.graph import Hypergraph
+from hymeko_x.ir.mechanism import ROOT, Mechanism, Names
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Origin, Report
+    from hymeko_x.formats.xml import Node
+    from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
+    from hymeko_x.ir.parts import Rgba, VertexPart
+    from hymeko_x.ir.values import Vec3
+
+
+@dataclass(slots=True)
+class Looks:
+    """A material as far as it is known: colour, texture, and where in the file it is defined and used."""
+
+    id: Id
+    rgba: Rgba | None = None
+    texture: str | None = None
+    at_robot: bool = False
+    inline: int = 0
+    uses: int = 0
+    first_use: Origin | None = None
+
+    @property
+    def known(self) -> bool:
+        """Whether anything was said about it."""
+        return self.rgba is not None or self.texture is not None
+
+
+@dataclass(slots=True)
+class Draft:
+    """Vertices, edges and side tables so far; ``links`` and ``joints`` by the names in the file, first one wins."""
+
+    report: Report
+    names: Names = field(default_factory=Names)
+    vertices: dict[Id, VertexPart] = field(default_factory=dict)
+    edges: dict[Id, RobotEdge] = field(default_factory=dict)
+    origins: dict[Id, Origin] = field(default_factory=dict)
+    notations: dict[Id, dict[str, str]] = field(default_factory=dict)
+    links: dict[str, Id] = field(default_factory=dict)
+    joints: dict[str, Id] = field(default_factory=dict)
+    meshes: dict[tuple[str, tuple[float, ...]], Id] = field(default_factory=dict)
+    textures: dict[str, Id] = field(default_factory=dict)
+    materials: dict[str, list[Looks]] = field(default_factory=dict)
+    actuators: dict[str, Id] = field(default_factory=dict)
+    drives: dict[str, Id] = field(default_factory=dict)
+    choices: dict[str, dict[Id, str]] = field(default_factory=dict)
+    style: set[str] = field(default_factory=set)
+    version: str = "1.0"
+
+    def own(self, node: Node, kind: str, name: str) -> Id:
+        """A fresh id for a node, which owns from now on what nobody takes out of it."""
+        key = self.names.take(kind, name)
+        node.owner = key
+        self.origins[key] = node.origin
+        return key
+
+    def note(self, key: Id, name: str, text: str) -> None:
+        """Keep how the author wrote something."""
+        self.notations.setdefault(key, {})[name] = text
+
+    def choose(self, key: Id, choice: str, value: str) -> None:
+        """Keep which of several ways of writing the author took, where most elements do it alike."""
+        self.choices.setdefault(choice, {})[key] = value
+
+    def _settle_choices(self) -> None:
+        """The usual way becomes a word of the style, the others are noted at their elements."""
+        for choice, made in self.choices.items():
+            usual = Counter(made.values()).most_common(1)[0][0]
+            if usual != words.DEFAULT_CHOICES[choice]:
+                self.style.add(f"{choice}={usual}")
+            for key, value in made.items():
+                if value != usual:
+                    self.note(key, words.notation(choice), value)
+
+    def mechanism(self, name: str, extras: dict[Id, tuple[Extra, ...]], layout: tuple[Id, ...]) -> Mechanism:
+        """The finished mechanism."""
+        self._settle_choices()
+        if self.style:
+            self.note(ROOT, words.STYLE, " ".join(sorted(self.style)))
+        return Mechanism(name, Hypergraph(self.vertices, self.edges), extras, self.origins, self.notations, {}, layout)
+
+
+def take_name(node: Node, kind: str, known: dict[str, Id], draft: Draft) -> Id:
+    """The id of a link, joint or transmission from its name; says so when the name is missing or taken."""
+    name = node.take("name")
+    if not name:
+        said = "no name" if name is None else "an empty name"
+        draft.report.error(codes.BAD_NAME, f"a <{node.tag}> has {said}; it is called '{node.tag}'", node.origin)
+    key = draft.own(node, kind, name or node.tag)
+    first = known.setdefault(name or "", key)
+    if name and first != key:
+        draft.report.error(
+            codes.DUPLICATE_NAME,
+            f"there are two <{node.tag}> called '{name}' (the other one: {draft.origins[first]}); this one is called '{key.name}'",
+            node.origin,
+            element=str(key),
+        )
+    return key
+
+
+def read_origin(node: Node, style: str, draft: Draft, *, turned: bool = True) -> Pose:
+    """The pose of a node's <origin>: position in m, fixed-axis roll-pitch-yaw in rad; the identity without one.
+
+    ``turned`` false: there is nothing that could be turned, so that the angles stay what was written.
+    """
+    origin = node.child("origin")
+    if origin is None:
+        return IDENTITY
+    check_repeated(node, "origin", draft)
+    xyz = take_numbers(origin, "xyz", 3, draft.report, instead="0 0 0 is used") or ZERO
+    found = _turned(origin, xyz, draft) if turned else Pose(_vector(xyz))
+    if found.xyz == ZERO and found.written is None:
+        draft.style.add(style)
+    return found
+
+
+def _turned(origin: Node, xyz: tuple[float, ...], draft: Draft) -> Pose:
+    rpy = take_numbers(origin, "rpy", 3, draft.report, instead="0 0 0 is used") or ZERO
+    if rpy == ZERO and draft.version != "1.0":
+        quat = take_numbers(origin, "quat_xyzw", 4, draft.report, instead="no rotation is used")
+        if quat is not None and any(quat):
+            qx, qy, qz, qw = quat
+            return pose(_vector(xyz), (qw, qx, qy, qz))
+    return pose_from_rpy(_vector(xyz), _vector(rpy))
+
+
+def _vector(numbers: tuple[float, ...]) -> Vec3:
+    x, y, z = numbers
+    return (x, y, z)
+
+
+def check_repeated(node: Node, tag: str, draft: Draft) -> None:
+    """Say so when a second element of this name is left in a node; it stays an extra."""
+    if node.has(tag):
+        draft.report.warn(
+            codes.REPEATED,
+            f"{node.subject} has <{tag}> more than once in <{node.tag}>; the first one counts, the others are kept as written",
+            node.origin,
+            element=node.subject,
+        )

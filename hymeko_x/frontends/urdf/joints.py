@@ -1,0 +1,295 @@
+"""Joints: their two ends, dofs, limits and dynamics, and <mimic> as a coupling."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.formats import urdf as words
+from hymeko_x.formats.xml import read_numbers, take_number, take_numbers
+from hymeko_x.frontends.urdf.draft import check_repeated, read_origin, take_name
+from hymeko_x.ir.mechanism import coupling_edge, joint_edge
+from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
+from hymeko_x.ir.values import Written, X, unit
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.urdf import JointType
+    from hymeko_x.formats.xml import Node
+    from hymeko_x.frontends.urdf.draft import Draft
+    from hymeko_x.ir.mechanism import Id
+    from hymeko_x.ir.values import Vec3
+
+_SINGLE = ((DofKind.HINGE,), (DofKind.SLIDE,))
+
+
+def read_joints(root: Node, draft: Draft) -> list[Node]:
+    """Add all joints; a joint without two ends stays outside of the tree, as it was written."""
+    found = []
+    for node in root.children("joint"):
+        if _has_ends(node, draft):
+            _read_joint(node, draft)
+            found.append(node)
+        else:
+            root.put_back(node)
+    for node in found:
+        _read_mimic(node, draft)
+    return found
+
+
+def _read_joint(node: Node, draft: Draft) -> None:
+    key = take_name(node, "joint", draft.joints, draft)
+    parent, child = _read_end(node, "parent", draft), _read_end(node, "child", draft)
+    word = _read_type(node, draft)
+    pose = read_origin(node, words.STYLE_JOINT_ORIGIN, draft)
+    joint = Joint(_read_dofs(node, word, draft))
+    if word != words.default_type(joint):
+        draft.note(key, words.TYPE, word)
+    draft.edges[key] = joint_edge(joint, parent, child, pose)
+
+
+# ---- ends and type -----------------------------------------------------------------------------------------------------------
+
+
+def _has_ends(node: Node, draft: Draft) -> bool:
+    ends = {element.tag: element.get("link") for element in node.elements() if element.tag in ("parent", "child")}
+    missing = [f"<{tag} link>" for tag in ("parent", "child") if not ends.get(tag)]
+    if missing:
+        name = node.attributes.get("name", "")
+        said = f"joint '{name}' has no {' and no '.join(missing)}; it is kept as written and is not part of the tree"
+        draft.report.error(codes.MISSING_PART, said, node.origin, element=f"joint '{name}'")
+    return not missing
+
+
+def _read_end(joint: Node, tag: str, draft: Draft) -> Id:
+    """The link that a joint names; one that is not defined is added, empty, so that the joint keeps its place."""
+    node = joint.child(tag)
+    name = (node.take("link") if node is not None else None) or ""
+    check_repeated(joint, tag, draft)
+    known = draft.links.get(name)
+    if known is not None:
+        return known
+    said = f"{joint.subject}: <{tag} link> is '{name}', which is not defined; an empty link of this name was added"
+    draft.report.error(codes.UNDEFINED_REFERENCE, said, joint.origin, element=joint.subject)
+    key = draft.links[name] = draft.names.take("body", name)
+    draft.vertices[key] = Body()
+    draft.origins[key] = joint.origin
+    return key
+
+
+def _read_type(node: Node, draft: Draft) -> str:
+    word = node.attributes.get("type")
+    if word is not None and word in words.JOINT_TYPES:
+        node.take("type")
+        return word
+    known = ", ".join(words.JOINT_TYPES)
+    said = "has no type" if word is None else f"has type '{word}', which is kept as written"
+    draft.report.error(
+        codes.MISSING_ATTRIBUTE if word is None else codes.UNKNOWN_WORD,
+        f"{node.subject} {said}; read as fixed; known: {known}",
+        node.origin,
+        element=node.subject,
+    )
+    return "fixed"
+
+
+# ---- dofs --------------------------------------------------------------------------------------------------------------------
+
+
+def _read_dofs(node: Node, word: str, draft: Draft) -> tuple[Dof, ...]:
+    """The dofs of a joint. What means nothing for its type (the axis of a fixed joint) is left to become an extra."""
+    kinds = words.JOINT_TYPES[word].dofs
+    if kinds in _SINGLE:
+        return (_read_dof(node, kinds[0], words.JOINT_TYPES[word], draft),)
+    if word == "planar":
+        normal, written = _read_axis(node, draft)
+        x, y = words.planar_axes(normal)
+        return (Dof(DofKind.SLIDE, x), Dof(DofKind.SLIDE, y), Dof(DofKind.HINGE, normal, written=written))
+    return tuple(Dof(kind) for kind in kinds)
+
+
+def _read_dof(node: Node, kind: DofKind, known: JointType, draft: Draft) -> Dof:
+    axis, written = _read_axis(node, draft)
+    limits = _read_limits(node, draft) if known.bounded else _read_open_limits(node, draft)
+    damping, friction = _read_dynamics(node, draft)
+    return Dof(
+        kind,
+        axis,
+        limits,
+        damping,
+        friction,
+        safety=_read_safety(node, draft),
+        calibration=_read_calibration(node, draft),
+        written=written,
+    )
+
+
+def _read_axis(joint: Node, draft: Draft) -> tuple[Vec3, Written | None]:
+    """The unit axis in the joint frame, and the numbers as written where they are others."""
+    node = joint.child("axis")
+    if node is None:
+        return X, None
+    check_repeated(joint, "axis", draft)
+    if not any(read_numbers(node.attributes.get("xyz", "")) or (1.0,)):
+        said = f"{joint.subject}: <axis xyz> is zero; 1 0 0 is used, and the text is kept as written"
+        draft.report.error(codes.ZERO_AXIS, said, node.origin, element=joint.subject)
+        return X, None
+    numbers = take_numbers(node, "xyz", 3, draft.report, instead="1 0 0 is used")
+    if numbers is None:
+        return X, None
+    x, y, z = numbers
+    try:
+        axis = unit((x, y, z))
+    except ZeroDivisionError:
+        said = f"{joint.subject}: <axis xyz> has no direction; 1 0 0 is used"
+        draft.report.error(codes.ZERO_AXIS, said, node.origin, element=joint.subject)
+        return X, None
+    if axis == (x, y, z):
+        return axis, None
+    said = f"{joint.subject}: the axis was normalised; its numbers are kept for writing URDF again"
+    draft.report.note(codes.NOT_UNIT, said, node.origin, element=joint.subject)
+    return axis, Written("axis", numbers)
+
+
+def _read_dynamics(joint: Node, draft: Draft) -> tuple[float, float]:
+    node = joint.child("dynamics")
+    if node is None:
+        return 0.0, 0.0
+    check_repeated(joint, "dynamics", draft)
+    damping = take_number(node, "damping", draft.report, instead="0 is used") or 0.0
+    friction = take_number(node, "friction", draft.report, instead="0 is used") or 0.0
+    if damping == friction == 0.0:
+        draft.style.add(words.STYLE_DYNAMICS)
+    return damping, friction
+
+
+# ---- limits ------------------------------------------------------------------------------------------------------------------
+
+
+def _read_limits(joint: Node, draft: Draft) -> Limits:
+    """The limits of a joint that URDF wants to have some. Without lower or upper they are 0, as the standard says."""
+    node = joint.child("limit")
+    if node is None:
+        said = (
+            f"{joint.subject} has no <limit>; read as unlimited, and written with the largest numbers (urdfdom refuses the file as it is)"
+        )
+        draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.subject)
+        return UNLIMITED
+    check_repeated(joint, "limit", draft)
+    bounds = [_bound(node, name, draft) for name in ("lower", "upper")]
+    limits = _rates(node, Limits(*bounds), draft)
+    _check_limits(joint, node, limits, draft)
+    return limits
+
+
+def _read_open_limits(joint: Node, draft: Draft) -> Limits:
+    """The effort and velocity of a continuous joint; its lower and upper mean nothing and become extras."""
+    node = joint.child("limit")
+    if node is None:
+        return UNLIMITED
+    check_repeated(joint, "limit", draft)
+    limits = _rates(node, UNLIMITED, draft)
+    if limits == UNLIMITED:
+        joint.put_back(node)
+    return limits
+
+
+def _bound(node: Node, name: str, draft: Draft) -> float | None:
+    if name not in node.attributes:
+        return 0.0
+    return _limited(take_number(node, name, draft.report, instead="unlimited is used"))
+
+
+def _rates(node: Node, bounds: Limits, draft: Draft) -> Limits:
+    velocity, effort, acceleration, jerk = (
+        _limited(take_number(node, name, draft.report, instead="unlimited is used"))
+        for name in ("velocity", "effort", "acceleration", "jerk")
+    )
+    return Limits(bounds.lower, bounds.upper, velocity, effort, acceleration, jerk)
+
+
+def _limited(value: float | None) -> float | None:
+    return None if value is None or abs(value) >= words.NO_LIMIT else value
+
+
+def _check_limits(joint: Node, node: Node, limits: Limits, draft: Draft) -> None:
+    missing = [name for name in ("effort", "velocity") if name not in node.element.attrib]
+    if missing:
+        said = f"{joint.subject}: <limit> has no {' and no '.join(missing)}; read as unlimited (urdfdom refuses the file as it is)"
+        draft.report.warn(codes.MISSING_LIMIT, said, node.origin, element=joint.subject)
+    if limits.lower is not None and limits.upper is not None and limits.lower > limits.upper:
+        said = f"{joint.subject}: the lower limit is above the upper one; both are kept"
+        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.subject)
+    if (limits.effort or 0.0) < 0.0 or (limits.velocity or 0.0) < 0.0:
+        said = f"{joint.subject}: the limit of effort or velocity is negative; it is kept"
+        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.subject)
+
+
+# ---- safety and calibration ------------------------------------------------------------------------------------------------------
+
+
+def _read_safety(joint: Node, draft: Draft) -> Safety | None:
+    node = joint.child("safety_controller")
+    if node is None:
+        return None
+    check_repeated(joint, "safety_controller", draft)
+    names = ("k_velocity", "k_position", "soft_lower_limit", "soft_upper_limit")
+    if "k_velocity" not in node.attributes:
+        said = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
+        draft.report.warn(codes.MISSING_ATTRIBUTE, said, node.origin, element=joint.subject)
+    return Safety(*(take_number(node, name, draft.report, instead="0 is used") or 0.0 for name in names))
+
+
+def _read_calibration(joint: Node, draft: Draft) -> Calibration | None:
+    node = joint.child("calibration")
+    if node is None:
+        return None
+    check_repeated(joint, "calibration", draft)
+    names = ("rising", "falling", "reference_position")
+    found = Calibration(*(take_number(node, name, draft.report, instead="nothing is used") for name in names))
+    if found == Calibration():
+        joint.put_back(node)
+        return None
+    return found
+
+
+# ---- mimic ---------------------------------------------------------------------------------------------------------------------
+
+
+def _read_mimic(joint: Node, draft: Draft) -> None:
+    """<mimic> as a coupling: q = offset + multiplier * q_leader. One that cannot work stays as it was written."""
+    if not joint.has("mimic") or joint.owner is None:
+        return
+    node = joint.child("mimic")
+    assert node is not None
+    leader = draft.joints.get(node.attributes.get("joint", ""))
+    problem = _mimic_problem(joint.owner, leader, node, draft)
+    if problem or leader is None:
+        draft.report.warn(
+            codes.UNDEFINED_REFERENCE, f"{joint.subject} {problem}; the <mimic> is kept as written", node.origin, element=joint.subject
+        )
+        joint.put_back(node)
+        return
+    check_repeated(joint, "mimic", draft)
+    node.take("joint")
+    multiplier = take_number(node, "multiplier", draft.report, instead="1 is used")
+    offset = take_number(node, "offset", draft.report, instead="0 is used")
+    coefficients = (offset or 0.0, 1.0 if multiplier is None else multiplier)
+    key = draft.names.take("coupling", joint.owner.name)
+    draft.edges[key] = coupling_edge(joint.owner, ((leader, coefficients),))
+    draft.origins[key] = node.origin
+
+
+def _mimic_problem(follower: Id, leader: Id | None, node: Node, draft: Draft) -> str:
+    """Why a joint cannot mimic another one, or nothing."""
+    name = node.attributes.get("joint")
+    if name is None:
+        return "has a <mimic> without a joint"
+    if leader is None:
+        return f"mimics '{name}', which is not a joint of this robot"
+    if leader == follower:
+        return "mimics itself"
+    for key, said in ((follower, "is fixed and cannot mimic"), (leader, f"mimics '{name}', which is fixed")):
+        joint = draft.edges[key].data
+        if isinstance(joint, Joint) and not joint.dofs:
+            return said
+    return ""
