@@ -82,7 +82,8 @@ class Extra:
 
     ``path`` leads from the element's own node to where it stood: ``""`` is the node itself, ``limit`` its child of that
     name, ``limit/@foo`` an attribute of it (``text`` is then the attribute's value). ``text`` of a child is the whole
-    XML element with the namespaces that it needs. ``index`` is its place among the children of its parent node (for the
+    XML element with the namespaces that it needs. Comments of every format are of the format ``comment``, without their
+    signs; path ``preceding`` and ``following`` are outside the root. ``index`` is its place among the children of its parent node (for the
     mechanism as a whole: among everything that stands at top level); no comparison looks at it.
     """
 
@@ -92,7 +93,7 @@ class Extra:
     index: int = field(default=0, compare=False)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mechanism:
     """Name, graph and side tables. Equality looks at name, graph and extras; places and notations do not count.
 
@@ -110,6 +111,12 @@ class Mechanism:
     layout: tuple[Id, ...] = field(default=(), compare=False)
 
     __hash__ = None  # type: ignore[assignment]
+
+    def __eq__(self, other: object) -> bool:
+        """Same name, graph and extras; the order of elements, and of extras of different places, does not count."""
+        if not isinstance(other, Mechanism):
+            return NotImplemented
+        return self.name == other.name and self.graph == other.graph and _sorted(self.extras) == _sorted(other.extras)
 
     # ---- elements by kind ------------------------------------------------------------------------------------------------
 
@@ -210,6 +217,11 @@ class Mechanism:
         return replace(self, graph=graph)
 
 
+def _sorted(extras: Mapping[Id, tuple[Extra, ...]]) -> dict[Id, list[Extra]]:
+    """Extras by element, those of one format and path in their order."""
+    return {key: sorted(found, key=lambda extra: (extra.format, extra.path)) for key, found in extras.items() if found}
+
+
 class JointView(NamedTuple):
     """A joint with its two ends: T_parent_child(q) = parent_pose * motion(q) * inverse(child_pose)."""
 
@@ -290,17 +302,20 @@ class Names:
 
     def take(self, kind: str, name: str) -> Id:
         """An id of this kind that nobody has, as close to the name as possible."""
+        free = self.free(kind, name)
+        self._taken.add(free)
+        return free
+
+    def free(self, kind: str, name: str) -> Id:
+        """The id that :meth:`take` would give out."""
         wanted = Id(kind, name)
         if wanted not in self._taken:
-            self._taken.add(wanted)
             return wanted
         number = self._next.get(wanted, 2)
         while Id(kind, f"{name}#{number}") in self._taken:
             number += 1
-        self._next[wanted] = number + 1
-        unique = Id(kind, f"{name}#{number}")
-        self._taken.add(unique)
-        return unique
+        self._next[wanted] = number
+        return Id(kind, f"{name}#{number}")
 
 
 def file_stem(uri: str) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.language.comments import TOKENS
 
 if TYPE_CHECKING:
     from lark.exceptions import UnexpectedInput
@@ -48,10 +48,6 @@ _WORDS = {
 _IGNORED = {"MODIFIER", "LEGACY_HEADER", "COMMENT"}
 _KEYWORDS = {"USE", "IMPORT", "AS", "EDGE_WORD"}
 _PAIRS = {"}": "{", "]": "[", ")": "("}
-_SKIPPED = re.compile(
-    r'"""[\s\S]*?"""|"[^"\\]*(?:\\[\s\S][^"\\]*)*"|\'[^\'\\]*(?:\\[\s\S][^\'\\]*)*\'|`[^`\\\n]*(?:\\.[^`\\\n]*)*`'
-    r"|#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/|[{}\[\]()]"
-)
 _MAX_LINE = 160
 
 _CHARACTER_HINTS = {
@@ -130,7 +126,7 @@ def _expectation_hint(expected: set[str], token: str) -> str:
 def _brackets(text: str) -> tuple[tuple[str, int] | None, int | None]:
     """The innermost bracket that is never closed, with its line, and the position of the first one that closes nothing."""
     stack: list[tuple[str, int]] = []
-    for match in _SKIPPED.finditer(text):
+    for match in TOKENS.finditer(text):
         word = match[0]
         if word in _PAIRS.values():
             stack.append((word, match.start()))

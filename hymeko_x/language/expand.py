@@ -18,6 +18,7 @@ from hymeko_x.language.expressions import ExpressionError, evaluate
 from hymeko_x.language.parser import parse
 from hymeko_x.language.syntax import (
     ArcItem,
+    Comment,
     Document,
     Expression,
     Field,
@@ -82,7 +83,7 @@ class Element(NamedTuple):
 class Statement(NamedTuple):
     """A field or arc that stands in the root's block itself."""
 
-    item: Field | ArcItem
+    item: Field | ArcItem | Comment
     scope: Scope
 
 
@@ -94,6 +95,8 @@ class Expanded(NamedTuple):
     items: tuple[Element | Statement, ...]
     scope: Scope
     root: str
+    preceding: tuple[Comment, ...] = ()
+    following: tuple[Comment, ...] = ()
 
 
 class _Type(NamedTuple):
@@ -111,6 +114,7 @@ def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
 
     Raises: Refusal (HX061, HX063, HX064, HX040) at the place in the text.
     """
+    preceding, document, following = _without_outer_comments(document)
     header, roots, loose = _split(document)
     templates = dict(standard_templates())
     _import(document.items, file, fetch, templates, depth=0)
@@ -122,11 +126,11 @@ def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
     scope = Scope()
     if root is None:
         items = [*loose, *roots]
-        return Expanded(header, (), tuple(work.elements(items, {}, scope)), scope, "")
+        return Expanded(header, (), tuple(work.elements(items, {}, scope)), scope, "", preceding, following)
     kind = work.type_of(root, {})
     merged = _merge(kind.items, root.items)
     name = header or root.name
-    return Expanded(name, kind.names, tuple(work.elements(list(merged), {}, scope)), scope, root.name)
+    return Expanded(name, kind.names, tuple(work.elements(list(merged), {}, scope)), scope, root.name, preceding, following)
 
 
 @cache
@@ -134,6 +138,15 @@ def standard_templates() -> Mapping[str, Node]:
     """The types of the standard vocabulary by name."""
     text = files("hymeko_x.language").joinpath("std/kinematics.hymeko").read_text(encoding="utf-8")
     return {item.name: item for item in parse(text, "std/kinematics.hymeko").items if isinstance(item, Node)}
+
+
+def _without_outer_comments(document: Document) -> tuple[tuple[Comment, ...], Document, tuple[Comment, ...]]:
+    """The comments before the last item, the document without comments, and the comments behind it."""
+    numbers = [number for number, item in enumerate(document.items) if not isinstance(item, Comment)]
+    last = numbers[-1] if numbers else 0
+    preceding = tuple(item for item in document.items[:last] if isinstance(item, Comment))
+    following = tuple(item for item in document.items[last:] if isinstance(item, Comment))
+    return preceding, document._replace(items=tuple(document.items[number] for number in numbers)), following
 
 
 def _split(document: Document) -> tuple[str, list[Node], list[Item]]:
@@ -308,13 +321,13 @@ class _Expansion:
 
     # ---- plain values ------------------------------------------------------------------------------------------------------
 
-    def _plain(self, item: Item, environment: Environment) -> Field | ArcItem:
+    def _plain(self, item: Item, environment: Environment) -> Field | ArcItem | Comment:
         return self._item(item, environment)  # type: ignore[return-value]
 
     def _item(self, item: Item, environment: Environment) -> Item:
         """The item with every expression replaced by its value; with no parameters in sight, only if it has any."""
         match item:
-            case Field(value=None) | Import():
+            case Field(value=None) | Import() | Comment():
                 return item
             case Field():
                 assert item.value is not None

@@ -12,6 +12,7 @@ from lark.exceptions import UnexpectedInput
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.language.comments import weave_comments
 from hymeko_x.language.errors import explain_syntax_error
 from hymeko_x.language.syntax import (
     ArcItem,
@@ -41,7 +42,7 @@ def parse(text: str, name: str = "<text>") -> Document:
     Raises: Refusal (HX060) with the line, a caret, what was expected and a hint.
     """
     try:
-        return cast("Document", _parser().parse(text))
+        return weave_comments(cast("Document", _parser().parse(text)), text)
     except UnexpectedInput as error:
         raise explain_syntax_error(error, text, name) from error
     except _Malformed as error:

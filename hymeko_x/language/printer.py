@@ -7,6 +7,7 @@ import re
 from hymeko_x.ir.values import number_text
 from hymeko_x.language.syntax import (
     ArcItem,
+    Comment,
     Document,
     Expression,
     Field,
@@ -45,6 +46,8 @@ def print_item(item: Item) -> str:
             return _field(item)
         case ArcItem():
             return _arc(item)
+        case Comment():
+            return f"/* {item.text} */"
         case Import():
             return f"import {print_text(item.path)}" + (f" as {print_name(item.alias)}" if item.alias else "")
         case Node():
@@ -98,6 +101,9 @@ def _lines(item: Item) -> list[str]:
     while stack:
         depth, part = stack.pop()
         indent = INDENT * depth
+        if isinstance(part, Comment):
+            lines.extend(_comment_lines(part, indent))
+            continue
         if isinstance(part, str):
             lines.append(indent + part)
             continue
@@ -115,7 +121,13 @@ def _lines(item: Item) -> list[str]:
 
 def _is_long(node: Node) -> bool:
     """Whether a node surely needs several lines; spares printing a whole robot to find out."""
-    return len(node.items) > WIDTH // 2
+    return len(node.items) > WIDTH // 2 or any(isinstance(item, Comment) for item in node.items)
+
+
+def _comment_lines(comment: Comment, indent: str) -> list[str]:
+    """A line comment, or a block comment as it stands where the text has several lines."""
+    text = comment.text
+    return [f"{indent}// {text}".rstrip()] if "\n" not in text else [f"{indent}/* {text} */"]
 
 
 def _broken(items: tuple[Item, ...], width: int) -> list[Item | str]:
@@ -123,7 +135,7 @@ def _broken(items: tuple[Item, ...], width: int) -> list[Item | str]:
     parts: list[Item | str] = []
     run: list[Item] = []
     for item in items:
-        if isinstance(item, Node):
+        if isinstance(item, Node | Comment):
             parts.extend(_filled(run, width))
             run = []
             parts.append(item)

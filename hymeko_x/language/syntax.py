@@ -105,9 +105,17 @@ class Import(NamedTuple):
     column: int = 0
 
 
+class Comment(NamedTuple):
+    """A comment that stands between the items of the root or of the text itself; deeper ones are not kept."""
+
+    text: str
+    line: int = 0
+    column: int = 0
+
+
 Value = float | str | Ref | Quantity | Expression | Query | tuple["Value", ...]
 """Numbers are float, strings str, lists plain tuples (never named ones)."""
-Item = Node | Field | ArcItem | Import
+Item = Node | Field | ArcItem | Import | Comment
 
 
 class Document(NamedTuple):

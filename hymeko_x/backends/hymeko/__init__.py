@@ -7,18 +7,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, inline_assets
+from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
 from hymeko_x.backends.hymeko.joints import joint_items, mimic_arcs
-from hymeko_x.backends.hymeko.parts import Context, extra_fields, part_items, typed, written_field
+from hymeko_x.backends.hymeko.parts import Context, extra_fields, part_items, sound_comment, typed, written_field
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.language.printer import print_document
-from hymeko_x.language.syntax import Document, Field, Item, Node, QuotedName, Ref, Stereotype
+from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, QuotedName, Ref, Stereotype
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.mechanism import Extra, Mechanism
 
 _INLINE_EDGES = frozenset({"shape"})
 _PLAIN = frozenset({"datum", "relation"})
@@ -33,14 +33,29 @@ def write(mechanism: Mechanism, report: Report) -> Package:
 def document(mechanism: Mechanism) -> Document:
     """The syntax tree of a mechanism."""
     plain = _is_plain(mechanism)
-    context = Context(mechanism, files_prefix(mechanism), inline_assets(mechanism), mimic_arcs(mechanism))
+    inline = inline_assets(mechanism)
+    context = Context(mechanism, files_prefix(mechanism), inline, given_names(mechanism, inline), mimic_arcs(mechanism))
     items = [*_settings(context, plain), *_elements(context)]
     root = mechanism.notation(ROOT, "hymeko.root")
     name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""
     kind = Stereotype(Ref(("graph" if plain else "robot",)))
     node = Node(name if name else QuotedName(name), tuple(items), (kind,))
-    return Document((node,), header)
+    preceding, following = _outer_comments(mechanism)
+    return Document((*preceding, node, *following), header)
+
+
+def _outer_comments(mechanism: Mechanism) -> tuple[list[Item], list[Item]]:
+    """The comments before and behind the root."""
+    outer = [extra for extra in mechanism.extras.get(ROOT, ()) if _is_outer(extra)]
+    outer.sort(key=lambda extra: extra.index)
+    before: list[Item] = [Comment(extra.text) for extra in outer if extra.path == "preceding"]
+    after: list[Item] = [Comment(extra.text) for extra in outer if extra.path == "following"]
+    return before, after
+
+
+def _is_outer(extra: Extra) -> bool:
+    return extra.format == "comment" and extra.path in ("preceding", "following") and sound_comment(extra.text)
 
 
 def _is_plain(mechanism: Mechanism) -> bool:
@@ -59,7 +74,7 @@ def _settings(context: Context, plain: bool) -> list[Item]:
     notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key != "hymeko.root"}
     if notations:
         items.append(written_field(notations))
-    items.extend(extra_fields(extra for extra in context.mechanism.extras.get(ROOT, ()) if extra.path))
+    items.extend(extra_fields(extra for extra in context.mechanism.extras.get(ROOT, ()) if extra.path and not _is_outer(extra)))
     return items
 
 

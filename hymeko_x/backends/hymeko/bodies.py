@@ -12,6 +12,8 @@ from hymeko_x.ir.values import IDENTITY, ZERO
 from hymeko_x.language.syntax import Field, Item, Node, Value
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.ir.mechanism import Mechanism, ShapeView
 
 _PLACES = {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts.Role.BOTH: "shape"}
@@ -104,7 +106,7 @@ def _mesh(context: Context, view: ShapeView) -> list[Item]:
     if mesh.scale != (1.0, 1.0, 1.0):
         scale: Value = x if x == y == z else mesh.scale
         items.append(Field("scale", scale))
-    if file_stem(mesh.uri) != view.mesh.name:
+    if view.mesh in context.given_names:
         items.append(Field("mesh_id", view.mesh.name))
     return items
 
@@ -154,6 +156,21 @@ def inline_assets(mechanism: Mechanism) -> dict[Id, Id]:
         if plain:
             inline[key] = shape
     return inline
+
+
+def given_names(mechanism: Mechanism, inline: Mapping[Id, Id]) -> frozenset[Id]:
+    """The meshes defined in place that a reader would not call so by itself: their ids must be said."""
+    names = Names()
+    for key, _ in mechanism.vertices(parts.Mesh):
+        if key not in inline:
+            names.take(*key)
+    given: set[Id] = set()
+    for key in inline:
+        part = mechanism.graph.vertices[key]
+        if isinstance(part, parts.Mesh) and part.uri is not None and names.free("mesh", file_stem(part.uri)) != key:
+            given.add(key)
+        names.take(*key)
+    return frozenset(given)
 
 
 def files_prefix(mechanism: Mechanism) -> str:

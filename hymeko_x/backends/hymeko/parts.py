@@ -9,7 +9,7 @@ from hymeko_x.formats.hymeko import PARTS, POSED_EDGES, RESERVED, TARGETS, Word
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
-from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value
+from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, Ref, Stereotype, Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _ALL_KINDS = tuple(KINDS.values())
 _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
 _FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
+_SETTINGS = _FOREIGN | {"hymeko", "extra", "written", "kind", "lower", "upper", "effort", "moves", "scope"}
 
 
 @dataclass(frozen=True)
@@ -26,12 +27,13 @@ class Context:
     """What the printers need to know: the mechanism, the files' common prefix, and what is said in place.
 
     ``inline``: meshes and colours that are defined where a shape uses them, with the shape that uses them first;
-    ``mimics``: couplings that are said in the joint that follows.
+    ``given_names``: those among them that say their id; ``mimics``: couplings that are said in the joint that follows.
     """
 
     mechanism: Mechanism
     files: str
     inline: Mapping[Id, Id]
+    given_names: frozenset[Id]
     mimics: Mapping[Id, tuple[RobotArc, ...]]
     names: dict[str, list[str]] = field(default_factory=dict)
 
@@ -124,7 +126,11 @@ def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePar
     if isinstance(part, parts.Tendon):
         items.extend(Field(name, value) for name in ("lower", "upper", "effort") if (value := getattr(part.limits, name)) is not None)
     if words.open:
-        items.extend(Field(name, value_of(value)) for name, value in part.parameters)  # type: ignore[union-attr]
+        taken = {word.word for word in words.words} | _SETTINGS
+        items.extend(
+            Field(QuotedName(name) if name in taken else name, value_of(value))
+            for name, value in part.parameters  # type: ignore[union-attr]
+        )
     return items
 
 
@@ -146,6 +152,9 @@ def extra_fields(extras: Iterable[Extra], *, at_root: bool = False) -> list[Item
     """What formats said verbatim, one field each; the place is written where it is not the first."""
     found: list[Item] = []
     for extra in extras:
+        if extra.format == "comment" and at_root and not extra.path and sound_comment(extra.text):
+            found.append(Comment(extra.text))
+            continue
         named = extra.format in _FOREIGN
         values: list[Value] = [] if named else [extra.format]
         place = 0 if at_root else extra.index
@@ -157,6 +166,11 @@ def extra_fields(extras: Iterable[Extra], *, at_root: bool = False) -> list[Item
         name = extra.format if named else "extra"
         found.append(Field(name, values[0] if len(values) == 1 else tuple(values)))
     return found
+
+
+def sound_comment(text: str) -> bool:
+    """Whether a comment reads back as it is."""
+    return text == text.strip() and "\0" not in text and ("*/" not in text or "\n" not in text) and "\r" not in text
 
 
 def written_field(notations: Mapping[str, str]) -> Field:

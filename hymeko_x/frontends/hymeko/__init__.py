@@ -18,16 +18,16 @@ from hymeko_x.frontends.hymeko.build import Build
 from hymeko_x.frontends.hymeko.infer import infer_kinds
 from hymeko_x.frontends.hymeko.joints import read_joint
 from hymeko_x.ir import parts
-from hymeko_x.ir.mechanism import ROOT, WORLD, Id
+from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
 from hymeko_x.language.expand import Element, Expanded, expand
 from hymeko_x.language.parser import parse
-from hymeko_x.language.syntax import Field, Node, QuotedName, Ref, is_list
+from hymeko_x.language.syntax import Comment, Field, Node, QuotedName
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.graph import Arc
     from hymeko_x.ir.mechanism import Mechanism
-    from hymeko_x.language.syntax import Item, Value
+    from hymeko_x.language.syntax import Item
     from hymeko_x.source import Source
 
 _EDGE_KINDS = frozenset(TARGETS)
@@ -89,6 +89,17 @@ def _read_settings(build: Build, expanded: Expanded) -> None:
             place += not _is_units(item.node)
         elif isinstance(item.item, Field):
             place += _read_setting(build, item.item, place)
+        elif isinstance(item.item, Comment):
+            _keep(build, Extra("comment", "", item.item.text, place))
+            place += 1
+    for number, comment in enumerate(expanded.preceding):
+        _keep(build, Extra("comment", "preceding", comment.text, number))
+    for number, comment in enumerate(expanded.following):
+        _keep(build, Extra("comment", "following", comment.text, number))
+
+
+def _keep(build: Build, extra: Extra) -> None:
+    build.extras[ROOT] = (*build.extras.get(ROOT, ()), extra)
 
 
 def _read_setting(build: Build, field: Field, place: int) -> int:
@@ -101,7 +112,7 @@ def _read_setting(build: Build, field: Field, place: int) -> int:
         build.notations.setdefault(ROOT, {}).update(read_written(field, build.context))
     elif field.name in FOREIGN or field.name == "extra":
         extra = read_extra(field, build.context)
-        build.extras[ROOT] = (*build.extras.get(ROOT, ()), extra if extra.path else replace(extra, index=place))
+        _keep(build, extra if extra.path else replace(extra, index=place))
         return 0 if extra.path else 1
     elif field.name not in ("scope",):
         _read_loose(build, field)
@@ -115,7 +126,7 @@ def _read_loose(build: Build, field: Field) -> None:
         build.vertices[key] = parts.Datum()
         build.layout.append(key)
         return
-    value = _parameter(build, field)
+    value = build.context.parameter(field)
     key = build.reserve("datum", field.name, field)
     build.vertices[key] = parts.Datum((("value", value),))
     build.layout.append(key)
@@ -174,13 +185,11 @@ def _without(element: Element, name: str) -> Element:
 def _read_part(build: Build, key: Id, element: Element) -> None:
     """A vertex or edge that its words describe completely (formats/hymeko.py)."""
     words = PARTS[key.kind]
-    block = Block(_renamed(element.node.items, key.kind), build.context)
+    block = Block(_renamed(element.node.items, key.kind), build.context, open=words.open)
     block.take("kind")
     values = block.take_words(words.words)
     if words.open:
-        values["parameters"] = tuple((name, _parameter(build, field)) for name, field in block.fields.items())
-        block.fields.clear()
-        values["parameters"] += tuple(_nested_parameters(build, block))  # type: ignore[operator]
+        values["parameters"] = (*block.take_rest(build.context.parameter), *_nested_parameters(build, block))
     if key.kind in ("tendon",):
         values["limits"] = _tendon_limits(values)
     if key.kind == "loop":
@@ -231,21 +240,7 @@ def _nested_parameters(build: Build, block: Block) -> list[tuple[str, float | st
         path, node = stack.pop()
         for item in node.items:
             if isinstance(item, Field):
-                found.append((f"{path}.{item.name}", _parameter(build, item)))
+                found.append((f"{path}.{item.name}", build.context.parameter(item)))
             elif isinstance(item, Node):
                 stack.append((f"{path}.{item.name}", item))
     return found
-
-
-def _parameter(build: Build, field: Field) -> float | str | tuple[float, ...]:
-    """A free value: a number, a text, or a list of numbers."""
-    value: Value | None = field.value
-    if value is None:
-        return ""
-    if is_list(value):
-        return build.context.numbers(value, "", field)
-    if isinstance(value, str):
-        return value
-    if isinstance(value, Ref):
-        return value.dotted
-    return build.context.number(value, "", field)

@@ -10,13 +10,15 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.ir.mechanism import Extra
 from hymeko_x.ir.values import Pose, Vec3, pose, pose_from_rpy
-from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, Ref, Value, is_list
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, QuotedName, Ref, Value, is_list
 from hymeko_x.language.units import BASE_UNITS, unit_factor
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from hymeko_x.formats.hymeko import Word
+
+Parameter = float | str | tuple[float, ...]
 
 FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro", "hymeko"})
 """Fields of these names hold what a format said verbatim."""
@@ -98,6 +100,17 @@ class Context:
             raise self.refuse(item, f"a pose has a position and a rotation, not {len(values)} parts")
         return self._rotated(xyz, cast("tuple[Value, ...]", values[1]), item)
 
+    def parameter(self, item: Field) -> float | str | tuple[float, ...]:
+        """A free value: a number, a text, or a list of numbers."""
+        value = item.value
+        if value is None:
+            return ""
+        if is_list(value):
+            return self.numbers(value, "", item)
+        if isinstance(value, Ref):
+            return value.dotted
+        return value if isinstance(value, str) else self.number(value, "", item)
+
     def _rotated(self, xyz: Vec3, rotation: tuple[Value, ...], item: Item) -> Pose:
         if len(rotation) == 3:
             return pose_from_rpy(xyz, self.vec3(rotation, "angle", item))
@@ -109,10 +122,14 @@ class Context:
 
 
 class Block:
-    """The items of one block. Every ``take`` marks what it found; ``rest`` is what nobody took."""
+    """The items of one block. Every ``take`` removes what it found; ``rest`` is what nobody took.
 
-    def __init__(self, items: Iterable[Item], context: Context) -> None:
+    In an ``open`` block fields may repeat: what is no word of the part is one of its parameters, in order.
+    """
+
+    def __init__(self, items: Iterable[Item], context: Context, *, open: bool = False) -> None:
         self.context = context
+        self.free: list[Field] | None = [] if open else None
         self.fields: dict[str, Field] = {}
         self.nodes: list[Node] = []
         self.arcs: list[ArcItem] = []
@@ -127,16 +144,26 @@ class Block:
                 self.arcs.append(item)
 
     def _field(self, item: Field) -> None:
+        if self.free is not None:
+            self.free.append(item)
+        if isinstance(item.name, QuotedName) and self.free is not None:
+            return
         if item.name in FOREIGN or item.name == "extra":
             self.extras.append(read_extra(item, self.context))
         elif item.name == "written":
             self.written.update(read_written(item, self.context))
-        elif item.name in self.fields:
+        elif item.name in self.fields and self.free is None:
             raise self.context.refuse(
                 item, f"'{item.name}' is given twice", hint=f"it is first given in line {self.fields[item.name].line}"
             )
         else:
-            self.fields[item.name] = item
+            self.fields.setdefault(item.name, item)
+
+    def take_rest(self, read: Callable[[Field], Parameter]) -> list[tuple[str, Parameter]]:
+        """The fields of an open block that are neither words nor settings, in order, as names and values."""
+        left = [item for item in self.free or () if isinstance(item.name, QuotedName) or item.name in self.fields]
+        self.fields.clear()
+        return [(str(item.name), read(item)) for item in left]
 
     def take(self, name: str, *aliases: str) -> Field | None:
         """The field of this name, or of one of the aliases."""

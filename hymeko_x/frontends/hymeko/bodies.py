@@ -122,10 +122,7 @@ def _read_shape(build: Build, body: Id, item: object, place: Pose, scope: Scope)
 def _shape_id(build: Build, body: Id, role: parts.Role, given: str | None, item: Node | Field | ArcItem) -> Id:
     if given is not None:
         return build.reserve("shape", given, item)
-    key = build.names.take("shape", f"{body.name}/{SHAPE_PLACES[role]}")
-    build.kinds.setdefault(key.name, []).append("shape")
-    build.origins[key] = build.context.origin(item)
-    return key
+    return build.name_after_place("shape", f"{body.name}/{SHAPE_PLACES[role]}", item)
 
 
 def _shape_pose(block: Block, place: Pose) -> Pose:
@@ -195,8 +192,8 @@ def _inline_mesh(build: Build, block: Block, uri: str, item: Field) -> Id:
         context = block.context
         single = not is_list(value)
         scale = (context.number(value, "", scale_item),) * 3 if single else context.vec3(value, "", scale_item)
-    name = block.take_text("mesh_id") or file_stem(uri)
-    key = build.reserve("mesh", name, item)
+    given = block.take_text("mesh_id")
+    key = build.reserve("mesh", given, item) if given is not None else build.name_after_place("mesh", file_stem(uri), item)
     build.vertices[key] = parts.Mesh(build_uri(build, uri), scale)
     return key
 
@@ -218,9 +215,7 @@ def _material(build: Build, block: Block, key: Id, scope: Scope) -> Id | None:
     color = block.take("color")
     if color is None:
         return None
-    material = build.names.take("material", f"{key.name}/material")
-    build.kinds.setdefault(material.name, []).append("material")
-    build.origins[material] = build.context.origin(color)
+    material = build.name_after_place("material", f"{key.name}/material", color)
     numbers = block.context.numbers(color.value, "", color)
     if len(numbers) not in (3, 4):
         raise block.context.refuse(color, f"'color' takes [r g b] or [r g b a], not {len(numbers)} numbers")

@@ -70,6 +70,13 @@ class Build:
         self.origins[key] = self.context.origin(item)
         return key
 
+    def name_after_place(self, kind: str, name: str, item: Item) -> Id:
+        """An id for something that its author left unnamed: after its place, with a number when that is taken."""
+        key = self.names.take(kind, name)
+        self.kinds.setdefault(key.name, []).append(kind)
+        self.origins[key] = self.context.origin(item)
+        return key
+
     def add_edge(self, key: Id, data: EdgePart, arcs: tuple[RobotArc, ...]) -> None:
         """Put an edge in."""
         self.edges[key] = Edge(data, arcs)
