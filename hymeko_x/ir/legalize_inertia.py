@@ -31,6 +31,9 @@ _SEEN_PRODUCT = 1e-12
 _MARGIN = 4e-12
 """By how much turned tensors must keep the triangle inequality, for a solver with that error."""
 
+_ROUNDING = 1e-10
+"""A change of a tensor in kg m^2 up to this is worth a note and no warning."""
+
 _NOTHING: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -50,7 +53,8 @@ def make_tensors_physical(mechanism: Mechanism, options: Options, report: Report
             inertial = replace(inertial, mass=0.0)
         tensor = physical(inertial.tensor or _NOTHING)
         if inertial.tensor is not None and tensor != inertial.tensor:
-            _say(mechanism, report, key, f"{_flaw(inertial.tensor)}: {numbers_text(inertial.tensor)} becomes {numbers_text(tensor)}")
+            words = f"{_flaw(inertial.tensor)}: {numbers_text(inertial.tensor)} becomes {numbers_text(tensor)}"
+            _say(mechanism, report, key, words, serious=math.dist(tensor, inertial.tensor) > _ROUNDING)
             inertial = replace(inertial, tensor=tensor, written=None)
         if inertial != body.inertial:
             changed[key] = replace(body, inertial=inertial)
@@ -198,8 +202,9 @@ def _words(tensor: Tensor | None) -> str:
     return "none" if tensor is None else numbers_text(tensor)
 
 
-def _say(mechanism: Mechanism, report: Report, body: Id, words: str) -> None:
-    report.warn(codes.INERTIA_REPAIRED, f"{body}: {words}", mechanism.origin(body), element=str(body))
+def _say(mechanism: Mechanism, report: Report, body: Id, words: str, *, serious: bool = True) -> None:
+    say = report.warn if serious else report.note
+    say(codes.INERTIA_REPAIRED, f"{body}: {words}", mechanism.origin(body), element=str(body))
 
 
 def _matrix(tensor: Tensor) -> list[list[float]]:

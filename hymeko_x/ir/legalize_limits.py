@@ -61,6 +61,9 @@ def _interval(dof: Dof, said: Said) -> tuple[float | None, float | None]:
     if lower > upper:
         said.append((True, f"lower limit {lower!r} is above upper limit {upper!r}; the joint is written without position limits"))
         return None, None
+    if lower == upper == 0.0:
+        said.append((True, "both limits are 0, as where URDF leaves them out; the joint is written without position limits"))
+        return None, None
     if lower == upper:
         said.append((False, f"both limits are {lower!r}; {_PLAY:g} of play stands for a locked joint"))
         return lower, max(lower + _PLAY, math.nextafter(lower, math.inf))

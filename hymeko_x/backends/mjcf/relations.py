@@ -105,7 +105,7 @@ def _closure_attributes(loop: Loop, first: RobotArc, second: RobotArc, names: Pr
 
 def write_actuators(text: Text, mechanism: Mechanism, names: Printed) -> None:
     """Every actuator that drives something, as the element of its kind."""
-    drives = {arcs[0].target: (drive, arcs) for _, drive, arcs in mechanism.edges(Drive)}
+    drives = {arc.target: arcs for _, _, arcs in mechanism.edges(Drive) for arc in arcs if arc.sign > 0}
     actuators = [(key, actuator) for key, actuator in mechanism.vertices(Actuator) if key in drives]
     if not actuators:
         return

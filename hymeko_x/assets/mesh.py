@@ -1,0 +1,367 @@
+"""Mesh files: reading any type that robots use, and writing the two that every engine reads (binary STL and OBJ).
+
+The only place that knows trimesh. Nothing is loaded from a network, and sizes are checked before anything is allocated.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+from xml.etree.ElementTree import ParseError
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from numpy.typing import NDArray
+
+    from hymeko_x.ir.parts import Rgba
+    from hymeko_x.ir.values import Vec3
+
+READABLE = (".stl", ".obj", ".dae", ".glb", ".gltf", ".ply", ".off")
+"""The types of mesh files that can be read, by suffix."""
+
+MOST_BYTES = 2**28
+MOST_FACES = 20_000_000
+_STL_HEADER = 80
+_STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
+
+
+class Unreadable(Exception):
+    """The bytes are not the mesh that their name says; the text says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Look:
+    """A surface as a mesh file describes it: its name there, its colour, and its image as PNG bytes."""
+
+    name: str
+    rgba: Rgba | None
+    image: bytes | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Part:
+    """The triangles of a mesh file that have one look (None = the file says nothing about it).
+
+    ``points`` is (n, 3) in m in the frame of the file, ``faces`` (m, 3) rows of ``points``, ``uv`` (n, 2) or None.
+    """
+
+    points: NDArray[np.float64]
+    faces: NDArray[np.int64]
+    uv: NDArray[np.float64] | None = None
+    look: Look | None = None
+
+
+# ---- reading ---------------------------------------------------------------------------------------------------------------
+
+
+def read_parts(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple[Part, ...]:
+    """The parts of a mesh file, one per look, in the order of the file.
+
+    Node transformations and the file's unit are applied. The up axis of a COLLADA file is not, as in RViz and Gazebo:
+    robot descriptions are written for readers that ignore it. ``fetch`` returns the content of a file that the mesh refers
+    to, by the name it uses, or raises OSError.
+
+    Raises: Unreadable.
+    """
+    if len(data) > MOST_BYTES:
+        raise Unreadable(f"it has {len(data)} bytes, at most {MOST_BYTES} are read")
+    if suffix not in READABLE:
+        raise Unreadable(f"meshes of type '{suffix}' are not read; known: {', '.join(READABLE)}")
+    if suffix == ".stl":
+        return (_welded(read_stl(data), None),)
+    parts = _merged_by_look(_loaded(data, suffix, fetch))
+    if not parts:
+        raise Unreadable("it has no triangles")
+    if not all(np.isfinite(part.points).all() for part in parts):
+        raise Unreadable("a coordinate is not a finite number")
+    return parts
+
+
+def read_stl(data: bytes) -> NDArray[np.float64]:
+    """The corners of the triangles of an STL file, binary or text, as (faces, 3, 3) in its own unit.
+
+    Raises: Unreadable.
+    """
+    corners = _binary_corners(data) if not _is_text_stl(data) else _text_corners(data)
+    if len(corners) == 0:
+        raise Unreadable("it has no triangles")
+    if not np.isfinite(corners).all():
+        raise Unreadable("a coordinate is not a finite number")
+    return corners
+
+
+def stl_is_exact(data: bytes) -> bool:
+    """Whether the bytes are a binary STL file whose length is what its header says."""
+    return len(data) > _STL_HEADER + 4 and len(data) == _STL_HEADER + 4 + stl_faces(data) * _STL_FACE.itemsize
+
+
+def stl_faces(data: bytes) -> int:
+    """The number of triangles in the header of a binary STL file."""
+    (count,) = struct.unpack_from("<I", data, _STL_HEADER)
+    return int(count)
+
+
+def _is_text_stl(data: bytes) -> bool:
+    """Text begins with ``solid``, but so do some binary files: those have the length that their header says."""
+    return data[:80].lstrip().lower().startswith(b"solid") and not stl_is_exact(data) and b"facet" in data[:4096].lower()
+
+
+def _binary_corners(data: bytes) -> NDArray[np.float64]:
+    if len(data) < _STL_HEADER + 4:
+        raise Unreadable(f"it has {len(data)} bytes, and an STL file has at least {_STL_HEADER + 4}")
+    count, room = stl_faces(data), (len(data) - _STL_HEADER - 4) // _STL_FACE.itemsize
+    if count > room:
+        raise Unreadable(f"its header promises {count} triangles, and there is room for {room}")
+    faces = np.frombuffer(data, _STL_FACE, count, _STL_HEADER + 4)
+    return faces["corners"].astype(np.float64)
+
+
+def _text_corners(data: bytes) -> NDArray[np.float64]:
+    rows = [line.split()[1:4] for line in data.splitlines() if line.lstrip()[:7].lower() == b"vertex "]
+    try:
+        values = np.array(rows, dtype=np.float64)
+    except ValueError as error:
+        raise Unreadable(f"a vertex is not three numbers ({error})") from error
+    if values.size % 9:
+        raise Unreadable("the number of its vertices is not a multiple of three")
+    return values.reshape(-1, 3, 3)
+
+
+# ---- reading with trimesh ----------------------------------------------------------------------------------------------------
+
+
+def _loaded(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> list[Part]:
+    """Every geometry of the file where its node puts it, in m."""
+    if suffix == ".dae" and (b"<!DOCTYPE" in data or b"<!ENTITY" in data):
+        raise Unreadable("it declares XML entities, which are not expanded")
+    import trimesh
+
+    try:
+        scene = trimesh.load_scene(io.BytesIO(data), suffix[1:], resolver=_resolver(fetch), process=False)
+        return [part for node in scene.graph.nodes_geometry for part in _node_part(scene, node)]
+    except _DAMAGED as error:
+        raise Unreadable(str(error).split("\n")[0][:200] or type(error).__name__) from error
+
+
+def _node_part(scene: Any, node: str) -> Iterable[Part]:
+    import trimesh
+
+    matrix, name = scene.graph[node]
+    mesh = scene.geometry[name]
+    if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
+        return
+    if len(mesh.faces) > MOST_FACES:
+        raise Unreadable(f"it has {len(mesh.faces)} triangles, at most {MOST_FACES} are read")
+    points = trimesh.transform_points(mesh.vertices, matrix) * _metres(mesh.units)
+    faces = np.asarray(mesh.faces, dtype=np.int64)
+    if faces.min() < 0 or faces.max() >= len(points):
+        raise Unreadable("a triangle has a corner that does not exist")
+    if np.linalg.det(matrix[:3, :3]) < 0.0:
+        faces = faces[:, ::-1]
+    look, uv = _look_of(mesh)
+    yield Part(points, faces, uv, look)
+
+
+def _metres(units: str | None) -> float:
+    """The length of the file's unit in m; 1 where it says nothing."""
+    import trimesh
+
+    return 1.0 if units is None else float(trimesh.units.unit_conversion(units, "meters"))
+
+
+def _look_of(mesh: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
+    """The material of a geometry and its texture coordinates; colours of vertices or faces become their mean."""
+    visual = mesh.visual
+    if not visual.defined:
+        return None, None
+    if visual.kind in ("vertex", "face"):
+        return Look("", _rgba(visual.main_color)), None
+    material = visual.material
+    name = str(getattr(material, "name", None) or "")
+    if type(material).__name__ == "SimpleMaterial":
+        return _simple_look(name, material, visual.uv)
+    image = _png(material.baseColorTexture)
+    look = Look(name, None if image else _rgba(material.main_color), image)
+    return look, _uv(visual.uv) if image else None
+
+
+def _simple_look(name: str, material: Any, uv: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
+    """The look of an OBJ material; one without a name stands for a material file that is not there."""
+    image = _png(material.image)
+    color = material.kwargs.get("kd")
+    if image is None and not name:
+        return None, None
+    rgba = (float(color[0]), float(color[1]), float(color[2]), 1.0) if isinstance(color, list) and len(color) == 3 else None
+    return Look(name, None if image else rgba, image), _uv(uv) if image else None
+
+
+def _uv(uv: Any) -> NDArray[np.float64] | None:
+    return None if uv is None else np.asarray(uv, dtype=np.float64)[:, :2]
+
+
+def _rgba(color: Any) -> Rgba | None:
+    """A colour of 0..255 as 0..1, with as many digits as 8 bits are worth."""
+    if color is None:
+        return None
+    r, g, b, a = (round(float(value) / 255.0, 4) for value in color)
+    return (r, g, b, a)
+
+
+def _png(image: Any) -> bytes | None:
+    if image is None:
+        return None
+    out = io.BytesIO()
+    image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG")
+    return out.getvalue()
+
+
+def _resolver(fetch: Callable[[str], bytes]) -> Any:
+    """What trimesh asks for the files that a mesh refers to."""
+    from trimesh.resolvers import Resolver
+
+    class Fetching(Resolver):  # type: ignore[misc]
+        def __init__(self) -> None:
+            self._found: dict[str, bytes] = {}
+
+        def get(self, key: str) -> bytes:
+            name = str(key).strip()
+            if name not in self._found:
+                self._found[name] = fetch(name)
+            return self._found[name]
+
+        def write(self, name: str, data: Any) -> None:
+            raise OSError(f"'{name}' is not written")
+
+        def namespaced(self, namespace: str) -> Resolver:
+            del namespace
+            return self
+
+        def keys(self) -> list[str]:
+            return list(self._found)
+
+    return Fetching()
+
+
+_DAMAGED = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    ImportError,
+    LookupError,
+    MemoryError,
+    OSError,
+    ParseError,
+    RuntimeError,
+    SyntaxError,
+    TypeError,
+    ValueError,
+    struct.error,
+)
+"""What the loaders behind trimesh raise on damaged files; they check little before they index."""
+
+
+# ---- parts -------------------------------------------------------------------------------------------------------------------
+
+
+def _merged_by_look(parts: list[Part]) -> tuple[Part, ...]:
+    """One part per look, in the order of their first appearance."""
+    groups: dict[Look | None, list[Part]] = {}
+    for part in parts:
+        groups.setdefault(part.look, []).append(part)
+    return tuple(_welded(*_corners(group), look) for look, group in groups.items())
+
+
+def _corners(group: list[Part]) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    """The corners (faces, 3, 3) of all triangles of the parts, and their texture coordinates where all have some."""
+    corners = np.concatenate([part.points[part.faces] for part in group])
+    maps = [part.uv[part.faces] for part in group if part.uv is not None]
+    return corners, np.concatenate(maps) if len(maps) == len(group) else None
+
+
+def _welded(corners: NDArray[np.float64], uv: NDArray[np.float64] | None, look: Look | None = None) -> Part:
+    """Triangles with their common points shared; triangles with two equal corners are left out."""
+    flat = corners.reshape(-1, 3)
+    rows = flat if uv is None else np.hstack([flat, uv.reshape(-1, 2)])
+    unique, index = _unique_rows(rows)
+    faces = index.reshape(-1, 3)
+    whole = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
+    return Part(unique[:, :3], faces[whole], unique[:, 3:] if uv is not None else None, look)
+
+
+def _unique_rows(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The different rows in lexical order, and for each given row its place there."""
+    order = np.lexsort(rows.T[::-1])
+    ordered = rows[order]
+    starts = np.ones(len(rows), dtype=bool)
+    starts[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    index = np.empty(len(rows), dtype=np.int64)
+    index[order] = np.cumsum(starts) - 1
+    return ordered[starts], index
+
+
+def merged(parts: tuple[Part, ...]) -> Part:
+    """All triangles as one part without a look."""
+    if len(parts) == 1:
+        return parts[0]
+    return _welded(np.concatenate([part.points[part.faces] for part in parts]), None)
+
+
+# ---- measures ------------------------------------------------------------------------------------------------------------------
+
+
+def volume_of_sheets(part: Part) -> float:
+    """The sum of the volumes of the pyramids from the mean point to all triangles, in m^3; zero for a flat mesh.
+
+    Source: MuJoCo's volume of a mesh with ``inertia="legacy"``.
+    """
+    a, b, c = (part.points[part.faces[:, corner]] - part.points.mean(axis=0) for corner in range(3))
+    return float(np.abs(np.einsum("ij,ij->i", a, np.cross(b, c))).sum() / 6.0)
+
+
+def extents(part: Part) -> Vec3:
+    """The lengths in m of the box along the principal axes of the points, ascending."""
+    centred = part.points - part.points.mean(axis=0)
+    _, axes = np.linalg.eigh(centred.T @ centred)
+    low, middle, high = sorted(np.ptp(centred @ axes, axis=0).tolist())
+    return (low, middle, high)
+
+
+def thickened(part: Part, share: float) -> Part:
+    """A flat part as a thin solid: a second layer lies below the first one, ``share`` of the largest extent away."""
+    centred = part.points - part.points.mean(axis=0)
+    _, axes = np.linalg.eigh(centred.T @ centred)
+    below = part.points - axes[:, 0] * share * np.ptp(centred @ axes, axis=0).max()
+    faces = np.concatenate([part.faces, part.faces[:, ::-1] + len(part.points)])
+    uv = None if part.uv is None else np.concatenate([part.uv, part.uv])
+    return Part(np.concatenate([part.points, below]), faces, uv, part.look)
+
+
+# ---- writing -------------------------------------------------------------------------------------------------------------------
+
+
+def obj_bytes(part: Part) -> bytes:
+    """The part as a Wavefront OBJ file: points to float32 precision, texture coordinates, triangles."""
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (part.points + 0.0).tolist()]
+    if part.uv is not None:
+        lines += [f"vt {u:.7g} {v:.7g}" for u, v in (part.uv + 0.0).tolist()]
+        lines += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in (part.faces + 1).tolist()]
+    else:
+        lines += [f"f {a} {b} {c}" for a, b, c in (part.faces + 1).tolist()]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def stl_bytes(part: Part) -> bytes:
+    """The part as a binary STL file; its normals are computed."""
+    corners = part.points[part.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    faces = np.zeros(len(corners), _STL_FACE)
+    faces["corners"] = corners
+    faces["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
+    return b"binary STL".ljust(_STL_HEADER) + struct.pack("<I", len(faces)) + faces.tobytes()

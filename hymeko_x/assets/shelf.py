@@ -1,0 +1,103 @@
+"""The files of one output under construction: safe and unique relative names, equal content stored once."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import posixpath
+import re
+from typing import TYPE_CHECKING, Literal
+
+if TYPE_CHECKING:
+    from hymeko_x.source import Files
+
+_UNSAFE = re.compile(r"[^\w.+=@()-]+")
+_MOST_LETTERS = 80
+_DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)", re.IGNORECASE)
+
+
+class Shelf:
+    """Where packers put files. ``files`` and ``copies`` are what `source.Package` wants, in the order of arrival."""
+
+    def __init__(self, mode: Literal["copy", "reference"], out_dir: str | None) -> None:
+        self.mode = mode
+        self.files: dict[str, bytes] = {}
+        self.copies: dict[str, str] = {}
+        self._out_dir = out_dir
+        self._by_content: dict[tuple[str, str], str] = {}
+        self._taken: set[str] = set()
+
+    def place(self, folder: str, stem: str, suffix: str, data: bytes) -> str:
+        """Store content as ``folder/stem.suffix`` (made safe and unique) and return the relative path."""
+        path, new = self._name(folder, stem, suffix, data)
+        if new:
+            self.files[path] = data
+        return path
+
+    def copy(self, folder: str, stem: str, suffix: str, source: str, data: bytes) -> str:
+        """Let the file ``source`` be copied there; in reference mode just the way from the output to it."""
+        if self.mode == "reference":
+            return self.way_to(source)
+        path, new = self._name(folder, stem, suffix, data)
+        if new:
+            self.copies[path] = source
+        return path
+
+    def copy_as(self, path: str, source: str) -> bool:
+        """Let ``source`` be copied to this very relative path; False when another file has the path already."""
+        if self.copies.get(path) == source:
+            return True
+        if path.lower() in self._taken:
+            return False
+        self._taken.add(path.lower())
+        self.copies[path] = source
+        return True
+
+    def way_to(self, source: str) -> str:
+        """The path of an existing file relative to the output's folder; absolute only where no relative one exists."""
+        if self._out_dir is None:
+            return source
+        try:
+            return os.path.relpath(source, self._out_dir).replace(os.sep, "/")
+        except ValueError:  # another drive
+            return source
+
+    def _name(self, folder: str, stem: str, suffix: str, data: bytes) -> tuple[str, bool]:
+        """The path for this content, and whether the content is new."""
+        key = (suffix, hashlib.sha256(data).hexdigest())
+        if key in self._by_content:
+            return self._by_content[key], False
+        path, number = f"{folder}/{safe_name(stem)}{suffix}", 1
+        while path.lower() in self._taken:
+            number += 1
+            path = f"{folder}/{safe_name(stem)}_{number}{suffix}"
+        self._taken.add(path.lower())
+        self._by_content[key] = path
+        return path, True
+
+
+def safe_name(name: str) -> str:
+    """A name that means a file on every system and nothing else: letters, digits and ``. _ - + = @ ( )``, no dot in front."""
+    safe = _UNSAFE.sub("_", name).strip(". ")[:_MOST_LETTERS] or "file"
+    return f"_{safe}" if _DEVICES.fullmatch(safe.split(".")[0]) else safe
+
+
+def stem_of(uri: str) -> str:
+    """The file name in a uri or path without folders and suffix."""
+    return posixpath.splitext(posixpath.basename(uri.replace("\\", "/").rstrip("/")))[0]
+
+
+def suffix_of(path: str) -> str:
+    """The suffix of a path in small letters, with its dot."""
+    return posixpath.splitext(path.replace("\\", "/"))[1].lower()
+
+
+def read_file(files: Files, uri: str) -> tuple[str, bytes] | None:
+    """The path and content of the file that ``uri`` names, or None when there is none."""
+    path = files.find(uri)
+    if path is None:
+        return None
+    try:
+        return path, files.read(path)
+    except OSError:
+        return None
