@@ -99,6 +99,9 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
 )
 """The parts that are said by fields alone; bodies, shapes and joints have readers and writers of their own."""
 
+NAMED_AFTER_ID = frozenset({"material"})
+"""Parts whose ``name`` is that of the element unless something else is said: another name, or ``unnamed``."""
+
 ALIASES: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
         "spring": MappingProxyType({"spring_constant": "stiffness", "k": "stiffness"}),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, cast
 
-from hymeko_x.formats.hymeko import PARTS, POSED_EDGES, RESERVED, TARGETS, Word
+from hymeko_x.formats.hymeko import NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, TARGETS, Word
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
@@ -122,7 +122,10 @@ def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePar
     """The block of an element that its words describe completely."""
     words = PARTS[key.kind]
     items: list[Item] = [context.arc(key.kind, arc) for arc in arcs]
-    items.extend(_uri_fields(context, word_fields(part, words.words), key.kind))
+    said = word_fields(part, words.words)
+    if key.kind in NAMED_AFTER_ID:
+        said = _named(said, key)
+    items.extend(_uri_fields(context, said, key.kind))
     if isinstance(part, parts.Tendon):
         items.extend(Field(name, value) for name in ("lower", "upper", "effort") if (value := getattr(part.limits, name)) is not None)
     if words.open:
@@ -132,6 +135,14 @@ def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePar
             for name, value in part.parameters  # type: ignore[union-attr]
         )
     return items
+
+
+def _named(items: list[Item], key: Id) -> list[Item]:
+    """The fields with ``unnamed`` where there is no name, and without the name that the id tells."""
+    names = [item for item in items if isinstance(item, Field) and item.name == "name"]
+    if not names:
+        return [Field("unnamed"), *items]
+    return [item for item in items if item is not names[0] or names[0].value != key.name]
 
 
 def _uri_fields(context: Context, items: list[Item], kind: str) -> list[Item]:

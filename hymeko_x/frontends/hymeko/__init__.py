@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.formats.hymeko import ALIASES, AXES, PARTS, TARGETS
+from hymeko_x.formats.hymeko import ALIASES, AXES, NAMED_AFTER_ID, PARTS, TARGETS
 from hymeko_x.frontends.hymeko.block import Block, Context, read_extra, read_units, read_written
 from hymeko_x.frontends.hymeko.bodies import read_body
 from hymeko_x.frontends.hymeko.build import Build
@@ -188,6 +188,8 @@ def _read_part(build: Build, key: Id, element: Element) -> None:
     block = Block(_renamed(element.node.items, key.kind), build.context, open=words.open)
     block.take("kind")
     values = block.take_words(words.words)
+    if key.kind in NAMED_AFTER_ID and block.take("unnamed") is None:
+        values.setdefault("name", key.name)
     if words.open:
         values["parameters"] = (*block.take_rest(build.context.parameter), *_nested_parameters(build, block))
     if key.kind in ("tendon",):
