@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     Place = str | os.PathLike[str]
     Base = Literal["fixed", "free"] | None
+    Assets = Literal["copy", "reference"] | None
     Actuators = Literal["none", "motor", "position", "velocity"] | None
 
 
@@ -51,29 +52,32 @@ def dump(
     packages: Mapping[str, Place] | None = None,
     base: Base = None,
     actuators: Actuators = None,
+    assets: Assets = None,
 ) -> Report:
     """Write a robot with its meshes to a file; return what there is to say. The format is taken from the suffix unless given.
 
-    Relative meshes are looked for beside the file that the robot was read from.
+    Relative meshes are looked for beside the file that the robot was read from. ``assets``: copy meshes beside the
+    output, or refer to them where they are (None = what is usual for the format).
 
     Raises: Refusal when it cannot be written; then nothing was changed.
     """
     report = Report()
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
     files = _files_of(robot, packages)
-    package = pipeline.write(robot, target, Options(base=base, actuators=actuators), files, report)
+    package = pipeline.write(robot, target, Options(base=base, actuators=actuators), files, report, _place(path, assets))
     disk.write_package(package, os.fspath(path), files)
     return report
 
 
 def dumps(robot: Mechanism, format: str, *, base: Base = None, actuators: Actuators = None, report: Report | None = None) -> str:
-    """A robot as text; files that belong beside it are referred to, and not written.
+    """A robot as text; meshes are referred to from the working folder, and nothing is written.
 
     Raises: Refusal when the format cannot be written.
     """
     said = Report() if report is None else report
     options = Options(base=base, actuators=actuators)
-    return pipeline.write(robot, formats.by_name(format), options, _files_of(robot, None), said).main.decode()
+    place = pipeline.Place(assets="reference")
+    return pipeline.write(robot, formats.by_name(format), options, _files_of(robot, None), said, place).main.decode()
 
 
 def convert(
@@ -85,6 +89,7 @@ def convert(
     packages: Mapping[str, Place] | None = None,
     base: Base = None,
     actuators: Actuators = None,
+    assets: Assets = None,
 ) -> pipeline.Result:
     """Convert a file with its meshes; return the mechanism, what was written, what there is to say and what got lost.
 
@@ -94,13 +99,18 @@ def convert(
     given = disk.open_source(os.fspath(source), packages=_folders(packages))
     robot = pipeline.read(given, _input_format(given, from_format), report)
     form = formats.by_name(to_format) if to_format else formats.of_output(os.fspath(target))
-    result = pipeline.convert(robot, form, Options(base=base, actuators=actuators), given.files, report)
+    options = Options(base=base, actuators=actuators)
+    result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets))
     disk.write_package(result.package, os.fspath(target), given.files)
     return result
 
 
 def _input_format(source: Source, format: str | None) -> formats.Format:
     return formats.by_name(format) if format else formats.of_input(source.name, source.data)
+
+
+def _place(path: Place, assets: Assets) -> pipeline.Place:
+    return pipeline.Place(os.path.dirname(os.fspath(path)) or ".", assets)
 
 
 def _folders(packages: Mapping[str, Place] | None) -> dict[str, Path]:

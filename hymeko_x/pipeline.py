@@ -3,20 +3,24 @@
 from __future__ import annotations
 
 import posixpath
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from hymeko_x import codes, formats
+from hymeko_x.assets.pack import pack
 from hymeko_x.diagnostics import Refusal, Report, refuse
 from hymeko_x.ir.diff import Difference, Tolerance, diff
 from hymeko_x.ir.legalize import Options, legalize
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.source import Package, Source
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.parts import VertexPart
     from hymeko_x.source import Files
 
 LEDGER_TOLERANCE = Tolerance(absolute=1e-12, relative=1e-12)
@@ -37,6 +41,18 @@ class Writer(Protocol):
     def __call__(self, mechanism: Mechanism, report: Report) -> Package:
         """The files that describe the mechanism, which must be legal for the format."""
         ...
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where the output goes: its ``folder``, and whether files go beside it or are referred to (None = the format's own way)."""
+
+    folder: str = "."
+    assets: Literal["copy", "reference"] | None = None
+
+
+HERE = Place()
+"""The working folder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,23 +103,34 @@ def read(source: Source, format: Format, report: Report) -> Mechanism:
     return reader(format)(source, report)
 
 
-def write(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> Package:
-    """The mechanism in a format: rewritten into what the format can say, then printed.
+def write(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Package:
+    """The mechanism in a format: rewritten into what the format can say, its meshes and textures gathered, then printed.
 
     Raises: Refusal when the format cannot be written.
     """
-    backend = writer(format)
-    return backend(legalize(mechanism, format.name, options, report), report)
+    return _written(mechanism, format, options, files, report, place)[0]
 
 
-def convert(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> Result:
+def convert(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
     """Write a mechanism, read the result back, and measure what got lost.
 
     Raises: Refusal when the format cannot be written; HX901 when our own reader refuses what we wrote.
     """
-    package = write(mechanism, format, options, files, report)
-    losses = ledger(mechanism, package, format, files) if format.frontend else None
-    return Result(mechanism, package, report, losses)
+    package, packed = _written(mechanism, format, options, files, report, place)
+    if format.frontend is None:
+        return Result(mechanism, package, report, None)
+    return Result(mechanism, package, report, ledger(with_references_of(packed, mechanism), package, format, files))
+
+
+def _written(
+    mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place
+) -> tuple[Package, Mechanism]:
+    """The package, and the mechanism as it was printed."""
+    backend = writer(format)
+    legal = legalize(mechanism, format.name, options, report)
+    packed, new, copies = pack(legal, format.name, files, place.assets, report, out_dir=place.folder)
+    package = backend(packed, report)
+    return replace(package, files={**package.files, **new}, copies={**package.copies, **copies}), packed
 
 
 def ledger(mechanism: Mechanism, package: Package, format: Format, files: Files) -> tuple[Loss, ...]:
@@ -116,10 +143,21 @@ def ledger(mechanism: Mechanism, package: Package, format: Format, files: Files)
     return tuple(_loss(difference, mechanism) for difference in diff(mechanism, back, LEDGER_TOLERANCE))
 
 
+def with_references_of(packed: Mechanism, mechanism: Mechanism) -> Mechanism:
+    """The mechanism with the packed one's paths of meshes and textures: that a file has moved is no loss."""
+    moved: dict[Id, VertexPart] = {}
+    for key, part in mechanism.graph.vertices.items():
+        other = packed.graph.vertices.get(key)
+        if isinstance(part, Mesh | Texture) and isinstance(other, Mesh | Texture) and part.uri != other.uri:
+            moved[key] = replace(part, uri=other.uri)
+    return mechanism.with_graph(mechanism.graph.replace(vertices=moved)) if moved else mechanism
+
+
 def _loss(difference: Difference, mechanism: Mechanism) -> Loss:
     fate: Literal["approximated", "dropped"] = "dropped" if difference.after is None else "approximated"
     origin = mechanism.origin(difference.element)
-    return Loss(str(difference.element), difference.field, difference.before, difference.after, fate, origin)
+    element = "mechanism" if difference.element == ROOT else str(difference.element)
+    return Loss(element, difference.field, difference.before, difference.after, fate, origin)
 
 
 def reader(format: Format) -> Reader:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from hymeko_x import codes, disk, pipeline
 from hymeko_x.cli import exits
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.cli.inputs import Input
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
-    from hymeko_x.pipeline import Loss, Result
+    from hymeko_x.pipeline import Loss
 
 FAIL_ON = ("error", "loss", "warning")
 
@@ -36,6 +37,7 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of every verb that writes a robot."""
     parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the source leaves open")
     parser.add_argument("--actuators", choices=("none", "motor", "position", "velocity"), help="the actuators to write")
+    parser.add_argument("--assets", choices=("copy", "reference"), help="put meshes beside the output, or refer to them where they are")
     parser.add_argument("--pure", action="store_true", help="write no residue of what the format cannot say itself")
     parser.add_argument("--report", metavar="FILE.json", help="write diagnostics and losses to a file")
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
@@ -44,19 +46,28 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
 def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Report) -> int:
     """Write the mechanism that was read, say what there is to say, and return the exit code."""
     options = Options(base=chosen.base, actuators=chosen.actuators)
-    result = pipeline.convert(given.mechanism, output.format, options, given.source.files, report)
+    result = pipeline.convert(given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
     if output.path == "-" and (result.package.files or result.package.copies):
         count = len(result.package.files) + len(result.package.copies)
         report.warn(codes.ASSET_NOT_WRITTEN, f"{count} files that belong beside the output were not written", hint="use -o FILE")
+    document = as_json(given, output, report, result.losses)
     failed = is_reached(chosen.fail_on, report, result.losses)
     if not failed:
         _write(result.package, output.path, given)
     show(report)
     _show_losses(result.losses or ())
     if chosen.report:
-        document = json.dumps(as_json(given, output, report, result.losses), indent=2, ensure_ascii=False)
         disk.write_package(Package(f"{document}\n".encode()), chosen.report, NoFiles())
+    if getattr(chosen, "json", False):
+        print(document)
     return exits.FAIL_ON if failed else exits.DONE
+
+
+def _place(output: Output, assets: Literal["copy", "reference"] | None) -> pipeline.Place:
+    """Beside standard output nothing can be put, so that files are referred to from the working folder."""
+    if output.path == "-":
+        return pipeline.Place(assets="reference")
+    return pipeline.Place(os.path.dirname(output.path) or ".", assets)
 
 
 def _write(package: Package, path: str, given: Input) -> None:
@@ -66,14 +77,15 @@ def _write(package: Package, path: str, given: Input) -> None:
     return None
 
 
-def as_json(given: Input, output: Output, report: Report, losses: Iterable[Loss] | None) -> dict[str, object]:
+def as_json(given: Input, output: Output, report: Report, losses: Iterable[Loss] | None) -> str:
     """The document of `--report` and of `convert --json`."""
-    return {
+    document = {
         "source": {"path": given.source.name, "format": given.format.name},
         "target": {"path": output.path, "format": output.format.name},
         "diagnostics": [diagnostic.as_json() for diagnostic in report],
         "losses": [loss.as_json() for loss in losses or ()],
     }
+    return json.dumps(document, indent=2, ensure_ascii=False)
 
 
 def is_reached(threshold: str | None, report: Report, losses: tuple[Loss, ...] | None) -> bool:
@@ -96,10 +108,3 @@ def _show_losses(losses: tuple[Loss, ...]) -> None:
         print(loss, file=sys.stderr)
     if len(losses) > MOST_LINES:
         print(f"... and {len(losses) - MOST_LINES} more losses (--report FILE.json lists all)", file=sys.stderr)
-
-
-def summary(result: Result, output: Output) -> str:
-    """What was written, in one line."""
-    beside = len(result.package.files) + len(result.package.copies)
-    files = f" and {beside} files beside it" if beside else ""
-    return f"wrote {output.path} ({output.format.name}){files}"
