@@ -1,0 +1,91 @@
+"""The verifier: do two files describe the same robot, as the formats' own engines see them?
+
+No engine of this project takes part where a reference reader exists (URDF, xacro, MJCF, USD, SDF). HyMeKo text and mechanisms
+in memory have no other reader; verdicts about them say so.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from os import PathLike
+
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.verify.model import KinematicModel
+    from hymeko_x.verify.verdict import Verdict
+
+    Packages = Mapping[str, str | PathLike[str]]
+    Robot = str | PathLike[str] | Mechanism | KinematicModel
+
+
+def verify(
+    a: Robot,
+    b: Robot,
+    *,
+    samples: int = 100,
+    seed: int = 0,
+    structure: bool = False,
+    packages: Packages | None = None,
+    search_path: tuple[Path, ...] = (),
+) -> Verdict:
+    """Whether two robots (files, mechanisms or models) are the same one.
+
+    They are compared at the zero pose, at their limits and at ``samples`` random configurations drawn with ``seed``. Bodies
+    are matched by name, or with ``structure`` by the shape of the tree. ``packages`` says where ``package://NAME`` is, ``search_path`` in
+    which folders packages stand.
+
+    Raises: Refusal HX001, HX003 or HX301 when a file is not there, its format unknown or its engine not installed. A file
+    that its engine refuses makes the verdict "not comparable".
+    """
+    from hymeko_x.verify.compare import compare
+    from hymeko_x.verify.verdict import Verdict
+
+    models: list[KinematicModel] = []
+    reasons: list[str] = []
+    for robot in (a, b):
+        try:
+            models.append(model_of(robot, packages=packages, search_path=search_path))
+        except Refusal as refusal:
+            if refusal.diagnostic.code != codes.ENGINE_REFUSED:
+                raise
+            reasons.append(str(refusal.diagnostic.message))
+    if reasons:
+        return Verdict(("", ""), reason="; ".join(reasons))
+    return compare(models[0], models[1], samples=samples, seed=seed, structure=structure)
+
+
+def model_of(robot: Robot, *, packages: Packages | None = None, search_path: tuple[Path, ...] = ()) -> KinematicModel:
+    """A robot as its reference engine sees it; a mechanism in memory as it is.
+
+    Raises: Refusal, as :func:`verify`, and HX302 when the engine refuses the file.
+    """
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.verify.model import KinematicModel
+
+    if isinstance(robot, KinematicModel):
+        return robot
+    if isinstance(robot, Mechanism):
+        from hymeko_x.verify.readers.mechanism import from_mechanism
+
+        return from_mechanism(robot)
+    from hymeko_x.verify.readers import Places, read
+
+    return read(Path(robot), Places({name: Path(folder) for name, folder in (packages or {}).items()}, search_path))
+
+
+class _Callable(ModuleType):
+    """``hymeko_x.verify`` is this package and the function of the public API at once."""
+
+    def __call__(self, a: Robot, b: Robot, **options: Any) -> Verdict:
+        return verify(a, b, **options)
+
+
+sys.modules[__name__].__class__ = _Callable

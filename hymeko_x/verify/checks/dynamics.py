@@ -1,0 +1,131 @@
+"""Mass matrix and gravity torque by Pinocchio at the samples, and Pinocchio's opinion of the batched kinematics."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hymeko_x.verify.checks.inertia import is_physical
+from hymeko_x.verify.checks.pair import MASS_MATRIX, Pair, worst
+from hymeko_x.verify.kinematics import prepare
+from hymeko_x.verify.model import WORLD, Kind, KinematicModel
+from hymeko_x.verify.pin import PinModel, build
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.verify.model import Array, Index
+    from hymeko_x.verify.verdict import Check
+
+_MOST_DOFS = 400  # a dense mass matrix of more is not worth its time; inertia and kinematics imply it
+_MOST_ENTRIES = 1_000_000  # mass matrix entries over all samples of one tree
+_SLACK = 1e-9
+
+
+def disagreement(model: KinematicModel, q: Array) -> str:
+    """Where Pinocchio's forward kinematics differ from the batched ones at the first configurations; "" when nowhere."""
+    poses = prepare(model).poses(q)
+    for root in model.children[WORLD]:
+        native = build(model, root)
+        bodies = list(native.frames)
+        apart = np.abs(native.poses(q) - poses[:, bodies]).max(axis=(0, 2, 3))
+        if apart.max() > _SLACK * (1 + np.abs(poses).max()):
+            return f"{model.body_label(bodies[int(apart.argmax())])} is {apart.max():.3g} apart"
+    return ""
+
+
+def check_dynamics(pair: Pair) -> Iterator[Check]:
+    """The joint-space mass matrix (relative to its diagonal) and the torque that holds the robot against gravity."""
+    partner = dict(pair.match.dofs)
+    weightless = _unphysical(pair)
+    labels: list[str] = []
+    matrix: list[float] = []
+    torque: list[float] = []
+    scale: list[float] = []
+    for native_a, native_b in _trees(pair, weightless):
+        dofs = [d for d in native_a.joints if d in partner]
+        if not dofs:
+            continue
+        columns_a, columns_b = native_a.columns(dofs), native_b.columns([partner[d] for d in dofs])
+        for row in _rows(len(pair.q_a), len(columns_a)):
+            apart, gravity, size, at = _compare(pair, native_a, native_b, columns_a, columns_b, row)
+            matrix.append(apart)
+            torque.append(gravity)
+            scale.append(size)
+            labels.append(f"{_dof_of_column(pair.a, native_a, dofs, at)} {pair.row_label(row)}")
+    if labels:
+        yield worst("mass matrix", "relative", np.array(matrix), pair.allowed(MASS_MATRIX, 8.0), lambda k: labels[k])
+        allowed = np.maximum(pair.allowed(1e-9, 8.0) * np.array(scale), 1e-9)
+        yield worst("gravity torque", "N m or N", np.array(torque), allowed, lambda k: labels[k])
+
+
+def _trees(pair: Pair, weightless: tuple[frozenset[int], frozenset[int]]) -> Iterator[tuple[PinModel, PinModel]]:
+    """The trees of both robots that have the same coordinates; a note for the others."""
+    roots_a, roots_b = _root_of_dofs(pair.a), _root_of_dofs(pair.b)
+    turned = {d for item in pair.match.turned for d in item.dofs_a}
+    partner = dict(pair.match.dofs)
+    for root in pair.a.children[WORLD]:
+        dofs = [d for d in range(len(pair.a.dofs)) if roots_a[d] == root and pair.a.body_of_dof[d] not in pair.match.floor_a]
+        if not dofs:
+            continue
+        if turned.intersection(dofs):
+            pair.notes.append(
+                f"mass matrix: the tree of {pair.a.body_label(root)} has other coordinates (a ball is three hinges in one of the two)"
+            )
+            continue
+        roots = {roots_b[partner[d]] for d in dofs if d in partner}
+        if len(roots) != 1 or any(d not in partner or _differ(pair, d, partner[d]) for d in dofs):
+            pair.notes.append(f"mass matrix: the trees of {pair.a.body_label(root)} have other coordinates")
+            continue
+        if len(dofs) > _MOST_DOFS:
+            pair.notes.append(
+                f"mass matrix: {len(dofs)} coordinates below {pair.a.body_label(root)} are too many; inertia and kinematics imply it"
+            )
+            continue
+        yield (
+            build(pair.a, root, floor=frozenset(pair.match.floor_a), weightless=weightless[0]),
+            build(pair.b, roots.pop(), floor=frozenset(pair.match.floor_b), weightless=weightless[1]),
+        )
+
+
+def _differ(pair: Pair, d: int, e: int) -> bool:
+    return pair.a.dofs[d].kind is not pair.b.dofs[e].kind
+
+
+def _root_of_dofs(model: KinematicModel) -> list[int]:
+    root = list(range(len(model.bodies)))
+    for i, body in enumerate(model.bodies[1:], start=1):
+        root[i] = i if body.parent == WORLD else root[body.parent]
+    return [root[i] for i in model.body_of_dof]
+
+
+def _unphysical(pair: Pair) -> tuple[frozenset[int], frozenset[int]]:
+    """Bodies whose tensor MuJoCo had to be given otherwise: they weigh nothing on both sides."""
+    if pair.b.format != "mjcf" or pair.a.format == "mjcf":
+        return frozenset(), frozenset()
+    pairs = [(i, j) for i, j in pair.match.bodies[1:] if not is_physical(pair.a.bodies[i].tensor) and is_physical(pair.b.bodies[j].tensor)]
+    return frozenset(i for i, _ in pairs), frozenset(j for _, j in pairs)
+
+
+def _rows(count: int, width: int) -> range:
+    """All configurations, or the first ones where the mass matrices would be too many numbers."""
+    return range(min(count, max(4, _MOST_ENTRIES // max(1, width * width))))
+
+
+def _compare(
+    pair: Pair, native_a: PinModel, native_b: PinModel, columns_a: Index, columns_b: Index, row: int
+) -> tuple[float, float, float, int]:
+    """Worst relative difference of the mass matrices, worst torque difference, largest torque, and the column of the worst."""
+    mass_a, gravity_a = native_a.dynamics(pair.q_a[row], columns_a)
+    mass_b, gravity_b = native_b.dynamics(pair.q_b[row], columns_b)
+    diagonal = np.maximum(np.diag(mass_a), 1e-6 * float(np.diag(mass_a).max(initial=0.0)) + 1e-9)
+    apart = np.abs(mass_a - mass_b) / np.sqrt(np.outer(diagonal, diagonal))
+    torque = np.abs(gravity_a - gravity_b)
+    at = int(apart.max(axis=1).argmax())
+    return float(apart.max()), float(torque.max()), float(np.abs(gravity_a).max()), at
+
+
+def _dof_of_column(model: KinematicModel, native: PinModel, dofs: list[int], column: int) -> str:
+    widths = np.cumsum([{Kind.BALL: 3, Kind.FREE: 6}.get(model.dofs[d].kind, 1) for d in dofs])
+    return model.dof_label(dofs[int(np.searchsorted(widths, column, side="right"))])

@@ -1,0 +1,160 @@
+"""Forward kinematics of every body, and the residual of every closure, at every configuration."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hymeko_x.verify.checks.pair import POSITION, ROTATION, Pair, counted, worst
+from hymeko_x.verify.kinematics import prepare
+from hymeko_x.verify.model import Array, Index, Loop
+from hymeko_x.verify.spatial import angle_between
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from hymeko_x.verify.verdict import Check
+
+LoopPair = tuple[Loop, Loop, bool]
+"""A closure of each robot, and whether the second names the two bodies the other way round."""
+
+
+def check_motion(pair: Pair) -> Iterator[Check]:
+    """Where the bodies are, how they are turned, and how open the loops are. Batched, so that memory stays flat."""
+    loops, findings = _pair_loops(pair)
+    ours = np.array([i for i, _ in pair.match.bodies], dtype=np.intp)
+    theirs = np.array([j for _, j in pair.match.bodies], dtype=np.intp)
+    far, turned = _Peaks(len(ours)), _Peaks(len(ours))
+    gap, skew = _Peaks(len(loops)), _Peaks(len(loops))
+    reach = 0.0
+    forward_a, forward_b = prepare(pair.a, floor=frozenset(pair.match.floor_a)), prepare(pair.b, floor=frozenset(pair.match.floor_b))
+    for rows, poses_a in forward_a.batches(pair.q_a):
+        poses_b = forward_b.poses(pair.q_b[rows])
+        reach = max(reach, float(np.abs(poses_a[..., :3, 3]).max()))
+        _compare_poses(poses_a[:, ours], poses_b[:, theirs], rows.start, far, turned)
+        for k, (loop_a, loop_b, swapped) in enumerate(loops):
+            distance, angle = _compare_loop(poses_a, poses_b, loop_a, loop_b, swapped=swapped)
+            gap.add(k, distance, rows.start)
+            skew.add(k, angle, rows.start)
+    depth = np.sqrt(max(1, len(forward_a.levels)))
+    metres, radians = pair.allowed(POSITION * max(1.0, reach), depth * max(1e-3, reach)), pair.allowed(ROTATION, depth)
+    body = _body_label(pair, ours)
+    yield worst("forward kinematics, position", "m", far.values, metres, lambda k: f"{body(k)} {pair.row_label(int(far.rows[k]))}")
+    yield worst("forward kinematics, rotation", "rad", turned.values, radians, lambda k: f"{body(k)} {pair.row_label(int(turned.rows[k]))}")
+    if loops or findings:
+        yield counted("loops", findings)
+        yield worst("loop closure, position", "m", gap.values, 2 * metres, lambda k: _loop_label(pair, loops[k][0]))
+        yield worst("loop closure, rotation", "rad", skew.values, 2 * radians, lambda k: _loop_label(pair, loops[k][0]))
+
+
+class _Peaks:
+    """The largest difference of each item so far, and the configuration where it was."""
+
+    def __init__(self, count: int) -> None:
+        self.values: Array = np.zeros(count)
+        self.rows: Index = np.zeros(count, dtype=np.intp)
+
+    def add(self, item: slice | int, differences: Array, first: int) -> None:
+        """Differences (n,) of one item or (n, items) of all, at configurations from ``first`` on; NaN counts as infinite."""
+        differences = np.where(np.isnan(differences), np.inf, differences)
+        peaks, rows = differences.max(axis=0), differences.argmax(axis=0) + first
+        higher = peaks > self.values[item]
+        self.rows[item] = np.where(higher, rows, self.rows[item])
+        self.values[item] = np.where(higher, peaks, self.values[item])
+
+
+def _compare_poses(poses_a: Array, poses_b: Array, first: int, far: _Peaks, turned: _Peaks) -> None:
+    far.add(slice(None), np.linalg.norm(poses_a[..., :3, 3] - poses_b[..., :3, 3], axis=-1), first)
+    turned.add(slice(None), angle_between(poses_a[..., :3, :3], poses_b[..., :3, :3]), first)
+
+
+def _body_label(pair: Pair, ours: Index) -> Callable[[int], str]:
+    return lambda k: pair.a.body_label(int(ours[k]))
+
+
+# ---- loops -----------------------------------------------------------------------------------------------------------
+
+
+def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
+    """Closures by name, else by the two bodies that they join; and words about those without a counterpart."""
+    back = {j: i for i, j in pair.match.bodies}
+    waiting = list(pair.b.loops)
+    pairs: list[LoopPair] = []
+    findings: list[str] = []
+    for loop in pair.a.loops:
+        other = _counterpart(loop, waiting, back)
+        if other is None:
+            findings.append(f"{_loop_label(pair, loop)} is missing")
+            continue
+        waiting.remove(other)
+        ends = back.get(other.body_a), back.get(other.body_b)
+        if set(ends) != {loop.body_a, loop.body_b}:
+            findings.append(f"{_loop_label(pair, loop)} joins other bodies")
+        elif (other.kind, other.words) != (loop.kind, loop.words):
+            findings.append(f"{_loop_label(pair, loop)} is a {loop.kind}, and a {other.kind} in the other")
+        else:
+            pairs.append((loop, other, ends[0] != loop.body_a))
+    findings += [f"loop '{loop.name or loop.kind}' is new" for loop in waiting]
+    return pairs, findings
+
+
+def _counterpart(loop: Loop, waiting: list[Loop], back: dict[int, int]) -> Loop | None:
+    named = [other for other in waiting if loop.name is not None and other.name == loop.name]
+    if named:
+        return named[0]
+    ends = {loop.body_a, loop.body_b}
+    return next((other for other in waiting if {back.get(other.body_a), back.get(other.body_b)} == ends), None)
+
+
+def _loop_label(pair: Pair, loop: Loop) -> str:
+    between = f"between {pair.a.body_label(loop.body_a)} and {pair.a.body_label(loop.body_b)}"
+    return f"loop '{loop.name}' {between}" if loop.name else f"the loop {between}"
+
+
+def _compare_loop(poses_a: Array, poses_b: Array, loop_a: Loop, loop_b: Loop, *, swapped: bool) -> tuple[Array, Array]:
+    """By how much the residuals of two closures differ: in m for what must coincide, in rad for what must align, (n,) each."""
+    first_a, second_a = _ends(poses_a, loop_a, swapped=False)
+    first_b, second_b = _ends(poses_b, loop_b, swapped=swapped)
+    gap = _gap(first_a, second_a, loop_a.kind) - _gap(first_b, second_b, loop_a.kind)
+    distance: Array = np.linalg.norm(gap, axis=-1)
+    match loop_a.kind:
+        case "connect":
+            return distance, np.zeros(len(gap))
+        case "hinge" | "cylinder" | "slide":
+            angle = np.maximum(_axis_angle(first_a, first_b), _axis_angle(second_a, second_b))
+            if loop_a.kind == "slide":
+                angle = np.maximum(angle, _relative_angle(first_a, second_a, first_b, second_b))
+            return distance, angle
+        case _:
+            return distance, _relative_angle(first_a, second_a, first_b, second_b)
+
+
+def _ends(poses: Array, loop: Loop, *, swapped: bool) -> tuple[Array, Array]:
+    """The closure's frame on both bodies in the world, (n, 4, 4) each."""
+    ends = poses[:, loop.body_a] @ loop.pose_a, poses[:, loop.body_b] @ loop.pose_b
+    return (ends[1], ends[0]) if swapped else ends
+
+
+def _gap(first: Array, second: Array, kind: str) -> Array:
+    """The vector between the two origins; without its part along the free axis where one is free to slide."""
+    gap = first[:, :3, 3] - second[:, :3, 3]
+    if kind not in ("slide", "cylinder"):
+        return gap
+    axis = first[:, :3, 2]
+    across: Array = gap - np.einsum("ni,ni->n", gap, axis)[:, None] * axis
+    return across
+
+
+def _axis_angle(a: Array, b: Array) -> Array:
+    """The angle between the z axes, as lines."""
+    cross = np.linalg.norm(np.cross(a[:, :3, 2], b[:, :3, 2]), axis=-1)
+    angle: Array = np.arctan2(cross, np.abs(np.einsum("ni,ni->n", a[:, :3, 2], b[:, :3, 2])))
+    return angle
+
+
+def _relative_angle(first_a: Array, second_a: Array, first_b: Array, second_b: Array) -> Array:
+    """How differently the two closures are turned, whatever frame each was written in."""
+    turn_a = second_a[:, :3, :3] @ np.swapaxes(first_a[:, :3, :3], 1, 2)
+    turn_b = second_b[:, :3, :3] @ np.swapaxes(first_b[:, :3, :3], 1, 2)
+    return angle_between(turn_a, turn_b)

@@ -1,0 +1,139 @@
+"""Two matched robots at the same configurations: what every check takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hymeko_x.verify.kinematics import prepare
+from hymeko_x.verify.model import Array, Feature, Kind, KinematicModel
+from hymeko_x.verify.sampling import bounds, draw, follow
+from hymeko_x.verify.spatial import inverse, quat_from_rotation
+from hymeko_x.verify.verdict import Check
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from hymeko_x.verify.match import Match, Turned
+
+POSITION, ROTATION = 1e-9, 1e-9
+MASS_MATRIX = 1e-8
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Pair:
+    """Two robots, their match, the same configurations (n, width) in the coordinates of each, and notes for the verdict.
+
+    ``shifts`` holds for each pair of dofs by how much the second's coordinate is larger for the same pose.
+    """
+
+    a: KinematicModel
+    b: KinematicModel
+    match: Match
+    q_a: Array
+    q_b: Array
+    shifts: tuple[float, ...]
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def precision(self) -> float:
+        """The relative accuracy of the less accurate side."""
+        return max(self.a.precision, self.b.precision)
+
+    def allowed(self, least: float, scale: float = 1.0) -> float:
+        """``least``, or what the accuracy of the numbers makes of a value of this scale."""
+        return max(least, 8.0 * self.precision * scale)
+
+    def both_say(self, feature: Feature) -> bool:
+        """Whether both readers can tell."""
+        return feature in self.a.says and feature in self.b.says
+
+    def row_label(self, row: int) -> str:
+        """What a configuration is, for the reader of a verdict."""
+        return ("in the zero pose", "at all lower limits", "at all upper limits")[row] if row < 3 else f"at sample {row - 2}"
+
+
+def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, seed: int) -> Pair:
+    """Configurations drawn in the first robot's limits and said in the coordinates of both."""
+    rng = np.random.default_rng(seed)
+    q_a = draw(a, samples, rng)
+    shifts = _shifts(a, b, matched)
+    q_b = _at_rest(b, len(q_a))
+    for (d, e), shift in zip(matched.dofs, shifts, strict=True):
+        width = a.dofs[d].kind.width
+        q_b[:, b.columns[e] : b.columns[e] + width] = q_a[:, a.columns[d] : a.columns[d] + width] + shift
+    follow(b, q_b)
+    for turned in matched.turned:
+        _turn_alike(a, b, turned, q_a, q_b, rng)
+    return Pair(a, b, matched, q_a, q_b, shifts, list(matched.notes))
+
+
+def worst(quantity: str, unit: str, differences: Array, allowed: Array | float, label: Callable[[int], str]) -> Check:
+    """The check of many differences: the one that exceeds what is allowed for it the most; not-a-number counts as infinite."""
+    if differences.size == 0:
+        return Check(quantity, unit, 0.0, "", float(np.max(allowed, initial=0.0)))
+    flat = np.where(np.isnan(differences), np.inf, differences).ravel()
+    limits = np.broadcast_to(allowed, differences.shape).ravel()
+    index = int(np.argmax(flat / np.maximum(limits, 1e-300)))
+    return Check(quantity, unit, float(flat[index]), label(index) if flat[index] > 0 else "", float(limits[index]))
+
+
+def counted(quantity: str, findings: Sequence[str], most: int = 5) -> Check:
+    """The check of things that must have a counterpart: how many have none, and which."""
+    rest = f"; and {len(findings) - most} more" if len(findings) > most else ""
+    return Check(quantity, "", float(len(findings)), "; ".join(findings[:most]) + rest, 0.0)
+
+
+# ---- coordinates -----------------------------------------------------------------------------------------------------
+
+
+def _at_rest(model: KinematicModel, count: int) -> Array:
+    q = np.zeros((count, model.width))
+    for dof, column in zip(model.dofs, model.columns, strict=True):
+        if dof.kind.scalar:
+            q[:, column] = dof.ref
+        else:
+            q[:, column + dof.kind.width - 4] = 1.0
+    return q
+
+
+def _shifts(a: KinematicModel, b: KinematicModel, matched: Match) -> tuple[float, ...]:
+    """By how much coordinates differ for one pose, where one robot counts from another reference than the other.
+
+    A format without references either turns the zero pose (coordinates stay, shift 0) or shifts the coordinates: it did
+    the latter where both robots have the same pose below the joint when each is at its reference.
+    """
+    place = dict(matched.bodies)
+    shifts = []
+    for d, e in matched.dofs:
+        away = b.dofs[e].ref - a.dofs[d].ref
+        body = a.body_of_dof[d]
+        same_body = place.get(body) == b.body_of_dof[e]
+        shifted = away != 0.0 and same_body and _same_placement(a, b, body, b.body_of_dof[e])
+        shifts.append(away if shifted else 0.0)
+    return tuple(shifts)
+
+
+def _same_placement(a: KinematicModel, b: KinematicModel, i: int, j: int) -> bool:
+    return bool(np.abs(a.bodies[i].joint.placement - b.bodies[j].joint.placement).max() < 1e-6)
+
+
+def _turn_alike(a: KinematicModel, b: KinematicModel, turned: Turned, q_a: Array, q_b: Array, rng: np.random.Generator) -> None:
+    """Gives the ball of one robot the orientation that the hinges of the other have, in place."""
+    ball_first = any(a.dofs[d].kind is Kind.BALL for d in turned.dofs_a)
+    ball, hinges = (a, b) if ball_first else (b, a)
+    q_ball, q_hinges = (q_a, q_b) if ball_first else (q_b, q_a)
+    dof, angles = (turned.dofs_a[0], turned.dofs_b) if ball_first else (turned.dofs_b[0], turned.dofs_a)
+    body, moved = (turned.body_a, turned.body_b) if ball_first else (turned.body_b, turned.body_a)
+    if ball_first:
+        for angle in angles:
+            lower, upper = bounds(hinges.dofs[angle])
+            q_hinges[3:, hinges.columns[angle]] = rng.uniform(lower, upper, len(q_hinges) - 3)
+    poses = prepare(hinges).poses(q_hinges)
+    top = hinges.bodies[hinges.body_of_dof[angles[0]]].parent
+    relative = inverse(poses[:, top]) @ poses[:, moved]
+    turn = np.swapaxes(ball.bodies[body].joint.placement[:3, :3], 0, 1) @ relative[:, :3, :3]
+    column = ball.columns[dof]
+    q_ball[:, column : column + 4] = quat_from_rotation(turn)

@@ -1,0 +1,121 @@
+"""Forward kinematics of many configurations at once: level by level over the tree, never one body and sample at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hymeko_x.verify.model import Array, Index, Kind, KinematicModel
+from hymeko_x.verify.spatial import rigid, rotation_about, rotation_from_quat
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_POSES_AT_ONCE = 200_000  # bounds the memory of one batch to a few tens of MB, however many samples are asked for
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Slot:
+    """The k-th dof of every body that has one, of one kind: which bodies, which columns, and the dofs' constants."""
+
+    kind: Kind
+    bodies: Index
+    columns: Index
+    axes: Array
+    anchors: Array
+    refs: Array
+    pitches: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kinematics:
+    """A model prepared for batched forward kinematics. Make it with :func:`prepare`."""
+
+    placements: Array
+    slots: tuple[_Slot, ...]
+    levels: tuple[tuple[Index, Index], ...]
+
+    def poses(self, q: Array) -> Array:
+        """World poses (n, bodies, 4, 4) at configurations q (n, width)."""
+        local = np.broadcast_to(self.placements, (len(q), *self.placements.shape)).copy()
+        for slot in self.slots:
+            local[:, slot.bodies] = local[:, slot.bodies] @ _motion(slot, q)
+        for bodies, parents in self.levels:
+            local[:, bodies] = local[:, parents] @ local[:, bodies]
+        return local
+
+    def batches(self, q: Array) -> Iterator[tuple[slice, Array]]:
+        """The poses of all configurations in slices small enough for flat memory."""
+        step = max(1, _POSES_AT_ONCE // max(1, len(self.placements)))
+        for start in range(0, len(q), step):
+            rows = slice(start, min(start + step, len(q)))
+            yield rows, self.poses(q[rows])
+
+
+def prepare(model: KinematicModel, *, floor: frozenset[int] = frozenset()) -> Kinematics:
+    """The constants of a model's forward kinematics.
+
+    The bodies in ``floor`` are put onto the world's frame whatever their joint says: bases that must not count.
+    """
+    placements = np.stack([np.eye(4) if i in floor else body.joint.placement for i, body in enumerate(model.bodies)])
+    return Kinematics(placements, _slots(model, floor), _levels(model))
+
+
+def _slots(model: KinematicModel, floor: frozenset[int]) -> tuple[_Slot, ...]:
+    members: dict[tuple[int, str], list[tuple[int, int]]] = {}
+    for body, first in enumerate(model.first_dof):
+        if body in floor:
+            continue
+        for place, dof in enumerate(model.bodies[body].joint.dofs):
+            members.setdefault((place, dof.kind.value), []).append((body, first + place))
+    return tuple(_slot(model, Kind(kind), pairs) for (_, kind), pairs in sorted(members.items()))
+
+
+def _slot(model: KinematicModel, kind: Kind, pairs: list[tuple[int, int]]) -> _Slot:
+    dofs = [model.dofs[dof] for _, dof in pairs]
+    return _Slot(
+        kind,
+        np.array([body for body, _ in pairs], dtype=np.intp),
+        np.array([model.columns[dof] for _, dof in pairs], dtype=np.intp),
+        np.stack([dof.axis for dof in dofs]),
+        np.stack([dof.anchor for dof in dofs]),
+        np.array([dof.ref for dof in dofs]),
+        np.array([dof.pitch for dof in dofs]),
+    )
+
+
+def _levels(model: KinematicModel) -> tuple[tuple[Index, Index], ...]:
+    depth = [0] * len(model.bodies)
+    levels: dict[int, list[int]] = {}
+    for index, body in enumerate(model.bodies[1:], start=1):
+        depth[index] = depth[body.parent] + 1
+        levels.setdefault(depth[index], []).append(index)
+    return tuple(
+        (np.array(bodies, dtype=np.intp), np.array([model.bodies[i].parent for i in bodies], dtype=np.intp))
+        for _, bodies in sorted(levels.items())
+    )
+
+
+def _motion(slot: _Slot, q: Array) -> Array:
+    """Tr(a) M(q - ref) Tr(-a) of every dof of the slot, (n, dofs, 4, 4)."""
+    match slot.kind:
+        case Kind.FREE:
+            place = q[:, slot.columns[:, None] + np.arange(7)]
+            return rigid(rotation_from_quat(place[..., 3:]), place[..., :3])
+        case Kind.BALL:
+            turn = rotation_from_quat(q[:, slot.columns[:, None] + np.arange(4)])
+            return _about(turn, slot.anchors, np.zeros(3))
+        case Kind.HINGE | Kind.SCREW:
+            angle = q[:, slot.columns] - slot.refs
+            shift = slot.axes * (slot.pitches * angle)[..., None]
+            return _about(rotation_about(slot.axes, angle), slot.anchors, shift)
+        case Kind.SLIDE:
+            shift = slot.axes * (q[:, slot.columns] - slot.refs)[..., None]
+            return rigid(np.eye(3), shift)
+
+
+def _about(turn: Array, anchors: Array, shift: Array) -> Array:
+    """A turn that keeps the anchors in place, followed by a shift."""
+    return rigid(turn, anchors - (turn @ anchors[..., None])[..., 0] + shift)

@@ -1,0 +1,305 @@
+"""The engine-neutral robot that every reference reader fills and every check compares.
+
+A forest of bodies under the world, each with the joint above it, in SI units and radians. Matrices are 4x4 homogeneous.
+The pose of a body in its parent is
+
+    T(q) = P * prod_i( Tr(a_i) M_i(q_i - ref_i) Tr(-a_i) )
+
+with P the joint's ``placement`` and a_i the ``anchor`` of dof i; axes and anchors are in the frame of the body below, as it
+is when all dofs are at their refs. A coordinate vector q holds one number per hinge, slide and screw, a quaternion
+(w, x, y, z) per ball, a position and a quaternion per free dof (both counted from the placement).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from enum import Enum
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+WORLD = 0
+"""The index of the world in every model's bodies."""
+
+INF = float("inf")
+
+
+class Kind(Enum):
+    """How one degree of freedom moves, and how many coordinates say where it is."""
+
+    HINGE = "hinge"
+    SLIDE = "slide"
+    SCREW = "screw"
+    BALL = "ball"
+    FREE = "free"
+
+    @property
+    def width(self) -> int:
+        """The number of coordinates."""
+        return _WIDTHS[self]
+
+    @property
+    def scalar(self) -> bool:
+        """Whether one number says where it is."""
+        return self.width == 1
+
+    @property
+    def unit(self) -> str:
+        """The unit of its coordinate."""
+        return "m" if self is Kind.SLIDE else "rad"
+
+
+_WIDTHS = {Kind.HINGE: 1, Kind.SLIDE: 1, Kind.SCREW: 1, Kind.BALL: 4, Kind.FREE: 7}
+
+
+class Feature(Enum):
+    """What only some formats can say. A check is made only when both readers can tell; else it is in ``not_compared``."""
+
+    VELOCITY_LIMITS = "velocity limits"
+    EFFORT_LIMITS = "effort limits"
+    DAMPING = "damping"
+    FRICTION = "friction"
+    ARMATURE = "armature"
+    SPRINGS = "springs"
+    REFS = "coordinate references"
+    VISUALS = "visual shapes"
+    COLLISIONS = "collision shapes"
+    FIXED_JOINT_NAMES = "names of fixed joints"
+    ACTUATORS = "actuators"
+    TENDONS = "tendons"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Dof:
+    """One degree of freedom. ``axis`` is unit, in the body's frame; bounds are infinite where there are none.
+
+    ``effort`` is (lowest, highest) in N or Nm. Damping in Nms/rad or Ns/m, ``pitch`` of a screw in m/rad; ``nonlinear``
+    holds the higher coefficients of damping and stiffness where an engine has them.
+    """
+
+    kind: Kind
+    axis: Array
+    anchor: Array = field(default_factory=lambda: np.zeros(3))
+    ref: float = 0.0
+    name: str | None = None
+    lower: float = -INF
+    upper: float = INF
+    velocity: float = INF
+    effort: tuple[float, float] = (-INF, INF)
+    damping: float = 0.0
+    friction: float = 0.0
+    armature: float = 0.0
+    stiffness: float = 0.0
+    spring_ref: float = 0.0
+    pitch: float = 0.0
+    nonlinear: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Joint:
+    """The joint above a body. No dofs = fixed; ``open`` marks a root that its format leaves unattached (URDF's)."""
+
+    name: str | None = None
+    placement: Array = field(default_factory=lambda: np.eye(4))
+    dofs: tuple[Dof, ...] = ()
+    open: bool = False
+
+
+def between_frames(name: str | None, above: Array, dofs: tuple[Dof, ...], below: Array) -> Joint:
+    """The joint T = ``above`` * motion * ``below``^-1, with dofs given in the joint's own frame, in the terms of the body's frame.
+
+    C M C^-1 turns about, or slides along, C's image of the axis, through C's image of the anchor.
+    """
+    turn, shift = below[:3, :3], below[:3, 3]
+    moved = tuple(replace(dof, axis=turn @ dof.axis, anchor=turn @ dof.anchor + shift) for dof in dofs)
+    back = np.eye(4)
+    back[:3, :3], back[:3, 3] = turn.T, -(turn.T @ shift)
+    return Joint(name, above @ back, moved)
+
+
+class Role(Enum):
+    """What a shape is for. ``BOTH`` collides and is drawn."""
+
+    VISUAL = "visual"
+    COLLISION = "collision"
+    BOTH = "both"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Surface:
+    """The triangles of a mesh in its own frame after scaling: ``vertices`` (n, 3) in m and ``faces`` (m, 3)."""
+
+    vertices: Array
+    faces: Index
+
+
+@dataclass(frozen=True, slots=True)
+class MeshFile:
+    """A mesh that is read only when it is compared: ``path`` is None when the file was not found."""
+
+    uri: str
+    path: Path | None
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shape:
+    """A geometry on a body: ``pose`` in the body frame; ``size`` in m.
+
+    Sizes: box full lengths (3), sphere radius, cylinder and capsule radius and length along z (without caps), ellipsoid
+    half axes (3), plane none. A mesh has a ``mesh``: its triangles, or the file that holds them.
+    """
+
+    kind: str
+    role: Role
+    pose: Array
+    size: tuple[float, ...] = ()
+    name: str | None = None
+    mesh: Surface | MeshFile | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Body:
+    """A rigid body: mass in kg, centre of mass in m and tensor about it in kg m^2, both in body axes.
+
+    ``parent`` is the index of the body at the other end of ``joint``. ``alias`` is the name as the format had to spell it.
+    """
+
+    name: str | None
+    parent: int
+    joint: Joint
+    mass: float = 0.0
+    com: Array = field(default_factory=lambda: np.zeros(3))
+    tensor: Array = field(default_factory=lambda: np.zeros((3, 3)))
+    shapes: tuple[Shape, ...] = ()
+    alias: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Coupling:
+    """A scalar dof that follows: q = constant + sum over leaders of c1 q + c2 q^2 + ... in absolute coordinates.
+
+    ``follower`` and the leaders are indices into the model's dofs.
+    """
+
+    follower: int
+    constant: float = 0.0
+    leaders: tuple[tuple[int, tuple[float, ...]], ...] = ()
+    name: str | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Loop:
+    """A closure: frame ``pose_a`` on body a meets ``pose_b`` on body b.
+
+    ``kind``: ``connect`` (origins coincide), ``weld`` (frames coincide), ``hinge`` (origins and z axes), ``slide``
+    (frames up to a motion along z), ``cylinder`` (z lines), ``other`` (as weld, with ``words`` saying what stays free).
+    """
+
+    kind: str
+    body_a: int
+    pose_a: Array
+    body_b: int
+    pose_b: Array
+    name: str | None = None
+    words: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Something that is compared word by word and number by number: an actuator or a tendon, and what it acts on."""
+
+    name: str | None
+    words: tuple[str, ...]
+    numbers: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class KinematicModel:
+    """One robot as one engine sees it. ``bodies[0]`` is the world; a parent always comes before its children.
+
+    ``precision`` is the relative accuracy of its numbers (double or float32); ``trusted`` is False when the reader is
+    this project's own; ``notes`` are findings of the reader that the verdict repeats.
+    """
+
+    name: str
+    format: str
+    engine: str
+    bodies: tuple[Body, ...]
+    couplings: tuple[Coupling, ...] = ()
+    loops: tuple[Loop, ...] = ()
+    actuators: tuple[Part, ...] = ()
+    tendons: tuple[Part, ...] = ()
+    says: frozenset[Feature] = frozenset(Feature)
+    precision: float = 1e-15
+    trusted: bool = True
+    notes: tuple[str, ...] = ()
+
+    @cached_property
+    def dofs(self) -> tuple[Dof, ...]:
+        """Every dof of every joint, in body order."""
+        return tuple(dof for body in self.bodies for dof in body.joint.dofs)
+
+    @cached_property
+    def first_dof(self) -> tuple[int, ...]:
+        """For each body the index of its joint's first dof."""
+        counts = [len(body.joint.dofs) for body in self.bodies]
+        return tuple(int(n) for n in np.concatenate(([0], np.cumsum(counts)[:-1])))
+
+    @cached_property
+    def body_of_dof(self) -> tuple[int, ...]:
+        """For each dof the body below it."""
+        return tuple(index for index, body in enumerate(self.bodies) for _ in body.joint.dofs)
+
+    @cached_property
+    def columns(self) -> tuple[int, ...]:
+        """For each dof its first column in a coordinate vector."""
+        widths = [dof.kind.width for dof in self.dofs]
+        return tuple(int(n) for n in np.concatenate(([0], np.cumsum(widths)[:-1]))) if widths else ()
+
+    @cached_property
+    def width(self) -> int:
+        """The length of a coordinate vector."""
+        return sum(dof.kind.width for dof in self.dofs)
+
+    @cached_property
+    def children(self) -> tuple[tuple[int, ...], ...]:
+        """For each body the bodies right below it, in order."""
+        below: list[list[int]] = [[] for _ in self.bodies]
+        for index, body in enumerate(self.bodies[1:], start=1):
+            below[body.parent].append(index)
+        return tuple(tuple(indices) for indices in below)
+
+    @cached_property
+    def index(self) -> Mapping[str, int]:
+        """The body of each name; of two bodies with one name the first."""
+        found: dict[str, int] = {}
+        for index, body in enumerate(self.bodies):
+            if body.name is not None:
+                found.setdefault(body.name, index)
+        return found
+
+    def body_label(self, index: int) -> str:
+        """``body 'forearm'``, or the place of a body without a name."""
+        name = self.bodies[index].name
+        return f"body '{name}'" if name is not None else f"the unnamed body {index}"
+
+    def dof_label(self, index: int) -> str:
+        """``joint 'elbow'``, or the body below a joint without a name."""
+        body = self.body_of_dof[index]
+        name = self.dofs[index].name or self.bodies[body].joint.name
+        return f"joint '{name}'" if name is not None else f"the joint above {self.body_label(body)}"
+
+
+def grounded(name: str = "world", shapes: tuple[Shape, ...] = ()) -> Body:
+    """The world as a body, to begin a model's bodies with."""
+    return Body(name, -1, Joint(), shapes=shapes)

@@ -1,0 +1,26 @@
+"""HyMeKo text, by this project's own reader: there is no other. The verdict says so."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
+from hymeko_x.frontends import hymeko
+from hymeko_x.source import Source
+from hymeko_x.verify.readers.mechanism import from_mechanism
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from hymeko_x.verify.model import KinematicModel
+    from hymeko_x.verify.readers import Places
+
+
+def read(path: Path, places: Places) -> KinematicModel:
+    """The robot that the text describes. Raises: Refusal HX302 when it cannot be read."""
+    try:
+        mechanism = hymeko.read(Source(str(path), path.read_bytes(), places.files(path.parent)), Report())
+    except Refusal as refusal:
+        raise refuse(codes.ENGINE_REFUSED, f"the HyMeKo text cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
+    return from_mechanism(mechanism, format="hymeko")

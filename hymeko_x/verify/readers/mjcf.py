@@ -1,0 +1,222 @@
+"""MJCF as MuJoCo compiles it: everything comes from the arrays of the mjModel.
+
+MuJoCo's own ``mj_kinematics`` must agree with the model that is read here, or the file is not comparable.
+Source: MuJoCo's mjmodel.h.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.verify.kinematics import prepare
+from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Role, Shape, Surface, grounded
+from hymeko_x.verify.readers.mjcf_constraints import read_actuators, read_couplings, read_loops, read_tendons
+from hymeko_x.verify.readers.words import overheard
+from hymeko_x.verify.sampling import draw
+from hymeko_x.verify.spatial import angle_between, pose, quat_from_rotation, rigid, rotation_from_quat
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from hymeko_x.verify.readers import Places
+
+SAYS = frozenset(Feature) - {Feature.VELOCITY_LIMITS, Feature.FIXED_JOINT_NAMES}
+
+_KINDS = {
+    int(mujoco.mjtJoint.mjJNT_FREE): Kind.FREE,
+    int(mujoco.mjtJoint.mjJNT_BALL): Kind.BALL,
+    int(mujoco.mjtJoint.mjJNT_SLIDE): Kind.SLIDE,
+    int(mujoco.mjtJoint.mjJNT_HINGE): Kind.HINGE,
+}
+_SLACK = 1e-9
+_HIDDEN_FROM = 3  # geom groups that the viewer does not draw unless asked to
+
+
+def read(path: Path, places: Places) -> KinematicModel:
+    """The robot that MuJoCo compiles. Raises: Refusal HX302 in MuJoCo's words."""
+    with overheard() as said, _without_log_file():
+        try:
+            compiled = mujoco.MjModel.from_xml_path(str(path))
+        except (ValueError, mujoco.FatalError) as error:
+            words = " ".join(str(error).split()) or said()
+            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses the file: {words}", Origin(str(path))) from error
+    found = from_compiled(compiled)
+    difference = disagreement(found, compiled)
+    if difference:
+        raise refuse(codes.ENGINE_REFUSED, f"MuJoCo's own kinematics disagree with its compiled model: {difference}", Origin(str(path)))
+    return found
+
+
+@contextlib.contextmanager
+def _without_log_file() -> Iterator[None]:
+    """MuJoCo appends its warnings to MUJOCO_LOG.TXT in the current folder unless somebody listens to them."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda words: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def from_compiled(compiled: Any) -> KinematicModel:
+    """The robot in an mjModel."""
+    joint_dofs: dict[int, int] = {}
+    bodies = [grounded(shapes=tuple(_shapes(compiled, WORLD)))]
+    for index in range(1, compiled.nbody):
+        bodies.append(_body(compiled, index, joint_dofs))
+    return KinematicModel(
+        name=compiled.names[: compiled.names.find(b"\0")].decode("utf-8", "replace"),
+        format="mjcf",
+        engine=f"MuJoCo {mujoco.__version__}",
+        bodies=tuple(bodies),
+        couplings=tuple(read_couplings(compiled, joint_dofs)),
+        loops=tuple(read_loops(compiled)),
+        actuators=tuple(read_actuators(compiled)),
+        tendons=tuple(read_tendons(compiled)),
+        says=SAYS,
+    )
+
+
+def _body(compiled: Any, index: int, joint_dofs: dict[int, int]) -> Body:
+    first, count = int(compiled.body_jntadr[index]), int(compiled.body_jntnum[index])
+    dofs = []
+    for joint in range(first, first + count):
+        joint_dofs[joint] = len(joint_dofs)
+        dofs.append(_dof(compiled, joint))
+    turn = rotation_from_quat(compiled.body_iquat[index])
+    name = dofs[0].name if len(dofs) == 1 else None
+    return Body(
+        name=compiled.body(index).name or None,
+        parent=int(compiled.body_parentid[index]),
+        joint=Joint(name, pose(compiled.body_pos[index], compiled.body_quat[index]), tuple(dofs)),
+        mass=float(compiled.body_mass[index]),
+        com=np.array(compiled.body_ipos[index]),
+        tensor=turn @ np.diag(compiled.body_inertia[index]) @ turn.T,
+        shapes=tuple(_shapes(compiled, index)),
+    )
+
+
+def _dof(compiled: Any, joint: int) -> Dof:
+    kind = _KINDS[int(compiled.jnt_type[joint])]
+    v, q = int(compiled.jnt_dofadr[joint]), int(compiled.jnt_qposadr[joint])
+    limited, forced = bool(compiled.jnt_limited[joint]), bool(compiled.jnt_actfrclimited[joint])
+    lower, upper = compiled.jnt_range[joint] if limited else (-INF, INF)
+    strongest = compiled.jnt_actfrcrange[joint] if forced else (-INF, INF)
+    return Dof(
+        kind=kind,
+        axis=np.array(compiled.jnt_axis[joint]),
+        anchor=np.zeros(3) if kind is Kind.FREE else np.array(compiled.jnt_pos[joint]),
+        ref=float(compiled.qpos0[q]) if kind.scalar else 0.0,
+        name=compiled.joint(joint).name or None,
+        lower=float(lower),
+        upper=float(upper),
+        effort=(float(strongest[0]), float(strongest[1])),
+        damping=float(compiled.dof_damping[v]),
+        friction=float(compiled.dof_frictionloss[v]),
+        armature=float(compiled.dof_armature[v]),
+        stiffness=float(compiled.jnt_stiffness[joint]),
+        spring_ref=float(compiled.qpos_spring[q]) if kind.scalar and compiled.jnt_stiffness[joint] else 0.0,
+        nonlinear=_nonlinear(compiled, joint, v),
+    )
+
+
+def _nonlinear(compiled: Any, joint: int, v: int) -> tuple[float, ...]:
+    """The higher coefficients of damping and stiffness, or nothing when all are zero."""
+    values = (*compiled.dof_dampingpoly[v], *compiled.jnt_stiffnesspoly[joint], compiled.jnt_springyield[joint])
+    return tuple(float(x) for x in values) if any(values) else ()
+
+
+# ---- shapes ----------------------------------------------------------------------------------------------------------
+
+
+def _shapes(compiled: Any, body: int) -> Iterator[Shape]:
+    first = int(compiled.body_geomadr[body])
+    for geom in range(first, first + int(compiled.body_geomnum[body])):
+        kind, size, mesh = _geometry(compiled, geom)
+        yield Shape(
+            kind,
+            _role(compiled, geom),
+            pose(compiled.geom_pos[geom], compiled.geom_quat[geom]),
+            size,
+            compiled.geom(geom).name or None,
+            mesh,
+        )
+
+
+def _role(compiled: Any, geom: int) -> Role:
+    """A geom without contact bits is for the eye only (by convention); one in a hidden group only collides."""
+    if not compiled.geom_contype[geom] and not compiled.geom_conaffinity[geom]:
+        return Role.VISUAL
+    return Role.COLLISION if compiled.geom_group[geom] >= _HIDDEN_FROM else Role.BOTH
+
+
+def _geometry(compiled: Any, geom: int) -> tuple[str, tuple[float, ...], Surface | None]:
+    """Kind, size in this project's terms (MuJoCo gives half lengths), and the triangles of a mesh."""
+    kind = mujoco.mjtGeom(int(compiled.geom_type[geom])).name.removeprefix("mjGEOM_").lower()
+    a, b, c = (float(x) for x in compiled.geom_size[geom])
+    match kind:
+        case "box":
+            return kind, (2 * a, 2 * b, 2 * c), None
+        case "sphere":
+            return kind, (a,), None
+        case "cylinder" | "capsule":
+            return kind, (a, 2 * b), None
+        case "ellipsoid":
+            return kind, (a, b, c), None
+        case "mesh" | "sdf":
+            return "mesh", (), _surface(compiled, int(compiled.geom_dataid[geom]))
+        case "hfield":
+            return kind, tuple(float(x) for x in compiled.hfield_size[int(compiled.geom_dataid[geom])]), None
+        case _:
+            return kind, (), None
+
+
+def _surface(compiled: Any, mesh: int) -> Surface:
+    """The triangles as compiled: centred and turned to principal axes, which the geom's pose undoes."""
+    vertices, faces = int(compiled.mesh_vertadr[mesh]), int(compiled.mesh_faceadr[mesh])
+    return Surface(
+        np.array(compiled.mesh_vert[vertices : vertices + int(compiled.mesh_vertnum[mesh])], dtype=float),
+        np.array(compiled.mesh_face[faces : faces + int(compiled.mesh_facenum[mesh])], dtype=np.intp),
+    )
+
+
+# ---- the engine's own kinematics -------------------------------------------------------------------------------------
+
+
+def disagreement(found: KinematicModel, compiled: Any, count: int = 3) -> str:
+    """Where ``mj_kinematics`` puts a body elsewhere than the model; "" when nowhere."""
+    q = draw(found, count, np.random.default_rng(0))
+    ours = prepare(found).poses(q)
+    theirs = np.stack([_engine_poses(compiled, row) for row in engine_coordinates(found, q)])
+    distance = np.linalg.norm(ours[..., :3, 3] - theirs[..., :3, 3], axis=-1).max(axis=0)
+    angle = angle_between(ours[..., :3, :3], theirs[..., :3, :3]).max(axis=0)
+    worst = int(np.argmax(np.maximum(distance, angle)))
+    if max(distance[worst], angle[worst]) <= _SLACK * (1 + float(np.abs(ours[..., :3, 3]).max())):
+        return ""
+    return f"{found.body_label(worst)} is {distance[worst]:.3g} m and {angle[worst]:.3g} rad apart"
+
+
+def engine_coordinates(found: KinematicModel, q: Array) -> Array:
+    """The same configurations as MuJoCo's qpos: its free joints count from the world, ours from their initial pose."""
+    qpos = q.copy()
+    for dof, column, body in zip(found.dofs, found.columns, found.body_of_dof, strict=True):
+        if dof.kind is not Kind.FREE:
+            continue
+        placed = found.bodies[body].joint.placement @ rigid(rotation_from_quat(q[:, column + 3 : column + 7]), q[:, column : column + 3])
+        qpos[:, column : column + 3] = placed[:, :3, 3]
+        qpos[:, column + 3 : column + 7] = quat_from_rotation(placed[:, :3, :3])
+    return qpos
+
+
+def _engine_poses(compiled: Any, qpos: Array) -> Array:
+    data = mujoco.MjData(compiled)
+    data.qpos[:] = qpos
+    mujoco.mj_kinematics(compiled, data)
+    return rigid(data.xmat.reshape(-1, 3, 3).copy(), data.xpos.copy())

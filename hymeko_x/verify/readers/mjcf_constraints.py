@@ -1,0 +1,164 @@
+"""What ties an mjModel's bodies and joints together beside the tree: equalities, tendons and actuators."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import mujoco
+import numpy as np
+from numpy.polynomial import Polynomial
+
+from hymeko_x.verify.model import Coupling, Loop, Part
+from hymeko_x.verify.spatial import pose
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.verify.model import Array
+
+_EQ, _OBJ, _WRAP, _TRN = mujoco.mjtEq, mujoco.mjtObj, mujoco.mjtWrap, mujoco.mjtTrn
+_SCALAR = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
+
+
+def _equalities(compiled: Any, *kinds: Any) -> Iterator[int]:
+    """The active equality constraints of these kinds."""
+    wanted = {int(kind) for kind in kinds}
+    return (i for i in range(compiled.neq) if int(compiled.eq_type[i]) in wanted and compiled.eq_active0[i])
+
+
+# ---- couplings -------------------------------------------------------------------------------------------------------
+
+
+def read_couplings(compiled: Any, dofs: Mapping[int, int]) -> Iterator[Coupling]:
+    """Joint equalities as polynomials in absolute coordinates.
+
+    MuJoCo's are relative to the initial configuration: q1 - q1_0 = poly(q2 - q2_0). Source: MuJoCo XML reference, equality/joint.
+    """
+    for i in _equalities(compiled, _EQ.mjEQ_JOINT):
+        first, second = int(compiled.eq_obj1id[i]), int(compiled.eq_obj2id[i])
+        if int(compiled.jnt_type[first]) not in _SCALAR:
+            continue
+        name = compiled.equality(i).name or None
+        start = float(compiled.qpos0[compiled.jnt_qposadr[first]])
+        relative = Polynomial([float(x) for x in compiled.eq_data[i][:5]])
+        if second < 0:
+            yield Coupling(dofs[first], start + float(relative.coef[0]), (), name)
+            continue
+        zero = float(compiled.qpos0[compiled.jnt_qposadr[second]])
+        absolute = [float(x) for x in relative(Polynomial([-zero, 1.0])).coef]
+        yield Coupling(dofs[first], start + absolute[0], ((dofs[second], _trimmed(absolute[1:])),), name)
+
+
+def _trimmed(coefficients: list[float]) -> tuple[float, ...]:
+    """Without zeros at the end, but never empty."""
+    while len(coefficients) > 1 and coefficients[-1] == 0.0:
+        coefficients = coefficients[:-1]
+    return tuple(coefficients)
+
+
+# ---- loops -----------------------------------------------------------------------------------------------------------
+
+
+def read_loops(compiled: Any) -> Iterator[Loop]:
+    """Connects and welds, between bodies or sites."""
+    for i in _equalities(compiled, _EQ.mjEQ_CONNECT, _EQ.mjEQ_WELD):
+        connect = int(compiled.eq_type[i]) == int(_EQ.mjEQ_CONNECT)
+        name = compiled.equality(i).name or None
+        a, b = int(compiled.eq_obj1id[i]), int(compiled.eq_obj2id[i])
+        if int(compiled.eq_objtype[i]) == int(_OBJ.mjOBJ_SITE):
+            (body_a, pose_a), (body_b, pose_b) = _site(compiled, a), _site(compiled, b)
+        else:
+            body_a, body_b = a, b
+            pose_a, pose_b = _anchors(compiled.eq_data[i], connect=connect)
+        yield Loop("connect" if connect else "weld", body_a, pose_a, body_b, pose_b, name)
+
+
+def _site(compiled: Any, site: int) -> tuple[int, Array]:
+    return int(compiled.site_bodyid[site]), pose(compiled.site_pos[site], compiled.site_quat[site])
+
+
+def _anchors(data: Array, *, connect: bool) -> tuple[Array, Array]:
+    """The closure's frame in both bodies.
+
+    A connect holds its point in body 1 and in body 2; a weld the anchor in body 2 and the pose of body 2 in body 1.
+    Source: MuJoCo engine_core_constraint.c.
+    """
+    if connect:
+        return pose(data[0:3], np.array([1.0, 0, 0, 0])), pose(data[3:6], np.array([1.0, 0, 0, 0]))
+    return pose(data[3:6], data[6:10]), np.eye(4)
+
+
+# ---- tendons and actuators -------------------------------------------------------------------------------------------
+
+
+def read_tendons(compiled: Any) -> Iterator[Part]:
+    """Every tendon's path or coefficients and its mechanics, and the equalities between tendons."""
+    for tendon in range(compiled.ntendon):
+        first, count = int(compiled.tendon_adr[tendon]), int(compiled.tendon_num[tendon])
+        path = [_wrap(compiled, wrap) for wrap in range(first, first + count)]
+        yield Part(
+            compiled.tendon(tendon).name or None,
+            tuple(word for words, _ in path for word in words),
+            (*(number for _, numbers in path for number in numbers), *_tendon_numbers(compiled, tendon)),
+        )
+    for i in _equalities(compiled, _EQ.mjEQ_TENDON):
+        ends = [compiled.tendon(int(t)).name if t >= 0 else "" for t in (compiled.eq_obj1id[i], compiled.eq_obj2id[i])]
+        yield Part(compiled.equality(i).name or None, ("equality", *ends), tuple(float(x) for x in compiled.eq_data[i][:5]))
+
+
+def _wrap(compiled: Any, wrap: int) -> tuple[tuple[str, ...], tuple[float, ...]]:
+    """One item of a path: a joint with its coefficient, a point on a body, a wrapping geometry, or a pulley."""
+    kind, target = int(compiled.wrap_type[wrap]), int(compiled.wrap_objid[wrap])
+    number = float(compiled.wrap_prm[wrap])
+    if kind == int(_WRAP.mjWRAP_JOINT):
+        return ("joint", str(compiled.joint(target).name)), (number,)
+    if kind == int(_WRAP.mjWRAP_SITE):
+        return ("site", str(compiled.body(int(compiled.site_bodyid[target])).name)), tuple(float(x) for x in compiled.site_pos[target])
+    if kind == int(_WRAP.mjWRAP_PULLEY):
+        return ("pulley",), (number,)
+    body = str(compiled.body(int(compiled.geom_bodyid[target])).name)
+    side = tuple(float(x) for x in compiled.site_pos[int(number)]) if number >= 0 else ()
+    return ("geom", body), (*(float(x) for x in compiled.geom_pos[target]), float(compiled.geom_size[target][0]), *side)
+
+
+def _tendon_numbers(compiled: Any, tendon: int) -> tuple[float, ...]:
+    names = ("stiffness", "damping", "frictionloss", "armature", "lengthspring", "range")
+    values = [np.ravel(getattr(compiled, f"tendon_{name}")[tendon]) for name in names]
+    if not compiled.tendon_limited[tendon]:
+        values[-1] = np.zeros(2)
+    return tuple(float(x) for x in np.concatenate(values))
+
+
+def read_actuators(compiled: Any) -> Iterator[Part]:
+    """What each actuator acts on, by which law, and its numbers; ranges that do not bind count as zero."""
+    for i in range(compiled.nu):
+        words = (
+            _TRN(int(compiled.actuator_trntype[i])).name.removeprefix("mjTRN_").lower(),
+            _target(compiled, i),
+            mujoco.mjtGain(int(compiled.actuator_gaintype[i])).name.removeprefix("mjGAIN_").lower(),
+            mujoco.mjtBias(int(compiled.actuator_biastype[i])).name.removeprefix("mjBIAS_").lower(),
+            mujoco.mjtDyn(int(compiled.actuator_dyntype[i])).name.removeprefix("mjDYN_").lower(),
+        )
+        yield Part(compiled.actuator(i).name or None, words, _actuator_numbers(compiled, i))
+
+
+def _target(compiled: Any, actuator: int) -> str:
+    kind, target = int(compiled.actuator_trntype[actuator]), int(compiled.actuator_trnid[actuator][0])
+    if kind in (int(_TRN.mjTRN_JOINT), int(_TRN.mjTRN_JOINTINPARENT)):
+        return str(compiled.joint(target).name)
+    if kind == int(_TRN.mjTRN_TENDON):
+        return str(compiled.tendon(target).name)
+    if kind == int(_TRN.mjTRN_BODY):
+        return str(compiled.body(target).name)
+    if kind in (int(_TRN.mjTRN_SITE), int(_TRN.mjTRN_SLIDERCRANK)):
+        return str(compiled.site(target).name)
+    return ""
+
+
+def _actuator_numbers(compiled: Any, i: int) -> tuple[float, ...]:
+    plain = [np.ravel(getattr(compiled, f"actuator_{name}")[i]) for name in ("gear", "gainprm", "biasprm", "dynprm", "cranklength")]
+    ranges = [
+        getattr(compiled, f"actuator_{name}range")[i] * bool(getattr(compiled, f"actuator_{name}limited")[i])
+        for name in ("ctrl", "force", "act")
+    ]
+    return tuple(float(x) for x in np.concatenate([*plain, *ranges]))
