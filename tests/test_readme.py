@@ -1,0 +1,67 @@
+"""The README's session is what really happens. `python tests/test_readme.py` writes the present output into it."""
+
+from __future__ import annotations
+
+import doctest
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+README = Path(__file__).parents[1] / "README.md"
+BLOCK = re.compile(r"```(\w+)(?: (\S+))?\n(.*?)```\n", re.DOTALL)
+
+
+def shell(command: str, folder: Path) -> str:
+    """What a user sees who types the command."""
+    program = f'hymeko-x() {{ {shlex.quote(sys.executable)} -m hymeko_x.cli "$@"; }}\n{command}'
+    environment = {**os.environ, "PYTHONPATH": str(README.parent), "COLUMNS": "120"}
+    run = subprocess.run(
+        ["bash", "-c", program], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, check=False
+    )
+    return run.stdout
+
+
+def session(text: str, folder: Path) -> str:
+    """The README with every command's output as it is now; the files that it shows are put into the folder."""
+
+    def rerun(block: re.Match[str]) -> str:
+        language, name, content = block.groups()
+        if name:
+            (folder / name).write_text(content)
+        if language != "console":
+            return block[0]
+        commands = [line for line in content.splitlines() if line.startswith("$ ")]
+        said = "".join(f"{command}\n{shell(command[2:], folder)}" for command in commands)
+        return f"```console\n{said}```\n"
+
+    return BLOCK.sub(rerun, text)
+
+
+def test_the_session_in_the_readme_is_what_really_happens(tmp_path: Path) -> None:
+    text = README.read_text("utf-8")
+    assert session(text, tmp_path) == text
+
+
+def test_the_python_in_the_readme_is_what_really_happens(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    blocks = list(BLOCK.finditer(README.read_text("utf-8")))
+    for block in blocks:
+        if block[2]:
+            (tmp_path / block[2]).write_text(block[3])
+    monkeypatch.chdir(tmp_path)
+    code = "".join(block[3] for block in blocks if block[1] == "pycon")
+    test = doctest.DocTestParser().get_doctest(code, {}, "README.md", str(README), 0)
+    said: list[str] = []
+    assert test.examples
+    assert doctest.DocTestRunner().run(test, out=said.append).failed == 0, "".join(said)
+
+
+if __name__ == "__main__":
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        README.write_text(session(README.read_text("utf-8"), Path(folder)), "utf-8")
