@@ -10,20 +10,21 @@ from hymeko_x.language.syntax import Comment, Document, Item, Node
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from hymeko_x.language.machine import Gap, Lines
+
 TOKENS = re.compile(
     r'"""[\s\S]*?"""|"[^"\\]*(?:\\[\s\S][^"\\]*)*"|\'[^\'\\]*(?:\\[\s\S][^\'\\]*)*\'|`[^`\\\n]*(?:\\.[^`\\\n]*)*`'
     r"|#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/|[{}\[\]()]"
 )
 """Everything in which a bracket or comment sign means something else, comments, and brackets."""
+_COMMENT = re.compile(r"#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/")
 
 
-def weave_comments(document: Document, text: str) -> Document:
-    """The document with its top-level comments among its items and those of its nodes."""
-    if "//" not in text and "#" not in text and "/*" not in text:
-        return document
+def weave_comments(document: Document, text: str, gaps: list[Gap], lines: Lines) -> Document:
+    """The document with the comments in the gaps of its outermost levels among its items and those of its nodes."""
     outer: list[Item] = []
     inner: list[Comment] = []
-    for depth, comment in _comments(text):
+    for depth, comment in _comments(text, gaps, lines):
         if depth == 0:
             outer.append(comment)
         else:
@@ -41,22 +42,11 @@ def comment_text(token: str) -> str:
     return (token[2:] if token.startswith("//") else token[2:-2]).strip()
 
 
-def _comments(text: str) -> Iterator[tuple[int, Comment]]:
+def _comments(text: str, gaps: list[Gap], lines: Lines) -> Iterator[tuple[int, Comment]]:
     """Every comment outside all blocks (0) or directly in an outermost block (1)."""
-    depth = 0
-    line, line_start, seen = 1, 0, 0
-    for match in TOKENS.finditer(text):
-        word = match[0]
-        if word in "{[(":
-            depth += 1
-        elif word in "}])":
-            depth -= 1
-        elif word[0] in "#/" and depth <= 1:
-            start = match.start()
-            line += text.count("\n", seen, start)
-            line_start = text.rfind("\n", 0, start) + 1
-            seen = start
-            yield depth, Comment(comment_text(word), line, start - line_start + 1)
+    for start, end, depth in gaps:
+        for match in _COMMENT.finditer(text, start, end):
+            yield depth, Comment(comment_text(match[0]), *lines.place(match.start()))
 
 
 def _with_inner(item: Item, comments: list[Comment], following: tuple[Item, ...]) -> Item:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import TYPE_CHECKING
 
+from lark import Lark
 from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.language.comments import TOKENS
+from hymeko_x.language.generate import grammar_text
 
 if TYPE_CHECKING:
-    from lark.exceptions import UnexpectedInput
-
     from hymeko_x.diagnostics import Refusal
 
 # Terminals in the words of a user, in the order in which they are listed; several terminals may share one wording.
@@ -65,17 +66,28 @@ _CHARACTER_HINTS = {
 }
 
 
-def explain_syntax_error(error: UnexpectedInput, text: str, name: str) -> Refusal:
-    """The refusal (HX060) for what lark found, with line, caret, expectation and hint."""
-    if isinstance(error, UnexpectedToken):
+def explain_syntax_error(text: str, name: str) -> Refusal:
+    """The refusal (HX060) for a text that is not HyMeKo: lark reads it again, because it knows what it expected where."""
+    try:
+        _lark().parse(text)
+    except UnexpectedToken as error:
         return _unexpected_token(error, text, name)
-    assert isinstance(error, UnexpectedCharacters), error
+    except UnexpectedCharacters as error:
+        return _unexpected_character(error, text, name)
+    raise AssertionError(f"lark accepts what the machine refuses: {text[:200]!r}")
+
+
+@cache
+def _lark() -> Lark:
+    return Lark(grammar_text(), parser="lalr", maybe_placeholders=False)
+
+
+def _unexpected_character(error: UnexpectedCharacters, text: str, name: str) -> Refusal:
     character = text[error.pos_in_stream or 0]
     message = f"the character {character!r} means nothing here; expected {_list(error.allowed or set())}"
     hint = _CHARACTER_HINTS.get(character, "")
-    return refuse(
-        codes.SYNTAX, message, Origin(name, error.line, error.column), hint=hint, excerpt=_excerpt(text, error.line, error.column, 1)
-    )
+    place = Origin(name, error.line, error.column)
+    return refuse(codes.SYNTAX, message, place, hint=hint, excerpt=excerpt(text, error.line, error.column, 1))
 
 
 def _unexpected_token(error: UnexpectedToken, text: str, name: str) -> Refusal:
@@ -90,7 +102,7 @@ def _unexpected_token(error: UnexpectedToken, text: str, name: str) -> Refusal:
         f"{found}; expected {expected}",
         Origin(name, line, column),
         hint=_token_hint(error, text, at_end),
-        excerpt=_excerpt(text, line, column, width),
+        excerpt=excerpt(text, line, column, width),
     )
 
 
@@ -165,7 +177,7 @@ def _end_of(text: str) -> tuple[int, int]:
     return rest.count("\n") + 1, len(rest) - (rest.rfind("\n") + 1) + 1
 
 
-def _excerpt(text: str, line: int, column: int, width: int) -> tuple[str, ...]:
+def excerpt(text: str, line: int, column: int, width: int) -> tuple[str, ...]:
     """The source line and a caret line below it; a long line is cut around the place."""
     source = text.split("\n")[line - 1].rstrip("\r").replace("\t", " ")
     start = max(0, column - 1 - _MAX_LINE // 2) if len(source) > _MAX_LINE else 0

@@ -399,7 +399,7 @@ def _slot(item: Item) -> str | None:
     """What a field or role fills; None for items of which there may be many."""
     match item:
         case Field(name=name, value=value) if value is not None:
-            return name
+            return f"`{name}" if isinstance(name, QuotedName) else name
         case ArcItem(role=role) if role:
             return role
         case _:

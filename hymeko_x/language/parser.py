@@ -1,19 +1,16 @@
-"""HyMeKo text to syntax tree: lark's LALR(1) parser with the tree built while parsing."""
+"""HyMeKo text to syntax tree, built while the LALR(1) machine reads."""
 
 from __future__ import annotations
 
 import re
 from functools import cache
-from importlib.resources import files
-from typing import cast
-
-from lark import Lark, Token, Transformer
-from lark.exceptions import UnexpectedInput
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.language.comments import weave_comments
-from hymeko_x.language.errors import explain_syntax_error
+from hymeko_x.language.errors import excerpt, explain_syntax_error
+from hymeko_x.language.machine import MAX_DEPTH, Lines, Machine, ParseError, TooDeep
 from hymeko_x.language.syntax import (
     ArcItem,
     Document,
@@ -31,6 +28,9 @@ from hymeko_x.language.syntax import (
     Value,
 )
 
+if TYPE_CHECKING:
+    from hymeko_x.language.machine import Convert, Gap, Reduce
+
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
 _ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|.)", re.DOTALL)
 _ESCAPED = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}
@@ -39,32 +39,35 @@ _ESCAPED = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}
 def parse(text: str, name: str = "<text>") -> Document:
     """The syntax tree of a HyMeKo text. ``name`` is the file's name for messages.
 
-    Raises: Refusal (HX060) with the line, a caret, what was expected and a hint.
+    Raises: Refusal (HX060) with the line, a caret, what was expected and a hint; HX007 for brackets nested too deep.
     """
+    lines = Lines(text)
+    builder = _TreeBuilder(lines)
+    gaps: list[Gap] = []
     try:
-        return weave_comments(cast("Document", _parser().parse(text)), text)
-    except UnexpectedInput as error:
-        raise explain_syntax_error(error, text, name) from error
+        document = _tables().run(text, builder.terminals, builder.actions, gaps)
+    except TooDeep as error:
+        line, column = lines.place(error.offset)
+        raise refuse(codes.TOO_LARGE, f"brackets are nested more than {MAX_DEPTH} levels deep", Origin(name, line, column)) from error
     except _Malformed as error:
-        raise refuse(codes.SYNTAX, str(error), Origin(name, error.token.line, error.token.column)) from error
-
-
-def grammar_text() -> str:
-    """The grammar, as lark reads it."""
-    return files("hymeko_x.language").joinpath("hymeko.lark").read_text(encoding="utf-8")
+        line, column = lines.place(error.offset)
+        raise refuse(codes.SYNTAX, str(error), Origin(name, line, column), excerpt=excerpt(text, line, column, 1)) from error
+    except ParseError as error:
+        raise explain_syntax_error(text, name) from error
+    return weave_comments(document, text, gaps, lines)
 
 
 @cache
-def _parser() -> Lark:
-    return Lark(grammar_text(), parser="lalr", transformer=_TreeBuilder(), maybe_placeholders=False)
+def _tables() -> Machine:
+    return Machine(frozenset(_RULES))
 
 
 class _Malformed(Exception):
     """A token that the lexer lets through and that means nothing."""
 
-    def __init__(self, token: Token, message: str) -> None:
+    def __init__(self, offset: int, message: str) -> None:
         super().__init__(message)
-        self.token = token
+        self.offset = offset
 
 
 def unescape(text: str) -> str:
@@ -79,156 +82,17 @@ def unescape(text: str) -> str:
     return _ESCAPE.sub(plain, text)
 
 
-def _numbers(token: Token, text: str) -> tuple[float, ...]:
+def _numbers(text: str, offset: int) -> tuple[float, ...]:
     try:
         return tuple(map(float, text.replace(",", " ").split()))
     except ValueError as error:
-        raise _Malformed(token, f"{text.strip()!r} is not a list of numbers") from error
+        raise _Malformed(offset, f"{text.strip()!r} is not a list of numbers") from error
 
 
-class _TreeBuilder(Transformer[Token, Document]):
-    """Called by the parser at every reduction; each method gets the parts of its rule."""
+class _Block(tuple[Item, ...]):
+    """The items between braces."""
 
-    # ---- tokens ----------------------------------------------------------------------------------------------------------
-
-    def NUMBER(self, token: Token) -> float:
-        return float(token)
-
-    def QUANTITY(self, token: Token) -> Quantity:
-        match = _QUANTITY.fullmatch(token)
-        assert match is not None, token
-        return Quantity(float(match[1]), match[2])
-
-    def STRING(self, token: Token) -> str:
-        if token.startswith('"""'):
-            return str(token[3:-3])
-        return unescape(token[1:-1])
-
-    def EXPRESSION(self, token: Token) -> Expression:
-        return Expression(str(token[2:-1]).strip())
-
-    def QUERY(self, _: Token) -> Query:
-        return Query()
-
-    def NUMBERS(self, token: Token) -> tuple[float, ...]:
-        return _numbers(token, token[1:-1])
-
-    def MATRIX(self, token: Token) -> tuple[tuple[float, ...], ...]:
-        return tuple(_numbers(token, row) for row in token[1 : token.rindex("]")].replace("[", "").split("]")[:-1])
-
-    # ---- references --------------------------------------------------------------------------------------------------------
-
-    def ref(self, parts: list[Token]) -> Ref:
-        if len(parts) == 1:
-            return Ref((_name(parts[0]),))
-        return Ref(tuple(map(_name, parts)))
-
-    def relation(self, parts: list[Token | Ref]) -> tuple[Ref, Token]:
-        target, direction = cast("Ref", parts[-1]), cast("Token", parts[-2])
-        modifier = str(parts[0]) if len(parts) == 3 else ""
-        return Ref(target.path, str(direction), modifier), direction
-
-    def vector(self, parts: list[object]) -> tuple[Value, ...]:
-        return tuple(map(_value, parts))
-
-    # ---- items -------------------------------------------------------------------------------------------------------------
-
-    def start(self, parts: list[object]) -> Document:
-        header = ""
-        if parts and isinstance(parts[0], Token):
-            header, parts = parts[0][1:-1].strip(), parts[1:]
-        return Document(tuple(cast("list[Item]", parts)), header)
-
-    def block(self, parts: list[Item]) -> tuple[Item, ...]:
-        return tuple(parts)
-
-    def bare(self, parts: list[object]) -> Field:
-        token = cast("Token", parts[0])
-        kind = cast("str", parts[1]) if len(parts) > 1 else ""
-        return Field(_name(token), None, kind, token.line or 0, token.column or 0)
-
-    def field(self, parts: list[object]) -> Field:
-        token = cast("Token", parts[0])
-        kind = cast("str", parts[1]) if len(parts) == 3 else ""
-        return Field(_name(token), _value(parts[-1]), kind, token.line or 0, token.column or 0)
-
-    def type(self, parts: list[Ref]) -> str:
-        return _TypeName(parts[0].dotted)
-
-    def import_(self, parts: list[object]) -> Import:
-        token = cast("Token", parts[0])
-        alias = _name(cast("Token", parts[3])) if len(parts) > 2 else ""
-        return Import(cast("str", parts[1]), alias, token.line or 0, token.column or 0)
-
-    def node(self, parts: list[object]) -> Node:
-        return _node("", parts)
-
-    def edge(self, parts: list[object]) -> Node:
-        return _node(str(parts[0]), parts[1:])
-
-    def typed_edge(self, parts: list[object]) -> Node:
-        return _node(cast("str", parts[0]), parts[1:])
-
-    def plain_arc(self, parts: list[object]) -> ArcItem:
-        ref, token = cast("tuple[Ref, Token]", parts[0])
-        items = cast("tuple[Item, ...]", parts[1]) if len(parts) > 1 else ()
-        return ArcItem(ref, "", None, items, token.line or 0, token.column or 0)
-
-    def weighted_arc(self, parts: list[object]) -> ArcItem:
-        weight = cast("tuple[Value, ...]", parts[0])
-        role = _name(parts[1]) if isinstance(parts[1], Token) else ""
-        ref, token = cast("tuple[Ref, Token]", parts[2] if role else parts[1])
-        items = cast("tuple[Item, ...]", parts[-1]) if len(parts) > (3 if role else 2) else ()
-        return ArcItem(ref, role, weight, items, token.line or 0, token.column or 0)
-
-    def role_arc(self, parts: list[object]) -> ArcItem:
-        token = cast("Token", parts[0])
-        ref, _ = cast("tuple[Ref, Token]", parts[1])
-        items = cast("tuple[Item, ...]", parts[2]) if len(parts) > 2 else ()
-        return ArcItem(ref, _name(token), None, items, token.line or 0, token.column or 0)
-
-    def quoted_arc(self, parts: list[Token]) -> ArcItem:
-        token = parts[0]
-        return ArcItem(_quoted_ref(parts), "", None, (), token.line or 0, token.column or 0)
-
-    def legacy_edge(self, parts: list[Token]) -> ArcItem:
-        token = parts[0]
-        return ArcItem(_quoted_ref(parts[1:]), _name(token), None, (), token.line or 0, token.column or 0)
-
-    # ---- signatures ----------------------------------------------------------------------------------------------------------
-
-    def signature(self, parts: list[object]) -> _Signature:
-        found = _Signature()
-        for part in parts:
-            if isinstance(part, _Parameters):
-                found.parameters = tuple(part)
-            elif isinstance(part, Ref):
-                found.uses = (*found.uses, part)
-            else:
-                found.stereotypes = cast("tuple[Stereotype, ...]", part)
-        return found
-
-    def stereotypes(self, parts: list[Stereotype]) -> tuple[Stereotype, ...]:
-        return tuple(parts)
-
-    def stereotype(self, parts: list[object]) -> Stereotype:
-        arguments = cast("tuple[tuple[str, Value], ...]", parts[1]) if len(parts) > 1 else None
-        return Stereotype(cast("Ref", _value(parts[0])), arguments)
-
-    def use(self, parts: list[Ref]) -> Ref:
-        return parts[0]
-
-    def parameters(self, parts: list[Parameter]) -> _Parameters:
-        return _Parameters(parts)
-
-    def parameter(self, parts: list[object]) -> Parameter:
-        return Parameter(_name(cast("Token", parts[0])), _value(parts[1]) if len(parts) > 1 else None)
-
-    def arguments(self, parts: list[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:
-        return tuple(parts)
-
-    def argument(self, parts: list[object]) -> tuple[str, Value]:
-        return _name(cast("Token", parts[0])), _value(parts[1])
+    __slots__ = ()
 
 
 class _TypeName(str):
@@ -237,43 +101,172 @@ class _TypeName(str):
     __slots__ = ()
 
 
-class _Parameters(list[Parameter]):
-    """A parameter list, told apart from a list of stereotypes."""
+class _Parameters(tuple[Parameter, ...]):
+    """A parameter list."""
+
+    __slots__ = ()
 
 
-class _Signature:
+class _Stereotypes(tuple[Stereotype, ...]):
+    """The types behind a colon."""
+
+    __slots__ = ()
+
+
+class _Signature(NamedTuple):
     """What stands between a node's name and its block."""
 
-    def __init__(self) -> None:
-        self.parameters: tuple[Parameter, ...] | None = None
-        self.stereotypes: tuple[Stereotype, ...] = ()
-        self.uses: tuple[Ref, ...] = ()
+    parameters: tuple[Parameter, ...] | None
+    stereotypes: tuple[Stereotype, ...]
+    uses: tuple[Ref, ...]
 
 
-def _name(token: Token) -> str:
-    """The name itself: a quoted one without its backticks."""
-    if token[0] == "`":
-        return QuotedName(unescape(token[1:-1]))
-    return str(token)
+class _TreeBuilder:
+    """Makes the tree while the machine reads: one method a terminal (text and offset), one a rule (children and offset)."""
+
+    def __init__(self, lines: Lines) -> None:
+        self._place = lines.place
+        names = ("number", "quantity", "string", "expression", "query", "numbers", "matrix", "name")
+        self.terminals: dict[str, Convert] = {name.upper(): getattr(self, f"_{name}") for name in names}
+        self.actions: dict[str, Reduce] = {rule: getattr(self, f"on_{rule}") for rule in _RULES}
+
+    # ---- terminals ---------------------------------------------------------------------------------------------------------
+
+    def _number(self, text: str, offset: int) -> float:
+        return float(text)
+
+    def _quantity(self, text: str, offset: int) -> Quantity:
+        match = _QUANTITY.fullmatch(text)
+        assert match is not None, text
+        return Quantity(float(match[1]), match[2])
+
+    def _string(self, text: str, offset: int) -> str:
+        return text[3:-3] if text.startswith('"""') else unescape(text[1:-1])
+
+    def _expression(self, text: str, offset: int) -> Expression:
+        return Expression(text[2:-1].strip())
+
+    def _query(self, text: str, offset: int) -> Query:
+        return Query()
+
+    def _numbers(self, text: str, offset: int) -> tuple[float, ...]:
+        return _numbers(text[1:-1], offset)
+
+    def _matrix(self, text: str, offset: int) -> tuple[tuple[float, ...], ...]:
+        rows = text[1 : text.rindex("]")].replace("[", "").split("]")[:-1]
+        return tuple(_numbers(row, offset) for row in rows)
+
+    def _name(self, text: str, offset: int) -> str:
+        if text[0] != "`":
+            return text
+        if len(text) == 2:
+            return QuotedName("")
+        return QuotedName(unescape(text[1:-1]))
+
+    # ---- references and values ---------------------------------------------------------------------------------------------
+
+    def on_ref(self, parts: list[str], offset: int) -> Ref:
+        return Ref(tuple(parts))
+
+    def on_relation(self, parts: list[Any], offset: int) -> Ref:
+        modifier = parts[0] if len(parts) == 3 else ""
+        return Ref(parts[-1].path, parts[-2], modifier)
+
+    def on_vector(self, parts: list[Value], offset: int) -> tuple[Value, ...]:
+        return tuple(parts)
+
+    def on_type(self, parts: list[Ref], offset: int) -> str:
+        return _TypeName(parts[0].dotted)
+
+    # ---- items -------------------------------------------------------------------------------------------------------------
+
+    def on_start(self, parts: list[Any], offset: int) -> Document:
+        if parts and type(parts[0]) is str:
+            return Document(tuple(parts[1:]), parts[0][1:-1].strip())
+        return Document(tuple(parts))
+
+    def on_block(self, parts: list[Item], offset: int) -> tuple[Item, ...]:
+        return _Block(parts)
+
+    def on_bare(self, parts: list[str], offset: int) -> Field:
+        return Field(parts[0], None, parts[1] if len(parts) > 1 else "", *self._place(offset))
+
+    def on_field(self, parts: list[Any], offset: int) -> Field:
+        return Field(parts[0], parts[-1], parts[1] if len(parts) == 3 else "", *self._place(offset))
+
+    def on_import_(self, parts: list[str], offset: int) -> Import:
+        return Import(parts[1], parts[3] if len(parts) > 2 else "", *self._place(offset))
+
+    def on_node(self, parts: list[Any], offset: int) -> Node:
+        return self._node("", parts, offset)
+
+    def on_edge(self, parts: list[Any], offset: int) -> Node:
+        return self._node(parts[0], parts[1:], offset)
+
+    def on_typed_edge(self, parts: list[Any], offset: int) -> Node:
+        return self._node(parts[0], parts[1:], offset)
+
+    def _node(self, edge: str, parts: list[Any], offset: int) -> Node:
+        line, column = self._place(offset)
+        items = tuple(parts[-1])
+        if len(parts) == 2:
+            return Node(parts[0], items, edge=edge, line=line, column=column)
+        signature: _Signature = parts[1]
+        return Node(parts[0], items, signature.stereotypes, signature.parameters, signature.uses, edge, line, column)
+
+    def on_plain_arc(self, parts: list[Any], offset: int) -> ArcItem:
+        return self._arc("", None, parts, offset)
+
+    def on_role_arc(self, parts: list[Any], offset: int) -> ArcItem:
+        return self._arc(parts[0], None, parts[1:], offset)
+
+    def on_weighted_arc(self, parts: list[Any], offset: int) -> ArcItem:
+        if type(parts[1]) is Ref:
+            return self._arc("", parts[0], parts[1:], offset)
+        return self._arc(parts[1], parts[0], parts[2:], offset)
+
+    def _arc(self, role: str, weight: tuple[Value, ...] | None, parts: list[Any], offset: int) -> ArcItem:
+        items = tuple(parts[1]) if len(parts) > 1 else ()
+        return ArcItem(parts[0], role, weight, items, *self._place(offset))
+
+    def on_quoted_arc(self, parts: list[str], offset: int) -> ArcItem:
+        return ArcItem(_quoted_ref(*parts), "", None, (), *self._place(offset))
+
+    def on_legacy_edge(self, parts: list[str], offset: int) -> ArcItem:
+        return ArcItem(_quoted_ref(*parts[1:]), parts[0], None, (), *self._place(offset))
+
+    # ---- signatures ----------------------------------------------------------------------------------------------------------
+
+    def on_signature(self, parts: list[Any], offset: int) -> _Signature:
+        parameters = next((tuple(part) for part in parts if type(part) is _Parameters), None)
+        stereotypes = next((tuple(part) for part in parts if type(part) is _Stereotypes), ())
+        return _Signature(parameters, stereotypes, tuple(part for part in parts if type(part) is Ref))
+
+    def on_stereotypes(self, parts: list[Stereotype], offset: int) -> tuple[Stereotype, ...]:
+        return _Stereotypes(parts)
+
+    def on_stereotype(self, parts: list[Any], offset: int) -> Stereotype:
+        return Stereotype(parts[0], parts[1] if len(parts) > 1 else None)
+
+    def on_use(self, parts: list[Any], offset: int) -> Ref:
+        ref: Ref = parts[-1]
+        return ref
+
+    def on_parameters(self, parts: list[Parameter], offset: int) -> tuple[Parameter, ...]:
+        return _Parameters(parts)
+
+    def on_parameter(self, parts: list[Any], offset: int) -> Parameter:
+        return Parameter(parts[0], parts[1] if len(parts) > 1 else None)
+
+    def on_arguments(self, parts: list[tuple[str, Value]], offset: int) -> tuple[tuple[str, Value], ...]:
+        return tuple(parts)
+
+    def on_argument(self, parts: list[Any], offset: int) -> tuple[str, Value]:
+        return parts[0], parts[1]
 
 
-def _value(part: object) -> Value:
-    """A value as it stands in the tree; a relation loses the token that told its place."""
-    if type(part) is tuple and len(part) == 2 and type(part[0]) is Ref and type(part[1]) is Token:
-        return part[0]
-    return cast("Value", part)
+_RULES = tuple(name.removeprefix("on_") for name in vars(_TreeBuilder) if name.startswith("on_"))
 
 
-def _quoted_ref(parts: list[Token]) -> Ref:
-    direction, target = parts
-    return Ref((QuotedName(target[3:-1]),), str(direction))
-
-
-def _node(edge: str, parts: list[object]) -> Node:
-    token = cast("Token", parts[0])
-    items = cast("tuple[Item, ...]", parts[-1])
-    name, line, column = _name(token), token.line or 0, token.column or 0
-    if len(parts) == 2:
-        return Node(name, items, edge=edge, line=line, column=column)
-    signature = cast("_Signature", parts[1])
-    return Node(name, items, signature.stereotypes, signature.parameters, signature.uses, edge, line, column)
+def _quoted_ref(direction: str, target: str) -> Ref:
+    return Ref((QuotedName(target[3:-1]),), direction)

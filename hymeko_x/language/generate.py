@@ -1,0 +1,118 @@
+"""Makes tables.json from hymeko.lark: lark checks the grammar and computes the LALR(1) table, and what reading needs is kept.
+
+Run it after every change of the grammar: ``python -m hymeko_x.language.generate``. A test fails while it was not run.
+"""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+from typing import Any
+
+from lark import Lark
+from lark.grammar import Rule
+from lark.lexer import TerminalDef
+
+
+def grammar_text() -> str:
+    """The grammar, as lark reads it."""
+    return files("hymeko_x.language").joinpath("hymeko.lark").read_text(encoding="utf-8")
+
+
+def tables_text() -> str:
+    """The content of tables.json for the grammar as it is now."""
+    lark = Lark(grammar_text(), parser="lalr", maybe_placeholders=False)
+    data, memo = lark.memo_serialize([TerminalDef, Rule])
+    machine = data["parser"]["parser"]
+    rules = sorted((item for item in memo.items() if item[1]["__type__"] == "Rule"), key=lambda item: _rule_order(item[1]))
+    numbers = {key: number for number, (key, _) in enumerate(rules)}
+    tokens = machine["tokens"]
+    rows = {
+        state: {tokens[token]: argument if action == 0 else -1 - numbers[argument["@"]] for token, (action, argument) in row.items()}
+        for state, row in machine["states"].items()
+    }
+    states, renumbered = _renumbered(rows, machine["start_states"]["start"])
+    start = 0
+    tables = {
+        "start": start,
+        "end": renumbered[machine["end_states"]["start"]],
+        "ignored": [_pattern(item) for item in _terminals(memo, ignored=True, data=data)],
+        "terminals": [[item["name"], _pattern(item)] for item in _terminals(memo, ignored=False, data=data)],
+        "opening": _only_at_start(states, start),
+        "keywords": {item["pattern"]["value"]: item["name"] for item in _all_terminals(memo) if _is_keyword(item)},
+        "rules": [_rule(rule) for _, rule in rules],
+        "states": states,
+    }
+    return json.dumps(tables, indent=None, separators=(",", ":"), sort_keys=True).replace("],[", "],\n[").replace("},{", "},\n{") + "\n"
+
+
+def _rule_order(rule: dict[str, Any]) -> tuple[str, int]:
+    return rule["origin"]["name"], rule["order"]
+
+
+def _renumbered(rows: dict[int, dict[str, int]], start: int) -> tuple[list[dict[str, int]], dict[int, int]]:
+    """The states in the order in which they are reached from the start by sorted symbols: lark's own numbers vary."""
+    numbers = {start: 0}
+    order = [start]
+    for state in order:
+        for _, action in sorted(rows[state].items()):
+            if action >= 0 and action not in numbers:
+                numbers[action] = len(order)
+                order.append(action)
+    return [{name: numbers[a] if a >= 0 else a for name, a in sorted(rows[state].items())} for state in order], numbers
+
+
+def _all_terminals(memo: dict[int, Any]) -> list[dict[str, Any]]:
+    return [item for item in memo.values() if item["__type__"] == "TerminalDef"]
+
+
+def _terminals(memo: dict[int, Any], *, ignored: bool, data: dict[str, Any]) -> list[dict[str, Any]]:
+    """The terminals in the order in which they are tried: by priority, then by how much they may match."""
+    names = set(data["parser"]["lexer_conf"]["ignore"])
+    found = [item for item in _all_terminals(memo) if (item["name"] in names) == ignored and not _is_keyword(item)]
+    return sorted(found, key=lambda item: (-item["priority"], -_width(item), -len(item["pattern"]["value"]), item["name"]))
+
+
+def _width(item: dict[str, Any]) -> int:
+    pattern = item["pattern"]
+    return int(pattern["_width"][1]) if pattern["__type__"] == "PatternRE" else len(pattern["value"])
+
+
+def _is_keyword(item: dict[str, Any]) -> bool:
+    """A fixed word that would be a name elsewhere: it is one only where the grammar has room for it."""
+    return bool(item["pattern"]["__type__"] == "PatternStr" and item["pattern"]["value"].isidentifier())
+
+
+def _pattern(item: dict[str, Any]) -> str:
+    import re
+
+    pattern = item["pattern"]
+    return re.escape(pattern["value"]) if pattern["__type__"] == "PatternStr" else str(pattern["value"])
+
+
+def _only_at_start(states: list[dict[str, int]], start: int) -> list[str]:
+    """The terminals that only the start state takes: they are tried for the first token alone."""
+    elsewhere = {name for number, row in enumerate(states) if number != start for name, action in row.items() if action >= 0}
+    return sorted(name for name, action in states[start].items() if action >= 0 and name.isupper() and name not in elsewhere)
+
+
+def _rule(rule: dict[str, Any]) -> dict[str, Any]:
+    """Name (alias if there is one), origin, and for every symbol whether it is kept (1), unfolded (2) or dropped (0)."""
+    keep_all = rule["options"]["keep_all_tokens"]
+    symbols = []
+    for symbol in rule["expansion"]:
+        if symbol["__type__"] == "Terminal":
+            symbols.append(int(keep_all or not symbol["filter_out"]))
+        else:
+            symbols.append(2 if symbol["name"].startswith("_") else 1)
+    return {
+        "origin": rule["origin"]["name"],
+        "name": rule["alias"] or rule["origin"]["name"],
+        "symbols": symbols,
+    }
+
+
+if __name__ == "__main__":
+    from pathlib import Path
+
+    Path(__file__).with_name("tables.json").write_text(tables_text(), encoding="utf-8")
