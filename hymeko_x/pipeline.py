@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 LEDGER_TOLERANCE = Tolerance(absolute=1e-12, relative=1e-12)
 """Numbers that differ by less are not a loss: turning degrees into radians and back moves the last digit."""
 
+LONGEST_VALUE = 120
+"""How many letters of a value a person is shown; the report has all of them."""
+
 
 class Reader(Protocol):
     """What every frontend has."""
@@ -69,8 +72,7 @@ class Loss:
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""
         what = f"{self.element} {self.field}".rstrip()
-        values = f"{self.before or 'nothing'} -> {self.after or 'nothing'}"
-        return f"{place}loss: {what} {self.fate}: {values}"
+        return f"{place}loss: {what} {self.fate}: {_shown(self.before)} -> {_shown(self.after)}"
 
     def as_json(self) -> dict[str, str | int | None]:
         """The keys of the `--report` contract."""
@@ -83,6 +85,14 @@ class Loss:
             "file": self.origin.file if self.origin else None,
             "line": self.origin.line if self.origin else None,
         }
+
+
+def _shown(value: str | None) -> str:
+    """A value in one short line."""
+    if value is None:
+        return "nothing"
+    line = " ".join(value.split())
+    return f"{line[:LONGEST_VALUE]}..." if len(line) > LONGEST_VALUE else line or "''"
 
 
 @dataclass(frozen=True, slots=True)

@@ -154,6 +154,12 @@ def test_a_loss_is_measured_by_reading_the_result_back(
     assert said.err == "arm.urdf:15: loss: joint 'elbow' dofs[0].limits.effort approximated: 10 -> 9\n"
 
 
+def test_a_long_value_is_shown_in_one_short_line() -> None:
+    loss = pipeline.Loss("body 'a'", "urdf content", "<a>\n" + "x" * 200, None, "dropped")
+    assert str(loss) == f"loss: body 'a' urdf content dropped: <a> {'x' * 116}... -> nothing"
+    assert str(pipeline.Loss("body 'a'", "name", "", "b", "approximated")) == "loss: body 'a' name approximated: '' -> b"
+
+
 def test_what_our_own_reader_refuses_is_a_bug_and_not_written(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: Package(b"<html/>"))
     assert main(["convert", "arm.urdf", "broken.urdf"]) == exits.BUG
