@@ -9,7 +9,7 @@ from enum import Enum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.ir.parts import UNLIMITED, DofKind, Role
+from hymeko_x.ir.parts import DofKind, Role
 from hymeko_x.ir.values import X, Y, quat_from_z, rotate
 
 if TYPE_CHECKING:
@@ -42,13 +42,19 @@ JOINT_TYPES: Mapping[str, JointType] = MappingProxyType(
 )
 
 
+_BY_DOFS: Mapping[tuple[tuple[DofKind, ...], bool], str] = MappingProxyType(
+    {(JOINT_TYPES[word].dofs, JOINT_TYPES[word].bounded): word for word in reversed(tuple(JOINT_TYPES))}
+)
+
+
 def default_type(joint: Joint) -> str | None:
-    """The word for a joint by its dofs: the first one that fits; None when URDF has none."""
-    kinds = tuple(dof.kind for dof in joint.dofs)
-    limits = joint.dofs[0].limits if joint.dofs else UNLIMITED
-    bounded = kinds == (DofKind.SLIDE,) or limits.lower is not None or limits.upper is not None
-    fitting = (word for word, known in JOINT_TYPES.items() if known.dofs == kinds and (known.bounded or not bounded))
-    return next((word for word in fitting if JOINT_TYPES[word].bounded == bounded), next(fitting, None))
+    """The word for a joint by its dofs; None when URDF has none. A slide is always bounded, a hinge if it has limits."""
+    dofs = joint.dofs
+    if len(dofs) != 1:
+        return _BY_DOFS.get((tuple(dof.kind for dof in dofs), False))
+    kind, limits = dofs[0].kind, dofs[0].limits
+    bounded = kind is DofKind.SLIDE or (kind is DofKind.HINGE and (limits.lower is not None or limits.upper is not None))
+    return _BY_DOFS.get(((kind,), bounded))
 
 
 def planar_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
@@ -68,6 +74,14 @@ VERSIONS = ("1.0", "1.1", "1.2")
 
 MEANINGLESS_IF_FIXED = ("axis", "limit", "dynamics")
 """What many exporters write into fixed joints, where it means nothing."""
+
+SINGLE = frozenset(
+    (
+        *("inertial", "origin", "mass", "inertia", "geometry", "material", "color", "texture"),
+        *("parent", "child", "axis", "limit", "dynamics", "safety_controller", "calibration", "mimic"),
+    )
+)
+"""What stands at most once in its link, joint, visual or collision."""
 
 # ---- notations ---------------------------------------------------------------------------------------------------------------
 

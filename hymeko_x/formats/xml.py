@@ -1,12 +1,13 @@
 """Reading XML so that nothing gets lost: nodes that remember what was asked for, and what is left over at the end.
 
 Shared by the frontends of all XML formats. A frontend takes attributes, children and text out of a :class:`Node`; what
-it never took becomes an :class:`Extra` by :func:`leftovers`, so that no list of known tags decides what survives.
+it never took becomes an :class:`Extra` by :class:`Leftovers`, so that no list of known tags decides what survives.
 """
 
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from lxml import etree
@@ -16,7 +17,7 @@ from hymeko_x.diagnostics import Origin
 from hymeko_x.ir.mechanism import ROOT, Extra, Id
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Iterator
+    from collections.abc import Container, Iterator
 
     from hymeko_x.diagnostics import Report
 
@@ -34,19 +35,23 @@ class Node:
     ``owner`` is the element of the mechanism that the node became; a node without one belongs to its parent's.
     """
 
-    __slots__ = ("_entered", "_place", "_rest", "_within", "_words_taken", "attributes", "element", "file", "owner", "tag")
+    __slots__ = ("_family", "_kids", "_parent", "_place", "_words_taken", "attributes", "element", "file", "owner", "tag")
 
-    def __init__(self, element: Any, file: str, place: int = 0, within: Id | None = None) -> None:
+    def __init__(self, element: Any, file: str, parent: Node | None = None, place: int = 0, family: list[Node] | None = None) -> None:
         self.element = element
         self.file = file
         self.tag: str = element.tag
-        self.attributes: dict[str, str] = dict(element.attrib)
+        self.attributes: dict[str, str] = dict(element.items())
         self.owner: Id | None = None
+        self._parent = parent
         self._place = place
-        self._within = within
-        self._rest: list[Any] = list(element)
-        self._entered: dict[int, Node] = {}
+        self._kids = _kids_of(element) if len(element) else {}
         self._words_taken = False
+        if family is None:
+            self._family = [self]
+        else:
+            self._family = family
+            family.append(self)
 
     @property
     def origin(self) -> Origin:
@@ -56,8 +61,10 @@ class Node:
     @property
     def subject(self) -> str:
         """The element of the mechanism that the node belongs to, in words: ``joint 'elbow'``; empty for the root's own."""
-        subject = self.owner or self._within
-        return "" if subject is None else str(subject)
+        node: Node | None = self
+        while node is not None and node.owner is None:
+            node = node._parent
+        return "" if node is None else str(node.owner)
 
     # ---- taking ----------------------------------------------------------------------------------------------------------
 
@@ -67,45 +74,24 @@ class Node:
 
     def child(self, tag: str) -> Node | None:
         """The first child of this name that was not taken yet, or None."""
-        for place, element in enumerate(self._rest):
-            if element is not None and element.tag == tag:
-                return self._enter(place, element)
-        return None
+        return self._enter(tag) if tag in self._kids else None
 
     def child_among(self, tags: Container[str]) -> Node | None:
         """The first child that was not taken yet and has one of these names, or None."""
-        for place, element in enumerate(self._rest):
-            if element is not None and element.tag in tags:
-                return self._enter(place, element)
-        return None
+        found = [tag for tag in self._kids if tag in tags]
+        if len(found) > 1:
+            found = [element.tag for element in self.elements() if element.tag in tags]
+        return self._enter(found[0]) if found else None
 
-    def children(self, tag: str) -> list[Node]:
-        """All children of this name that were not taken yet."""
-        found = [(place, element) for place, element in enumerate(self._rest) if element is not None and element.tag == tag]
-        return [self._enter(place, element) for place, element in found]
-
-    def has(self, tag: str) -> bool:
-        """Whether a child of this name is left; takes nothing."""
-        return any(element is not None and element.tag == tag for element in self._rest)
-
-    def look(self, tag: str) -> str | None:
-        """The first child of this name that is left, verbatim; takes nothing."""
-        return next((verbatim(element) for element in self._rest if element is not None and element.tag == tag), None)
+    def children(self, tag: str) -> Iterator[Node]:
+        """All children of this name that were not taken yet, one after the other."""
+        for place, element in self._kids.pop(tag, ()):
+            yield self._node(place, element)
 
     def take_whole(self, tag: str) -> None:
         """Take the first child of this name with all that is in it, without reading it."""
-        for place, element in enumerate(self._rest):
-            if element is not None and element.tag == tag:
-                self._rest[place] = None
-                return
-
-    def elements(self) -> Iterator[Any]:
-        """The child elements that are left, to look at; takes nothing."""
-        return (element for element in self._rest if element is not None and isinstance(element.tag, str))
-
-    def entered(self) -> list[Node]:
-        """The children that were taken, in the order of the file."""
-        return [self._entered[place] for place in sorted(self._entered)]
+        if tag in self._kids:
+            self._pop(tag)
 
     def words(self) -> str:
         """The text of an element without children, stripped."""
@@ -114,78 +100,163 @@ class Node:
 
     def put_back(self, child: Node) -> None:
         """Undo the taking of a child, with all that was taken from it: it becomes an extra as a whole."""
-        self._rest[child._place] = child.element
-        del self._entered[child._place]
+        self._kids.setdefault(child.tag, []).append((child._place, child.element))
+        self._family[:] = [node for node in self._family if not node._is_within(child)]
 
-    def _enter(self, place: int, element: Any) -> Node:
-        self._rest[place] = None
-        node = Node(element, self.file, place, self.owner or self._within)
-        self._entered[place] = node
-        return node
+    def _enter(self, tag: str) -> Node:
+        return self._node(*self._pop(tag))
+
+    def _pop(self, tag: str) -> tuple[int, Any]:
+        waiting = self._kids[tag]
+        if len(waiting) == 1:
+            del self._kids[tag]
+        return waiting.pop(0)
+
+    def _node(self, place: int, element: Any) -> Node:
+        return Node(element, self.file, self, place, None if self._parent is None else self._family)
+
+    def _is_within(self, other: Node) -> bool:
+        node: Node | None = self
+        while node is not None and node is not other:
+            node = node._parent
+        return node is other
+
+    # ---- looking without taking ------------------------------------------------------------------------------------------
+
+    def has(self, tag: str) -> bool:
+        """Whether a child of this name is left."""
+        return tag in self._kids
+
+    def has_among(self, tags: Container[str]) -> bool:
+        """Whether a child with one of these names is left."""
+        return any(tag in tags for tag in self._kids)
+
+    def took(self, tag: str) -> bool:
+        """Whether a child of this name was taken."""
+        count = sum(1 for element in self.element if element.tag == tag)
+        return count > len(self._kids.get(tag, ()))
+
+    def look(self, tag: str) -> str | None:
+        """The first child of this name that is left, verbatim."""
+        return verbatim(self._kids[tag][0][1]) if tag in self._kids else None
+
+    def elements(self) -> list[Any]:
+        """The child elements that are left, in the order of the file."""
+        left = [item for tag, items in self._kids.items() if isinstance(tag, str) for item in items]
+        return [element for _, element in sorted(left, key=_place_of)]
 
     # ---- what is left ----------------------------------------------------------------------------------------------------
 
-    def _left(self, path: str, texts: dict[Any, list[tuple[int, str]]], *, comments: bool) -> Iterator[Extra]:
-        """The extras of this node itself: attributes, then children and loose text in their order."""
-        yield from self._left_attributes(path)
-        words = () if self._words_taken else texts.get(self.element, ())
-        if words:
-            yield from (Extra("", _below(path, "text()"), text, index) for index, text in words)
-        if self._rest.count(None) == len(self._rest):
-            return
-        index = 0
-        for element in self._rest:
-            said = element is None or isinstance(element.tag, str) or comments
-            if element is not None and said:
-                yield Extra("", path, verbatim(element), index)
-            index += said
+    def _left(self, format_name: str, path: str, texts: Texts, *, comments: bool) -> Iterator[Extra]:
+        """The extras of this node itself: attributes, then loose text and children in their order."""
+        for step, value in self._left_attributes():
+            yield Extra(format_name, _below(path, step), value)
+        if not self._words_taken:
+            for index, text in texts.get(self.element, ()):
+                yield Extra(format_name, _below(path, "text()"), text, index)
+        yield from (Extra(format_name, path, verbatim(element), index) for index, element in self._left_children(comments=comments))
 
-    def _left_attributes(self, path: str) -> Iterator[Extra]:
+    def _left_children(self, *, comments: bool) -> Iterator[tuple[int, Any]]:
+        """What was not taken, with its place among the child elements (and comments)."""
+        left = {place for items in self._kids.values() for place, _ in items}
+        index = 0
+        for place, element in enumerate(self.element if left else ()):
+            counts = comments or isinstance(element.tag, str)
+            if counts and place in left:
+                yield index, element
+            index += counts
+
+    def _left_attributes(self) -> Iterator[tuple[str, str]]:
         for name, value in sorted(self.attributes.items()):
             if not name.startswith("{"):
-                yield Extra("", _below(path, f"@{name}"), value)
+                yield f"@{name}", value
                 continue
             uri, _, local = name[1:].partition("}")
             prefix = _prefix_of(uri, self.element)
             if uri != _XML_NAMESPACE and self.element.getroottree().getroot().nsmap.get(prefix) != uri:
-                yield Extra("", _below(path, f"@xmlns:{prefix}"), uri)
-            yield Extra("", _below(path, f"@{prefix}:{local}"), value)
+                yield f"@xmlns:{prefix}", uri
+            yield f"@{prefix}:{local}", value
+
+    def _place_below_owner(self) -> tuple[Id, str]:
+        """Whose the node is, and the path from that element to it; repeated steps are numbered: ``joint[2]``."""
+        node = self
+        path = ""
+        while node.owner is None and node._parent is not None:
+            path = _below(node._step(node._parent), path) if path else node._step(node._parent)
+            node = node._parent
+        return node.owner or ROOT, path
+
+    def _step(self, parent: Node) -> str:
+        left = {place for place, _ in parent._kids.get(self.tag, ())}
+        number = 1
+        for place, element in enumerate(parent.element):
+            if place == self._place:
+                break
+            number += element.tag == self.tag and place not in left
+        return self.tag if number == 1 else f"{self.tag}[{number}]"
 
 
-def leftovers(root: Node, format_name: str) -> dict[Id, tuple[Extra, ...]]:
-    """Everything below ``root`` that nobody took, as extras of the elements that it belongs to.
-
-    The root's own comments are kept as well. Namespaces declared at the root are attributes of it (``@xmlns:drake``).
-    """
-    found: dict[Id, list[Extra]] = {}
-    texts = _loose_texts(root.element)
-    stack = [(root, root.owner or ROOT, "")]
-    while stack:
-        node, owner, path = stack.pop()
-        left = list(node._left(path, texts, comments=node is root))
-        if left:
-            found.setdefault(owner, []).extend(Extra(format_name, e.path, e.text, e.index) for e in left)
-        stack.extend(reversed(list(_nested(node, owner, path))))
-    spaces = [Extra(format_name, "@xmlns" + (f":{prefix}" if prefix else ""), uri) for prefix, uri in root.element.nsmap.items()]
-    if spaces:
-        found[ROOT] = spaces + found.get(ROOT, [])
-    return {owner: tuple(extras) for owner, extras in found.items()}
+def _kids_of(element: Any) -> dict[Any, list[tuple[int, Any]]]:
+    """The children by name, with their places; comments by what lxml has for their name."""
+    kids: dict[Any, list[tuple[int, Any]]] = {}
+    for place, child in enumerate(element):
+        tag = child.tag
+        if tag in kids:
+            kids[tag].append((place, child))
+        else:
+            kids[tag] = [(place, child)]
+    return kids
 
 
-def _nested(node: Node, owner: Id, path: str) -> Iterator[tuple[Node, Id, str]]:
-    """The entered children with owner and path; repeated ones are numbered: ``joint``, ``joint[2]``."""
-    seen: dict[str, int] = {}
-    for child in node.entered():
-        if child.owner is not None:
-            yield child, child.owner, ""
-            continue
-        number = seen[child.tag] = seen.get(child.tag, 0) + 1
-        yield child, owner, _below(path, child.tag if number == 1 else f"{child.tag}[{number}]")
+def _place_of(item: tuple[int, Any]) -> int:
+    return item[0]
 
 
-def _loose_texts(root: Any) -> dict[Any, list[tuple[int, str]]]:
+Texts = dict[Any, list[tuple[int, str]]]
+
+
+class Leftovers:
+    """Collects what nobody took out of a file. Closing an element early frees its nodes; nothing of it counts twice."""
+
+    def __init__(self, root: Node, format_name: str) -> None:
+        self._root = root
+        self._format = format_name
+        self._texts = _loose_texts(root.element)
+        self._found: dict[Id, list[Extra]] = {}
+        self._owners: dict[int, Id] = {}
+
+    def close(self, node: Node) -> list[Node]:
+        """Collect what is left in a child of the root. Returns its nodes in which child elements were left."""
+        if node.owner is not None:
+            self._owners[node._place] = node.owner
+        texts = self._texts
+        left = [member for member in node._family if member.attributes or member._kids or (texts and member.element in texts)]
+        for member in left:
+            owner, path = member._place_below_owner()
+            extras = list(member._left(self._format, path, texts, comments=False))
+            if extras:
+                self._found.setdefault(owner, []).extend(extras)
+        node._family = []
+        return [member for member in left if member._kids]
+
+    def finish(self) -> dict[Id, tuple[Extra, ...]]:
+        """Everything that was left, by element. The root's comments and namespaces (``@xmlns:drake``) are among it."""
+        spaces = self._root.element.nsmap.items()
+        own = [Extra(self._format, "@xmlns" + (f":{prefix}" if prefix else ""), uri) for prefix, uri in spaces]
+        own += self._root._left(self._format, "", self._texts, comments=True)
+        if own:
+            self._found.setdefault(ROOT, []).extend(own)
+        return {owner: tuple(extras) for owner, extras in self._found.items()}
+
+    @property
+    def layout(self) -> tuple[Id, ...]:
+        """The elements that children of the root became, in the order of the file."""
+        return tuple(self._owners[place] for place in sorted(self._owners))
+
+
+def _loose_texts(root: Any) -> Texts:
     """The non-blank text of each element, with its place among the element's children."""
-    found: dict[Any, list[tuple[int, str]]] = {}
+    found: Texts = {}
     for text in _words_in(root):
         near = text.getparent()
         if text.is_tail:
@@ -223,15 +294,21 @@ def verbatim(element: Any) -> str:
 # ---- numbers ---------------------------------------------------------------------------------------------------------------
 
 
+@lru_cache(4096)
 def read_numbers(text: str) -> tuple[float, ...] | None:
     """The decimal numbers of a text, separated by blanks, or None if one of them is not a finite decimal number."""
     try:
         numbers = tuple(map(float, text.split()))
     except ValueError:
         return None
-    if not all(map(math.isfinite, numbers)) or "_" in text or not text.isascii():
-        return None
+    if not math.isfinite(sum(numbers)) or "_" in text or not text.isascii():
+        return numbers if all(map(_is_plain, text.split())) else None
     return numbers
+
+
+def _is_plain(text: str) -> bool:
+    """Whether a text that is a number to Python is a finite decimal number to everybody."""
+    return math.isfinite(float(text)) and "_" not in text and text.isascii()
 
 
 def take_numbers(node: Node, attribute: str, count: int, report: Report, *, instead: str) -> tuple[float, ...] | None:
@@ -276,8 +353,3 @@ def _of(node: Node) -> str:
 def shortened(text: str, limit: int = 60) -> str:
     """A text for a message: at most ``limit`` characters."""
     return text if len(text) <= limit else text[: limit - 3] + "..."
-
-
-def by_path(extras: Iterable[Extra], format_name: str) -> list[Extra]:
-    """The extras of one format in the order of their places."""
-    return sorted((extra for extra in extras if extra.format == format_name), key=lambda extra: extra.index)

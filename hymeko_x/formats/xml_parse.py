@@ -66,15 +66,24 @@ def _parser(*, recover: bool = False) -> Any:
 
 
 def _read_again(source: Source, report: Report, error: Exception) -> Any:
-    """The second try on repaired text, and the third with libxml2's recovery."""
+    """The second try on repaired text, repair by repair; then the third with libxml2's recovery."""
     _refuse_hopeless(source, error)
-    text, repairs = repair(source.data)
-    try:
-        root = etree.fromstring(text.encode(), _parser())
-    except (etree.XMLSyntaxError, ValueError) as still:
-        return _recover(source, text, repairs, report, still)
-    _say_repairs(source, repairs, report, error)
-    return root
+    text, said = _decoded(source.data)
+    repairs = [said] if said else []
+    still = error
+    for step in _REPAIRS:
+        text, said = step(text)
+        if not said and step is not _without_declaration:
+            continue
+        repairs += [said] if said else []
+        try:
+            root = etree.fromstring(text.encode(), _parser())
+        except (etree.XMLSyntaxError, ValueError) as next_error:
+            still = next_error
+            continue
+        _say_repairs(source, repairs, report, error)
+        return root
+    return _recover(source, text, repairs, report, still)
 
 
 def _refuse_hopeless(source: Source, error: Exception) -> None:
@@ -158,16 +167,6 @@ _NO_BLANK = re.compile(r"""(=\s*(?:"[^"]*"|'[^']*'))(?=[\w:])""")
 _PREFIX = re.compile(r"""(?:<|\s)([A-Za-z_][\w.-]*):[\w.-]+(?=[\s=/>])""")
 
 
-def repair(data: bytes) -> tuple[str, list[str]]:
-    """The text of a file with known mistakes repaired, and what was repaired in words. Lines stay where they are."""
-    text, said = _decoded(data)
-    repairs = [said]
-    for step in (_without_declaration, _without_controls, _without_rest, _with_clean_tags, _with_prefixes):
-        text, said = step(text)
-        repairs.append(said)
-    return text, [said for said in repairs if said]
-
-
 def _decoded(data: bytes) -> tuple[str, str]:
     for mark, name in ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be")):
         if data.startswith(mark):
@@ -248,3 +247,7 @@ def _with_prefixes(text: str) -> tuple[str, str]:
     declared = "".join(f' xmlns:{p}="{KNOWN_PREFIXES.get(p, "urn:" + p)}"' for p in missing)
     said = ", ".join(f"'{p}'" for p in missing)
     return text[:at] + declared + text[at:], f"undeclared prefix {said}; read as if the root declared it"
+
+
+_REPAIRS = (_without_declaration, _without_controls, _without_rest, _with_clean_tags, _with_prefixes)
+"""Cheap ones first. Each takes a text and returns it repaired, with what was repaired in words; lines stay where they are."""

@@ -11,22 +11,20 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import FOLLOWING, PRECEDING, leftovers
+from hymeko_x.formats.xml import FOLLOWING, PRECEDING, Leftovers
 from hymeko_x.formats.xml_parse import parse
 from hymeko_x.frontends.urdf.draft import Draft
-from hymeko_x.frontends.urdf.fixed import gather_meaningless
 from hymeko_x.frontends.urdf.joints import read_joints
 from hymeko_x.frontends.urdf.links import read_link
 from hymeko_x.frontends.urdf.materials import finish_materials, read_robot_material
 from hymeko_x.frontends.urdf.structure import check_structure
 from hymeko_x.frontends.urdf.transmissions import read_transmission
-from hymeko_x.ir.mechanism import ROOT, Extra, Mechanism
+from hymeko_x.ir.mechanism import Extra, Mechanism
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats.xml import Node
     from hymeko_x.formats.xml_parse import Document
-    from hymeko_x.ir.mechanism import Id
     from hymeko_x.source import Source
 
 
@@ -38,21 +36,20 @@ def read(source: Source, report: Report) -> Mechanism:
     document = parse(source, report)
     root = document.root
     _check_root(root)
-    draft = Draft(report)
+    draft = Draft(report, Leftovers(root, words.FORMAT))
     name = _read_name(root, source, draft)
     _read_version(root, draft)
     for node in root.children("material"):
         read_robot_material(node, draft)
     for node in root.children("link"):
         read_link(node, draft)
-    joints = read_joints(root, draft)
+    read_joints(root, draft)
     for node in root.children("transmission"):
         read_transmission(node, draft)
     finish_materials(draft)
-    gather_meaningless(joints, draft)
     check_structure(root, draft)
     _check_templates(root, draft)
-    return draft.mechanism(name, _extras(document), _layout(root))
+    return draft.mechanism(name, _around(document))
 
 
 def _check_root(root: Node) -> None:
@@ -100,15 +97,7 @@ def _check_templates(root: Node, draft: Draft) -> None:
     )
 
 
-def _extras(document: Document) -> dict[Id, tuple[Extra, ...]]:
-    extras = leftovers(document.root, words.FORMAT)
-    around = [Extra(words.FORMAT, PRECEDING, text, place) for place, text in enumerate(document.preceding)]
-    around += [Extra(words.FORMAT, FOLLOWING, text, place) for place, text in enumerate(document.following)]
-    if around:
-        extras[ROOT] = (*extras.get(ROOT, ()), *around)
-    return extras
-
-
-def _layout(root: Node) -> tuple[Id, ...]:
-    """The elements at top level in the order of the file."""
-    return tuple(node.owner for node in root.entered() if node.owner is not None)
+def _around(document: Document) -> list[Extra]:
+    """What stands before and after the root element."""
+    before = [Extra(words.FORMAT, PRECEDING, text, place) for place, text in enumerate(document.preceding)]
+    return before + [Extra(words.FORMAT, FOLLOWING, text, place) for place, text in enumerate(document.following)]

@@ -15,7 +15,7 @@ from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin, Report
-    from hymeko_x.formats.xml import Node
+    from hymeko_x.formats.xml import Leftovers, Node
     from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
     from hymeko_x.ir.parts import Rgba, VertexPart
     from hymeko_x.ir.values import Vec3
@@ -44,6 +44,7 @@ class Draft:
     """Vertices, edges and side tables so far; ``links`` and ``joints`` by the names in the file, first one wins."""
 
     report: Report
+    leftovers: Leftovers
     names: Names = field(default_factory=Names)
     vertices: dict[Id, VertexPart] = field(default_factory=dict)
     edges: dict[Id, RobotEdge] = field(default_factory=dict)
@@ -85,12 +86,29 @@ class Draft:
                 if value != usual:
                     self.note(key, words.notation(choice), value)
 
-    def mechanism(self, name: str, extras: dict[Id, tuple[Extra, ...]], layout: tuple[Id, ...]) -> Mechanism:
-        """The finished mechanism."""
+    def close(self, node: Node) -> None:
+        """Collect what is left in a top-level element, and say what stands there twice."""
+        for member in self.leftovers.close(node):
+            for element in member.elements():
+                if element.tag in words.SINGLE and member.took(element.tag):
+                    said = f"{member.subject} has <{element.tag}> more than once in <{member.tag}>"
+                    self.report.warn(
+                        codes.REPEATED,
+                        f"{said}; the first one counts, the others are kept as written",
+                        member.origin,
+                        element=member.subject,
+                    )
+
+    def mechanism(self, name: str, around: list[Extra]) -> Mechanism:
+        """The finished mechanism; ``around`` is what stood before and after the root element."""
         self._settle_choices()
         if self.style:
             self.note(ROOT, words.STYLE, " ".join(sorted(self.style)))
-        return Mechanism(name, Hypergraph(self.vertices, self.edges), extras, self.origins, self.notations, {}, layout)
+        extras = self.leftovers.finish()
+        if around:
+            extras[ROOT] = (*extras.get(ROOT, ()), *around)
+        graph = Hypergraph(self.vertices, self.edges)
+        return Mechanism(name, graph, extras, self.origins, self.notations, {}, self.leftovers.layout)
 
 
 def take_name(node: Node, kind: str, known: dict[str, Id], draft: Draft) -> Id:
@@ -119,7 +137,6 @@ def read_origin(node: Node, style: str, draft: Draft, *, turned: bool = True) ->
     origin = node.child("origin")
     if origin is None:
         return IDENTITY
-    check_repeated(node, "origin", draft)
     xyz = take_numbers(origin, "xyz", 3, draft.report, instead="0 0 0 is used") or ZERO
     found = _turned(origin, xyz, draft) if turned else Pose(_vector(xyz))
     if found.xyz == ZERO and found.written is None:
@@ -142,12 +159,7 @@ def _vector(numbers: tuple[float, ...]) -> Vec3:
     return (x, y, z)
 
 
-def check_repeated(node: Node, tag: str, draft: Draft) -> None:
-    """Say so when a second element of this name is left in a node; it stays an extra."""
-    if node.has(tag):
-        draft.report.warn(
-            codes.REPEATED,
-            f"{node.subject} has <{tag}> more than once in <{node.tag}>; the first one counts, the others are kept as written",
-            node.origin,
-            element=node.subject,
-        )
+def stem(uri: str) -> str:
+    """The name of a file without its folders and its suffix."""
+    name = uri.replace("\\", "/").rpartition("/")[2]
+    return name.rpartition(".")[0] or name

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import PurePosixPath
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml import read_numbers, take_numbers
-from hymeko_x.frontends.urdf.draft import check_repeated
+from hymeko_x.frontends.urdf.draft import stem
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
 
 if TYPE_CHECKING:
@@ -30,14 +29,13 @@ def read_geometry(shape: Node, draft: Draft) -> tuple[Geometry, Id | None]:
     if node is None:
         _say(shape, f"<{shape.tag}> has no <geometry>", draft)
         return NoShape(), None
-    check_repeated(shape, "geometry", draft)
     found = node.child_among(_READERS)
     if found is None:
         tags = ", ".join(f"<{element.tag}>" for element in node.elements())
         known = ", ".join(f"<{tag}>" for tag in _READERS)
         _say(node, f"<geometry> holds {tags or 'nothing'}, expected one of {known}", draft)
         return NoShape(), None
-    if any(element.tag in _READERS for element in node.elements()):
+    if node.has_among(_READERS):
         said = f"{node.subject}: <geometry> holds more than one shape; the first one counts, the others are kept as written"
         draft.report.warn(codes.REPEATED, said, node.origin, element=node.subject)
     if found.tag == "mesh":
@@ -118,7 +116,7 @@ def _read_mesh(node: Node, draft: Draft) -> Id:
     known = draft.meshes.get((uri, scale))
     if known is not None:
         return known
-    key = draft.names.take("mesh", PurePosixPath(uri.replace("\\", "/")).stem or "mesh")
+    key = draft.names.take("mesh", stem(uri) or "mesh")
     draft.vertices[key] = Mesh(uri or None, scale)
     draft.origins[key] = node.origin
     draft.meshes[uri, scale] = key

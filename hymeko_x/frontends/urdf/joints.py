@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml import read_numbers, take_number, take_numbers
-from hymeko_x.frontends.urdf.draft import check_repeated, read_origin, take_name
+from hymeko_x.frontends.urdf.draft import read_origin, take_name
+from hymeko_x.frontends.urdf.fixed import gather_meaningless
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
 from hymeko_x.ir.values import Written, X, unit
@@ -22,21 +23,26 @@ if TYPE_CHECKING:
 _SINGLE = ((DofKind.HINGE,), (DofKind.SLIDE,))
 
 
-def read_joints(root: Node, draft: Draft) -> list[Node]:
+def read_joints(root: Node, draft: Draft) -> None:
     """Add all joints; a joint without two ends stays outside of the tree, as it was written."""
-    found = []
+    waiting = []
     for node in root.children("joint"):
-        if _has_ends(node, draft):
-            _read_joint(node, draft)
-            found.append(node)
-        else:
+        if not _has_ends(node, draft):
             root.put_back(node)
-    for node in found:
+            continue
+        joint = _read_joint(node, draft)
+        if node.has("mimic") or not joint.dofs:
+            waiting.append(node)
+        else:
+            draft.close(node)
+    for node in waiting:
         _read_mimic(node, draft)
-    return found
+    gather_meaningless(waiting, draft)
+    for node in waiting:
+        draft.close(node)
 
 
-def _read_joint(node: Node, draft: Draft) -> None:
+def _read_joint(node: Node, draft: Draft) -> Joint:
     key = take_name(node, "joint", draft.joints, draft)
     parent, child = _read_end(node, "parent", draft), _read_end(node, "child", draft)
     word = _read_type(node, draft)
@@ -45,6 +51,7 @@ def _read_joint(node: Node, draft: Draft) -> None:
     if word != words.default_type(joint):
         draft.note(key, words.TYPE, word)
     draft.edges[key] = joint_edge(joint, parent, child, pose)
+    return joint
 
 
 # ---- ends and type -----------------------------------------------------------------------------------------------------------
@@ -64,7 +71,6 @@ def _read_end(joint: Node, tag: str, draft: Draft) -> Id:
     """The link that a joint names; one that is not defined is added, empty, so that the joint keeps its place."""
     node = joint.child(tag)
     name = (node.take("link") if node is not None else None) or ""
-    check_repeated(joint, tag, draft)
     known = draft.links.get(name)
     if known is not None:
         return known
@@ -128,7 +134,6 @@ def _read_axis(joint: Node, draft: Draft) -> tuple[Vec3, Written | None]:
     node = joint.child("axis")
     if node is None:
         return X, None
-    check_repeated(joint, "axis", draft)
     if not any(read_numbers(node.attributes.get("xyz", "")) or (1.0,)):
         said = f"{joint.subject}: <axis xyz> is zero; 1 0 0 is used, and the text is kept as written"
         draft.report.error(codes.ZERO_AXIS, said, node.origin, element=joint.subject)
@@ -154,7 +159,6 @@ def _read_dynamics(joint: Node, draft: Draft) -> tuple[float, float]:
     node = joint.child("dynamics")
     if node is None:
         return 0.0, 0.0
-    check_repeated(joint, "dynamics", draft)
     damping = take_number(node, "damping", draft.report, instead="0 is used") or 0.0
     friction = take_number(node, "friction", draft.report, instead="0 is used") or 0.0
     if damping == friction == 0.0:
@@ -174,7 +178,6 @@ def _read_limits(joint: Node, draft: Draft) -> Limits:
         )
         draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.subject)
         return UNLIMITED
-    check_repeated(joint, "limit", draft)
     bounds = [_bound(node, name, draft) for name in ("lower", "upper")]
     limits = _rates(node, Limits(*bounds), draft)
     _check_limits(joint, node, limits, draft)
@@ -186,7 +189,6 @@ def _read_open_limits(joint: Node, draft: Draft) -> Limits:
     node = joint.child("limit")
     if node is None:
         return UNLIMITED
-    check_repeated(joint, "limit", draft)
     limits = _rates(node, UNLIMITED, draft)
     if limits == UNLIMITED:
         joint.put_back(node)
@@ -231,7 +233,6 @@ def _read_safety(joint: Node, draft: Draft) -> Safety | None:
     node = joint.child("safety_controller")
     if node is None:
         return None
-    check_repeated(joint, "safety_controller", draft)
     names = ("k_velocity", "k_position", "soft_lower_limit", "soft_upper_limit")
     if "k_velocity" not in node.attributes:
         said = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
@@ -243,7 +244,6 @@ def _read_calibration(joint: Node, draft: Draft) -> Calibration | None:
     node = joint.child("calibration")
     if node is None:
         return None
-    check_repeated(joint, "calibration", draft)
     names = ("rising", "falling", "reference_position")
     found = Calibration(*(take_number(node, name, draft.report, instead="nothing is used") for name in names))
     if found == Calibration():
@@ -269,7 +269,6 @@ def _read_mimic(joint: Node, draft: Draft) -> None:
         )
         joint.put_back(node)
         return
-    check_repeated(joint, "mimic", draft)
     node.take("joint")
     multiplier = take_number(node, "multiplier", draft.report, instead="1 is used")
     offset = take_number(node, "offset", draft.report, instead="0 is used")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml import take_number
-from hymeko_x.frontends.urdf.draft import check_repeated, read_origin, take_name
+from hymeko_x.frontends.urdf.draft import read_origin, take_name
 from hymeko_x.frontends.urdf.geometry import read_geometry
 from hymeko_x.frontends.urdf.materials import read_shape_material
 from hymeko_x.ir.mechanism import shape_edge
@@ -25,14 +25,14 @@ _ORIGIN_STYLES = {"visual": words.STYLE_VISUAL_ORIGIN, "collision": words.STYLE_
 _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
-def read_link(node: Node, draft: Draft) -> Id:
+def read_link(node: Node, draft: Draft) -> None:
     """Add a link with its shapes: visuals first, then collisions, each in their order."""
     key = take_name(node, "body", draft.links, draft)
     draft.vertices[key] = Body(_read_inertial(node, draft))
     for tag, role in words.ROLES.items():
         for shape in node.children(tag):
             _read_shape(shape, role, key, draft)
-    return key
+    draft.close(node)
 
 
 def _read_shape(node: Node, role: Role, body: Id, draft: Draft) -> None:
@@ -52,7 +52,6 @@ def _read_inertial(link: Node, draft: Draft) -> Inertial | None:
     node = link.child("inertial")
     if node is None:
         return None
-    check_repeated(link, "inertial", draft)
     mass = _read_mass(node, draft)
     tensor = _read_tensor(node, draft)
     frame = read_origin(node, words.STYLE_INERTIAL_ORIGIN, draft, turned=tensor is not None)

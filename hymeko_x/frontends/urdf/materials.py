@@ -7,14 +7,13 @@ a material of its own, since readers disagree: urdfdom keeps the first one, MuJo
 from __future__ import annotations
 
 from collections import Counter
-from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import Defined
 from hymeko_x.formats.xml import take_numbers
-from hymeko_x.frontends.urdf.draft import Looks, check_repeated
+from hymeko_x.frontends.urdf.draft import Looks, stem
 from hymeko_x.ir.mechanism import Id, layer_edge
 from hymeko_x.ir.parts import Material, Texture
 
@@ -30,6 +29,11 @@ Said = tuple["Rgba | None", "str | None"]
 
 def read_robot_material(node: Node, draft: Draft) -> None:
     """Add a material of robot level."""
+    _define(node, draft)
+    draft.close(node)
+
+
+def _define(node: Node, draft: Draft) -> None:
     name = node.attributes.get("name")
     if not name:
         said = "a <material> of robot level has no name, so that nobody can use it; it is kept as written"
@@ -51,7 +55,6 @@ def read_shape_material(shape: Node, draft: Draft) -> tuple[Rgba | None, Id | No
     node = shape.child("material")
     if node is None:
         return None, None
-    check_repeated(shape, "material", draft)
     name = node.attributes.get("name")
     if name:
         node.take("name")
@@ -87,7 +90,6 @@ def _read_looks(node: Node, draft: Draft) -> Said:
     rgba = texture = None
     color = node.child("color")
     if color is not None:
-        check_repeated(node, "color", draft)
         rgba = take_numbers(color, "rgba", 4, draft.report, instead="no colour is used")
         if rgba is None and "rgba" not in color.attributes:
             node.put_back(color)
@@ -154,7 +156,7 @@ def _add(looks: Looks, name: str | None, draft: Draft) -> None:
         return
     texture = draft.textures.get(looks.texture)
     if texture is None:
-        texture = draft.names.take("texture", PurePosixPath(looks.texture.replace("\\", "/")).stem or "texture")
+        texture = draft.names.take("texture", stem(looks.texture) or "texture")
         draft.textures[looks.texture] = texture
         draft.vertices[texture] = Texture(looks.texture)
     draft.edges[draft.names.take("layer", looks.id.name)] = layer_edge(texture, looks.id)

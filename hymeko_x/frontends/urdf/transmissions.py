@@ -38,6 +38,7 @@ def read_transmission(node: Node, draft: Draft) -> None:
         arcs += [_joint_arc(joint, _take_reduction(joint), draft) for joint in joints]
     parameters = _take_parameters(joints[0]) if len(joints) == 1 else ()
     draft.edges[key] = Edge(Drive(kind, parameters), tuple(arcs))
+    draft.close(node)
 
 
 def _read_kind(node: Node, key: Id, draft: Draft) -> str:
