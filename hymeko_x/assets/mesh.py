@@ -213,10 +213,16 @@ def _rgba(color: Any) -> Rgba | None:
 
 
 def _png(image: Any) -> bytes | None:
+    """The image as PNG bytes: those of the file where it is PNG and was not decoded yet, else encoded anew."""
     if image is None:
         return None
+    stream = getattr(image, "fp", None)
+    if image.format == "PNG" and isinstance(stream, io.BytesIO):
+        data = stream.getvalue()
+        image.load()
+        return data
     out = io.BytesIO()
-    image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG")
+    image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG", compress_level=3)
     return out.getvalue()
 
 
@@ -224,7 +230,7 @@ def _resolver(fetch: Callable[[str], bytes]) -> Any:
     """What trimesh asks for the files that a mesh refers to."""
     from trimesh.resolvers import Resolver
 
-    class Fetching(Resolver):  # type: ignore[misc]
+    class Fetching(Resolver):
         def __init__(self) -> None:
             self._found: dict[str, bytes] = {}
 

@@ -27,7 +27,7 @@ def png_bytes(data: bytes) -> bytes:
             if data.startswith(_PNG):
                 return data
             out = io.BytesIO()
-            image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG")
+            image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG", compress_level=3)
             return out.getvalue()
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise UnreadableImage(str(error).split("\n")[0] or type(error).__name__) from error

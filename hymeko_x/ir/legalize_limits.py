@@ -57,7 +57,7 @@ def _interval(dof: Dof, said: Said) -> tuple[float | None, float | None]:
     if lower is None or upper is None:
         side = "lower" if lower is None else "upper"
         said.append((False, f"has no {side} limit; {FAR:g} stands for the missing bound"))
-        return -FAR if lower is None else lower, FAR if upper is None else upper
+        return _below(upper) if lower is None else lower, _above(lower) if upper is None else upper
     if lower > upper:
         said.append((True, f"lower limit {lower!r} is above upper limit {upper!r}; the joint is written without position limits"))
         return None, None
@@ -82,6 +82,14 @@ def _effort(limits: Limits, said: Said) -> float | None:
     return abs(effort)
 
 
+def _below(upper: float | None) -> float:
+    return -FAR if upper is None else min(-FAR, math.nextafter(upper, -math.inf))
+
+
+def _above(lower: float | None) -> float:
+    return FAR if lower is None else max(FAR, math.nextafter(lower, math.inf))
+
+
 def _finite(value: float | None) -> float | None:
-    """The bound, or None where infinity says that there is none."""
-    return value if value is not None and math.isfinite(value) else None
+    """The bound, or None where it says that there is none: infinite, or beyond what stands for no bound."""
+    return value if value is not None and abs(value) <= 2.0 * FAR else None

@@ -105,14 +105,14 @@ def _closure_attributes(loop: Loop, first: RobotArc, second: RobotArc, names: Pr
 
 def write_actuators(text: Text, mechanism: Mechanism, names: Printed) -> None:
     """Every actuator that drives something, as the element of its kind."""
-    drives = {arc.target: arcs for _, _, arcs in mechanism.edges(Drive) for arc in arcs if arc.sign > 0}
+    drives = {driver.target: arcs for _, _, arcs in mechanism.edges(Drive) for driver in arcs if driver.sign > 0}
     actuators = [(key, actuator) for key, actuator in mechanism.vertices(Actuator) if key in drives]
     if not actuators:
         return
     text.section("actuator")
     for key, actuator in actuators:
-        _, arcs = drives[key]
-        text.leaf(actuator.kind, {"name": names.of(key), **_target_attributes(arcs, names), **_parameter_attributes(actuator.parameters)})
+        target = _target_attributes(drives[key], names)
+        text.leaf(actuator.kind, {"name": names.of(key), **target, **_parameter_attributes(actuator.parameters)})
     text.close()
 
 

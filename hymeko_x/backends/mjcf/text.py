@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
@@ -50,11 +51,17 @@ class Text:
         self._lines.append("  " * len(self._open) + text)
 
 
-def _attributes_text(attributes: Mapping[str, str | None]) -> str:
-    return "".join(f" {name}={quoteattr(value, _ESCAPES)}" for name, value in attributes.items() if value is not None)
-
-
 _ESCAPES = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def _attributes_text(attributes: Mapping[str, str | None]) -> str:
+    return "".join(f" {name}={_quoted(value)}" for name, value in attributes.items() if value is not None)
+
+
+def _quoted(value: str) -> str:
+    """The value in quotes; a character that XML cannot hold in any spelling becomes ``_``."""
+    return quoteattr(_NOT_XML.sub("_", value), _ESCAPES)
 
 
 def numbers(*values: float) -> str:
