@@ -105,7 +105,7 @@ def _by_name(a: KinematicModel, b: KinematicModel) -> dict[int, int]:
     taken = {WORLD}
     for i, body in enumerate(a.bodies[1:], start=1):
         j = b.index.get(body.name) if body.name is not None else None
-        if j is not None and j not in taken:
+        if j is not None and j not in taken:  # the world is taken: a link may only be called so
             pairs[i] = j
             taken.add(j)
     if "usd" in (a.format, b.format):
@@ -165,7 +165,7 @@ def _kinds(body: Body) -> tuple[Kind, ...]:
 
 
 def _alike(a: Body, b: Body) -> bool:
-    return _kinds(a) == _kinds(b) and a.joint.open == b.joint.open
+    return _kinds(a) == _kinds(b)
 
 
 def _distance(a: Body, b: Body) -> float:
@@ -226,7 +226,7 @@ def _compare_names(found: Match, a: KinematicModel, b: KinematicModel, *, struct
     spelled = "usd" in (a.format, b.format)
     for i, j in found.bodies[1:]:
         ours, theirs = a.bodies[i].name, b.bodies[j].name
-        if ours is None or ours == theirs or (spelled and theirs is not None and plain(ours) == plain(theirs)):
+        if ours is None or ours == theirs or ours == "world" or (spelled and theirs is not None and plain(ours) == plain(theirs)):
             continue
         found.find(BODIES, f"{a.body_label(i)} is called '{theirs}'" if theirs is not None else f"{a.body_label(i)} lost its name")
 

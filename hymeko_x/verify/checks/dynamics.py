@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hymeko_x.verify.checks.inertia import is_physical
+from hymeko_x.verify.checks.inertia import repaired_bodies
 from hymeko_x.verify.checks.pair import MASS_MATRIX, Pair, worst
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import WORLD, Kind, KinematicModel
@@ -38,7 +38,8 @@ def disagreement(model: KinematicModel, q: Array) -> str:
 def check_dynamics(pair: Pair) -> Iterator[Check]:
     """The joint-space mass matrix (relative to its diagonal) and the torque that holds the robot against gravity."""
     partner = dict(pair.match.dofs)
-    weightless = _unphysical(pair)
+    repaired = repaired_bodies(pair)
+    weightless = frozenset(i for i, _ in repaired), frozenset(j for _, j in repaired)
     labels: list[str] = []
     matrix: list[float] = []
     torque: list[float] = []
@@ -98,14 +99,6 @@ def _root_of_dofs(model: KinematicModel) -> list[int]:
     for i, body in enumerate(model.bodies[1:], start=1):
         root[i] = i if body.parent == WORLD else root[body.parent]
     return [root[i] for i in model.body_of_dof]
-
-
-def _unphysical(pair: Pair) -> tuple[frozenset[int], frozenset[int]]:
-    """Bodies whose tensor MuJoCo had to be given otherwise: they weigh nothing on both sides."""
-    if pair.b.format != "mjcf" or pair.a.format == "mjcf":
-        return frozenset(), frozenset()
-    pairs = [(i, j) for i, j in pair.match.bodies[1:] if not is_physical(pair.a.bodies[i].tensor) and is_physical(pair.b.bodies[j].tensor)]
-    return frozenset(i for i, _ in pairs), frozenset(j for _, j in pairs)
 
 
 def _rows(count: int, width: int) -> range:

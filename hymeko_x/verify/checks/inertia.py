@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 Inertia = tuple[float, Array, Array]
 """Mass in kg, centre in m, tensor about the centre in kg m^2, all in one frame."""
 
+_MARGIN = 2e-11
 _LEAST = 2e-10  # what an engine that refuses massless moving bodies gets instead, in kg and kg m^2
 
 
@@ -41,10 +42,32 @@ def check_inertia(pair: Pair) -> Iterator[Check]:
 
 
 def _floor(pair: Pair, inertia: Inertia) -> float:
-    """What may appear out of nothing where MuJoCo needs mass on everything that moves and the first robot has none."""
-    if pair.b.format != "mjcf" or pair.a.format == "mjcf":
+    """What may appear out of nothing where MuJoCo needs mass on everything that moves and the first robot has none.
+
+    Where a tensor is at the edge of what a body can have, MuJoCo's solver needs a margin of some 1e-12 kg m^2.
+    """
+    if not made_for_mujoco(pair):
         return 0.0
-    return _LEAST if inertia[0] <= _LEAST or np.linalg.eigvalsh(inertia[2])[0] <= _LEAST else 0.0
+    return _LEAST if inertia[0] <= _LEAST or np.linalg.eigvalsh(inertia[2])[0] <= _LEAST else _MARGIN
+
+
+def made_for_mujoco(pair: Pair) -> bool:
+    """Whether the second robot is one for MuJoCo, which refuses inertias that the first robot's format allows."""
+    return pair.b.format == "mjcf" and pair.a.format != "mjcf"
+
+
+def repaired_bodies(pair: Pair) -> list[tuple[int, int]]:
+    """Pairs of bodies whose inertia was accepted although it differs: what differs there says nothing about dynamics."""
+    if not made_for_mujoco(pair):
+        return []
+    found = []
+    for i, j in pair.match.bodies[1:]:
+        x, y = of_body(pair.a.bodies[i]), of_body(pair.b.bodies[j])
+        apart = max(abs(x[0] - y[0]), float(np.abs(x[2] - y[2]).max()))
+        unphysical = not is_physical(x[2]) and is_physical(y[2])
+        if unphysical or 1e-9 * float(np.abs(x[2]).max()) < apart <= _floor(pair, x):
+            found.append((i, j))
+    return found
 
 
 # ---- what is compared with what --------------------------------------------------------------------------------------
@@ -76,7 +99,7 @@ def _without_unphysical(
     pair: Pair, labels: list[str], ours: list[Inertia], theirs: list[Inertia]
 ) -> tuple[list[str], list[Inertia], list[Inertia]]:
     """Tensors that no body can have: MuJoCo refuses them, so a robot made for it has others; then only masses are compared."""
-    if pair.b.format != "mjcf" or pair.a.format == "mjcf":
+    if not made_for_mujoco(pair):
         return labels, ours, theirs
     kept = []
     for label, x, y in zip(labels, ours, theirs, strict=True):

@@ -6,7 +6,7 @@ and points, because one file on one side may be several on the other.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -114,6 +114,9 @@ def _fit(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes) -> _Resu
     solid_left, solid_right = [s for s in left if s.kind != "mesh"], [s for s in right if s.kind != "mesh"]
     lone, apart, at = _fit_solids(solid_left, solid_right)
     mesh_left, mesh_right = [s for s in left if s.kind == "mesh"], [s for s in right if s.kind == "mesh"]
+    gone = _unreadable(mesh_left, meshes) if mesh_left and not mesh_right else ""
+    if gone:
+        return _Result(tuple(lone), apart, 0.0, at, "", gone)
     if bool(mesh_left) != bool(mesh_right):
         which, words = (mesh_left, "has no counterpart") if mesh_left else (mesh_right, "is new")
         return _Result((*lone, *(f"{_label(shape)} {words}" for shape in which)), apart, 0.0, at)
@@ -148,7 +151,12 @@ def _fit_solids(left: Sequence[Shape], right: Sequence[Shape]) -> tuple[list[str
 
 
 def solid_distance(a: Shape, b: Shape) -> float:
-    """By how much two primitives of one kind differ, in m: centres, sizes, and orientation up to their own symmetry."""
+    """By how much two primitives of one kind differ, in m: centres, sizes, and orientation up to their own symmetry.
+
+    A size of the first that is not positive counts as the second's: no engine can hold it.
+    """
+    if min(a.size, default=1.0) <= 0.0:
+        a = replace(a, size=tuple(x if x > 0.0 else y for x, y in zip(a.size, b.size, strict=True)))
     shift = float(np.linalg.norm(a.pose[:3, 3] - b.pose[:3, 3]))
     relative = a.pose[:3, :3].T @ b.pose[:3, :3]
     sizes = np.asarray(a.size), np.asarray(b.size)
@@ -188,11 +196,18 @@ def _mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes
     candidates = [
         (float(np.abs(box_a - box_b).max()) / extent, "the bounding box"),
         (0.1 * abs(area_a - area_b) / max(area_a, extent * extent * 1e-3), "the area"),
-        (0.1 * abs(volume_a - volume_b) / extent**3, "the volume"),
-        (_points_distance(ours[0], theirs[0]) / extent, "the points"),
+        (0.1 * abs(abs(volume_a) - abs(volume_b)) / extent**3, "the volume"),
+        (_points_distance(_used(ours), _used(theirs)) / extent, "the points"),
     ]
     difference, where = max(candidates)
     return difference, f"{where} of the meshes", ""
+
+
+def _unreadable(shapes: Sequence[Shape], meshes: Meshes) -> str:
+    """Why none of these meshes can be shown, if none can: an engine that needs the files goes without them."""
+    surfaces = [meshes.surface(shape.mesh) for shape in shapes]
+    words = [surface for surface in surfaces if isinstance(surface, str)]
+    return words[0] if len(words) == len(surfaces) else ""
 
 
 def _together(shapes: Sequence[Shape], meshes: Meshes) -> tuple[Array, Index] | str:
@@ -208,6 +223,12 @@ def _together(shapes: Sequence[Shape], meshes: Meshes) -> tuple[Array, Index] | 
         faces.append(surface.faces + count)
         count += len(surface.vertices)
     return np.concatenate(vertices), np.concatenate(faces)
+
+
+def _used(mesh: tuple[Array, Index]) -> Array:
+    """The points that are corners of triangles."""
+    points: Array = mesh[0][np.unique(mesh[1])]
+    return points
 
 
 def _points_distance(a: Array, b: Array) -> float:

@@ -34,7 +34,7 @@ def read(path: Path, places: Places) -> KinematicModel:
     text = path.read_bytes().decode("utf-8", "replace").replace("\x00", "")
     model = _build(text, str(path), mimic=False)
     second = load(path, places)
-    bodies, notes = _bodies(model, second)
+    bodies, notes = _without_unwritten_limits(_bodies(model, second), second)
     found = KinematicModel(
         name=model.name,
         format="urdf",
@@ -98,11 +98,10 @@ def _parents_first(links: dict[int, _Link]) -> list[int]:
     return order
 
 
-def _bodies(model: Any, second: Second) -> tuple[tuple[Body, ...], list[str]]:
-    """The links as bodies under the world. A root link called ``world`` is the world itself."""
+def _bodies(model: Any, second: Second) -> tuple[Body, ...]:
+    """The links as bodies under the world. A massless root link called ``world`` is the world itself."""
     links = _links(model)
     moving = _moving_inertias(model, links)
-    notes: list[str] = []
     places: dict[int, int] = {}
     bodies: list[Body] = [grounded()]
     for index in _parents_first(links):
@@ -110,16 +109,14 @@ def _bodies(model: Any, second: Second) -> tuple[tuple[Body, ...], list[str]]:
         name = str(link.frame.name)
         mass, com, tensor = moving.get(index) or _split(link.above.inertia if link.above is not None else link.frame.inertia)
         shapes = (second.shapes or {}).get(name, ())
-        if link.above is None and name == "world":
+        if link.above is None and name == "world" and mass == 0.0:
             places[index] = WORLD
             bodies[WORLD] = grounded(shapes=shapes)
-            if mass > 0:
-                notes.append("the mass of the root link 'world' does not count: it is the world")
             continue
         joint = Joint(open=True) if link.above is None else _joint(model, link, links)
         places[index] = len(bodies)
         bodies.append(Body(name, places.get(link.parent, WORLD), joint, mass, com, tensor, shapes))
-    return tuple(bodies), notes
+    return tuple(bodies)
 
 
 def _joint(model: Any, link: _Link, links: dict[int, _Link]) -> Joint:
@@ -160,6 +157,23 @@ def _dofs(model: Any, number: int) -> tuple[Dof, ...]:
     )
 
 
+def _without_unwritten_limits(bodies: tuple[Body, ...], second: Second) -> tuple[tuple[Body, ...], list[str]]:
+    """Position limits that nobody wrote: urdfdom takes [0, 0] and so a locked joint, every other reader takes none.
+
+    Real files leave them out for wheels; the other readers are followed, and a note says so.
+    """
+    locked = [body.name for body in bodies for dof in body.joint.dofs if dof.name in second.unlimited and dof.lower == dof.upper == 0.0]
+    if not locked:
+        return bodies, []
+    free = tuple(
+        replace(body, joint=replace(body.joint, dofs=tuple(replace(dof, lower=-INF, upper=INF) for dof in body.joint.dofs)))
+        if body.name in locked
+        else body
+        for body in bodies
+    )
+    return free, [f"limits without lower and upper ({len(locked)} joints) are none for every reader but urdfdom, which locks the joint"]
+
+
 def _axis(model: Any, joint: Any) -> Array:
     """The unit axis of a joint with one dof, from its motion subspace: not every type tells its axis by name."""
     data = joint.createData()
@@ -178,11 +192,16 @@ def _split(inertia: Any) -> tuple[float, Array, Array]:
     return float(inertia.mass), np.array(inertia.lever, dtype=float), np.array(inertia.inertia, dtype=float)
 
 
+def _weighs(inertia: Any) -> bool:
+    """A link may have a tensor and no mass, which Pinocchio adds up all the same."""
+    return bool(inertia.mass != 0.0 or inertia.inertia.any())
+
+
 def _moving_inertias(model: Any, links: dict[int, _Link]) -> dict[int, tuple[float, Array, Array]]:
     """The inertia of each link below a moving joint: Pinocchio's sum for the joint without the links fixed to it."""
     fixed: dict[int, list[Any]] = {}
     for link in links.values():
-        if link.above is not None and link.above.type == pin.FrameType.FIXED_JOINT and link.above.inertia.mass != 0:
+        if link.above is not None and link.above.type == pin.FrameType.FIXED_JOINT and _weighs(link.above.inertia):
             fixed.setdefault(link.above.parentJoint, []).append(link.above.placement.act(link.above.inertia))
     found: dict[int, tuple[float, Array, Array]] = {}
     for index, link in links.items():
@@ -198,10 +217,11 @@ def _without(total: tuple[float, Array, Array], parts: list[tuple[float, Array, 
     if not parts:
         return total
     mass = total[0] - sum(part[0] for part in parts)
-    if abs(mass) <= 1e-13 * total[0]:
-        return 0.0, np.zeros(3), np.zeros((3, 3))
-    com = (total[0] * total[1] - sum((part[0] * part[1] for part in parts), np.zeros(3))) / mass
     about_origin = _about_origin(*total) - sum((_about_origin(*part) for part in parts), np.zeros((3, 3)))
+    if abs(mass) <= 1e-13 * total[0]:
+        dust = 1e-13 * np.abs(_about_origin(*total)).max(initial=0.0)
+        return 0.0, np.zeros(3), np.where(np.abs(about_origin) <= dust, 0.0, about_origin)
+    com = (total[0] * total[1] - sum((part[0] * part[1] for part in parts), np.zeros(3))) / mass
     return mass, com, about_origin - _point(mass, com)
 
 

@@ -36,11 +36,15 @@ class Mimic:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Second:
-    """What yourdfpy read; ``robot`` and ``shapes`` are None when it refused the file, and ``notes`` say so."""
+    """What yourdfpy read; ``robot`` and ``shapes`` are None when it refused the file, and ``notes`` say so.
+
+    ``unlimited`` are the joints whose <limit> has neither lower nor upper.
+    """
 
     robot: Any | None
     shapes: Mapping[str, tuple[Shape, ...]] | None
     mimics: tuple[Mimic, ...]
+    unlimited: frozenset[str] = frozenset()
     notes: tuple[str, ...] = ()
 
 
@@ -54,7 +58,9 @@ def load(path: Path, places: Places) -> Second:
             robot = yourdfpy.URDF.load(str(path), build_scene_graph=False, load_meshes=False).robot
     except (yourdfpy.urdf.URDFError, etree.LxmlError, ValueError, TypeError, KeyError, AttributeError) as error:
         words = " ".join(str(error).split()) or type(error).__name__
-        return Second(None, None, (), (f"yourdfpy refuses the file ({words}): shapes are not compared, and there is no second opinion",))
+        return Second(
+            None, None, (), notes=(f"yourdfpy refuses the file ({words}): shapes are not compared, and there is no second opinion",)
+        )
     mimics = tuple(
         Mimic(j.name, j.mimic.joint, 1.0 if j.mimic.multiplier is None else j.mimic.multiplier, j.mimic.offset or 0.0)
         for j in robot.joints
@@ -62,7 +68,8 @@ def load(path: Path, places: Places) -> Second:
     )
     files = places.files(path.parent)
     shapes = {link.name: tuple(_shapes(link, files)) for link in robot.links}
-    return Second(robot, shapes, mimics)
+    unlimited = frozenset(j.name for j in robot.joints if j.limit is not None and j.limit.lower is None and j.limit.upper is None)
+    return Second(robot, shapes, mimics, unlimited)
 
 
 @contextlib.contextmanager
