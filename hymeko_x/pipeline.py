@@ -122,7 +122,7 @@ def write(mechanism: Mechanism, format: Format, options: Options, files: Files, 
 
 
 def convert(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
-    """Write a mechanism, read the result back, and measure what got lost.
+    """Write a mechanism, read the result back if the format has a reader, and measure what got lost.
 
     Raises: Refusal when the format cannot be written; HX901 when our own reader refuses what we wrote.
     """
@@ -130,6 +130,14 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
     if format.frontend is None:
         return Result(mechanism, package, report, None)
     return Result(mechanism, package, report, ledger(with_references_of(packed, mechanism), package, format, files))
+
+
+def write_unmeasured(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
+    """The same without reading back: for a format that holds every mechanism exactly, where time counts.
+
+    Raises: Refusal when the format cannot be written.
+    """
+    return Result(mechanism, write(mechanism, format, options, files, report, place), report, None)
 
 
 def _written(

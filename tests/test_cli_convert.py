@@ -239,6 +239,95 @@ def test_confined_reading_refuses_a_robot_outside(folder: Path, capsys: pytest.C
     assert capsys.readouterr().err == "arm.urdf: error[HX001]: the file is outside 'inside', to which reading is confined\n"
 
 
+# ---- meshes --------------------------------------------------------------------------------------------------------------
+
+CORNERS = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
+TETRAHEDRON = "solid t\n" + "".join(
+    "facet normal 0 0 0\nouter loop\n" + "".join(f"vertex {x} {y} {z}\n" for x, y, z in face) + "endloop\nendfacet\n"
+    for face in (
+        (CORNERS[0], CORNERS[2], CORNERS[1]),
+        (CORNERS[0], CORNERS[1], CORNERS[3]),
+        (CORNERS[0], CORNERS[3], CORNERS[2]),
+        (CORNERS[1], CORNERS[2], CORNERS[3]),
+    )
+)
+VISUAL = '<link name="base"><visual><geometry><mesh filename="package://shapes/meshes/t.stl"/></geometry></visual>'
+
+
+@pytest.fixture
+def meshed(folder: Path) -> Path:
+    """A working folder whose `arm.urdf` has a mesh of the package `shapes`, which stands far away."""
+    (folder / "arm.urdf").write_text(ARM.replace('<link name="base">', VISUAL))
+    (folder / "far/shapes/meshes").mkdir(parents=True)
+    (folder / "far/shapes/meshes/t.stl").write_text(TETRAHEDRON)
+    (folder / "out").mkdir()
+    return folder
+
+
+def test_a_mesh_of_a_package_is_copied_beside_the_output(meshed: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["convert", "arm.urdf", "out/arm.xml", "--base", "fixed", "--package", "shapes=far/shapes"]) == exits.DONE
+    assert (meshed / "out/meshes/t.stl").exists()
+    assert 'file="meshes/t.stl"' in (meshed / "out/arm.xml").read_text()
+    assert main(["convert", "arm.urdf", "out/arm.hymeko", "--assets", "copy", "--package", "shapes=far/shapes"]) == exits.DONE
+    assert "loss" not in capfd.readouterr().err
+
+
+def test_ros_tells_where_a_package_is(meshed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(meshed / "far"))
+    assert main(["convert", "arm.urdf", "out/arm.xml", "--base", "fixed"]) == exits.DONE
+    assert (meshed / "out/meshes/t.stl").exists()
+
+
+def test_a_mesh_that_is_not_found_is_a_warning_and_no_failure(meshed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["convert", "arm.urdf", "out/arm.xml", "--base", "fixed"]) == exits.DONE
+    assert "warning[HX201]" in capsys.readouterr().err
+    assert list((meshed / "out").iterdir()) == [meshed / "out/arm.xml"]
+
+
+def test_that_a_copied_file_has_another_path_is_no_loss(meshed: Path) -> None:
+    (meshed / "arm.urdf").write_text(ARM.replace('<link name="base">', VISUAL.replace("package://shapes", "far/shapes")))
+    assert main(["convert", "arm.urdf", "out/arm.hymeko", "--assets", "copy", "--fail-on", "loss"]) == exits.DONE
+    assert (meshed / "out/meshes/t.stl").exists()
+    assert main(["convert", "arm.urdf", "out/arm.urdf", "--assets", "reference", "--fail-on", "loss"]) == exits.DONE
+    assert 'filename="../far/shapes/meshes/t.stl"' in (meshed / "out/arm.urdf").read_text()
+
+
+def test_standard_output_refers_to_files_where_they_are_and_says_which_it_cannot_carry(
+    meshed: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (meshed / "arm.urdf").write_text(ARM.replace('<link name="base">', VISUAL.replace("package://shapes", "far/shapes")))
+    assert main(["export", "arm.urdf", "--to", "hymeko"]) == exits.DONE
+    assert "far/shapes/meshes/t.stl" in capfd.readouterr().out
+    assert main(["export", "arm.urdf", "--to", "mjcf", "--base", "fixed"]) == exits.DONE
+    assert "warning[HX204]: standard output cannot carry meshes/t.stl\n" in capfd.readouterr().err
+    assert sorted(path.name for path in meshed.iterdir()) == ["arm.urdf", "far", "out"]
+
+
+def test_the_format_can_be_said_where_name_and_content_mislead(folder: Path) -> None:
+    (folder / "arm.hymeko").write_text(ARM)
+    assert main(["info", "arm.hymeko"]) == exits.FAILED
+    assert main(["info", "arm.hymeko", "--from", "urdf"]) == exits.DONE
+
+
+def test_diagnostics_go_to_standard_error_with_their_place(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    (folder / "arm.urdf").write_text(WARNED)
+    assert main(["import", "arm.urdf"]) == exits.DONE
+    said = capfd.readouterr()
+    assert said.err.startswith("arm.urdf:20: warning[HX044]: ")
+    assert "HX044" not in said.out
+
+
+def test_what_vanishes_is_dropped_and_what_changes_is_approximated(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    lossy = Package(
+        ARM.replace('<link name="tip">', '<link name="tip"><visual><geometry><sphere radius="1"/></geometry></visual>').encode()
+    )
+    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: lossy)
+    assert [loss.fate for loss in hx.convert("arm.urdf", "more.urdf").losses or ()] == ["approximated"]
+    (folder / "arm.urdf").write_bytes(lossy.main)
+    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: Package(ARM.encode()))
+    assert [loss.fate for loss in hx.convert("arm.urdf", "less.urdf").losses or ()] == ["dropped"]
+
+
 # ---- diff and info -------------------------------------------------------------------------------------------------------
 
 

@@ -22,6 +22,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Read the file and print it as HyMeKo."""
+    """Read the file and print it as HyMeKo, which says everything: losses are measured only for whoever asks for them."""
     report = Report()
-    return deliver(read_input(chosen.input, chosen, report), Output(formats.HYMEKO, chosen.output), chosen, report)
+    given = read_input(chosen.input, chosen, report)
+    return deliver(given, Output(formats.HYMEKO, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))

@@ -43,13 +43,18 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
 
 
-def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Report) -> int:
-    """Write the mechanism that was read, say what there is to say, and return the exit code."""
+def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Report, *, measured: bool = True) -> int:
+    """Write the mechanism that was read, say what there is to say, and return the exit code.
+
+    With ``measured`` the result is read back and its losses are listed.
+    """
     options = Options(base=chosen.base, actuators=chosen.actuators)
-    result = pipeline.convert(given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
-    if output.path == "-" and (result.package.files or result.package.copies):
-        count = len(result.package.files) + len(result.package.copies)
-        report.warn(codes.ASSET_NOT_WRITTEN, f"{count} files that belong beside the output were not written", hint="use -o FILE")
+    make = pipeline.convert if measured else pipeline.write_unmeasured
+    result = make(given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
+    beside = [*result.package.files, *result.package.copies]
+    if output.path == "-" and beside:
+        names = ", ".join(beside[:3]) + (f" and {len(beside) - 3} more" if len(beside) > 3 else "")
+        report.warn(codes.ASSET_NOT_WRITTEN, f"standard output cannot carry {names}", hint="-o FILE writes them beside the file")
     document = as_json(given, output, report, result.losses)
     failed = is_reached(chosen.fail_on, report, result.losses)
     if not failed:
