@@ -1,0 +1,34 @@
+"""Timing by ratio: machines differ and are noisy, so everything is measured against a yardstick in the same run."""
+
+from __future__ import annotations
+
+import gc
+import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def best_of(work: Callable[[], object], yardstick: Callable[[], object], repeats: int = 9) -> tuple[float, float]:
+    """The least processor time in s of both, run in turns so that a busy machine disturbs both alike."""
+    ours, theirs = [], []
+    for _ in range(repeats):
+        ours.append(_time(work))
+        theirs.append(_time(yardstick))
+    return min(ours), min(theirs)
+
+
+def _time(work: Callable[[], object]) -> float:
+    gc.collect()
+    start = time.process_time()
+    work()
+    return time.process_time() - start
+
+
+def verdict(name: str, ratio: float, bound: float, *, at_least: bool) -> bool:
+    """Print a line with the ratio and whether it keeps its bound."""
+    kept = ratio >= bound if at_least else ratio <= bound
+    sign = "at least" if at_least else "at most"
+    print(f"{name}: ratio {ratio:.2f}, {sign} {bound:g} wanted: {'kept' if kept else 'MISSED'}")
+    return kept
