@@ -325,7 +325,9 @@ class _Expansion:
         return self._item(item, environment)  # type: ignore[return-value]
 
     def _item(self, item: Item, environment: Environment) -> Item:
-        """The item with every expression replaced by its value; with no parameters in sight, only if it has any."""
+        """The item with every expression replaced by its value."""
+        if not environment and not _calculates(item):
+            return item
         match item:
             case Field(value=None) | Import() | Comment():
                 return item
@@ -385,6 +387,24 @@ class _Expansion:
 
     def _refuse(self, node: Node, message: str) -> Refusal:
         return refuse(codes.BAD_TEMPLATE, message, Origin(self._file, node.line, node.column))
+
+
+def _calculates(item: Item | Value | None) -> bool:
+    """Whether there is an expression in it."""
+    match item:
+        case float() | str() | None:
+            return False
+        case Expression():
+            return True
+        case Field():
+            return _calculates(item.value)
+        case ArcItem():
+            return _calculates(item.weight) or any(map(_calculates, item.items))
+        case Node():
+            return any(map(_calculates, item.items)) or any(kind.arguments for kind in item.stereotypes)
+        case Import() | Comment() | Ref():
+            return False
+    return any(map(_calculates, item))
 
 
 def _merge(base: tuple[Item, ...], own: tuple[Item, ...]) -> tuple[Item, ...]:
