@@ -47,8 +47,10 @@ def _fill(q: Array, dof: Dof, column: int, rng: np.random.Generator) -> None:
 
 
 def bounds(dof: Dof) -> tuple[float, float]:
-    """The finite range that a scalar dof is sampled in."""
+    """The finite range that a scalar dof is sampled in. [0, 0] is how exporters write "no limits", so it moves freely."""
     reach, free = _REACH[dof.kind], _UNLIMITED[dof.kind]
+    if dof.lower == dof.upper == 0.0:
+        return -free, free
     lower = max(dof.lower, dof.ref - reach) if np.isfinite(dof.lower) else dof.ref - free
     upper = min(dof.upper, dof.ref + reach) if np.isfinite(dof.upper) else dof.ref + free
     return (lower, upper) if lower <= upper else (dof.ref, dof.ref)

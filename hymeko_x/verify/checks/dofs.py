@@ -91,17 +91,23 @@ def _check_bounds(
 
 
 def _contradictory(pair: Pair, scalar: list[int]) -> Array:
-    """Where the first robot's lower limit is above its upper one, and the second has none: nothing to compare."""
+    """Where one robot has limits that engines disagree about and the other has none.
+
+    A lower limit above the upper one; and [0, 0], with which urdfdom locks the joint while MuJoCo's reader of URDF takes none.
+    """
     empty = np.zeros(len(scalar), dtype=bool)
     for place, k in enumerate(scalar):
         d, e = pair.match.dofs[k]
         ours, theirs = pair.a.dofs[d], pair.b.dofs[e]
-        empty[place] = ours.lower > ours.upper and not np.isfinite([theirs.lower, theirs.upper]).any()
+        open_one, other = (theirs, ours) if _is_unlimited(theirs) else (ours, theirs)
+        empty[place] = _is_unlimited(open_one) and (other.lower > other.upper or other.lower == other.upper == 0.0)
         if empty[place]:
-            pair.notes.append(
-                f"position limits: those of {pair.a.dof_label(d)} contradict each other ({ours.lower:.6g} > {ours.upper:.6g})"
-            )
+            pair.notes.append(f"position limits: [{other.lower:.6g}, {other.upper:.6g}] of {pair.a.dof_label(d)} is none for some engines")
     return empty
+
+
+def _is_unlimited(dof: Dof) -> bool:
+    return dof.lower <= -FAR and dof.upper >= FAR
 
 
 # ---- mechanics -------------------------------------------------------------------------------------------------------

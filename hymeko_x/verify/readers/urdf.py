@@ -34,14 +34,13 @@ def read(path: Path, places: Places) -> KinematicModel:
     text = path.read_bytes().decode("utf-8", "replace").replace("\x00", "")
     model = _build(text, str(path), mimic=False)
     second = load(path, places)
-    bodies, notes = _without_unwritten_limits(_bodies(model, second), second)
     found = KinematicModel(
         name=model.name,
         format="urdf",
         engine=f"urdfdom in Pinocchio {pin.__version__}, yourdfpy",
-        bodies=bodies,
+        bodies=_bodies(model, second),
         says=SAYS if second.shapes is not None else SAYS - {Feature.VISUALS, Feature.COLLISIONS},
-        notes=(*notes, *second.notes),
+        notes=second.notes,
     )
     couplings, said = _couplings(text, str(path), found, second)
     found = replace(found, couplings=couplings, notes=(*found.notes, *said))
@@ -155,23 +154,6 @@ def _dofs(model: Any, number: int) -> tuple[Dof, ...]:
             friction=float(model.upperDryFrictionLimit[v]),
         ),
     )
-
-
-def _without_unwritten_limits(bodies: tuple[Body, ...], second: Second) -> tuple[tuple[Body, ...], list[str]]:
-    """Position limits that nobody wrote: urdfdom takes [0, 0] and so a locked joint, every other reader takes none.
-
-    Real files leave them out for wheels; the other readers are followed, and a note says so.
-    """
-    locked = [body.name for body in bodies for dof in body.joint.dofs if dof.name in second.unlimited and dof.lower == dof.upper == 0.0]
-    if not locked:
-        return bodies, []
-    free = tuple(
-        replace(body, joint=replace(body.joint, dofs=tuple(replace(dof, lower=-INF, upper=INF) for dof in body.joint.dofs)))
-        if body.name in locked
-        else body
-        for body in bodies
-    )
-    return free, [f"limits without lower and upper ({len(locked)} joints) are none for every reader but urdfdom, which locks the joint"]
 
 
 def _axis(model: Any, joint: Any) -> Array:

@@ -36,15 +36,11 @@ class Mimic:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Second:
-    """What yourdfpy read; ``robot`` and ``shapes`` are None when it refused the file, and ``notes`` say so.
-
-    ``unlimited`` are the joints whose <limit> has neither lower nor upper.
-    """
+    """What yourdfpy read; ``robot`` and ``shapes`` are None when it refused the file, and ``notes`` say so."""
 
     robot: Any | None
     shapes: Mapping[str, tuple[Shape, ...]] | None
     mimics: tuple[Mimic, ...]
-    unlimited: frozenset[str] = frozenset()
     notes: tuple[str, ...] = ()
 
 
@@ -58,9 +54,8 @@ def load(path: Path, places: Places) -> Second:
             robot = yourdfpy.URDF.load(str(path), build_scene_graph=False, load_meshes=False).robot
     except (yourdfpy.urdf.URDFError, etree.LxmlError, ValueError, TypeError, KeyError, AttributeError) as error:
         words = " ".join(str(error).split()) or type(error).__name__
-        return Second(
-            None, None, (), notes=(f"yourdfpy refuses the file ({words}): shapes are not compared, and there is no second opinion",)
-        )
+        said = f"yourdfpy refuses the file ({words}): shapes are not compared, and there is no second opinion"
+        return Second(None, None, (), notes=(said,))
     mimics = tuple(
         Mimic(j.name, j.mimic.joint, 1.0 if j.mimic.multiplier is None else j.mimic.multiplier, j.mimic.offset or 0.0)
         for j in robot.joints
@@ -68,8 +63,7 @@ def load(path: Path, places: Places) -> Second:
     )
     files = places.files(path.parent)
     shapes = {link.name: tuple(_shapes(link, files)) for link in robot.links}
-    unlimited = frozenset(j.name for j in robot.joints if j.limit is not None and j.limit.lower is None and j.limit.upper is None)
-    return Second(robot, shapes, mimics, unlimited)
+    return Second(robot, shapes, mimics)
 
 
 @contextlib.contextmanager
@@ -126,13 +120,12 @@ def disagreement(model: KinematicModel, second: Second) -> str:
     if second.robot is None:
         return ""
     other = _kinematics(second.robot, model)
-    names = {body.name for body in model.bodies}
-    if names != {body.name for body in other.bodies}:
+    if sorted(str(body.name) for body in model.bodies) != sorted(str(body.name) for body in other.bodies):
         return "they disagree on the links"
     q = draw(model, 3, np.random.default_rng(0))
     ours, theirs = prepare(model).poses(q), prepare(other).poses(_same_coordinates(model, other, q))
-    order = [other.index[str(body.name)] for body in model.bodies]
-    theirs = theirs[:, order]
+    places = {body.name: index for index, body in enumerate(other.bodies[1:], start=1)}
+    theirs = theirs[:, [WORLD, *(places[body.name] for body in model.bodies[1:])]]
     distance = np.linalg.norm(ours[..., :3, 3] - theirs[..., :3, 3], axis=-1).max(axis=0)
     angle = angle_between(ours[..., :3, :3], theirs[..., :3, :3]).max(axis=0)
     worst = int(np.argmax(np.maximum(distance, angle)))
@@ -148,13 +141,14 @@ def _kinematics(robot: Any, model: KinematicModel) -> KinematicModel:
     for joint in robot.joints:
         below.setdefault(joint.parent, []).append(joint.child)
     roots = [link.name for link in robot.links if link.name not in above]
+    a_body_too = any(body.name == "world" for body in model.bodies[1:])
     bodies: list[Body] = [grounded()]
     places: dict[str, int] = {}
     stack = list(reversed(roots))
     while stack:
         name = stack.pop()
         stack.extend(reversed(below.get(name, [])))
-        if name not in above and name == "world":
+        if name not in above and name == "world" and not a_body_too:
             places[name] = WORLD
             continue
         joint = above.get(name)
@@ -169,8 +163,8 @@ def _joint(joint: Any, model: KinematicModel) -> Joint:
     if joint.type == "fixed":
         return Joint(joint.name, origin)
     if joint.type not in {"revolute", "continuous", "prismatic"}:
-        index = model.index.get(joint.child)
-        return Joint(joint.name, origin, model.bodies[index].joint.dofs if index is not None else ())
+        index = next((i for i, body in enumerate(model.bodies[1:], start=1) if body.name == joint.child), WORLD)
+        return Joint(joint.name, origin, model.bodies[index].joint.dofs)
     axis: Array = np.asarray(joint.axis, dtype=float)
     length = float(np.linalg.norm(axis))
     kind = Kind.SLIDE if joint.type == "prismatic" else Kind.HINGE
@@ -180,9 +174,9 @@ def _joint(joint: Any, model: KinematicModel) -> Joint:
 def _same_coordinates(model: KinematicModel, other: KinematicModel, q: Array) -> Array:
     """The configurations of one reader in the column order of the other."""
     columns: list[int] = []
-    for body in other.bodies:
-        index = model.index.get(str(body.name), WORLD)
-        first = model.first_dof[index]
+    places = {body.name: index for index, body in enumerate(model.bodies[1:], start=1)}
+    for body in other.bodies[1:]:
+        first = model.first_dof[places.get(body.name, WORLD)]
         for place, dof in enumerate(body.joint.dofs):
             start = model.columns[first + place] if first + place < len(model.columns) else 0
             columns.extend(range(start, start + dof.kind.width))
