@@ -10,13 +10,11 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir.parts import DofKind, Role
-from hymeko_x.ir.values import X, Y, quat_from_z, rotate
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.ir.parts import Joint
-    from hymeko_x.ir.values import Vec3
 
 FORMAT = "urdf"
 
@@ -36,14 +34,15 @@ JOINT_TYPES: Mapping[str, JointType] = MappingProxyType(
         "prismatic": JointType((DofKind.SLIDE,), bounded=True),
         "floating": JointType((DofKind.FREE,)),
         "planar": JointType((DofKind.SLIDE, DofKind.SLIDE, DofKind.HINGE)),
-        "spherical": JointType((DofKind.BALL,)),  # not in the standard: MuJoCo and Bullet read it
+        "spherical": JointType((DofKind.BALL,)),
         "ball": JointType((DofKind.BALL,)),
     }
 )
+"""The last two are not in the standard. MuJoCo and Bullet read ``spherical``; both are written only where they were read."""
 
 
 _BY_DOFS: Mapping[tuple[tuple[DofKind, ...], bool], str] = MappingProxyType(
-    {(JOINT_TYPES[word].dofs, JOINT_TYPES[word].bounded): word for word in reversed(tuple(JOINT_TYPES))}
+    {(known.dofs, known.bounded): word for word, known in JOINT_TYPES.items() if DofKind.BALL not in known.dofs}
 )
 
 
@@ -55,12 +54,6 @@ def default_type(joint: Joint) -> str | None:
     kind, limits = dofs[0].kind, dofs[0].limits
     bounded = kind is DofKind.SLIDE or (kind is DofKind.HINGE and (limits.lower is not None or limits.upper is not None))
     return _BY_DOFS.get(((kind,), bounded))
-
-
-def planar_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
-    """The directions in which a planar joint slides: x and y turned by the smallest rotation from z to the normal."""
-    turn = quat_from_z(normal)
-    return rotate(turn, X), rotate(turn, Y)
 
 
 NO_LIMIT = 1.7976931348623157e308
@@ -92,6 +85,7 @@ STYLE_JOINT_ORIGIN = "joint-origin"
 STYLE_VISUAL_ORIGIN = "visual-origin"
 STYLE_COLLISION_ORIGIN = "collision-origin"
 STYLE_INERTIAL_ORIGIN = "inertial-origin"
+STYLE_CAPSULE = "capsule"
 STYLE_DYNAMICS = "dynamics"
 STYLE_SCALE = "scale"
 STYLE_VERSION = "version"

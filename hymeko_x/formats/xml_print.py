@@ -15,9 +15,8 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra
 
 _INDENT = "  "
-_SPECIAL = re.compile(r'[&<>"\n\r\t]')
+_SPECIAL = re.compile(r'[&<>"\x00-\x1f\ud800-\udfff\ufffe\uffff]')
 _ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
-_UNSAYABLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 @dataclass(slots=True)
@@ -94,12 +93,9 @@ def attributes_text(attributes: dict[str, str]) -> str:
 
 
 def escaped(text: str) -> str:
-    """A text for an attribute or an element; every character that XML can hold reads back as it was."""
-    if _SPECIAL.search(text):
-        text = _SPECIAL.sub(lambda found: _ESCAPES[found[0]], text)
-    return text
+    """A text for an attribute or an element; every character that XML can hold reads back as it was, others are U+FFFD."""
+    return _SPECIAL.sub(_escape, text) if _SPECIAL.search(text) else text
 
 
-def unsayable(text: str) -> bool:
-    """Whether a text holds characters that XML 1.0 cannot hold in any way."""
-    return _UNSAYABLE.search(text) is not None
+def _escape(found: re.Match[str]) -> str:
+    return _ESCAPES.get(found[0], "\ufffd")

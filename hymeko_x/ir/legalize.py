@@ -20,6 +20,8 @@ from hymeko_x.ir.legalize_limits import make_limits_intervals
 from hymeko_x.ir.legalize_loops import anchor_closures, open_second_parents
 from hymeko_x.ir.legalize_names import make_names_usable
 from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
+from hymeko_x.ir.legalize_urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
+from hymeko_x.ir.legalize_urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -61,6 +63,16 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             keep_planes_static,
             name_shapes_once,
             choose_actuators,
+        ),
+        "urdf": (
+            expand_screws,
+            chain_dofs,
+            hold_or_free_open_bases,
+            make_world_a_link,
+            join_roots,
+            split_shared_shapes,
+            prefer_own_colours,
+            approximate_shapes,
         ),
     }
 )

@@ -126,6 +126,12 @@ def quat_from_z(direction: Vec3) -> Quat:
     return (0.0, 1.0, 0.0, 0.0)
 
 
+def plane_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
+    """The x and y directions of a plane: x and y turned by the smallest rotation from z to the normal."""
+    turn = quat_from_z(normal)
+    return rotate(turn, X), rotate(turn, Y)
+
+
 # ---- reading values ----------------------------------------------------------------------------------------------------
 
 

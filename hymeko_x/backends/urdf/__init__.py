@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.urdf.joints import joint_tag
 from hymeko_x.backends.urdf.links import link_tag
 from hymeko_x.backends.urdf.materials import robot_material_tag
+from hymeko_x.backends.urdf.meshes import obj_text
 from hymeko_x.backends.urdf.order import order
 from hymeko_x.backends.urdf.sheet import Sheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
@@ -18,6 +19,7 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml import FOLLOWING, PRECEDING
 from hymeko_x.formats.xml_print import Tag, escaped, put_back, render, without_declared
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Mesh
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -36,7 +38,8 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format == words.FORMAT]
     root.children += _merged(_typed(sheet), extras, sheet)
     lines = ['<?xml version="1.0"?>', *_around(extras, PRECEDING), *render(root), *_around(extras, FOLLOWING), ""]
-    return Package("\n".join(lines).encode("utf-8", "surrogatepass"))
+    meshes = {path: obj_text(mechanism.vertex(key, Mesh)) for key, path in sheet.mesh_files.items()}
+    return Package("\n".join(lines).encode(), meshes)
 
 
 def _root_tag(mechanism: Mechanism) -> Tag:

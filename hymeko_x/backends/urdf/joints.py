@@ -11,7 +11,7 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml_print import Tag
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind, Joint
-from hymeko_x.ir.values import IDENTITY, number_text, numbers_text, unit
+from hymeko_x.ir.values import IDENTITY, number_text, numbers_text, plane_axes, unit
 
 if TYPE_CHECKING:
     from hymeko_x.backends.urdf.sheet import Sheet
@@ -41,19 +41,26 @@ def joint_tag(key: Id, sheet: Sheet) -> Tag:
 def _type(view: JointView, sheet: Sheet) -> str:
     """The word for the joint: its author's if it still fits, else the usual one."""
     usual = words.default_type(view.joint)
-    if usual is None or view.child_pose != IDENTITY or not _is_standard(view.joint):
+    own = sheet.mechanism.notation(view.id, words.TYPE)
+    word = own if own is not None and _fits(own, view.joint, usual) else usual
+    if word is None or view.child_pose != IDENTITY or not _is_standard(view.joint):
         said = f"{view.id} has dofs or a frame that URDF has no word for"
         raise refuse(codes.NOT_SAID, said, sheet.mechanism.origin(view.id), element=str(view.id))
-    own = words.JOINT_TYPES.get(sheet.mechanism.notation(view.id, words.TYPE) or "")
-    fits = own is not None and own.dofs == words.JOINT_TYPES[usual].dofs and (own.bounded or not words.JOINT_TYPES[usual].bounded)
-    return (sheet.mechanism.notation(view.id, words.TYPE) or usual) if fits else usual
+    return word
+
+
+def _fits(word: str, joint: Joint, usual: str | None) -> bool:
+    known = words.JOINT_TYPES.get(word)
+    if known is None or known.dofs != tuple(dof.kind for dof in joint.dofs):
+        return False
+    return known.bounded or usual is None or not words.JOINT_TYPES[usual].bounded
 
 
 def _is_standard(joint: Joint) -> bool:
     """Whether a joint with several dofs moves as URDF's planar joint does, and no axis passes beside the origin."""
     if any(any(dof.anchor) or dof.ref for dof in joint.dofs):
         return False
-    return len(joint.dofs) < 3 or tuple(dof.axis for dof in joint.dofs[:2]) == words.planar_axes(joint.dofs[2].axis)
+    return len(joint.dofs) < 3 or tuple(dof.axis for dof in joint.dofs[:2]) == plane_axes(joint.dofs[2].axis)
 
 
 def _add_dofs(tag: Tag, dofs: tuple[Dof, ...], word: str, sheet: Sheet) -> None:

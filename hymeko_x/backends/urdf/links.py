@@ -89,7 +89,8 @@ def _add_mesh(tag: Tag, view: ShapeView, sheet: Sheet) -> None:
         return
     mesh = sheet.mechanism.vertex(view.mesh, Mesh)
     child = tag.add("mesh")
-    if mesh.uri is not None:
-        child.attributes["filename"] = mesh.uri
+    uri = sheet.mesh_files.get(view.mesh, mesh.uri)
+    if uri is not None:
+        child.attributes["filename"] = uri
     if mesh.scale != (1.0, 1.0, 1.0) or words.STYLE_SCALE in sheet.style:
         child.attributes["scale"] = numbers_text(mesh.scale)

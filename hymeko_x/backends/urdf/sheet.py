@@ -6,10 +6,11 @@ import re
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from hymeko_x.backends.urdf.meshes import files_of_meshes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import Defined
 from hymeko_x.formats.xml_print import Tag, put_back
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.mechanism import ROOT, numbers_weight
 from hymeko_x.ir.parts import Coupling, Layer, Material, Texture
 from hymeko_x.ir.values import IDENTITY, numbers_text, rpy_of
 
@@ -84,6 +85,13 @@ class Sheet:
         self._defined_before.add(key)
         return place in (Defined.INLINE, Defined.BOTH) or (place is Defined.FIRST and first)
 
+    # ---- meshes ----------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def mesh_files(self) -> Mapping[Id, str]:
+        """Where the meshes go that carry their points and have no file."""
+        return files_of_meshes(self.mechanism)
+
     # ---- joints ----------------------------------------------------------------------------------------------------------
 
     @cached_property
@@ -93,7 +101,7 @@ class Sheet:
         for _, _, arcs in self.mechanism.edges(Coupling):
             followers = [arc.target for arc in arcs if arc.sign > 0]
             leaders = [arc for arc in arcs if arc.sign < 0]
-            if len(followers) == len(leaders) == 1:
+            if len(followers) == len(leaders) == 1 and not any(numbers_weight(leaders[0])[2:]):
                 found[followers[0]] = leaders[0]
         return found
 

@@ -75,6 +75,7 @@ def _read_cylinder(node: Node, draft: Draft) -> Geometry | None:
 
 def _read_capsule(node: Node, draft: Draft) -> Geometry | None:
     radius, length = _sized(node, "radius", 1, draft), _sized(node, "length", 1, draft)
+    draft.style.add(words.STYLE_CAPSULE)
     return None if radius is None or length is None else Capsule(radius[0], length[0])
 
 

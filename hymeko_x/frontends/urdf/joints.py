@@ -11,7 +11,7 @@ from hymeko_x.frontends.urdf.draft import read_origin, take_name
 from hymeko_x.frontends.urdf.fixed import gather_meaningless
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
-from hymeko_x.ir.values import Written, X, unit
+from hymeko_x.ir.values import Written, X, plane_axes, unit
 
 if TYPE_CHECKING:
     from hymeko_x.formats.urdf import JointType
@@ -108,7 +108,7 @@ def _read_dofs(node: Node, word: str, draft: Draft) -> tuple[Dof, ...]:
         return (_read_dof(node, kinds[0], words.JOINT_TYPES[word], draft),)
     if word == "planar":
         normal, written = _read_axis(node, draft)
-        x, y = words.planar_axes(normal)
+        x, y = plane_axes(normal)
         return (Dof(DofKind.SLIDE, x), Dof(DofKind.SLIDE, y), Dof(DofKind.HINGE, normal, written=written))
     return tuple(Dof(kind) for kind in kinds)
 

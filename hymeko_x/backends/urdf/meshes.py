@@ -1,0 +1,43 @@
+"""Meshes that have no file: each is written as a Wavefront OBJ file beside the URDF file."""
+
+from __future__ import annotations
+
+import re
+from itertools import count
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.parts import Mesh
+from hymeko_x.ir.values import number_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.ir.mechanism import Id, Mechanism
+
+FOLDER = "shapes"
+
+
+def files_of_meshes(mechanism: Mechanism) -> dict[Id, str]:
+    """The relative path of every mesh that carries its points, made of what is harmless in its name."""
+    found: dict[Id, str] = {}
+    taken: set[str] = set()
+    for key, mesh in mechanism.vertices(Mesh):
+        if mesh.uri is None and mesh.vertices:
+            stem = re.sub(r"[^A-Za-z0-9_-]+", "_", key.name).strip("_") or "mesh"
+            name = next(name for name in _numbered(stem) if name.lower() not in taken)
+            taken.add(name.lower())
+            found[key] = f"{FOLDER}/{name}.obj"
+    return found
+
+
+def _numbered(stem: str) -> Iterator[str]:
+    yield stem
+    yield from (f"{stem}_{number}" for number in count(2))
+
+
+def obj_text(mesh: Mesh) -> bytes:
+    """The points and faces of a mesh, unscaled, as Wavefront OBJ."""
+    points = [" ".join(map(number_text, mesh.vertices[at : at + 3])) for at in range(0, len(mesh.vertices), 3)]
+    faces = [" ".join(str(corner + 1) for corner in mesh.faces[at : at + 3]) for at in range(0, len(mesh.faces), 3)]
+    lines = [*(f"v {point}" for point in points), *(f"f {face}" for face in faces), ""]
+    return "\n".join(lines).encode()
