@@ -106,6 +106,7 @@ def test_ros_and_gazebo_variables_become_the_search_path() -> None:
 def test_what_names_no_file_is_just_not_there(uri: str, tmp_path: Path) -> None:
     (tmp_path / "meshes").mkdir()
     put(tmp_path / "a.stl")
+    put(tmp_path / "p")
     assert DiskFiles(tmp_path / "meshes").find(uri) is None
 
 

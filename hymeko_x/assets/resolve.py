@@ -69,7 +69,7 @@ class DiskFiles:
             yield from self._file_url(uri[len("file:") :])
         elif scheme[1].lower() in ("package", "model"):
             name, _, rest = uri[scheme.end() :].partition("/")
-            yield from (folder / rest for folder in self._package_folders(name))
+            yield from (folder / rest for folder in self._package_folders(name) if rest)
 
     def _file_url(self, rest: str) -> Iterator[Path]:
         """`file:///a`, `file://localhost/a` and `file:/a` are absolute; `file://a` is a common slip and taken as relative."""
