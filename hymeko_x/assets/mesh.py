@@ -311,6 +311,22 @@ def _unique_rows(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArra
     return ordered[starts], index
 
 
+def inline_part(points: tuple[float, ...], faces: tuple[int, ...]) -> Part:
+    """The triangles of a mesh that is given by flat lists; without faces, those of its convex hull are not computed.
+
+    Raises: Unreadable.
+    """
+    table = np.array(points[: len(points) // 3 * 3], dtype=np.float64).reshape(-1, 3)
+    index = np.array(faces[: len(faces) // 3 * 3], dtype=np.int64).reshape(-1, 3)
+    if len(table) == 0:
+        raise Unreadable("it has no points")
+    if len(index) and (index.min() < 0 or index.max() >= len(table)):
+        raise Unreadable("a triangle has a corner that does not exist")
+    if not np.isfinite(table).all():
+        raise Unreadable("a coordinate is not a finite number")
+    return Part(table, index)
+
+
 def merged(parts: tuple[Part, ...]) -> Part:
     """All triangles as one part without a look."""
     if len(parts) == 1:

@@ -114,8 +114,27 @@ def _pack_meshes(run: _Packing) -> None:
     for key, mesh in run.mechanism.vertices(Mesh):
         if mesh.uri is not None:
             _pack_mesh(run, key, mesh, users.get(key, []))
-        elif not mesh.vertices:
+        elif mesh.vertices:
+            _pack_inline(run, key, mesh, users.get(key, []))
+        else:
             _leave_out(run, key, users.get(key, []), codes.ASSET_NOT_FOUND, "it names no file")
+
+
+def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
+    """Data that stands in the mechanism itself stays there, unless MuJoCo would refuse it."""
+    from hymeko_x.assets.mesh import Unreadable, inline_part
+
+    solid = any(view.shape.role is not Role.VISUAL for view in users)
+    try:
+        part = inline_part(mesh.vertices, mesh.faces)
+        reason = _refusal(part, ".obj", b"", solid=solid)
+        if reason is None:
+            _add_mesh(run, key, mesh, part, solid=solid)
+            return
+        _say_converted(run, key, reason)
+        _write_mesh(run, key, replace(mesh, vertices=(), faces=()), part, key.name, solid=solid)
+    except Unreadable as error:
+        _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"its data cannot be used: {error}")
 
 
 def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
@@ -124,6 +143,9 @@ def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> No
     found = read_file(run.files, mesh.uri or "")
     if found is None:
         _leave_out(run, key, users, codes.ASSET_NOT_FOUND, f"'{mesh.uri}' was not found")
+        return
+    if not all(mesh.scale):
+        _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"'{mesh.uri}' is scaled to nothing")
         return
     path, data = found
     if suffix_of(path) == ".msh":

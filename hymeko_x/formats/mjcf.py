@@ -21,6 +21,9 @@ CLASSES: Mapping[Role, str] = MappingProxyType({Role.VISUAL: "visual", Role.COLL
 TARGETS: Mapping[str, str] = MappingProxyType({"joint": "joint", "tendon": "tendon", "frame": "site", "body": "body"})
 """The attribute of an actuator or sensor that names what it acts on, by the kind of the element's id."""
 
+LIGHTS = ("spot", "directional", "point", "image")
+"""The types of light; the first one is the default."""
+
 MESH_SUFFIXES = (".stl", ".obj", ".msh")
 """The mesh files that MuJoCo reads by itself; STL only binary."""
 

@@ -60,7 +60,7 @@ def expand_screws(mechanism: Mechanism, options: Options, report: Report) -> Mec
                 continue
             slide = Dof(DofKind.SLIDE, dof.axis, anchor=dof.anchor, name=f"{name}_slide")
             dofs += [replace(dof, kind=DofKind.HINGE, pitch=0.0, name=name), slide]
-            edges[names.take("coupling", f"{name}_screw")] = _screw(view.id, name, f"{name}_slide", dof.pitch)
+            edges[names.take("coupling", f"{name}_screw")] = _screw(view.id, name, f"{name}_slide", dof)
             report.note(
                 codes.REWRITTEN,
                 f"{view.id} is a screw; it is written as hinge '{name}' and slide '{name}_slide', coupled by the pitch",
@@ -152,8 +152,9 @@ def split_overfull_joints(mechanism: Mechanism, options: Options, report: Report
 # ---- parts of the rules ----------------------------------------------------------------------------------------------------
 
 
-def _screw(joint: Id, hinge: str, slide: str, pitch: float) -> RobotEdge:
-    edge = coupling_edge(joint, ((joint, (0.0, pitch)),))
+def _screw(joint: Id, hinge: str, slide: str, dof: Dof) -> RobotEdge:
+    """The slide's coordinate: the pitch times the turn from the reference."""
+    edge = coupling_edge(joint, ((joint, (-dof.pitch * dof.ref + 0.0, dof.pitch)),))
     follower, leader = edge.arcs
     return replace(edge, arcs=(replace(follower, role=slide), replace(leader, role=hinge)))
 

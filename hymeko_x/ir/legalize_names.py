@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.ir.rename import names_in_use, rename
 
 if TYPE_CHECKING:
@@ -31,3 +33,25 @@ def make_names_usable(mechanism: Mechanism, options: Options, report: Report) ->
             codes.RENAMED, f"the name of a {key.kind} {found}; it is written as '{new.name}'", mechanism.origin(key), element=str(new)
         )
     return rename(mechanism, renamed)
+
+
+def name_assets_once(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """Meshes and textures are written under the name that their author gave them, or else their id's, each name once per kind."""
+    del options
+    taken: set[tuple[str, str]] = set()
+    changed: dict[Id, Mesh | Texture] = {}
+    for key, part in mechanism.graph.vertices.items():
+        if not isinstance(part, Mesh | Texture):
+            continue
+        wanted = part.name or key.name
+        name, number = wanted, 1
+        while (key.kind, name) in taken:
+            number += 1
+            name = f"{wanted}#{number}"
+        taken.add((key.kind, name))
+        if name != wanted:
+            changed[key] = replace(part, name=name)
+            report.note(
+                codes.RENAMED, f"another {key.kind} is called '{wanted}' already; this one is written as '{name}'", mechanism.origin(key)
+            )
+    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.geoms import write_geom
 from hymeko_x.backends.mjcf.text import Attributes, Text, number, numbers, pose_attributes
-from hymeko_x.formats.mjcf import DOFS
+from hymeko_x.formats.mjcf import DOFS, LIGHTS
 from hymeko_x.ir.mechanism import WORLD, pose_weight
 from hymeko_x.ir.parts import Body, Camera, DofKind, Frame, Light, Mount
 from hymeko_x.ir.values import IDENTITY, ZERO, apply, compose, inverse, rotate, unit
@@ -137,7 +137,7 @@ def _light_attributes(light: Light, pose: Pose) -> Attributes:
     """A light has a direction instead of an orientation."""
     direction = rotate(pose.quat, _DOWN)
     return {
-        "type": None if light.kind == "spot" else light.kind,
+        "type": light.kind if light.kind in LIGHTS[1:] else None,
         "pos": None if pose.xyz == ZERO else numbers(*pose.xyz),
         "dir": None if direction == _DOWN else numbers(*direction),
         "diffuse": None if light.diffuse is None else numbers(*light.diffuse),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import comb
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.text import Attributes, Text, numbers
@@ -83,11 +82,12 @@ def _coupling_attributes(arcs: tuple[RobotArc, ...], names: Printed) -> Attribut
 
 
 def _shifted(coefficients: tuple[float, ...], by: float) -> list[float]:
-    """The coefficients of p(x + by), padded with zeros to a quartic."""
-    padded = [*coefficients[:_POLYNOMIAL], *[0.0] * (_POLYNOMIAL - len(coefficients))]
-    if by == 0.0:
-        return padded
-    return [sum(padded[n] * comb(n, k) * by ** (n - k) for n in range(k, _POLYNOMIAL)) for k in range(_POLYNOMIAL)]
+    """The coefficients of p(x + by), padded with zeros to a quartic. By repeated synthetic division."""
+    shifted = [*coefficients[:_POLYNOMIAL], *[0.0] * (_POLYNOMIAL - len(coefficients))]
+    for start in range(_POLYNOMIAL - 1):
+        for power in range(_POLYNOMIAL - 2, start - 1, -1):
+            shifted[power] += shifted[power + 1] * by
+    return shifted
 
 
 def _closure_attributes(loop: Loop, first: RobotArc, second: RobotArc, names: Printed) -> Attributes:
