@@ -10,11 +10,10 @@ from hymeko_x.verify.checks.pair import POSITION, ROTATION, Pair, counted, worst
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import Array, Index, Loop
 from hymeko_x.verify.spatial import angle_between
+from hymeko_x.verify.verdict import Check
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
-
-    from hymeko_x.verify.verdict import Check
+    from collections.abc import Iterator
 
 LoopPair = tuple[Loop, Loop, bool]
 """A closure of each robot, and whether the second names the two bodies the other way round."""
@@ -39,9 +38,8 @@ def check_motion(pair: Pair) -> Iterator[Check]:
             skew.add(k, angle, rows.start)
     depth = np.sqrt(max(1, len(forward_a.levels)))
     metres, radians = pair.allowed(POSITION * max(1.0, reach), depth * max(1e-3, reach)), pair.allowed(ROTATION, depth)
-    body = _body_label(pair, ours)
-    yield worst("forward kinematics, position", "m", far.values, metres, lambda k: f"{body(k)} {pair.row_label(int(far.rows[k]))}")
-    yield worst("forward kinematics, rotation", "rad", turned.values, radians, lambda k: f"{body(k)} {pair.row_label(int(turned.rows[k]))}")
+    yield _body_check(pair, "forward kinematics, position", "m", far, metres)
+    yield _body_check(pair, "forward kinematics, rotation", "rad", turned, radians)
     if loops or findings:
         yield counted("loops", findings)
         yield worst("loop closure, position", "m", gap.values, 2 * metres, lambda k: _loop_label(pair, loops[k][0]))
@@ -69,8 +67,16 @@ def _compare_poses(poses_a: Array, poses_b: Array, first: int, far: _Peaks, turn
     turned.add(slice(None), angle_between(poses_a[..., :3, :3], poses_b[..., :3, :3]), first)
 
 
-def _body_label(pair: Pair, ours: Index) -> Callable[[int], str]:
-    return lambda k: pair.a.body_label(int(ours[k]))
+def _body_check(pair: Pair, quantity: str, unit: str, peaks: _Peaks, allowed: float) -> Check:
+    """The worst body; where that is too far, the first one down the tree that is, because that is where the difference begins."""
+    bodies = pair.match.bodies
+    last = int(peaks.values.argmax())
+    beyond = np.flatnonzero(peaks.values > allowed)
+    first = int(beyond[0]) if beyond.size else last
+    at = f"{pair.a.body_label(bodies[first][0])} {pair.row_label(int(peaks.rows[first]))}" if peaks.values[last] > 0 else ""
+    if first != last:
+        at += f", worst at {pair.a.body_label(bodies[last][0])}"
+    return Check(quantity, unit, float(peaks.values[last]), at, allowed)
 
 
 # ---- loops -----------------------------------------------------------------------------------------------------------
