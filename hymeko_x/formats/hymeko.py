@@ -230,5 +230,11 @@ TARGETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 )
 """The kinds that a reference in an edge may mean, the likeliest first; empty = any kind."""
 
-RESERVED = frozenset({"units", "rel", "seq", "concurrent", "use", "import", "as", "world", "extra", "written", "style", "inf", "nan"})
-"""Names that must be quoted to be names of elements."""
+FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro", "hymeko"})
+"""Fields of these names hold what a format said verbatim."""
+
+SETTINGS = FOREIGN | {"extra", "written", "files", "scope"}
+"""Fields that stand in the root and say something about the whole."""
+
+RESERVED = SETTINGS | {"units", "world", "style"}
+"""Names that must be quoted to be names of elements; the printer quotes the words of the grammar by itself."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import zip_longest
 
 from hymeko_x.ir.values import number_text
 from hymeko_x.language.syntax import (
@@ -34,8 +35,12 @@ def print_document(document: Document) -> str:
     lines: list[str] = []
     if document.header:
         lines.append(print_name(document.header))
-    for item in document.items:
+    for item, following in zip_longest(document.items, document.items[1:]):
         lines.extend(_lines(item))
+        if following is not None and _needs_comma(item, following):
+            lines[-1] += ","
+    if document.header and document.items and _needs_comma(Field(document.header), document.items[0]):
+        lines[0] += ","
     return "\n".join(lines) + "\n"
 
 
@@ -136,7 +141,7 @@ def _broken(items: tuple[Item, ...], width: int) -> list[Item | str]:
     run: list[Item] = []
     for item in items:
         if isinstance(item, Node | Comment):
-            parts.extend(_filled(run, width))
+            parts.extend(_filled(run, width, item))
             run = []
             parts.append(item)
         else:
@@ -145,12 +150,14 @@ def _broken(items: tuple[Item, ...], width: int) -> list[Item | str]:
     return parts
 
 
-def _filled(items: list[Item], width: int) -> list[Item | str]:
+def _filled(items: list[Item], width: int, behind: Item | None = None) -> list[Item | str]:
+    """Lines of items, each as full as the width allows; ``behind`` is what follows them."""
     lines: list[Item | str] = []
     line = ""
     for position, item in enumerate(items):
         text = print_item(item)
-        if position + 1 < len(items) and _needs_comma(item, items[position + 1]):
+        following = items[position + 1] if position + 1 < len(items) else behind
+        if following is not None and _needs_comma(item, following):
             text += ","
         if line and len(line) + 1 + len(text) > width:
             lines.append(line)

@@ -8,12 +8,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
-from hymeko_x.backends.hymeko.joints import joint_items, mimic_arcs
-from hymeko_x.backends.hymeko.parts import Context, extra_fields, part_items, sound_comment, typed, written_field
+from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
+from hymeko_x.backends.hymeko.parts import Context, extra_fields, name_of, part_items, sound_comment, typed, written_field
+from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.language.printer import print_document
-from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, QuotedName, Ref, Stereotype
+from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, Ref, Stereotype
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ def document(mechanism: Mechanism) -> Document:
     name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""
     kind = Stereotype(Ref(("graph" if plain else "robot",)))
-    node = Node(name if name else QuotedName(name), tuple(items), (kind,))
+    node = Node(name_of(name), tuple(items), (kind,))
     preceding, following = _outer_comments(mechanism)
     return Document((*preceding, node, *following), header)
 
@@ -109,7 +110,11 @@ def _order(context: Context) -> list[Id]:
 def _stands_alone(context: Context, key: Id) -> bool:
     if key in context.inline or key.kind in _INLINE_EDGES or key in context.mimics:
         return False
-    return key != WORLD or bool(context.mechanism.shapes.get(WORLD)) or WORLD in context.mechanism.extras
+    if key != WORLD:
+        return True
+    mechanism = context.mechanism
+    marked = WORLD in mechanism.extras or WORLD in mechanism.notations or WORLD in mechanism.layout
+    return marked or bool(mechanism.shapes.get(WORLD)) or not mechanism.graph.incidence.get(WORLD)
 
 
 def _element(context: Context, key: Id) -> Item:
@@ -120,12 +125,16 @@ def _element(context: Context, key: Id) -> Item:
     if isinstance(edge.data, parts.Joint):
         kind, items = joint_items(context, key)
         return context.node(key, items, kind, edge=True)
-    return context.node(key, part_items(context, key, edge.data, edge.arcs), typed(key.kind), edge=True)
+    items = part_items(context, key, edge.data, edge.arcs)
+    if isinstance(edge.data, parts.Loop):
+        items.extend(dof_node(dof) for dof in edge.data.dofs)
+    return context.node(key, items, typed(key.kind), edge=True)
 
 
 def _vertex(context: Context, key: Id, part: parts.VertexPart) -> Item:
     if isinstance(part, parts.Body | parts.World):
-        return context.node(key, body_items(context, key, part), "")
-    if isinstance(part, parts.Datum) and not part.parameters and key not in context.mechanism.extras:
-        return Field(key.name)
+        node = context.node(key, body_items(context, key, part), "")
+        return node if node.items or key.name not in AXES else context.node(key, [], "link")
+    if isinstance(part, parts.Datum) and not part.parameters and not context.is_marked(key):
+        return Field(name_of(key.name))
     return context.node(key, part_items(context, key, part, ()), typed(key.kind))

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.hymeko.parts import Context, pose_value, word_fields
+from hymeko_x.backends.hymeko.parts import Context, limit_items, pose_value, word_fields
 from hymeko_x.formats.hymeko import (
     AXES,
     CALIBRATION_WORDS,
     DEFAULT_AXIS,
     DOF_WORDS,
     JOINT_TYPES,
-    LIMIT_WORDS,
     MOVES,
     SAFETY_WORDS,
     TARGETS,
-    Word,
 )
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, numbers_weight
@@ -42,7 +40,7 @@ def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
     dofs = view.joint.dofs
     kind = JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
     if kind == "compound":
-        items.extend(_dof_node(dof) for dof in dofs)
+        items.extend(dof_node(dof) for dof in dofs)
     else:
         items.extend(item for dof in dofs for item in _dof_items(dof))
     items.extend(_mimic(context, arc) for arc in context.mimics.get(Id("coupling", key.name), ()))
@@ -63,8 +61,9 @@ def _mimic(context: Context, arc: RobotArc) -> ArcItem:
 def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
     """The couplings that the following joint itself can say: named like it, active, with nothing beside them."""
     found: dict[Id, tuple[RobotArc, ...]] = {}
+    spoken_of = {*mechanism.extras, *mechanism.notations, *mechanism.layout}
     for key, coupling, arcs in mechanism.edges(parts.Coupling):
-        if key in mechanism.extras or key in mechanism.notations or not coupling.active or len(arcs) < 2:
+        if key in spoken_of or key in mechanism.graph.incidence or not coupling.active or len(arcs) < 2:
             continue
         follower, *leaders = arcs
         sound = follower.sign > 0 and numbers_weight(follower) == (1.0,) and not follower.role
@@ -77,18 +76,14 @@ def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
 # ---- dofs ----------------------------------------------------------------------------------------------------------------
 
 
-def _dof_node(dof: parts.Dof) -> Node:
+def dof_node(dof: parts.Dof) -> Node:
+    """The block of one of several dofs."""
     return Node("dof", (Field("moves", _MOVE_NAMES[dof.kind]), *_dof_items(dof)))
 
 
 def _dof_items(dof: parts.Dof) -> list[Item]:
     items = _axis(dof)
-    limits = dof.limits
-    words: tuple[Word, ...] = LIMIT_WORDS
-    if limits.lower is not None and limits.upper is not None:
-        items.append(Field("limit", (limits.lower, limits.upper)))
-        words = LIMIT_WORDS[2:]
-    items.extend(word_fields(limits, words))
+    items.extend(limit_items(dof.limits))
     items.extend(word_fields(dof, DOF_WORDS))
     if dof.safety is not None:
         items.append(Node("safety", tuple(word_fields(dof.safety, SAFETY_WORDS))))

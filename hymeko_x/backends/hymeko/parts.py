@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, cast
 
-from hymeko_x.formats.hymeko import NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, TARGETS, Word
+from hymeko_x.formats.hymeko import LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, TARGETS, Word
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _ALL_KINDS = tuple(KINDS.values())
 _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
 _FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
-_SETTINGS = _FOREIGN | {"hymeko", "extra", "written", "kind", "lower", "upper", "effort", "moves", "scope"}
+_SETTINGS = _FOREIGN | {"hymeko", "extra", "written", "kind", "moves", "scope", "limit", "limits", "range"} | {w.word for w in LIMIT_WORDS}
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,10 @@ class Context:
         for key in (*graph.vertices, *graph.edges):
             self.names.setdefault(key.name, []).append(key.kind)
 
+    def is_marked(self, key: Id) -> bool:
+        """Whether something is said beside the element: extras or notations."""
+        return bool(self.mechanism.extras.get(key)) or bool(self.mechanism.notations.get(key))
+
     def node(self, key: Id, items: list[Item], kind: str, *, edge: bool = False) -> Node:
         """An element's node with its notations and extras at the end of its block."""
         notations = self.mechanism.notations.get(key)
@@ -49,15 +53,16 @@ class Context:
             items.append(written_field(notations))
         items.extend(extra_fields(self.mechanism.extras.get(key, ())))
         stereotypes = (Stereotype(Ref((kind,))),) if kind else ()
-        return Node(name_of(key), tuple(items), stereotypes, edge="@" if edge else "")
+        name = key.name if key == WORLD else name_of(key.name)
+        return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
 
     def ref(self, target: Id, kinds: tuple[str, ...], direction: str = "") -> Ref:
         """A reference: by name alone where the name means the target, else with its kind before it."""
         if target == WORLD:
-            path = ("world",) if "body" not in kinds or "body" not in self.names.get("world", ()) else ("world", "world")
-            return Ref(path, direction)
+            alone = self.names.get("world") == ["world"]
+            return Ref(("world",) if alone else ("world", "world"), direction)
         first = next((kind for kind in kinds or _ALL_KINDS if kind in self.names.get(target.name, ())), None)
-        name = name_of(target)
+        name = name_of(target.name)
         return Ref((name,) if first == target.kind else (target.kind, name), direction)
 
     def arc(self, kind: str, arc: RobotArc) -> ArcItem:
@@ -72,9 +77,9 @@ class Context:
         return ArcItem(self.ref(arc.target, TARGETS[kind], _DIRECTIONS[arc.sign]), arc.role, weight)
 
 
-def name_of(key: Id) -> str:
-    """The name, quoted where it would mean something else."""
-    return QuotedName(key.name) if key.name in RESERVED else key.name
+def name_of(name: str) -> str:
+    """The name of an element, quoted where it would mean something else."""
+    return QuotedName(name) if name in RESERVED else name
 
 
 def typed(kind: str) -> str:
@@ -102,6 +107,13 @@ def word_fields(part: object, words: Iterable[Word]) -> list[Item]:
     return found
 
 
+def limit_items(limits: parts.Limits) -> list[Item]:
+    """``limit [lower upper]`` where there are both, and a field for every other bound."""
+    if limits.lower is None or limits.upper is None:
+        return word_fields(limits, LIMIT_WORDS)
+    return [Field("limit", (limits.lower, limits.upper)), *word_fields(limits, LIMIT_WORDS[2:])]
+
+
 def _defaults(part: type) -> dict[str, object]:
     return {item.name: item.default for item in fields(part)}
 
@@ -127,7 +139,7 @@ def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePar
         said = _named(said, key)
     items.extend(_uri_fields(context, said, key.kind))
     if isinstance(part, parts.Tendon):
-        items.extend(Field(name, value) for name in ("lower", "upper", "effort") if (value := getattr(part.limits, name)) is not None)
+        items.extend(limit_items(part.limits))
     if words.open:
         taken = {word.word for word in words.words} | _SETTINGS
         items.extend(

@@ -7,23 +7,26 @@ in a ``graph`` they are plain; in an untyped root they are what their place in t
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, TypeGuard, cast
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.formats.hymeko import ALIASES, AXES, NAMED_AFTER_ID, PARTS, TARGETS
+from hymeko_x.formats.hymeko import ALIASES, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
 from hymeko_x.frontends.hymeko.block import Block, Context, read_extra, read_units, read_written
-from hymeko_x.frontends.hymeko.bodies import read_body
+from hymeko_x.frontends.hymeko.bodies import build_uri, read_body
 from hymeko_x.frontends.hymeko.build import Build
 from hymeko_x.frontends.hymeko.infer import infer_kinds
-from hymeko_x.frontends.hymeko.joints import read_joint
+from hymeko_x.frontends.hymeko.joints import read_dofs, read_joint, read_limits
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
 from hymeko_x.language.expand import Element, Expanded, expand
 from hymeko_x.language.parser import parse
-from hymeko_x.language.syntax import Comment, Field, Node, QuotedName
+from hymeko_x.language.printer import print_item
+from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, QuotedName
 
 if TYPE_CHECKING:
+    from collections.abc import Container
+
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.graph import Arc
     from hymeko_x.ir.mechanism import Mechanism
@@ -31,7 +34,7 @@ if TYPE_CHECKING:
     from hymeko_x.source import Source
 
 _EDGE_KINDS = frozenset(TARGETS)
-_PARTS_WITH_READERS = frozenset({"body", "joint", "shape"})
+_WITH_SHAPES = frozenset({"body", "world"})  # read first: their shapes have no declaration of their own
 
 
 def read(source: Source, report: Report) -> Mechanism:
@@ -58,8 +61,8 @@ def build(expanded: Expanded, file: str, report: Report) -> Mechanism:
     elements = [item for item in expanded.items if isinstance(item, Element) and not _is_units(item.node)]
     kinds = infer_kinds(expanded, elements)
     _read_settings(build, expanded)
-    declared = _declare(build, elements, kinds)
-    for key, element in declared:
+    declared = _declare(build, expanded, kinds)
+    for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _WITH_SHAPES):
         _read_element(build, key, element)
     if expanded.root and expanded.root != expanded.name:
         build.notations.setdefault(ROOT, {})["hymeko.root"] = expanded.root
@@ -89,8 +92,8 @@ def _read_settings(build: Build, expanded: Expanded) -> None:
             place += not _is_units(item.node)
         elif isinstance(item.item, Field):
             place += _read_setting(build, item.item, place)
-        elif isinstance(item.item, Comment):
-            _keep(build, Extra("comment", "", item.item.text, place))
+        else:
+            _keep(build, _loose_extra(build, item.item, place))
             place += 1
     for number, comment in enumerate(expanded.preceding):
         _keep(build, Extra("comment", "preceding", comment.text, number))
@@ -102,20 +105,32 @@ def _keep(build: Build, extra: Extra) -> None:
     build.extras[ROOT] = (*build.extras.get(ROOT, ()), extra)
 
 
+def _loose_extra(build: Build, item: ArcItem | Comment, place: int) -> Extra:
+    """A comment, or an arc that stands in no edge, as it is."""
+    if isinstance(item, Comment):
+        return Extra("comment", "", item.text, place)
+    message = f"the arc to '{item.ref.dotted}' stands in no edge; it is kept as it is"
+    build.context.report.warn(codes.UNKNOWN_TYPE, message, build.context.origin(item))
+    return Extra("hymeko", "", print_item(item), place)
+
+
+def _is_setting(field: Field) -> bool:
+    """Whether a field of the root says something about the whole; any other one is a vertex."""
+    return field.name in SETTINGS and not isinstance(field.name, QuotedName)
+
+
 def _read_setting(build: Build, field: Field, place: int) -> int:
     """Read one; returns how many places at top level it takes."""
-    from hymeko_x.frontends.hymeko.block import FOREIGN
-
-    if field.name == "files" and isinstance(field.value, str):
-        build.files = field.value
+    if not _is_setting(field):
+        return 1
+    if field.name == "files":
+        build.files = build.context.text(field.value, field)
     elif field.name == "written":
         build.notations.setdefault(ROOT, {}).update(read_written(field, build.context))
     elif field.name in FOREIGN or field.name == "extra":
         extra = read_extra(field, build.context)
         _keep(build, extra if extra.path else replace(extra, index=place))
         return 0 if extra.path else 1
-    elif field.name not in ("scope",):
-        _read_loose(build, field)
     return 0
 
 
@@ -135,15 +150,24 @@ def _read_loose(build: Build, field: Field) -> None:
 # ---- elements ----------------------------------------------------------------------------------------------------------------
 
 
-def _declare(build: Build, elements: list[Element], kinds: list[str]) -> list[tuple[Id, Element]]:
+def _declare(build: Build, expanded: Expanded, kinds: list[str]) -> list[tuple[Id, Element]]:
     """Every element's id, before anything is read, so that references may look ahead."""
     declared: list[tuple[Id, Element]] = []
-    for element, kind in zip(elements, kinds, strict=True):
+    remaining = iter(kinds)
+    for element in expanded.items:
+        if not isinstance(element, Element):
+            if isinstance(element.item, Field) and not _is_setting(element.item):
+                _read_loose(build, element.item)
+            continue
+        if _is_units(element.node):
+            continue
+        kind = next(remaining)
         if kind == "axis":
             build.directions[element.name] = _direction(build, element)
             continue
         if kind == "world":
             build.vertices[WORLD] = parts.World()
+            build.layout.append(WORLD)
             declared.append((WORLD, element))
             continue
         declared.append((build.declare(kind, element), element))
@@ -170,15 +194,20 @@ def _read_element(build: Build, key: Id, element: Element) -> None:
         _read_part(build, key, element)
 
 
+def _is_field(item: Item, names: Container[str]) -> TypeGuard[Field]:
+    """Whether it is a field of one of these names, unquoted."""
+    return isinstance(item, Field) and item.name in names and not isinstance(item.name, QuotedName)
+
+
 def _preset(element: Element, name: str) -> str | None:
     for item in element.node.items:
-        if isinstance(item, Field) and item.name == name and isinstance(item.value, str):
+        if _is_field(item, (name,)) and isinstance(item.value, str):
             return str(item.value)
     return None
 
 
 def _without(element: Element, name: str) -> Element:
-    items = tuple(item for item in element.node.items if not (isinstance(item, Field) and item.name == name))
+    items = tuple(item for item in element.node.items if not _is_field(item, (name,)))
     return element._replace(node=element.node._replace(items=items))
 
 
@@ -190,14 +219,16 @@ def _read_part(build: Build, key: Id, element: Element) -> None:
     values = block.take_words(words.words)
     if key.kind in NAMED_AFTER_ID and block.take("unnamed") is None:
         values.setdefault("name", key.name)
+    if isinstance(uri := values.get("uri"), str):
+        values["uri"] = build_uri(build, uri)
+    if key.kind == "tendon":
+        values["limits"] = read_limits(block, "length")
+    if key.kind == "loop":
+        values["dofs"] = read_dofs(build, block, element.scope)
     if words.open:
         values["parameters"] = (*block.take_rest(build.context.parameter), *_nested_parameters(build, block))
-    if key.kind in ("tendon",):
-        values["limits"] = _tendon_limits(values)
-    if key.kind == "loop":
-        values["dofs"] = ()
     try:
-        part = words.part(**{name: value for name, value in values.items() if not (name == "dofs" and value == ())})
+        part = words.part(**values)
     except TypeError as error:
         missing = ", ".join(f"'{word.word}'" for word in words.words if word.attribute not in values)
         raise build.context.refuse(element.node, f"{key} needs {missing}") from error
@@ -212,17 +243,7 @@ def _read_part(build: Build, key: Id, element: Element) -> None:
 
 
 def _arc(build: Build, key: Id, item: object, element: Element) -> Arc[Id, parts.Weight]:
-    from hymeko_x.language.syntax import ArcItem
-
     return build.arc(key.kind, cast("ArcItem", item), element.scope)
-
-
-def _tendon_limits(values: dict[str, object]) -> parts.Limits:
-    """``limits`` of a tendon stand among its parameters as lower, upper, effort."""
-    found = dict(cast("parts.Parameters", values.get("parameters", ())))
-    limits = {name: found.pop(name) for name in ("lower", "upper", "effort") if name in found}
-    values["parameters"] = tuple(found.items())
-    return parts.Limits(**limits)  # type: ignore[arg-type]
 
 
 def _renamed(items: tuple[Item, ...], kind: str) -> tuple[Item, ...]:
@@ -230,7 +251,7 @@ def _renamed(items: tuple[Item, ...], kind: str) -> tuple[Item, ...]:
     aliases = ALIASES.get(kind)
     if not aliases:
         return items
-    return tuple(item._replace(name=aliases.get(item.name, item.name)) if isinstance(item, Field) else item for item in items)
+    return tuple(item._replace(name=aliases[item.name]) if _is_field(item, aliases) else item for item in items)
 
 
 def _nested_parameters(build: Build, block: Block) -> list[tuple[str, float | str | tuple[float, ...]]]:

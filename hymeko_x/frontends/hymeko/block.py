@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
+from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.ir.mechanism import Extra
 from hymeko_x.ir.values import Pose, Vec3, pose, pose_from_rpy
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, QuotedName, Ref, Value, is_list
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from hymeko_x.formats.hymeko import Word
 
 Parameter = float | str | tuple[float, ...]
-
-FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro", "hymeko"})
-"""Fields of these names hold what a format said verbatim."""
 
 DEFAULT_UNITS: Mapping[str, float] = MappingProxyType({"length": 1.0, "angle": unit_factor("deg") or 0.0, "mass": 1.0, "time": 1.0})
 """Plain numbers are metres, kilograms, seconds and, as published, degrees."""

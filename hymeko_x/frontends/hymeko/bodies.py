@@ -200,7 +200,7 @@ def _inline_mesh(build: Build, block: Block, uri: str, item: Field) -> Id:
 
 def build_uri(build: Build, uri: str) -> str:
     """The uri of a file: behind the mechanism's ``files`` prefix where it begins with ``~/``."""
-    return build.files + uri[2:] if uri.startswith("~/") else uri
+    return build.files + uri[2:] if build.files and uri.startswith("~/") else uri
 
 
 def _material(build: Build, block: Block, key: Id, scope: Scope) -> Id | None:

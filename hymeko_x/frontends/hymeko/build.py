@@ -11,7 +11,7 @@ from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id, Mechanism, Names
 from hymeko_x.ir.parts import EdgePart, VertexPart, Weight, World
-from hymeko_x.language.syntax import ArcItem, is_list
+from hymeko_x.language.syntax import ArcItem, QuotedName, is_list
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin
@@ -114,7 +114,7 @@ class Build:
         for kind in kinds or _ALL_KINDS:
             if kind in self.kinds.get(name, ()):
                 return Id(kind, name)
-            if kind == "world" and name == "world":
+            if kind == "world" and name == "world" and not isinstance(path[-1], QuotedName):
                 self.vertices.setdefault(WORLD, World())
                 return WORLD
         return None

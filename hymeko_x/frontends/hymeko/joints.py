@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.language.syntax import ArcItem, Item
 
 _BODIES = ("body", "world")
+_CHILD_ROLES = ("", "child", "at")
 _TURNING = frozenset({parts.DofKind.HINGE, parts.DofKind.BALL, parts.DofKind.SCREW})
 
 
@@ -30,11 +31,10 @@ def read_joint(build: Build, key: Id, element: Element, moves: str | None) -> No
     scope = element.scope
     block.take("kind"), block.take("moves")
     mimic = _take_all(block, "mimic")
-    child_frame = block.take_role("at")
     axis_arc = _take_axis_arc(build, block, scope)
     parent, child, told = _ends(build, key, block, scope, element.node)
-    pose, child_pose = _poses(build, parent, child, child_frame, key)
-    target = build.target(child_frame.ref if child_frame and child is None else child.ref, scope, _BODIES, element.node)  # type: ignore[union-attr]
+    pose, child_pose = _poses(build, parent, child, key)
+    target = build.target(child.ref, scope, _BODIES, child)
     dofs = _dofs(build, block, scope, told or moves, axis_arc, element.node)
     above = build.target(parent.ref, scope, _BODIES, parent)
     build.edges[key] = joint_edge(parts.Joint(dofs), above, target, pose, child_pose)
@@ -58,12 +58,11 @@ def _polynomial(build: Build, arc: ArcItem) -> tuple[float, ...]:
 # ---- ends ----------------------------------------------------------------------------------------------------------------
 
 
-def _ends(build: Build, key: Id, block: Block, scope: Scope, item: Item) -> tuple[ArcItem, ArcItem | None, str | None]:
+def _ends(build: Build, key: Id, block: Block, scope: Scope, item: Item) -> tuple[ArcItem, ArcItem, str | None]:
     """The parent's arc, the child's arc, and what the child's role tells about the joint's type."""
     parents = [arc for arc in block.arcs if sign_of(arc) > 0 and arc.role in ("", "parent")]
-    children = [arc for arc in block.arcs if sign_of(arc) < 0 and (arc.role in ("", "child") or arc.role.upper() in ROLE_MOVES)]
-    has_framed_child = any(arc.role == "at" for arc in block.arcs)
-    if len(parents) != 1 or (len(children) != 1 and not has_framed_child):
+    children = [arc for arc in block.arcs if sign_of(arc) < 0 and (arc.role in _CHILD_ROLES or arc.role.upper() in ROLE_MOVES)]
+    if len(parents) != 1 or len(children) != 1:
         message = f"{key} has {len(parents)} parents and {len(children)} children; a joint joins one '+ parent' and one '- child'"
         raise refuse(codes.MISSING_PART, message, build.context.origin(item), element=str(key))
     for arc in (*parents, *children):
@@ -72,19 +71,20 @@ def _ends(build: Build, key: Id, block: Block, scope: Scope, item: Item) -> tupl
     return parents[0], child, ROLE_MOVES.get(child.role.upper())
 
 
-def _poses(build: Build, parent: ArcItem, child: ArcItem | None, framed: ArcItem | None, key: Id) -> tuple[Pose, Pose]:
+def _poses(build: Build, parent: ArcItem, child: ArcItem, key: Id) -> tuple[Pose, Pose]:
     """The joint frame in the parent, and in the child.
 
     A weight on the parent's arc is the joint frame in the parent; so is one on the child's arc, as other published
-    examples write it. The joint frame in the child is the weight of an arc of role ``at``.
+    examples write it. The joint frame in the child is the weight of a child's arc of role ``at``.
     """
     context = build.context
-    weighted = [arc for arc in (parent, child) if arc is not None and arc.weight is not None]
+    framed = child.role == "at"
+    weighted = [arc for arc in (parent, child) if arc.weight is not None and not (framed and arc is child)]
     if len(weighted) == 2:
         hint = "write the joint frame in the child as [pose] at - child"
         raise context.refuse(weighted[1], f"{key} has a pose on both arcs; it is not clear which of them is meant", hint=hint)
     pose = context.pose(weighted[0].weight, weighted[0]) if weighted else IDENTITY
-    child_pose = context.pose(framed.weight, framed) if framed is not None else IDENTITY
+    child_pose = context.pose(child.weight, child) if framed and child.weight is not None else IDENTITY
     return pose, child_pose
 
 
@@ -95,11 +95,17 @@ def _dofs(
     build: Build, block: Block, scope: Scope, moves: str | None, axis_arc: tuple[Vec3, Written | None] | None, item: Item
 ) -> tuple[parts.Dof, ...]:
     """The dofs in order: from `dof` blocks, or the single one that the joint's type and fields describe."""
-    nodes = [node for node in block.nodes if node.name == "dof"]
-    if nodes or moves == "several":
-        block.nodes = [node for node in block.nodes if node.name != "dof"]
-        return tuple(_dof_block(build, Block(node.items, build.context), scope, node) for node in nodes)
+    dofs = read_dofs(build, block, scope)
+    if dofs or moves == "several":
+        return dofs
     return tuple(_dof(build, block, scope, kind, axis_arc, item) for kind in MOVES[moves or "hinge"])
+
+
+def read_dofs(build: Build, block: Block, scope: Scope) -> tuple[parts.Dof, ...]:
+    """What the `dof` blocks say, in order."""
+    nodes = [node for node in block.nodes if node.name == "dof"]
+    block.nodes = [node for node in block.nodes if node.name != "dof"]
+    return tuple(_dof_block(build, Block(node.items, build.context), scope, node) for node in nodes)
 
 
 def _dof_block(build: Build, block: Block, scope: Scope, item: Item) -> parts.Dof:
@@ -119,7 +125,7 @@ def _dof(
     return parts.Dof(
         kind,
         axis,
-        _limits(block, motion),
+        read_limits(block, motion),
         safety=_safety(block, motion, item),
         calibration=_calibration(block, motion),
         written=written,
@@ -127,7 +133,8 @@ def _dof(
     )
 
 
-def _limits(block: Block, motion: str) -> parts.Limits:
+def read_limits(block: Block, motion: str) -> parts.Limits:
+    """``limit [lower upper]`` and the other bounds; ``motion`` is the dimension of the coordinate."""
     context = block.context
     span = block.take("limit", "limits", "range")
     found = block.take_words(LIMIT_WORDS, motion)
@@ -168,7 +175,7 @@ def _axis(build: Build, block: Block, scope: Scope) -> tuple[Vec3, Written | Non
         return None
     if isinstance(item.value, Ref):
         sign = -1.0 if item.value.direction == "-" else 1.0
-        found = _direction(build, item.value, scope)
+        found = build.directions.get(scope.resolve(item.value.path) or "") or AXES.get(item.value.path[-1])
         if found is None:
             raise build.context.refuse(item, f"'{item.value.dotted}' is not a direction; there are {', '.join(AXES)} and [x y z]")
         return _signed(found, sign), None
