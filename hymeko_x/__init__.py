@@ -5,6 +5,7 @@
     robot = hx.load("robot.urdf")
     hx.dump(robot, "robot.xml")
     print(hx.dumps(robot, "hymeko"))
+    print(hx.verify("robot.urdf", "robot.xml").verdict)
     result = hx.convert("a.urdf", "b.xml", packages={"a_description": "..."})
 
 The words are those of `json` and `yaml`. Everything is loaded when it is first used.
@@ -20,13 +21,15 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Diagnostic, Refusal, Report, Severity
     from hymeko_x.ir.diff import diff
     from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.verify import verify
 
-__all__ = ["Diagnostic", "Id", "Mechanism", "Refusal", "Report", "Severity", "convert", "diff", "dump", "dumps", "load", "loads"]
+__all__ = ["Diagnostic", "Id", "Mechanism", "Refusal", "Report", "Severity", "convert", "diff", "dump", "dumps", "load", "loads", "verify"]
 
 _HOMES = {
     **dict.fromkeys(("convert", "dump", "dumps", "load", "loads"), "hymeko_x.api"),
     **dict.fromkeys(("Diagnostic", "Refusal", "Report", "Severity"), "hymeko_x.diagnostics"),
     "diff": "hymeko_x.ir.diff",
+    "verify": "hymeko_x.verify",
     **dict.fromkeys(("Id", "Mechanism"), "hymeko_x.ir.mechanism"),
 }
 

@@ -20,6 +20,7 @@ VERBS = {
     "export": ("hymeko_x.cli.export", "read HyMeKo (standard input by default), write another format"),
     "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
     "diff": ("hymeko_x.cli.diff", "what differs between two robots, element by element"),
+    "verify": ("hymeko_x.cli.verify", "are two files the same robot? asked of the formats' own engines"),
     "info": ("hymeko_x.cli.info", "what is in a file"),
     "formats": ("hymeko_x.cli.formats", "the formats that can be read and written"),
     "explain": ("hymeko_x.cli.explain", "what a code such as HX044 means"),

@@ -35,12 +35,13 @@ def verify(
     structure: bool = False,
     packages: Packages | None = None,
     search_path: tuple[Path, ...] = (),
+    arguments: Mapping[str, str] | None = None,
 ) -> Verdict:
     """Whether two robots (files, mechanisms or models) are the same one.
 
     They are compared at the zero pose, at their limits and at ``samples`` random configurations drawn with ``seed``. Bodies
     are matched by name, or with ``structure`` by the shape of the tree. ``packages`` says where ``package://NAME`` is, ``search_path`` in
-    which folders packages stand.
+    which folders packages stand, ``arguments`` the values of a xacro file's arguments.
 
     Raises: Refusal HX001, HX003 or HX301 when a file is not there, its format unknown or its engine not installed. A file
     that its engine refuses makes the verdict "not comparable".
@@ -52,7 +53,7 @@ def verify(
     reasons: list[str] = []
     for robot in (a, b):
         try:
-            models.append(model_of(robot, packages=packages, search_path=search_path))
+            models.append(model_of(robot, packages=packages, search_path=search_path, arguments=arguments))
         except Refusal as refusal:
             if refusal.diagnostic.code != codes.ENGINE_REFUSED:
                 raise
@@ -62,7 +63,13 @@ def verify(
     return compare(models[0], models[1], samples=samples, seed=seed, structure=structure)
 
 
-def model_of(robot: Robot, *, packages: Packages | None = None, search_path: tuple[Path, ...] = ()) -> KinematicModel:
+def model_of(
+    robot: Robot,
+    *,
+    packages: Packages | None = None,
+    search_path: tuple[Path, ...] = (),
+    arguments: Mapping[str, str] | None = None,
+) -> KinematicModel:
     """A robot as its reference engine sees it; a mechanism in memory as it is.
 
     Raises: Refusal, as :func:`verify`, and HX302 when the engine refuses the file.
@@ -78,7 +85,8 @@ def model_of(robot: Robot, *, packages: Packages | None = None, search_path: tup
         return from_mechanism(robot)
     from hymeko_x.verify.readers import Places, read
 
-    return read(Path(robot), Places({name: Path(folder) for name, folder in (packages or {}).items()}, search_path))
+    folders = {name: Path(folder) for name, folder in (packages or {}).items()}
+    return read(Path(robot), Places(folders, search_path, arguments or {}))
 
 
 class _Callable(ModuleType):

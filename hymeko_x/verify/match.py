@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 BODIES, JOINTS, BASE = "bodies", "joints", "base"
 
+_SAME_PLACE = 1e-5  # of a body that must have been renamed, because it is where the other was and weighs as much
 _SAME_MOTION = {Kind.SCREW: Kind.HINGE}  # a screw's angle is the coordinate of the hinge that stands for it
 
 
@@ -152,7 +153,12 @@ def _counterpart(a: KinematicModel, b: KinematicModel, i: int, free: Sequence[in
         if len(named) == 1:
             return named[0]
     unnamed = a.bodies[i].name is None
-    alike = [j for j in free if _alike(a.bodies[i], b.bodies[j]) and (unnamed or b.bodies[j].name is None or len(rivals) == len(free))]
+    alike = [
+        j
+        for j in free
+        if _kinds(a.bodies[i]) == _kinds(b.bodies[j])
+        and (unnamed or b.bodies[j].name is None or (len(rivals) == len(free) and _distance(a.bodies[i], b.bodies[j]) < _SAME_PLACE))
+    ]
     return min(alike, key=lambda j: _distance(a.bodies[i], b.bodies[j]), default=None)
 
 
@@ -162,10 +168,6 @@ def _joint_names(body: Body) -> tuple[str, ...]:
 
 def _kinds(body: Body) -> tuple[Kind, ...]:
     return tuple(dof.kind for dof in body.joint.dofs)
-
-
-def _alike(a: Body, b: Body) -> bool:
-    return _kinds(a) == _kinds(b)
 
 
 def _distance(a: Body, b: Body) -> float:
