@@ -60,11 +60,21 @@ class Node:
 
     @property
     def subject(self) -> str:
-        """The element of the mechanism that the node belongs to, in words: ``joint 'elbow'``; empty for the root's own."""
-        node: Node | None = self
-        while node is not None and node.owner is None:
+        """What the node belongs to, in the words of its file: ``joint 'elbow'``; the root element if to nothing else."""
+        node = self._owning()
+        return f"<{node.tag}>" if node.owner is None else f"{node.tag} '{node.owner.name}'"
+
+    @property
+    def about(self) -> str:
+        """The element of the mechanism that the node belongs to, in words; empty for the mechanism itself."""
+        owner = self._owning().owner
+        return "" if owner is None else str(owner)
+
+    def _owning(self) -> Node:
+        node = self
+        while node.owner is None and node._parent is not None:
             node = node._parent
-        return "" if node is None else str(node.owner)
+        return node
 
     # ---- taking ----------------------------------------------------------------------------------------------------------
 
@@ -94,9 +104,11 @@ class Node:
             self._pop(tag)
 
     def words(self) -> str:
-        """The text of an element without children, stripped."""
+        """The text of the element, stripped; none, and nothing taken, where elements stand between the words."""
+        if any(isinstance(tag, str) for tag in self._kids):
+            return ""
         self._words_taken = True
-        return (self.element.text or "").strip()
+        return "".join([self.element.text or "", *(comment.tail or "" for comment in self.element)]).strip()
 
     def put_back(self, child: Node) -> None:
         """Undo the taking of a child, with all that was taken from it: it becomes an extra as a whole."""
@@ -151,9 +163,9 @@ class Node:
         """The extras of this node itself: attributes, then loose text and children in their order."""
         for step, value in self._left_attributes():
             yield Extra(format_name, _below(path, step), value)
-        if not self._words_taken:
-            for index, text in texts.get(self.element, ()):
-                yield Extra(format_name, _below(path, "text()"), text, index)
+        if not self._words_taken and self.element in texts:
+            index, text = texts[self.element]
+            yield Extra(format_name, _below(path, "text()"), text, index)
         yield from (Extra(format_name, path, verbatim(element), index) for index, element in self._left_children(comments=comments))
 
     def _left_children(self, *, comments: bool) -> Iterator[tuple[int, Any]]:
@@ -212,7 +224,7 @@ def _place_of(item: tuple[int, Any]) -> int:
     return item[0]
 
 
-Texts = dict[Any, list[tuple[int, str]]]
+Texts = dict[Any, tuple[int, str]]
 
 
 class Leftovers:
@@ -255,17 +267,25 @@ class Leftovers:
 
 
 def _loose_texts(root: Any) -> Texts:
-    """The non-blank text of each element, with its place among the element's children."""
-    found: Texts = {}
+    """The non-blank text of each element in one piece, with the place of its beginning among the element's children."""
+    pieces: dict[Any, list[str]] = {}
+    first: dict[Any, Any] = {}
     for text in _words_in(root):
         near = text.getparent()
-        if text.is_tail:
-            parent = near.getparent()
-            if parent is not None:
-                found.setdefault(parent, []).append((parent.index(near) + 1, text.strip()))
-        else:
-            found.setdefault(near, []).append((0, text.strip()))
-    return found
+        holder = near.getparent() if text.is_tail else near
+        if holder is None:
+            continue
+        pieces.setdefault(holder, []).append(text.strip())
+        first.setdefault(holder, near)
+    return {holder: (_index_behind(first[holder], holder, root), "\n".join(said)) for holder, said in pieces.items()}
+
+
+def _index_behind(near: Any, holder: Any, root: Any) -> int:
+    """How many children stand up to this one, among which the comments count at top level only."""
+    if near is holder:
+        return 0
+    before = [near, *near.itersiblings(preceding=True)]
+    return sum(1 for element in before if holder is root or isinstance(element.tag, str))
 
 
 def _below(path: str, step: str) -> str:
@@ -339,15 +359,11 @@ def _report_bad(node: Node, attribute: str, text: str, count: int, report: Repor
     left_over = "${" in text or "$(" in text
     report.error(
         codes.LEFTOVER_TEMPLATE if left_over else codes.BAD_NUMBER,
-        f"{_of(node)}<{node.tag} {attribute}> is '{shortened(text)}', expected {expected}; {instead}, and the text is kept as written",
+        f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', expected {expected}; {instead}, and the text is kept as written",
         node.origin,
-        element=node.subject,
+        element=node.about,
         hint="expand the file with xacro first" if left_over else "",
     )
-
-
-def _of(node: Node) -> str:
-    return f"{node.subject}: " if node.subject else ""
 
 
 def shortened(text: str, limit: int = 60) -> str:

@@ -49,9 +49,14 @@ def parse(source: Source, report: Report) -> Document:
     root = _read(source, report)
     _check_doctype(root, source, report)
     _drop_default_namespace(root)
-    before = [verbatim(node) for node in root.itersiblings(preceding=True)]
-    after = [verbatim(node) for node in root.itersiblings()]
+    before = [verbatim(node) for node in root.itersiblings(preceding=True) if not _is_declaration(node)]
+    after = [verbatim(node) for node in root.itersiblings() if not _is_declaration(node)]
     return Document(Node(root, source.name), tuple(reversed(before)), tuple(after))
+
+
+def _is_declaration(node: Any) -> bool:
+    """Whether a recovered tree took a misplaced XML declaration for a processing instruction."""
+    return node.tag is etree.PI and node.target.lower() == "xml"
 
 
 def _read(source: Source, report: Report) -> Any:
@@ -127,15 +132,27 @@ def _place(source: Source, error: Exception) -> Origin:
 
 
 def _tidy(root: Any) -> None:
-    """Make a recovered tree writable again: no ``--`` in comments, no attribute twice."""
-    for element in root.iter():
-        if element.tag is etree.Comment:
+    """Make a recovered tree writable again: no ``--`` in comments, names that are names, no attribute twice."""
+    for element in [*root.itersiblings(preceding=True), *root.iter(), *root.itersiblings()]:
+        if _is_declaration(element) and element.getparent() is not None:
+            element.getparent().remove(element)
+        elif element.tag is etree.Comment:
             element.text = re.sub("-(?=-)|-$", "- ", element.text or "")
-        elif isinstance(element.tag, str) and len(set(element.keys())) < len(element.keys()):
-            values = dict(reversed(element.items()))
-            for name in element.keys():  # noqa: SIM118 - a list with the repetitions
-                del element.attrib[name]
-            element.attrib.update(reversed(values.items()))
+        elif isinstance(element.tag, str):
+            if not _NAME.fullmatch(element.tag):
+                element.tag = "_" + re.sub(r"[^\w.-]", "_", element.tag)
+            _tidy_attributes(element)
+
+
+def _tidy_attributes(element: Any) -> None:
+    items = element.items()
+    good = {name: value for name, value in reversed(items) if _NAME.fullmatch(name)}
+    if len(good) == len(items):
+        return
+    for name, _ in items:
+        del element.attrib[name]
+    for name, value in reversed(good.items()):
+        element.set(name, value)
 
 
 def _check_doctype(root: Any, source: Source, report: Report) -> None:
@@ -159,6 +176,7 @@ def _drop_default_namespace(root: Any) -> None:
 
 # ---- repairs of the text -----------------------------------------------------------------------------------------------------
 
+_NAME = re.compile(r"(?:\{[^}]*\})?[^\W\d][\w.-]*")
 _PIECES = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<[^\s<>!?/][^<>]*>?|[^<]+|<", re.DOTALL)
 _DECLARATION = re.compile(r"<\?xml\s[^?>]*\?>")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")

@@ -46,7 +46,7 @@ def put_back(tag: Tag, extras: Iterable[Extra], declared: Mapping[str, str]) -> 
 
     ``declared`` are the namespace declarations of the root, which extras then need not repeat.
     """
-    for extra in sorted(extras, key=lambda e: e.index):
+    for extra in sorted(extras, key=lambda e: (e.index, not e.path.endswith("text()"))):
         *steps, last = extra.path.split("/") if extra.path else [""]
         target = tag
         for step in steps:
@@ -57,7 +57,14 @@ def put_back(tag: Tag, extras: Iterable[Extra], declared: Mapping[str, str]) -> 
             target.children.insert(extra.index, escaped(extra.text))
         else:
             target = target.child(last) if last else target
-            target.children.insert(extra.index, without_declared(extra.text, declared))
+            target.children.insert(_place_for(extra, target), without_declared(extra.text, declared))
+
+
+def _place_for(extra: Extra, tag: Tag) -> int:
+    """Where a foreign element goes: to its place, but never before a child of its own name, which is the one that counts."""
+    name = re.match(r"<([^\s/>]+)", extra.text)
+    same = [place for place, child in enumerate(tag.children) if name and isinstance(child, Tag) and child.name == name[1]]
+    return max(extra.index, same[-1] + 1) if same else extra.index
 
 
 def without_declared(text: str, declared: Mapping[str, str]) -> str:

@@ -71,7 +71,7 @@ _WRITERS = {"body": link_tag, "joint": joint_tag, "material": robot_material_tag
 
 def _merged(typed: list[Tag], extras: list[Extra], sheet: Sheet) -> list[Tag | str]:
     """Typed elements and extras in one row: an extra stands where it stood, as far as there is something before it."""
-    foreign = sorted((extra for extra in extras if extra.path in ("", "text()")), key=lambda extra: extra.index)
+    foreign = sorted((extra for extra in extras if extra.path in ("", "text()")), key=lambda extra: (extra.index, extra.path == ""))
     row: list[Tag | str] = []
     waiting = iter(foreign)
     extra = next(waiting, None)

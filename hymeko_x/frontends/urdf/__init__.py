@@ -40,7 +40,7 @@ def read(source: Source, report: Report) -> Mechanism:
     name = _read_name(root, source, draft)
     _read_version(root, draft)
     for node in root.children("material"):
-        read_robot_material(node, draft)
+        read_robot_material(root, node, draft)
     for node in root.children("link"):
         read_link(node, draft)
     read_joints(root, draft)
@@ -55,7 +55,7 @@ def read(source: Source, report: Report) -> Mechanism:
 def _check_root(root: Node) -> None:
     if root.tag == "robot":
         return
-    known = {"mujoco": "it looks like MJCF: read it with --from mjcf", "sdf": "it looks like SDF: read it with --from sdf"}
+    known = {"mujoco": "this is the root of an MJCF file", "sdf": "this is the root of an SDF file"}
     raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <robot>", root.origin, hint=known.get(root.tag, ""))
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import take_numbers
+from hymeko_x.formats.xml import read_numbers, take_numbers
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, Mechanism, Names
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
@@ -91,12 +91,12 @@ class Draft:
         for member in self.leftovers.close(node):
             for element in member.elements():
                 if element.tag in words.SINGLE and member.took(element.tag):
-                    said = f"{member.subject} has <{element.tag}> more than once in <{member.tag}>"
+                    said = f"{member.subject}: <{member.tag}> holds <{element.tag}> more than once"
                     self.report.warn(
                         codes.REPEATED,
                         f"{said}; the first one counts, the others are kept as written",
                         member.origin,
-                        element=member.subject,
+                        element=member.about,
                     )
 
     def mechanism(self, name: str, around: list[Extra]) -> Mechanism:
@@ -138,7 +138,8 @@ def read_origin(node: Node, style: str, draft: Draft, *, turned: bool = True) ->
     if origin is None:
         return IDENTITY
     xyz = take_numbers(origin, "xyz", 3, draft.report, instead="0 0 0 is used") or ZERO
-    found = _turned(origin, xyz, draft) if turned else Pose(_vector(xyz))
+    unturned = not turned and read_numbers(origin.attributes.get("rpy", "")) != ZERO
+    found = Pose(_vector(xyz)) if unturned else _turned(origin, xyz, draft)
     if found.xyz == ZERO and found.written is None:
         draft.style.add(style)
     return found

@@ -37,7 +37,7 @@ def read_geometry(shape: Node, draft: Draft) -> tuple[Geometry, Id | None]:
         return NoShape(), None
     if node.has_among(_READERS):
         said = f"{node.subject}: <geometry> holds more than one shape; the first one counts, the others are kept as written"
-        draft.report.warn(codes.REPEATED, said, node.origin, element=node.subject)
+        draft.report.warn(codes.REPEATED, said, node.origin, element=node.about)
     if found.tag == "mesh":
         return MeshShape(), _read_mesh(found, draft)
     geometry = _READERS[found.tag](found, draft)
@@ -49,7 +49,7 @@ def read_geometry(shape: Node, draft: Draft) -> tuple[Geometry, Id | None]:
 
 def _say(node: Node, what: str, draft: Draft) -> None:
     said = f"{node.subject}: {what}; {_NO_GEOMETRY}"
-    draft.report.warn(codes.MISSING_PART, said, node.origin, element=node.subject)
+    draft.report.warn(codes.MISSING_PART, said, node.origin, element=node.about)
 
 
 # ---- one reader per geometry; None when its numbers cannot be read -----------------------------------------------------------
@@ -84,7 +84,7 @@ def _sized(node: Node, attribute: str, count: int, draft: Draft) -> tuple[float,
     if attribute in node.attributes:
         return take_numbers(node, attribute, count, draft.report, instead=_NO_GEOMETRY)
     said = f"{node.subject}: <{node.tag}> has no {attribute}; {_NO_GEOMETRY}, and the text is kept as written"
-    draft.report.error(codes.MISSING_ATTRIBUTE, said, node.origin, element=node.subject)
+    draft.report.error(codes.MISSING_ATTRIBUTE, said, node.origin, element=node.about)
     return None
 
 
@@ -111,7 +111,7 @@ def _read_mesh(node: Node, draft: Draft) -> Id:
     uri = node.take("filename")
     if uri is None:
         said = f"{node.subject}: <mesh> has no filename; it stays empty"
-        draft.report.error(codes.MISSING_ATTRIBUTE, said, node.origin, element=node.subject)
+        draft.report.error(codes.MISSING_ATTRIBUTE, said, node.origin, element=node.about)
         uri = ""
     scale = _read_scale(node, draft)
     known = draft.meshes.get((uri, scale))
@@ -129,7 +129,7 @@ def _read_scale(node: Node, draft: Draft) -> Vec3:
     if one is not None and len(one) == 1:
         node.take("scale")
         said = f"{node.subject}: <mesh scale> is one number; read as the same in all directions (urdfdom drops such a shape)"
-        draft.report.warn(codes.BAD_NUMBER, said, node.origin, element=node.subject)
+        draft.report.warn(codes.BAD_NUMBER, said, node.origin, element=node.about)
         return (one[0], one[0], one[0])
     found = take_numbers(node, "scale", 3, draft.report, instead="1 1 1 is used")
     if found == (1.0, 1.0, 1.0):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import read_numbers, take_number, take_numbers
+from hymeko_x.formats.xml import read_numbers, shortened, take_number, take_numbers
 from hymeko_x.frontends.urdf.draft import read_origin, take_name
 from hymeko_x.frontends.urdf.fixed import gather_meaningless
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
@@ -58,7 +59,7 @@ def _read_joint(node: Node, draft: Draft) -> Joint:
 
 
 def _has_ends(node: Node, draft: Draft) -> bool:
-    ends = {element.tag: element.get("link") for element in node.elements() if element.tag in ("parent", "child")}
+    ends = {element.tag: element.get("link") for element in reversed(node.elements()) if element.tag in ("parent", "child")}
     missing = [f"<{tag} link>" for tag in ("parent", "child") if not ends.get(tag)]
     if missing:
         name = node.attributes.get("name", "")
@@ -75,7 +76,7 @@ def _read_end(joint: Node, tag: str, draft: Draft) -> Id:
     if known is not None:
         return known
     said = f"{joint.subject}: <{tag} link> is '{name}', which is not defined; an empty link of this name was added"
-    draft.report.error(codes.UNDEFINED_REFERENCE, said, joint.origin, element=joint.subject)
+    draft.report.error(codes.UNDEFINED_REFERENCE, said, joint.origin, element=joint.about)
     key = draft.links[name] = draft.names.take("body", name)
     draft.vertices[key] = Body()
     draft.origins[key] = joint.origin
@@ -93,7 +94,7 @@ def _read_type(node: Node, draft: Draft) -> str:
         codes.MISSING_ATTRIBUTE if word is None else codes.UNKNOWN_WORD,
         f"{node.subject} {said}; read as fixed; known: {known}",
         node.origin,
-        element=node.subject,
+        element=node.about,
     )
     return "fixed"
 
@@ -134,25 +135,24 @@ def _read_axis(joint: Node, draft: Draft) -> tuple[Vec3, Written | None]:
     node = joint.child("axis")
     if node is None:
         return X, None
-    if not any(read_numbers(node.attributes.get("xyz", "")) or (1.0,)):
-        said = f"{joint.subject}: <axis xyz> is zero; 1 0 0 is used, and the text is kept as written"
-        draft.report.error(codes.ZERO_AXIS, said, node.origin, element=joint.subject)
+    text = node.attributes.get("xyz", "1 0 0")
+    if _has_no_direction(text):
+        said = f"{joint.subject}: <axis xyz> is '{shortened(text)}', which has no direction; 1 0 0 is used, and the text is kept as written"
+        draft.report.error(codes.ZERO_AXIS, said, node.origin, element=joint.about)
         return X, None
-    numbers = take_numbers(node, "xyz", 3, draft.report, instead="1 0 0 is used")
-    if numbers is None:
-        return X, None
-    x, y, z = numbers
-    try:
-        axis = unit((x, y, z))
-    except ZeroDivisionError:
-        said = f"{joint.subject}: <axis xyz> has no direction; 1 0 0 is used"
-        draft.report.error(codes.ZERO_AXIS, said, node.origin, element=joint.subject)
-        return X, None
+    x, y, z = numbers = take_numbers(node, "xyz", 3, draft.report, instead="1 0 0 is used") or X
+    axis = unit((x, y, z))
     if axis == (x, y, z):
         return axis, None
     said = f"{joint.subject}: the axis was normalised; its numbers are kept for writing URDF again"
-    draft.report.note(codes.NOT_UNIT, said, node.origin, element=joint.subject)
+    draft.report.note(codes.NOT_UNIT, said, node.origin, element=joint.about)
     return axis, Written("axis", numbers)
+
+
+def _has_no_direction(text: str) -> bool:
+    """Whether the numbers are zero, or so small or large that nothing can be divided by their length."""
+    numbers = read_numbers(text)
+    return bool(numbers) and not 1e-300 <= math.hypot(*(numbers or ())) < math.inf
 
 
 def _read_dynamics(joint: Node, draft: Draft) -> tuple[float, float]:
@@ -176,7 +176,7 @@ def _read_limits(joint: Node, draft: Draft) -> Limits:
         said = (
             f"{joint.subject} has no <limit>; read as unlimited, and written with the largest numbers (urdfdom refuses the file as it is)"
         )
-        draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.subject)
+        draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.about)
         return UNLIMITED
     bounds = [_bound(node, name, draft) for name in ("lower", "upper")]
     limits = _rates(node, Limits(*bounds), draft)
@@ -217,13 +217,13 @@ def _check_limits(joint: Node, node: Node, limits: Limits, draft: Draft) -> None
     missing = [name for name in ("effort", "velocity") if name not in node.element.attrib]
     if missing:
         said = f"{joint.subject}: <limit> has no {' and no '.join(missing)}; read as unlimited (urdfdom refuses the file as it is)"
-        draft.report.warn(codes.MISSING_LIMIT, said, node.origin, element=joint.subject)
+        draft.report.warn(codes.MISSING_LIMIT, said, node.origin, element=joint.about)
     if limits.lower is not None and limits.upper is not None and limits.lower > limits.upper:
         said = f"{joint.subject}: the lower limit is above the upper one; both are kept"
-        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.subject)
+        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.about)
     if (limits.effort or 0.0) < 0.0 or (limits.velocity or 0.0) < 0.0:
         said = f"{joint.subject}: the limit of effort or velocity is negative; it is kept"
-        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.subject)
+        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.about)
 
 
 # ---- safety and calibration ------------------------------------------------------------------------------------------------------
@@ -236,7 +236,7 @@ def _read_safety(joint: Node, draft: Draft) -> Safety | None:
     names = ("k_velocity", "k_position", "soft_lower_limit", "soft_upper_limit")
     if "k_velocity" not in node.attributes:
         said = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
-        draft.report.warn(codes.MISSING_ATTRIBUTE, said, node.origin, element=joint.subject)
+        draft.report.warn(codes.MISSING_ATTRIBUTE, said, node.origin, element=joint.about)
     return Safety(*(take_number(node, name, draft.report, instead="0 is used") or 0.0 for name in names))
 
 
@@ -265,7 +265,7 @@ def _read_mimic(joint: Node, draft: Draft) -> None:
     problem = _mimic_problem(joint.owner, leader, node, draft)
     if problem or leader is None:
         draft.report.warn(
-            codes.UNDEFINED_REFERENCE, f"{joint.subject} {problem}; the <mimic> is kept as written", node.origin, element=joint.subject
+            codes.UNDEFINED_REFERENCE, f"{joint.subject} {problem}; the <mimic> is kept as written", node.origin, element=joint.about
         )
         joint.put_back(node)
         return

@@ -93,5 +93,5 @@ def _say_missing(node: Node, what: str, instead: str, draft: Draft) -> None:
         codes.MISSING_ATTRIBUTE if attribute else codes.MISSING_PART,
         f"{node.subject}: <{node.tag}> has no {what if attribute else f'<{what}>'}; {instead}",
         node.origin,
-        element=node.subject,
+        element=node.about,
     )

@@ -27,27 +27,25 @@ if TYPE_CHECKING:
 Said = tuple["Rgba | None", "str | None"]
 
 
-def read_robot_material(node: Node, draft: Draft) -> None:
-    """Add a material of robot level."""
-    _define(node, draft)
-    draft.close(node)
-
-
-def _define(node: Node, draft: Draft) -> None:
+def read_robot_material(root: Node, node: Node, draft: Draft) -> None:
+    """Add a material of robot level; one that nobody can use, or that says the same again, stays as it was written."""
     name = node.attributes.get("name")
     if not name:
         said = "a <material> of robot level has no name, so that nobody can use it; it is kept as written"
         draft.report.warn(codes.BAD_NAME, said, node.origin)
+        root.put_back(node)
         return
-    node.take("name")
+    node.owner = Id("material", name)
     looks = _resolve(node, name, _read_looks(node, draft), draft)
     if looks.at_robot:
         said = f"the material '{name}' is defined twice at robot level, in the same way; the second one is kept as written"
         draft.report.warn(codes.DUPLICATE_NAME, said, node.origin, element=str(looks.id))
-        node.attributes["name"] = name
+        root.put_back(node)
         return
     looks.at_robot = True
+    node.take("name")
     node.owner = looks.id
+    draft.close(node)
 
 
 def read_shape_material(shape: Node, draft: Draft) -> tuple[Rgba | None, Id | None]:
@@ -78,7 +76,7 @@ def _read_unnamed(shape: Node, node: Node, draft: Draft) -> tuple[Rgba | None, I
         return None, None
     if node.take("name") is None:
         said = f"{shape.subject}: <material> has no name; its looks are the shape's own (urdfdom drops such a visual)"
-        draft.report.warn(codes.BAD_NAME, said, node.origin, element=shape.subject)
+        draft.report.warn(codes.BAD_NAME, said, node.origin, element=shape.about)
     if texture is None:
         return rgba, None
     key = draft.names.take("material", str(shape.owner and shape.owner.name))

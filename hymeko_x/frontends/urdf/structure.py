@@ -41,7 +41,7 @@ def _check_parents(above: dict[Id, list[Id]], draft: Draft) -> None:
         names = ", ".join(f"'{joint.name}'" for joint in joints)
         draft.report.error(
             codes.TWO_PARENTS,
-            f"link '{child.name}' is the child of {len(joints)} joints ({names});  all are kept, the first one gives its place in the tree",
+            f"link '{child.name}' is the child of {len(joints)} joints ({names}); all are kept, the first one gives its place in the tree",
             draft.origins[joints[1]],
             element=str(child),
             hint="urdfdom lets the last one win, MuJoCo refuses the file",
@@ -74,7 +74,7 @@ def _check_reach(bodies: list[Id], roots: list[Id], below: dict[Id, list[Id]], d
     draft.report.error(
         codes.CYCLE,
         f"no root leads to link '{lost[0].name}'"
-        + (f" and {len(lost) - 1} others" if len(lost) > 1 else "")
+        + (f" and {len(lost) - 1} more" if len(lost) > 1 else "")
         + ": their joints form a cycle, which is kept",
         draft.origins[lost[0]],
         element=str(lost[0]),

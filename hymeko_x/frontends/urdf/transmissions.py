@@ -56,7 +56,7 @@ def _is_known(transmission: Node, joint: Node, draft: Draft) -> bool:
     if name in draft.joints:
         return True
     said = f"{transmission.subject} names joint '{name}', which is not defined; the reference is kept as written"
-    draft.report.warn(codes.UNDEFINED_REFERENCE, said, joint.origin, element=transmission.subject)
+    draft.report.warn(codes.UNDEFINED_REFERENCE, said, joint.origin, element=transmission.about)
     transmission.put_back(joint)
     return False
 
@@ -65,7 +65,7 @@ def _is_named(transmission: Node, actuator: Node, draft: Draft) -> bool:
     if actuator.attributes.get("name"):
         return True
     said = f"{transmission.subject} has an <actuator> without a name; it is kept as written"
-    draft.report.warn(codes.BAD_NAME, said, actuator.origin, element=transmission.subject)
+    draft.report.warn(codes.BAD_NAME, said, actuator.origin, element=transmission.about)
     transmission.put_back(actuator)
     return False
 
