@@ -60,10 +60,11 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             make_tensors_physical,
             give_moving_bodies_mass,
             drop_empty_shapes,
-            make_sizes_positive,
             keep_planes_static,
+            make_sizes_positive,
             name_shapes_once,
             choose_actuators,
+            make_names_usable,  # once more, for what the rules have added
         ),
         "urdf": (
             expand_screws,
