@@ -170,6 +170,11 @@ ENGINE_REFUSED = Code(
     "the reference reader refuses the file",
     "The verifier reads each file with its format's own reader, and that reader refused it in the words shown.",
 )
+NO_CHAIN = Code(
+    "HX303",
+    "there is no such chain",
+    "A Denavit-Hartenberg table describes the joints from the base to one body. The body does not exist, or nothing between them moves.",
+)
 
 # ---- HX9xx: our bugs -------------------------------------------------------------------------------------------------
 BUG = Code(

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hymeko_x.verify.checks.chains import check_chains
 from hymeko_x.verify.checks.dofs import check_dofs
 from hymeko_x.verify.checks.dynamics import check_dynamics, disagreement
 from hymeko_x.verify.checks.inertia import check_inertia
@@ -44,6 +45,7 @@ def _checks(pair: Pair) -> list[Check]:
     return [
         *(counted(quantity, words) for quantity, words in findings.items()),
         *check_motion(pair),
+        *check_chains(pair),
         *check_dofs(pair),
         *check_inertia(pair),
         *check_dynamics(pair),

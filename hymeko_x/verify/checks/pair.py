@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hymeko_x.verify.dh import zero_poses
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import Array, Feature, Kind, KinematicModel
 from hymeko_x.verify.sampling import bounds, draw, follow
@@ -22,7 +24,7 @@ POSITION, ROTATION = 1e-9, 1e-9
 MASS_MATRIX = 1e-8
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Pair:
     """Two robots, their match, the same configurations (n, width) in the coordinates of each, and notes for the verdict.
 
@@ -36,6 +38,19 @@ class Pair:
     q_b: Array
     shifts: tuple[float, ...]
     notes: list[str] = field(default_factory=list)
+
+    @cached_property
+    def zero_a(self) -> Array:
+        """World poses of the first robot with all scalar coordinates at 0."""
+        return zero_poses(self.a)
+
+    @cached_property
+    def zero_b(self) -> Array:
+        """World poses of the second robot in the same pose."""
+        coordinates = np.zeros(self.b.width)
+        for (_, e), shift in zip(self.match.dofs, self.shifts, strict=True):
+            coordinates[self.b.columns[e]] = shift
+        return zero_poses(self.b, coordinates)
 
     @property
     def precision(self) -> float:

@@ -1,0 +1,231 @@
+"""Denavit-Hartenberg tables of any chain of hinges and slides: standard, modified (Craig) and Hayati-Roberts.
+
+A chain is T(q) = J_0 L_0 J_1 L_1 ... J_n L_n J_n+1 with J_i = Rz(theta_i) Tz(d_i) about axis i and L_i = Tx(a_i) Rx(alpha_i)
+from axis i to axis i+1; axis 0 is the z axis of the base's frame, axis n+1 that of the tip's. A coordinate adds to theta_i of
+a hinge or to d_i of a slide. Standard rows are (J_i, L_i), Craig's are (L_i-1, J_i): the same numbers, another grouping.
+
+Between axes that are parallel to within a few degrees the common normal may be anywhere, and a and d grow without bound.
+There a link is Hayati and Roberts's Tx(a) Rx(alpha) Ry(beta), which is smooth through exact parallelism.
+Every table is exact: J_0 and J_n+1 take up whatever the rows cannot say.
+
+Source: Denavit and Hartenberg 1955; Craig, Introduction to Robotics, 3.4; Hayati and Mirmirani 1985; Roberts 1988.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.verify.dh_lines import Frame, Line, Link, link_between, motion
+from hymeko_x.verify.kinematics import prepare
+from hymeko_x.verify.model import WORLD, Array, Kind, KinematicModel
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+
+class Convention(Enum):
+    """How a table groups its numbers."""
+
+    STANDARD = "standard"
+    MODIFIED = "modified"
+    HAYATI = "hayati"
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One joint: theta in rad and d in m, to which its coordinate adds (theta of a hinge, d of a slide), and its link.
+
+    The link is that behind the joint in the standard convention and before it in the modified one; ``beta`` in rad is not
+    zero only where the two axes are nearly parallel.
+    """
+
+    joint: str
+    kind: Kind
+    theta: float
+    d: float
+    a: float
+    alpha: float
+    beta: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Table:
+    """The rows of a chain between two constants: T(q) = ``base`` * rows(q) * ``tool``, the tip's pose in the base's frame.
+
+    ``dofs`` are the indices of the rows' dofs in the model, ``start`` and ``tip`` the bodies at both ends.
+    """
+
+    convention: Convention
+    start: str
+    tip: str
+    rows: tuple[Row, ...]
+    base: Array
+    tool: Array
+    dofs: tuple[int, ...]
+
+    def poses(self, q: Array) -> Array:
+        """Poses (n, 4, 4) of the tip at coordinates (n, rows)."""
+        out = np.broadcast_to(self.base, (len(q), 4, 4)).copy()
+        for row, values in zip(self.rows, q.T, strict=True):
+            link = motion(row.a, row.alpha, row.beta)
+            joint = _joint_motions(row, values)
+            out = out @ (link @ joint if self.convention is Convention.MODIFIED else joint @ link)
+        return out @ self.tool
+
+
+def table(model: KinematicModel, tip: str | None = None, convention: Convention = Convention.STANDARD) -> Table:
+    """The table of the chain from the base to a body (to the end of the longest chain by default).
+
+    Where a ball or a free joint stands above the tip, the chain starts at the body below the last one of them.
+    Raises: Refusal HX303 when there is no such body or nothing above it moves.
+    """
+    body = _tip(model, tip)
+    start, dofs = chain(model, body)
+    if not dofs:
+        raise refuse(codes.NO_CHAIN, f"nothing moves between {model.body_label(start)} and {model.body_label(body)}")
+    lines, frames = lines_of(model, start, body, dofs, zero_poses(model))
+    links, last = _through(lines, frames[0], frames[1])
+    return _grouped(model, convention, (start, body), dofs, links, last)
+
+
+def chains(model: KinematicModel) -> tuple[int, ...]:
+    """The tips: bodies without a moving body below them, of those that something moves; the deepest of a fixed group."""
+    moving = [bool(body.joint.dofs) for body in model.bodies]
+    below = [False] * len(model.bodies)
+    for i in range(len(model.bodies) - 1, 0, -1):
+        parent = model.bodies[i].parent
+        below[parent] = below[parent] or moving[i] or below[i]
+    return tuple(i for i in range(1, len(model.bodies)) if moving[i] and not below[i])
+
+
+def chain(model: KinematicModel, body: int) -> tuple[int, list[int]]:
+    """The body where a chain of scalar dofs to ``body`` starts, and those dofs from the base on."""
+    dofs: list[int] = []
+    while body != WORLD:
+        joint = model.bodies[body].joint
+        if any(not dof.kind.scalar for dof in joint.dofs) or joint.open:
+            return body, dofs
+        first = model.first_dof[body]
+        dofs[:0] = range(first, first + len(joint.dofs))
+        body = model.bodies[body].parent
+    return body, dofs
+
+
+def zero_poses(model: KinematicModel, coordinates: Array | None = None) -> Array:
+    """World poses (bodies, 4, 4) with every coordinate at 0 (or at ``coordinates``), wherever a format's references are."""
+    rest = np.zeros(model.width) if coordinates is None else coordinates.copy()
+    for dof, column in zip(model.dofs, model.columns, strict=True):
+        if not dof.kind.scalar:
+            rest[column : column + dof.kind.width] = 0.0
+            rest[column + dof.kind.width - 4] = 1.0
+    return prepare(model).poses(rest[None])[0]
+
+
+def lines_of(model: KinematicModel, start: int, body: int, dofs: Sequence[int], poses: Array) -> tuple[list[Line], tuple[Frame, Frame]]:
+    """The dofs' axes and the frames of the chain's two ends, in the frame of ``start``, in these world poses (of :func:`zero_poses`)."""
+    back = np.linalg.inv(poses[start])
+    lines = [_line(model, dof, back @ poses[model.bodies[model.body_of_dof[dof]].parent]) for dof in dofs]
+    return lines, (Frame.of(np.eye(4)), Frame.of(back @ poses[body]))
+
+
+def _line(model: KinematicModel, index: int, parent: Array) -> Line:
+    """The axis of one dof: through its anchor, behind the dofs of the same joint that come before it."""
+    body = model.body_of_dof[index]
+    joint = model.bodies[body].joint
+    place = parent @ joint.placement
+    for dof in joint.dofs[: index - model.first_dof[body]]:
+        place = place @ _displaced(dof.kind, dof.axis, dof.anchor, -dof.ref, dof.pitch)
+    dof = model.dofs[index]
+    point, axis = place[:3, :3] @ dof.anchor + place[:3, 3], place[:3, :3] @ dof.axis
+    return Line((point[0], point[1], point[2]), (axis[0], axis[1], axis[2]), sliding=dof.kind is Kind.SLIDE)
+
+
+def _displaced(kind: Kind, axis: Array, anchor: Array, by: float, pitch: float) -> Array:
+    from hymeko_x.verify.spatial import rigid, rotation_about
+
+    if kind is Kind.SLIDE:
+        return rigid(np.eye(3), by * axis)
+    turn = rotation_about(axis, np.asarray(by))
+    return rigid(turn, anchor - turn @ anchor + pitch * by * axis)
+
+
+def _tip(model: KinematicModel, tip: str | None) -> int:
+    if tip is None:
+        ends = chains(model)
+        if not ends:
+            raise refuse(codes.NO_CHAIN, f"nothing moves in '{model.name}'")
+        return max(ends, key=lambda end: len(chain(model, end)[1]))
+    if tip not in model.index:
+        known = ", ".join(str(model.bodies[i].name) for i in chains(model)[:10])
+        raise refuse(codes.NO_CHAIN, f"there is no body '{tip}'", hint=f"chains end at: {known}")
+    return model.index[tip]
+
+
+# ---- from lines to rows ----------------------------------------------------------------------------------------------
+
+
+def _through(lines: Sequence[Line], base: Frame, tip: Frame) -> tuple[list[Link], tuple[float, float]]:
+    """The links L_0 ... L_n with the J_i in front of them, and the last J (theta, d)."""
+    frame = base
+    links: list[Link] = []
+    ends = [Line(base.o, base.z), *lines, Line(tip.o, tip.z)]
+    for line, following in itertools.pairwise(ends):
+        link, frame = link_between(frame, line, following)
+        links.append(link)
+    return links, (frame.turn_to(tip.x), frame.height_of(tip.o))
+
+
+def _grouped(
+    model: KinematicModel,
+    convention: Convention,
+    ends: tuple[int, int],
+    dofs: Sequence[int],
+    links: Sequence[Link],
+    last: tuple[float, float],
+) -> Table:
+    """The same numbers grouped as the convention wants them."""
+    base = _joint_matrix(links[0].theta, links[0].d)
+    tool = _joint_matrix(*last)
+    if convention is Convention.MODIFIED:
+        shapes = links[:-1]
+        tool = links[-1].matrix() @ tool
+    else:
+        shapes = links[1:]
+        base = base @ links[0].matrix()
+    rows = tuple(
+        Row(_name(model, dof), model.dofs[dof].kind, joint.theta, joint.d, shape.a, shape.alpha, shape.beta)
+        for dof, joint, shape in zip(dofs, links[1:], shapes, strict=True)
+    )
+    names = [str(model.bodies[end].name) for end in ends]
+    return Table(convention, names[0], names[1], rows, base, tool, tuple(dofs))
+
+
+def _name(model: KinematicModel, dof: int) -> str:
+    body = model.bodies[model.body_of_dof[dof]]
+    return model.dofs[dof].name or body.joint.name or f"above {body.name}"
+
+
+def _joint_matrix(theta: float, d: float) -> Array:
+    c, s = math.cos(theta), math.sin(theta)
+    return np.array([[c, -s, 0, 0], [s, c, 0, 0], [0, 0, 1, d], [0, 0, 0, 1]])
+
+
+def _joint_motions(row: Row, values: Array) -> Array:
+    """J of one row at coordinates (n,), as (n, 4, 4)."""
+    sliding = row.kind is Kind.SLIDE
+    theta = np.full(len(values), row.theta) if sliding else row.theta + values
+    out = np.zeros((len(values), 4, 4))
+    out[:, 0, 0] = out[:, 1, 1] = np.cos(theta)
+    out[:, 1, 0] = np.sin(theta)
+    out[:, 0, 1] = -out[:, 1, 0]
+    out[:, 2, 2] = out[:, 3, 3] = 1.0
+    out[:, 2, 3] = row.d + values if sliding else row.d
+    return out

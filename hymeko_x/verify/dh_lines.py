@@ -1,0 +1,167 @@
+"""The geometry under DH tables: directed lines, frames on them, and the link from one line to the next.
+
+Plain tuples and floats: a chain has a handful of axes, and one number at a time is faster than an array of three.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from hymeko_x.verify.model import Array
+
+Vec = tuple[float, float, float]
+
+PARALLEL = 1e-12
+"""The sine of the angle below which two axes are parallel for good."""
+
+NEARLY_PARALLEL = math.sin(math.radians(3.0))
+"""The sine below which a link is Hayati and Roberts's."""
+
+TOUCHING = 1e-10
+"""The distance in m below which two lines meet, or coincide when they are parallel."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A joint's axis in its positive sense: through ``point``, along unit ``axis``. Of a slide only the direction is physical."""
+
+    point: Vec
+    axis: Vec
+    sliding: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A right-handed frame: origin and axes."""
+
+    o: Vec
+    x: Vec
+    y: Vec
+    z: Vec
+
+    @classmethod
+    def of(cls, matrix: Array) -> Frame:
+        """From a homogeneous matrix."""
+        columns = [(float(c[0]), float(c[1]), float(c[2])) for c in matrix[:3].T]
+        return cls(columns[3], columns[0], columns[1], columns[2])
+
+    def turn_to(self, x: Vec) -> float:
+        """The angle about z from this x axis to another direction."""
+        return math.atan2(dot(x, self.y), dot(x, self.x))
+
+    def height_of(self, point: Vec) -> float:
+        """How far along z a point is."""
+        return dot(minus(point, self.o), self.z)
+
+
+@dataclass(frozen=True, slots=True)
+class Link:
+    """J = Rz(theta) Tz(d) along one line, then L = Tx(a) Rx(alpha) Ry(beta) to the next."""
+
+    theta: float
+    d: float
+    a: float
+    alpha: float
+    beta: float = 0.0
+
+    def matrix(self) -> Array:
+        """L as a homogeneous matrix."""
+        return motion(self.a, self.alpha, self.beta)
+
+
+def motion(a: float, alpha: float, beta: float = 0.0) -> Array:
+    """Tx(a) Rx(alpha) Ry(beta) as a homogeneous matrix."""
+    ca, sa, cb, sb = math.cos(alpha), math.sin(alpha), math.cos(beta), math.sin(beta)
+    return np.array([[cb, 0, sb, a], [sa * sb, ca, -sa * cb, 0], [-ca * sb, sa, ca * cb, 0], [0, 0, 0, 1]])
+
+
+def link_between(
+    frame: Frame, line: Line, following: Line, *, signed: bool = False, touching: float = TOUCHING, keep: bool = False
+) -> tuple[Link, Frame]:
+    """The link from a frame on ``line`` to a frame on the line that follows it, and that frame.
+
+    Where nothing decides, a parallel link leaves the line at the height of its own point (or of the frame, with ``keep``).
+    ``signed`` lets a be negative, so that alpha is in (0, pi) always and the numbers are continuous where lines meet.
+    """
+    normal = cross(line.axis, following.axis)
+    sine = length(normal)
+    if sine >= NEARLY_PARALLEL:
+        foot, other = feet(line, following, normal)
+        gap = minus(other, foot)
+        unit = times(1.0 / sine, normal)
+        away = dot(gap, unit)
+        x = unit if signed or abs(away) < touching or away > 0 else times(-1.0, unit)
+        return _finished(frame, foot, x, dot(gap, x), following.axis)
+    foot = frame.o if keep else plus(frame.o, times(frame.height_of(line.point), frame.z))
+    other = plus(following.point, times(dot(minus(foot, following.point), line.axis) / dot(following.axis, line.axis), following.axis))
+    gap = minus(other, foot)
+    distance = length(gap)
+    if distance < touching:
+        return _finished(frame, frame.o if sine < PARALLEL else foot, frame.x, 0.0, following.axis, tilted=sine >= PARALLEL)
+    return _finished(frame, foot, times(1.0 / distance, gap), distance, following.axis, tilted=sine >= PARALLEL)
+
+
+def _finished(frame: Frame, foot: Vec, x: Vec, a: float, axis: Vec, *, tilted: bool = False) -> tuple[Link, Frame]:
+    """The numbers of a link that leaves the line at ``foot`` in direction ``x``, and the frame that they lead to.
+
+    ``tilted`` allows an angle beta, for axes that are nearly parallel.
+    """
+    theta, d = frame.turn_to(x), frame.height_of(foot)
+    c, s = math.cos(theta), math.sin(theta)
+    out_x = plus(times(c, frame.x), times(s, frame.y))
+    out_y = plus(times(-s, frame.x), times(c, frame.y))
+    across, up, along = dot(axis, out_x), dot(axis, out_y), dot(axis, frame.z)
+    alpha = math.atan2(-up, along)
+    beta = math.atan2(across, math.hypot(up, along)) if tilted else 0.0
+    link = Link(theta, d, a, alpha, beta)
+    rotation = np.array([out_x, out_y, frame.z]).T @ link.matrix()[:3, :3]
+    origin = plus(plus(frame.o, times(d, frame.z)), times(a, out_x))
+    (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = rotation.tolist()
+    return link, Frame(origin, (x0, x1, x2), (y0, y1, y2), (z0, z1, z2))
+
+
+def feet(line: Line, other: Line, normal: Vec) -> tuple[Vec, Vec]:
+    """The ends of the common normal of two lines that are not parallel, one on each."""
+    gap = minus(other.point, line.point)
+    square = dot(normal, normal)
+    s = dot(cross(gap, other.axis), normal) / square
+    t = dot(cross(gap, line.axis), normal) / square
+    return plus(line.point, times(s, line.axis)), plus(other.point, times(t, other.axis))
+
+
+# ---- three numbers ---------------------------------------------------------------------------------------------------
+
+
+def dot(a: Vec, b: Vec) -> float:
+    """a . b"""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a: Vec, b: Vec) -> Vec:
+    """a x b"""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def plus(a: Vec, b: Vec) -> Vec:
+    """a + b"""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
+
+
+def minus(a: Vec, b: Vec) -> Vec:
+    """a - b"""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+def times(s: float, a: Vec) -> Vec:
+    """s a"""
+    return s * a[0], s * a[1], s * a[2]
+
+
+def length(a: Vec) -> float:
+    """|a|"""
+    return math.sqrt(dot(a, a))
