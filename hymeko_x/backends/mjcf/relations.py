@@ -8,7 +8,7 @@ from hymeko_x.backends.mjcf.text import Attributes, Text, numbers
 from hymeko_x.formats.mjcf import TARGETS
 from hymeko_x.ir.mechanism import numbers_weight, pose_weight
 from hymeko_x.ir.parts import Actuator, Contact, Coupling, Drive, Loop
-from hymeko_x.ir.values import compose, inverse
+from hymeko_x.ir.values import ZERO, quat_inverse, quat_product, unit_quat
 
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.names import Printed
@@ -91,13 +91,18 @@ def _shifted(coefficients: tuple[float, ...], by: float) -> list[float]:
 
 
 def _closure_attributes(loop: Loop, first: RobotArc, second: RobotArc, names: Printed) -> Attributes:
+    """Of a weld: ``anchor`` is the point in body 2 that meets the position of ``relpose`` in body 1, whose rotation is body 2's.
+
+    Source: MuJoCo's constraint, seen from its residual; the manual speaks of the relative pose of the bodies.
+    """
     if first.target.kind == "frame":
         return {"site1": names.of(first.target), "site2": names.of(second.target)}
     bodies: Attributes = {"body1": names.of(first.target), "body2": names.of(second.target)}
     if loop.kind == "connect":
         return {**bodies, "anchor": numbers(*pose_weight(first).xyz)}
-    relative = compose(pose_weight(first), inverse(pose_weight(second)))
-    return {**bodies, "anchor": numbers(*pose_weight(second).xyz), "relpose": numbers(*relative.xyz, *relative.quat)}
+    one, two = pose_weight(first), pose_weight(second)
+    turn = unit_quat(quat_product(one.quat, quat_inverse(two.quat)))
+    return {**bodies, "anchor": None if two.xyz == ZERO else numbers(*two.xyz), "relpose": numbers(*one.xyz, *turn)}
 
 
 # ---- actuator --------------------------------------------------------------------------------------------------------------
