@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir import parts
+from hymeko_x.ir.values import X
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -205,8 +206,12 @@ AXES: Mapping[str, tuple[float, float, float]] = MappingProxyType(
 )
 """The standard directions."""
 
-DEFAULT_AXIS = (0.0, 0.0, 1.0)
-"""The axis of a joint that names none."""
+_NO_AXIS = frozenset({parts.DofKind.BALL, parts.DofKind.FREE})
+
+
+def default_axis(kind: parts.DofKind) -> tuple[float, float, float]:
+    """The axis of a dof that names none: z, and what every format says where no axis has a meaning."""
+    return X if kind in _NO_AXIS else (0.0, 0.0, 1.0)
 
 POSED_EDGES = frozenset({"joint", "shape", "mount", "loop"})
 """Edges whose arcs are weighted with poses; the others carry plain numbers."""

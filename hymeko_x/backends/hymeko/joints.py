@@ -8,12 +8,12 @@ from hymeko_x.backends.hymeko.parts import Context, limit_items, pose_value, wor
 from hymeko_x.formats.hymeko import (
     AXES,
     CALIBRATION_WORDS,
-    DEFAULT_AXIS,
     DOF_WORDS,
     JOINT_TYPES,
     MOVES,
     SAFETY_WORDS,
     TARGETS,
+    default_axis,
 )
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, numbers_weight
@@ -95,7 +95,7 @@ def _dof_items(dof: parts.Dof) -> list[Item]:
 def _axis(dof: parts.Dof) -> list[Item]:
     if dof.written is not None and dof.written.kind == "axis":
         return [Field("axis", dof.written.numbers)]
-    if dof.axis == DEFAULT_AXIS:
+    if dof.axis == default_axis(dof.kind):
         return []
     short = _SHORT_AXES.get(dof.axis)
     return [Field("axis", Ref((short[0],), short[1]) if short else dof.axis)]

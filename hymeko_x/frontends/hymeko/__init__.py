@@ -16,7 +16,7 @@ from hymeko_x.frontends.hymeko.block import Block, Context, read_extra, read_uni
 from hymeko_x.frontends.hymeko.bodies import build_uri, read_body
 from hymeko_x.frontends.hymeko.build import Build
 from hymeko_x.frontends.hymeko.infer import infer_kinds
-from hymeko_x.frontends.hymeko.joints import read_dofs, read_joint, read_limits
+from hymeko_x.frontends.hymeko.joints import read_dofs, read_joint, read_limits, unit_axis
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
 from hymeko_x.language.expand import Element, Expanded, expand
@@ -178,7 +178,7 @@ def _direction(build: Build, element: Element) -> tuple[float, float, float]:
     block = Block(element.node.items, build.context)
     item = block.take("direction", "axis", "ax")
     if item is not None:
-        return build.context.vec3(item.value, "", item)
+        return unit_axis(build, item)[0]
     return AXES[element.name]
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.hymeko import AXES, CALIBRATION_WORDS, DEFAULT_AXIS, DOF_WORDS, LIMIT_WORDS, MOVES, ROLE_MOVES, SAFETY_WORDS
+from hymeko_x.formats.hymeko import AXES, CALIBRATION_WORDS, DOF_WORDS, LIMIT_WORDS, MOVES, ROLE_MOVES, SAFETY_WORDS, default_axis
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.build import sign_of
 from hymeko_x.ir import parts
@@ -121,7 +121,7 @@ def _dof(
     build: Build, block: Block, scope: Scope, kind: parts.DofKind, axis_arc: tuple[Vec3, Written | None] | None, item: Item
 ) -> parts.Dof:
     motion = "angle" if kind in _TURNING else "length"
-    axis, written = axis_arc or _axis(build, block, scope) or (DEFAULT_AXIS, None)
+    axis, written = axis_arc or _axis(build, block, scope) or (default_axis(kind), None)
     return parts.Dof(
         kind,
         axis,
@@ -179,14 +179,16 @@ def _axis(build: Build, block: Block, scope: Scope) -> tuple[Vec3, Written | Non
         if found is None:
             raise build.context.refuse(item, f"'{item.value.dotted}' is not a direction; there are {', '.join(AXES)} and [x y z]")
         return _signed(found, sign), None
-    return _normalised(build, build.context.vec3(item.value, "", item), item)
+    return unit_axis(build, item)
 
 
 def _signed(axis: Vec3, sign: float) -> Vec3:
     return axis if sign > 0 else (-axis[0] + 0.0, -axis[1] + 0.0, -axis[2] + 0.0)
 
 
-def _normalised(build: Build, vector: Vec3, item: Field) -> tuple[Vec3, Written | None]:
+def unit_axis(build: Build, item: Field) -> tuple[Vec3, Written | None]:
+    """The direction of the vector that a field holds, and the vector where it is no unit vector."""
+    vector = build.context.vec3(item.value, "", item)
     try:
         axis = unit(vector)
     except ZeroDivisionError as error:
