@@ -5,7 +5,8 @@ from axis i to axis i+1; axis 0 is the z axis of the base's frame, axis n+1 that
 a hinge or to d_i of a slide. Standard rows are (J_i, L_i), Craig's are (L_i-1, J_i): the same numbers, another grouping.
 
 Between axes that are parallel to within a few degrees the common normal may be anywhere, and a and d grow without bound.
-There a link is Hayati and Roberts's Tx(a) Rx(alpha) Ry(beta), which is smooth through exact parallelism.
+There a link is Hayati and Roberts's Tx(a) Rx(alpha) Ry(beta), which is smooth through exact parallelism; in their own
+convention such a link has no d either, because it starts where the last one ended.
 Every table is exact: J_0 and J_n+1 take up whatever the rows cannot say.
 
 Source: Denavit and Hartenberg 1955; Craig, Introduction to Robotics, 3.4; Hayati and Mirmirani 1985; Roberts 1988.
@@ -92,7 +93,7 @@ def table(model: KinematicModel, tip: str | None = None, convention: Convention 
     if not dofs:
         raise refuse(codes.NO_CHAIN, f"nothing moves between {model.body_label(start)} and {model.body_label(body)}")
     lines, frames = lines_of(model, start, body, dofs, zero_poses(model))
-    links, last = _through(lines, frames[0], frames[1])
+    links, last = _through(lines, frames[0], frames[1], keep=convention is Convention.HAYATI)
     return _grouped(model, convention, (start, body), dofs, links, last)
 
 
@@ -126,7 +127,8 @@ def zero_poses(model: KinematicModel, coordinates: Array | None = None) -> Array
         if not dof.kind.scalar:
             rest[column : column + dof.kind.width] = 0.0
             rest[column + dof.kind.width - 4] = 1.0
-    return prepare(model).poses(rest[None])[0]
+    poses: Array = prepare(model).poses(rest[None])[0]
+    return poses
 
 
 def lines_of(model: KinematicModel, start: int, body: int, dofs: Sequence[int], poses: Array) -> tuple[list[Line], tuple[Frame, Frame]]:
@@ -145,7 +147,8 @@ def _line(model: KinematicModel, index: int, parent: Array) -> Line:
         place = place @ _displaced(dof.kind, dof.axis, dof.anchor, -dof.ref, dof.pitch)
     dof = model.dofs[index]
     point, axis = place[:3, :3] @ dof.anchor + place[:3, 3], place[:3, :3] @ dof.axis
-    return Line((point[0], point[1], point[2]), (axis[0], axis[1], axis[2]), sliding=dof.kind is Kind.SLIDE)
+    (px, py, pz), (x, y, z) = point.tolist(), axis.tolist()
+    return Line((px, py, pz), (x, y, z), sliding=dof.kind is Kind.SLIDE)
 
 
 def _displaced(kind: Kind, axis: Array, anchor: Array, by: float, pitch: float) -> Array:
@@ -172,13 +175,13 @@ def _tip(model: KinematicModel, tip: str | None) -> int:
 # ---- from lines to rows ----------------------------------------------------------------------------------------------
 
 
-def _through(lines: Sequence[Line], base: Frame, tip: Frame) -> tuple[list[Link], tuple[float, float]]:
+def _through(lines: Sequence[Line], base: Frame, tip: Frame, *, keep: bool) -> tuple[list[Link], tuple[float, float]]:
     """The links L_0 ... L_n with the J_i in front of them, and the last J (theta, d)."""
     frame = base
     links: list[Link] = []
     ends = [Line(base.o, base.z), *lines, Line(tip.o, tip.z)]
     for line, following in itertools.pairwise(ends):
-        link, frame = link_between(frame, line, following)
+        link, frame = link_between(frame, line, following, keep=keep)
         links.append(link)
     return links, (frame.turn_to(tip.x), frame.height_of(tip.o))
 

@@ -118,7 +118,7 @@ def _finished(frame: Frame, foot: Vec, x: Vec, a: float, axis: Vec, *, tilted: b
     across, up, along = dot(axis, out_x), dot(axis, out_y), dot(axis, frame.z)
     alpha = math.atan2(-up, along)
     beta = math.atan2(across, math.hypot(up, along)) if tilted else 0.0
-    link = Link(theta, d, a, alpha, beta)
+    link = Link(theta + 0.0, d + 0.0, a + 0.0, alpha + 0.0, beta + 0.0)  # no negative zeros
     rotation = np.array([out_x, out_y, frame.z]).T @ link.matrix()[:3, :3]
     origin = plus(plus(frame.o, times(d, frame.z)), times(a, out_x))
     (x0, y0, z0), (x1, y1, z1), (x2, y2, z2) = rotation.tolist()
