@@ -74,9 +74,7 @@ def test_a_target_without_rules_takes_every_mechanism_as_it_is() -> None:
     assert legalize(mechanism, "hymeko", Options(), Report()) is mechanism
 
 
-OPTIONS = st.builds(
-    Options, st.sampled_from([None, "fixed", "free"]), st.sampled_from([None, "none", "motor", "position", "velocity"])
-)
+OPTIONS = st.builds(Options, st.sampled_from([None, "fixed", "free"]), st.sampled_from([None, "none", "motor", "position", "velocity"]))
 
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
@@ -127,7 +125,8 @@ def test_a_root_link_called_world_with_a_mass_is_renamed() -> None:
     result, said = legal(with_world_link(SOLID))
     assert inertial_of(result, "world_link") == SOLID
     assert said == [
-        "warning HX102 link 'world' has a mass, so it is not the world itself, which alone may have this name; it is written as 'world_link'"
+        "warning HX102 link 'world' has a mass, so it is not the world itself, which alone may have this name; "
+        "it is written as 'world_link'"
     ]
 
 
@@ -263,7 +262,11 @@ def test_bodies_in_a_ring_without_a_root_are_opened_once() -> None:
     [
         (Limits(-math.inf, math.inf), Limits(), []),
         (Limits(1.0, -1.0), Limits(), ["warning lower limit 1.0 is above upper limit -1.0; the joint is written without position limits"]),
-        (Limits(0.0, 0.0), Limits(), ["warning both limits are 0, as where URDF leaves them out; the joint is written without position limits"]),
+        (
+            Limits(0.0, 0.0),
+            Limits(),
+            ["warning both limits are 0, as where URDF leaves them out; the joint is written without position limits"],
+        ),
         (Limits(0.5, 0.5), Limits(0.5, 0.500000001), ["note both limits are 0.5; 1e-09 of play stands for a locked joint"]),
         (Limits(0.5), Limits(0.5, 1e10), ["note has no upper limit; 1e+10 stands for the missing bound"]),
         (Limits(None, 0.5), Limits(-1e10, 0.5), ["note has no lower limit; 1e+10 stands for the missing bound"]),
@@ -296,9 +299,7 @@ def test_a_coupling_to_a_fixed_joint_stays_and_holds_the_follower() -> None:
     mechanism = coupled(joint("j1"), 0.3, 1.0, joints=(Joint(), hinge(axis=Z)))
     result, said = legal(mechanism)
     assert result == mechanism
-    assert said == [
-        "note HX101 coupling 'c' follows joint 'j1', which is fixed; the follower is held at the constant of the relation"
-    ]
+    assert said == ["note HX101 coupling 'c' follows joint 'j1', which is fixed; the follower is held at the constant of the relation"]
 
 
 def test_a_fixed_follower_and_a_joint_that_follows_itself_are_left_out() -> None:
@@ -320,9 +321,7 @@ def test_a_moving_body_without_mass_gets_the_least_one() -> None:
     result, said = legal(chain(hinge(axis=Z), inertial=None))
     assert inertial_of(result, "b1") == Inertial(LEAST, tensor=(LEAST, LEAST, LEAST, 0.0, 0.0, 0.0))
     assert inertial_of(result, "b0") is None
-    assert said == [
-        "warning HX103 body 'b1': moves and has no mass; mass 1e-10 and inertia 1e-10 1e-10 1e-10 0 0 0 are written"
-    ]
+    assert said == ["warning HX103 body 'b1': moves and has no mass; mass 1e-10 and inertia 1e-10 1e-10 1e-10 0 0 0 are written"]
 
 
 def test_a_moving_body_with_a_mass_fixed_to_it_needs_none_of_its_own() -> None:
@@ -348,7 +347,8 @@ def test_moments_that_break_the_triangle_inequality_are_repaired_by_the_smallest
     result, said = legal(chain(inertial=Inertial(1.0, tensor=(1.0, 1.0, 5.0, 0.0, 0.0, 0.0))))
     assert inertial_of(result, "b0") == Inertial(1.0, tensor=(2.0, 2.0, 4.0, 0.0, 0.0, 0.0))
     assert said == [
-        "warning HX103 body 'b0': of the principal moments 1.0, 1.0, 5.0 the last exceeds the sum of the others: 1 1 5 0 0 0 becomes 2 2 4 0 0 0"
+        "warning HX103 body 'b0': of the principal moments 1.0, 1.0, 5.0 the last exceeds the sum of the others: "
+        "1 1 5 0 0 0 becomes 2 2 4 0 0 0"
     ]
 
 
