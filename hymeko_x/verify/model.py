@@ -171,7 +171,8 @@ class Shape:
 class Body:
     """A rigid body: mass in kg, centre of mass in m and tensor about it in kg m^2, both in body axes.
 
-    ``parent`` is the index of the body at the other end of ``joint``. ``alias`` is the name as the format had to spell it.
+    ``parent`` is the index of the body at the other end of ``joint``. ``weighed`` is False where
+    nothing was said about inertia and each engine would compute another one.
     """
 
     name: str | None
@@ -181,7 +182,7 @@ class Body:
     com: Array = field(default_factory=lambda: np.zeros(3))
     tensor: Array = field(default_factory=lambda: np.zeros((3, 3)))
     shapes: tuple[Shape, ...] = ()
-    alias: str | None = None
+    weighed: bool = True
 
 
 @dataclass(frozen=True, slots=True)

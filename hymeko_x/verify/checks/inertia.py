@@ -58,9 +58,9 @@ def made_for_mujoco(pair: Pair) -> bool:
 
 def repaired_bodies(pair: Pair) -> list[tuple[int, int]]:
     """Pairs of bodies whose inertia was accepted although it differs: what differs there says nothing about dynamics."""
+    found = [(i, j) for i, j in pair.match.bodies[1:] if not (pair.a.bodies[i].weighed and pair.b.bodies[j].weighed)]
     if not made_for_mujoco(pair):
-        return []
-    found = []
+        return found
     for i, j in pair.match.bodies[1:]:
         x, y = of_body(pair.a.bodies[i]), of_body(pair.b.bodies[j])
         apart = max(abs(x[0] - y[0]), float(np.abs(x[2] - y[2]).max()))
@@ -83,8 +83,12 @@ def _units(pair: Pair) -> tuple[list[str], list[Inertia], list[Inertia]]:
     merged_b = {group_b[j] for j in pair.match.lone_b if pair.b.bodies[j].mass}
     members_a, members_b = _members(group_a), _members(group_b)
     seen: set[tuple[int, int]] = set()
+    unweighed: list[str] = []
     for i, j in pair.match.bodies[1:]:
         groups = group_a[i], group_b[j]
+        if not (pair.a.bodies[i].weighed and pair.b.bodies[j].weighed):
+            unweighed.append(pair.a.body_label(i))
+            continue
         whole = groups[0] in merged_a or groups[1] in merged_b
         if whole and (groups in seen or WORLD in groups):
             continue
@@ -92,6 +96,10 @@ def _units(pair: Pair) -> tuple[list[str], list[Inertia], list[Inertia]]:
         labels.append(f"what is fixed to {pair.a.body_label(i)}" if whole else pair.a.body_label(i))
         ours.append(_sum_in(pair.a, members_a[groups[0]], i) if whole else of_body(pair.a.bodies[i]))
         theirs.append(_sum_in(pair.b, members_b[groups[1]], j) if whole else of_body(pair.b.bodies[j]))
+    if unweighed:
+        pair.notes.append(
+            f"inertia of {len(unweighed)} bodies: not said in one of the files, so every engine computes another ({unweighed[0]})"
+        )
     return _without_unphysical(pair, labels, ours, theirs)
 
 

@@ -1,0 +1,228 @@
+"""USD as Pixar's UsdPhysics parser sees it: bodies, joints with both local frames, limits, collision shapes.
+
+Masses come from MassAPI, poses at rest and visual shapes from UsdGeom. Couplings are what NewtonMimicAPI and
+MjcEqualityJointAPI say, since UsdPhysics has no word for them. Physics is float32 and degrees in USD; lengths are in stage
+units. Everything is converted to SI, and to z up.
+Source: UsdPhysics schema and parseDesc.h (OpenUSD); newton-usd-schemas for NewtonMimicAPI.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.verify.model import WORLD, Array, Body, Feature, Joint, KinematicModel, Loop, grounded
+from hymeko_x.verify.readers.usd_joints import JointEdge, read_couplings, read_joint, read_loop
+from hymeko_x.verify.readers.usd_shapes import read_shapes
+from hymeko_x.verify.readers.words import overheard
+from hymeko_x.verify.spatial import inverse, rigid, rotation_from_quat
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from pathlib import Path
+
+    from hymeko_x.verify.readers import Places
+
+SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES})
+SINGLE = 1.2e-7
+"""The relative precision of what UsdPhysics stores."""
+
+_JOINTS = ("FixedJoint", "RevoluteJoint", "PrismaticJoint", "SphericalJoint", "D6Joint", "DistanceJoint", "CustomJoint")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Scene:
+    """A stage with its units: ``metres`` and ``kilograms`` per unit, ``upright`` the rotation that makes z point up."""
+
+    stage: Any
+    metres: float
+    kilograms: float
+    upright: Array
+
+    def pose(self, prim: Any) -> Array:
+        """The pose of a prim in the world at rest, in m, z up, without its scale."""
+        matrix = np.array(UsdGeom.XformCache().GetLocalToWorldTransform(prim), dtype=float).T
+        turn = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
+        return rigid(self.upright @ turn, self.upright @ matrix[:3, 3] * self.metres)
+
+
+def read(path: Path, places: Places) -> KinematicModel:
+    """The robot that UsdPhysics sees. Raises: Refusal HX302 in USD's words."""
+    with overheard() as said:
+        try:
+            stage = Usd.Stage.Open(str(path))
+        except Tf.ErrorException as error:
+            words = said() or " ".join(str(error).split())
+            raise refuse(codes.ENGINE_REFUSED, f"USD refuses the file: {words}", Origin(str(path))) from error
+        found = UsdPhysics.UsdPhysicsLoadStageFromPrimRange(stage, [Sdf.Path.absoluteRootPath])
+    scene = Scene(stage, UsdGeom.GetStageMetersPerUnit(stage), UsdPhysics.GetStageKilogramsPerUnit(stage), _upright(stage))
+    return _model(scene, path.stem, found)
+
+
+def _upright(stage: Any) -> Array:
+    """Y-up stages are turned about x, as every converter does."""
+    if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z:
+        return np.eye(3)
+    return np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
+
+
+def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
+    kinds = UsdPhysics.ObjectType
+    rigid_bodies = {str(desc.primPath): desc for desc in found.get(kinds.RigidBody, ((), ()))[1] if desc.rigidBodyEnabled}
+    joints = [desc for word in _JOINTS for desc in found.get(getattr(kinds, word), ((), ()))[1] if desc.jointEnabled and desc.isValid]
+    joints.sort(key=lambda desc: _stage_order(scene.stage, desc.primPath))
+    edges = [read_joint(scene, desc) for desc in joints]
+    order, tree, closing = _spanning_tree(list(rigid_bodies), edges)
+    places = {path: index for index, path in enumerate(order, start=1)} | {"": WORLD}
+    names = _names(scene.stage, order)
+    shapes = read_shapes(scene, found, set(rigid_bodies))
+    bodies = [grounded(shapes=shapes.get("", ()))]
+    for path in order:
+        bodies.append(_body(scene, path, names[path], tree.get(path), places, rigid_bodies[path].kinematicBody, shapes))
+    default = scene.stage.GetDefaultPrim()
+    model = KinematicModel(
+        name=str(default.GetName()) if default else name,
+        format="usd",
+        engine=f"UsdPhysics in OpenUSD {'.'.join(map(str, Usd.GetVersion()))}",
+        bodies=tuple(bodies),
+        loops=tuple(_loop(edge, places) for edge in closing),
+        says=SAYS,
+        precision=SINGLE,
+    )
+    return read_couplings(scene, model, tree)
+
+
+def _stage_order(stage: Any, path: Any) -> tuple[int, ...]:
+    """Where a prim stands among its siblings, level by level: the order in which the file lists it."""
+    order: list[int] = []
+    prim = stage.GetPrimAtPath(path)
+    while prim and not prim.IsPseudoRoot():
+        siblings = prim.GetParent().GetAllChildrenNames() if not prim.IsInstanceProxy() else []
+        order.append(siblings.index(prim.GetName()) if prim.GetName() in siblings else 0)
+        prim = prim.GetParent()
+    return tuple(reversed(order))
+
+
+def _names(stage: Any, paths: Sequence[str]) -> dict[str, str]:
+    """Display names where there are any, else prim names; a path where two bodies would have one name."""
+    names = {path: stage.GetPrimAtPath(path).GetDisplayName() or path.rpartition("/")[2] for path in paths}
+    counts: dict[str, int] = {}
+    for name in names.values():
+        counts[name] = counts.get(name, 0) + 1
+    return {path: name if counts[name] == 1 else path for path, name in names.items()}
+
+
+# ---- the tree --------------------------------------------------------------------------------------------------------
+
+
+def _spanning_tree(bodies: Sequence[str], edges: Sequence[JointEdge]) -> tuple[list[str], dict[str, JointEdge], list[JointEdge]]:
+    """Bodies with parents first, the joint above each (turned round where body 1 is the parent), and the joints that close loops.
+
+    Trees begin at the world, then at bodies that are nobody's child, then anywhere.
+    """
+    below: dict[str, list[JointEdge]] = {}
+    for edge in edges:
+        if not edge.closes:
+            below.setdefault(edge.parent, []).append(edge)
+            below.setdefault(edge.child, []).append(edge)
+    children = {edge.child for edge in edges if not edge.closes}
+    starts = ["", *(path for path in bodies if path not in children), *bodies]
+    known = set(bodies)
+    seen = {""}
+    order: list[str] = []
+    above: dict[str, JointEdge] = {}
+    used: set[int] = set()
+    for start in starts:
+        if start and start in seen:
+            continue
+        stack = [start]
+        if start:
+            seen.add(start)
+            order.append(start)
+        while stack:
+            body = stack.pop()
+            for edge in below.get(body, ()):
+                other = edge.child if edge.parent == body else edge.parent
+                if other in seen or other not in known:
+                    continue
+                seen.add(other)
+                used.add(id(edge))
+                order.append(other)
+                above[other] = edge if edge.child == other else edge.turned()
+                stack.append(other)
+    return order, above, [edge for edge in edges if id(edge) not in used]
+
+
+def _body(
+    scene: Scene,
+    path: str,
+    name: str,
+    edge: JointEdge | None,
+    places: Mapping[str, int],
+    kinematic: bool,
+    shapes: Mapping[str, tuple[Any, ...]],
+) -> Body:
+    prim = scene.stage.GetPrimAtPath(path)
+    weighed, mass, com, tensor = _inertia(scene, prim, bool(shapes.get(path)))
+    joint = edge.joint() if edge is not None else _root_joint(scene, prim, kinematic)
+    return Body(
+        name=name,
+        parent=places[edge.parent] if edge is not None else WORLD,
+        joint=joint,
+        mass=mass,
+        com=com,
+        tensor=tensor,
+        shapes=tuple(shapes.get(path, ())),
+        weighed=weighed,
+    )
+
+
+def _root_joint(scene: Scene, prim: Any, kinematic: bool) -> Joint:
+    """A body that no joint holds falls freely, unless it is kinematic."""
+    from hymeko_x.verify.model import Dof, Kind
+
+    place = scene.pose(prim)
+    return Joint(None, place) if kinematic else Joint(None, place, (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),))
+
+
+def _loop(edge: JointEdge, places: Mapping[str, int]) -> Loop:
+    return read_loop(edge, places.get(edge.parent, WORLD), places.get(edge.child, WORLD))
+
+
+# ---- inertia ---------------------------------------------------------------------------------------------------------
+
+
+def _inertia(scene: Scene, prim: Any, has_shapes: bool) -> tuple[bool, float, Array, Array]:
+    """Whether it is known, mass, centre and tensor by MassAPI. Zeros mean "not authored": engines then go by the shapes."""
+    api = UsdPhysics.MassAPI(prim)
+    mass = float(api.GetMassAttr().Get() or 0.0) * scene.kilograms
+    com = np.array(api.GetCenterOfMassAttr().Get() or (0.0, 0.0, 0.0), dtype=float)
+    com = np.where(np.isfinite(com), com, 0.0) * scene.metres
+    moments = np.array(api.GetDiagonalInertiaAttr().Get() or (0.0, 0.0, 0.0), dtype=float) * scene.kilograms * scene.metres**2
+    axes = api.GetPrincipalAxesAttr().Get() or Gf.Quatf(0)
+    quat = np.array([axes.GetReal(), *axes.GetImaginary()], dtype=float)
+    turn = rotation_from_quat(quat) if quat.any() else np.eye(3)
+    known = bool(mass and moments.any()) or not has_shapes
+    return known, mass, com, turn @ np.diag(moments) @ turn.T
+
+
+def relative(scene: Scene, body: str, prim: Any) -> tuple[Array, Array]:
+    """A prim in the frame of a body ("" is the world): its pose in m, and the 3x3 matrix of scale that comes before it."""
+    cache = UsdGeom.XformCache()
+    world = np.array(cache.GetLocalToWorldTransform(prim), dtype=float).T
+    world[:3] = np.block([[scene.upright @ world[:3, :3], scene.upright @ world[:3, 3:]]])
+    base = np.eye(4) if not body else rigid(*_unscaled(scene, body))
+    base[:3, 3] /= scene.metres
+    inside = inverse(base) @ world
+    turn = inside[:3, :3] / np.linalg.norm(inside[:3, :3], axis=0)
+    return rigid(turn, inside[:3, 3] * scene.metres), turn.T @ inside[:3, :3] * scene.metres
+
+
+def _unscaled(scene: Scene, body: str) -> tuple[Array, Array]:
+    place = scene.pose(scene.stage.GetPrimAtPath(body))
+    return place[:3, :3], place[:3, 3]

@@ -1,0 +1,197 @@
+"""Joints of UsdPhysics: two bodies, a frame on each, and what moves between the frames."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pxr import UsdPhysics
+
+from hymeko_x.verify.model import INF, Array, Coupling, Dof, Joint, Kind, KinematicModel, Loop, between_frames
+from hymeko_x.verify.spatial import frame_with_z, rigid, rotation_from_quat
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.verify.readers.usd import Scene
+
+_AXES = {UsdPhysics.Axis.X: 0, UsdPhysics.Axis.Y: 1, UsdPhysics.Axis.Z: 2}
+_DOF = UsdPhysics.JointDOF
+_D6 = (
+    (_DOF.TransX, Kind.SLIDE, 0),
+    (_DOF.TransY, Kind.SLIDE, 1),
+    (_DOF.TransZ, Kind.SLIDE, 2),
+    (_DOF.RotX, Kind.HINGE, 0),
+    (_DOF.RotY, Kind.HINGE, 1),
+    (_DOF.RotZ, Kind.HINGE, 2),
+)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class JointEdge:
+    """One joint: bodies by path ("" is the world), the joint's frame on each, and dofs in that frame.
+
+    ``closes`` marks a joint that the file leaves out of the articulation; ``words`` what a loop needs to know of its kind.
+    """
+
+    path: str
+    name: str
+    parent: str
+    child: str
+    above: Array
+    below: Array
+    dofs: tuple[Dof, ...]
+    closes: bool
+    words: str
+
+    def turned(self) -> JointEdge:
+        """The same joint seen from the other body: motion and axes change sense."""
+        dofs = tuple(_reversed(dof) for dof in reversed(self.dofs))
+        return replace(self, parent=self.child, child=self.parent, above=self.below, below=self.above, dofs=dofs)
+
+    def joint(self) -> Joint:
+        """The joint in the terms of the body below."""
+        return between_frames(self.name, self.above, self.dofs, self.below)
+
+
+def _reversed(dof: Dof) -> Dof:
+    """M(q)^-1 is a motion by q about the opposite axis."""
+    return replace(dof, axis=-dof.axis)
+
+
+def read_joint(scene: Scene, desc: Any) -> JointEdge:
+    """A joint of the parser, in SI units."""
+    prim = scene.stage.GetPrimAtPath(desc.primPath)
+    name = prim.GetDisplayName() or prim.GetName()
+    parent, child = _path(desc.body0), _path(desc.body1)
+    above, below = (
+        _local(scene, desc.localPose0Position, desc.localPose0Orientation, not parent),
+        _local(scene, desc.localPose1Position, desc.localPose1Orientation, not child),
+    )
+    dofs, words = _dofs(scene, desc, name)
+    return JointEdge(str(desc.primPath), name, parent, child, above, below, dofs, bool(desc.excludeFromArticulation), words)
+
+
+def _path(path: Any) -> str:
+    return "" if path.isEmpty else str(path)
+
+
+def _local(scene: Scene, position: Any, orientation: Any, in_world: bool) -> Array:
+    quat = np.array([orientation.GetReal(), *orientation.GetImaginary()], dtype=float)
+    frame = rigid(rotation_from_quat(quat), np.array(position, dtype=float) * scene.metres)
+    return rigid(scene.upright, np.zeros(3)) @ frame if in_world else frame
+
+
+def _dofs(scene: Scene, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
+    """What moves, and a word for the kind of closure that the joint would be."""
+    kinds = UsdPhysics.ObjectType
+    match desc.type:
+        case kinds.FixedJoint:
+            return (), "weld"
+        case kinds.RevoluteJoint:
+            return (_scalar(Kind.HINGE, _AXES[desc.axis], desc.limit, math.radians(1.0), name),), "hinge"
+        case kinds.PrismaticJoint:
+            return (_scalar(Kind.SLIDE, _AXES[desc.axis], desc.limit, scene.metres, name),), "slide"
+        case kinds.SphericalJoint:
+            return (Dof(Kind.BALL, np.eye(3)[_AXES[desc.axis]], name=name),), "connect"
+        case kinds.D6Joint:
+            return _d6(scene, desc, name)
+        case _:
+            return (), "other"
+
+
+def _scalar(kind: Kind, axis: int, limit: Any, unit: float, name: str | None) -> Dof:
+    lower, upper = (float(limit.lower), float(limit.upper)) if limit.enabled else (-INF, INF)
+    if lower > upper:
+        lower, upper = -INF, INF
+    return Dof(kind, np.eye(3)[axis], name=name, lower=lower * unit, upper=upper * unit)
+
+
+def _d6(scene: Scene, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
+    """Free and limited axes as slides and hinges in the order x, y, z; three free turns are a ball."""
+    limits = {pair.first: pair.second for pair in desc.jointLimits}
+    free = [item for item in _D6 if not (item[0] in limits and limits[item[0]].lower > limits[item[0]].upper)]
+    turns = [item for item in free if item[1] is Kind.HINGE]
+    ball = len(turns) == 3 and not any(item[0] in limits for item in turns)
+    if ball and len(free) == 3:
+        return (Dof(Kind.BALL, np.eye(3)[0], name=name),), "connect"
+    if ball and len(free) == 6 and not limits:
+        return (Dof(Kind.FREE, np.eye(3)[2], name=name),), "other"
+    single = name if len(free) == 1 else None
+    dofs = [_d6_dof(scene, item, limits.get(item[0]), single) for item in free if not (ball and item[1] is Kind.HINGE)]
+    dofs += [Dof(Kind.BALL, np.eye(3)[0])] if ball else []
+    return tuple(dofs), {0: "weld", 1: "hinge" if turns else "slide"}.get(len(free), "other")
+
+
+def _d6_dof(scene: Scene, item: tuple[Any, Kind, int], limit: Any, name: str | None) -> Dof:
+    _, kind, axis = item
+    if limit is None:
+        return Dof(kind, np.eye(3)[axis], name=name)
+    return _scalar(kind, axis, limit, scene.metres if kind is Kind.SLIDE else math.radians(1.0), name)
+
+
+# ---- loops -----------------------------------------------------------------------------------------------------------
+
+
+def read_loop(edge: JointEdge, body_a: int, body_b: int) -> Loop:
+    """A joint that closes a cycle; z of its frames is the axis that stays free."""
+    axis = edge.dofs[0].axis if edge.words in ("hinge", "slide") else np.array([0.0, 0.0, 1.0])
+    along = frame_with_z(axis)
+    words = " ".join(dof.kind.value for dof in edge.dofs) if edge.words == "other" else ""
+    return Loop(edge.words, body_a, edge.above @ along, body_b, edge.below @ along, edge.name, words)
+
+
+# ---- couplings -------------------------------------------------------------------------------------------------------
+
+
+def read_couplings(scene: Scene, model: KinematicModel, tree: Mapping[str, JointEdge]) -> KinematicModel:
+    """The model with what MjcEqualityJointAPI, else NewtonMimicAPI, says about joints that follow others."""
+    paths = {edge.path: edge for edge in tree.values()}
+    dofs = {dof.name: index for index, dof in enumerate(model.dofs) if dof.name is not None}
+    found = [coupling for path in paths if (coupling := _coupling(scene, path, paths, dofs)) is not None]
+    return replace(model, couplings=tuple(found))
+
+
+def _coupling(scene: Scene, path: str, paths: Mapping[str, JointEdge], dofs: Mapping[str, int]) -> Coupling | None:
+    prim = scene.stage.GetPrimAtPath(path)
+    follower = dofs.get(paths[path].name)
+    if follower is None:
+        return None
+    leader = _leader(prim, "mjc:target", paths, dofs)
+    if leader is not None:
+        constant, *others = (_number(prim, f"mjc:coef{k}", 1.0 if k == 1 else 0.0) for k in range(5))
+        while len(others) > 1 and others[-1] == 0.0:
+            others.pop()
+        return Coupling(follower, constant, ((leader[1], tuple(others)),))
+    leader = _leader(prim, "newton:mimicJoint", paths, dofs)
+    if leader is None or not _enabled(prim):
+        return None
+    own, other = (_unit(scene, paths[p]) for p in (path, leader[0]))
+    slope = _number(prim, "newton:mimicCoef1", 1.0) * own / other
+    return Coupling(follower, _number(prim, "newton:mimicCoef0", 0.0) * own, ((leader[1], (slope,)),))
+
+
+def _unit(scene: Scene, edge: JointEdge) -> float:
+    """What one unit of a joint's coordinate in the file (a degree, or a stage unit) is in rad or m."""
+    return scene.metres if edge.dofs[0].kind is Kind.SLIDE else math.radians(1.0)
+
+
+def _leader(prim: Any, name: str, paths: Mapping[str, JointEdge], dofs: Mapping[str, int]) -> tuple[str, int] | None:
+    relationship = prim.GetRelationship(name)
+    targets = [str(target) for target in relationship.GetForwardedTargets()] if relationship else []
+    known = [target for target in targets if target in paths and paths[target].name in dofs]
+    return (known[0], dofs[paths[known[0]].name]) if known else None
+
+
+def _enabled(prim: Any) -> bool:
+    attribute = prim.GetAttribute("newton:mimicEnabled")
+    value = attribute.Get() if attribute else None
+    return value is not False
+
+
+def _number(prim: Any, name: str, default: float) -> float:
+    attribute = prim.GetAttribute(name)
+    value = attribute.Get() if attribute else None
+    return default if value is None else float(value)

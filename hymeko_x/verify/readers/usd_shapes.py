@@ -1,0 +1,112 @@
+"""Shapes in a stage: what UsdPhysics collides with, and every other prim of geometry below a body, which is for the eye."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pxr import Usd, UsdGeom, UsdPhysics
+
+from hymeko_x.verify.model import Array, Role, Shape, Surface
+from hymeko_x.verify.spatial import rigid
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.verify.readers.usd import Scene
+
+_ALONG = {
+    "X": np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]),
+    "Y": np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]),
+    "Z": np.eye(3),
+}
+"""The rotation that takes z to each axis: a cylinder's length is along z here."""
+
+_EVEN = 1e-5  # scales this close are one: they are stored as floats
+
+
+def read_shapes(scene: Scene, found: Mapping[Any, Any], bodies: set[str]) -> dict[str, tuple[Shape, ...]]:
+    """The shapes of each body by its path; those of the world under ""."""
+    colliding = {str(path) for paths, descs in found.values() for path, desc in zip(paths, descs, strict=True) if _collides(desc)}
+    shapes: dict[str, list[Shape]] = {}
+    for prim in Usd.PrimRange(scene.stage.GetPseudoRoot(), Usd.TraverseInstanceProxies()):
+        if not prim.IsA(UsdGeom.Gprim):
+            continue
+        path = str(prim.GetPath())
+        role = _role(prim, path in colliding)
+        shape = None if role is None else _shape(scene, prim, _owner(prim, bodies), role)
+        if shape is not None:
+            shapes.setdefault(_owner(prim, bodies), []).append(shape)
+    return {path: tuple(items) for path, items in shapes.items()}
+
+
+def _collides(desc: Any) -> bool:
+    return isinstance(desc, UsdPhysics.ShapeDesc) and bool(desc.collisionEnabled)
+
+
+def _role(prim: Any, collides: bool) -> Role | None:
+    """Guides and invisible prims are not drawn; None for what neither collides nor is drawn."""
+    image = UsdGeom.Imageable(prim)
+    drawn = image.ComputePurpose() != UsdGeom.Tokens.guide and image.ComputeVisibility() != UsdGeom.Tokens.invisible
+    if collides:
+        return Role.BOTH if drawn else Role.COLLISION
+    return Role.VISUAL if drawn else None
+
+
+def _owner(prim: Any, bodies: set[str]) -> str:
+    """The nearest body above a prim, or ""."""
+    path = prim.GetPath()
+    while not path.IsAbsoluteRootPath():
+        if str(path) in bodies:
+            return str(path)
+        path = path.GetParentPath()
+    return ""
+
+
+def _shape(scene: Scene, prim: Any, body: str, role: Role) -> Shape | None:
+    """A primitive in the body's frame; a mesh as triangles in it."""
+    from hymeko_x.verify.readers.usd import relative
+
+    pose, scale = relative(scene, body, prim)
+    name = prim.GetDisplayName() or prim.GetName()
+    if prim.IsA(UsdGeom.Mesh):
+        return Shape("mesh", role, pose, (), name, _surface(prim, scale))
+    size = np.abs(np.diag(scale))
+    if prim.IsA(UsdGeom.Cube):
+        edge = float(UsdGeom.Cube(prim).GetSizeAttr().Get())
+        return Shape("box", role, pose, tuple(float(x) for x in edge * size), name)
+    if prim.IsA(UsdGeom.Sphere):
+        radii = float(UsdGeom.Sphere(prim).GetRadiusAttr().Get()) * size
+        if np.ptp(radii) <= _EVEN * radii.max():
+            return Shape("sphere", role, pose, (float(radii.mean()),), name)
+        return Shape("ellipsoid", role, pose, tuple(float(x) for x in radii), name)
+    if prim.IsA(UsdGeom.Plane):
+        return Shape("plane", role, _turned(pose, UsdGeom.Plane(prim)), (), name)
+    for kind, schema in (("cylinder", UsdGeom.Cylinder), ("capsule", UsdGeom.Capsule)):
+        if prim.IsA(schema):
+            return _round(kind, schema(prim), role, pose, size, name)
+    return None
+
+
+def _round(kind: str, schema: Any, role: Role, pose: Array, size: Array, name: str) -> Shape:
+    along = "XYZ".index(schema.GetAxisAttr().Get())
+    across = float(np.delete(size, along).max())
+    radius, height = float(schema.GetRadiusAttr().Get()), float(schema.GetHeightAttr().Get())
+    return Shape(kind, role, _turned(pose, schema), (radius * across, height * float(size[along])), name)
+
+
+def _turned(pose: Array, schema: Any) -> Array:
+    return pose @ rigid(_ALONG[schema.GetAxisAttr().Get()], np.zeros(3))
+
+
+def _surface(prim: Any, scale: Array) -> Surface:
+    """The faces as triangles (fans), at the default time."""
+    mesh = UsdGeom.Mesh(prim)
+    points = np.array(mesh.GetPointsAttr().Get() or [], dtype=float).reshape(-1, 3) @ scale.T
+    counts, corners = mesh.GetFaceVertexCountsAttr().Get() or [], mesh.GetFaceVertexIndicesAttr().Get() or []
+    faces: list[tuple[int, int, int]] = []
+    first = 0
+    for count in counts:
+        faces += [(corners[first], corners[first + k], corners[first + k + 1]) for k in range(1, count - 1)]
+        first += count
+    return Surface(points, np.array(faces, dtype=np.intp).reshape(-1, 3))
