@@ -137,15 +137,23 @@ def _text_corners(data: bytes) -> NDArray[np.float64]:
 
 def _loaded(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> list[Part]:
     """Every geometry of the file where its node puts it, in m."""
-    if suffix == ".dae" and (b"<!DOCTYPE" in data or b"<!ENTITY" in data):
-        raise Unreadable("it declares XML entities, which are not expanded")
+    if suffix == ".dae":
+        _check_collada(data)
     import trimesh
 
     try:
         scene = trimesh.load_scene(io.BytesIO(data), suffix[1:], resolver=_resolver(fetch), process=False)
         return [part for node in scene.graph.nodes_geometry for part in _node_part(scene, node)]
-    except _DAMAGED as error:
+    except _raised_by_loaders(suffix) as error:
         raise Unreadable(str(error).split("\n")[0][:200] or type(error).__name__) from error
+
+
+def _check_collada(data: bytes) -> None:
+    """Entities would be expanded, and an archive unpacked to any size."""
+    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
+        raise Unreadable("it declares XML entities, which are not expanded")
+    if b"PK\x05\x06" in data[-70_000:]:
+        raise Unreadable("it is a ZIP archive, which is not unpacked")
 
 
 def _node_part(scene: Any, node: str) -> Iterable[Part]:
@@ -191,12 +199,12 @@ def _look_of(mesh: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
 
 
 def _simple_look(name: str, material: Any, uv: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
-    """The look of an OBJ material; one without a name stands for a material file that is not there."""
-    image = _png(material.image)
+    """The look of an OBJ material. One without colour and without a named image is what trimesh makes up itself."""
+    image = _png(material.image) if material.image is not None and "file_path" in material.image.info else None
     color = material.kwargs.get("kd")
-    if image is None and not name:
-        return None, None
     rgba = (float(color[0]), float(color[1]), float(color[2]), 1.0) if isinstance(color, list) and len(color) == 3 else None
+    if image is None and rgba is None:
+        return None, None
     return Look(name, None if image else rgba, image), _uv(uv) if image else None
 
 
@@ -270,6 +278,14 @@ _DAMAGED = (
     struct.error,
 )
 """What the loaders behind trimesh raise on damaged files; they check little before they index."""
+
+
+def _raised_by_loaders(suffix: str) -> tuple[type[Exception], ...]:
+    if suffix != ".dae":
+        return _DAMAGED
+    from collada.common import DaeError
+
+    return (*_DAMAGED, DaeError)
 
 
 # ---- parts -------------------------------------------------------------------------------------------------------------------

@@ -127,9 +127,10 @@ def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> 
     solid = any(view.shape.role is not Role.VISUAL for view in users)
     try:
         part = inline_part(mesh.vertices, mesh.faces)
+        _check_surface(part)
         reason = _refusal(part, ".obj", b"", solid=solid)
         if reason is None:
-            _add_mesh(run, key, mesh, part, solid=solid)
+            _add_mesh(run, key, mesh, part)
             return
         _say_converted(run, key, reason)
         _write_mesh(run, key, replace(mesh, vertices=(), faces=()), part, key.name, solid=solid)
@@ -198,7 +199,7 @@ def _pack_looks(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], fil
         return [_own_mesh(run, mesh, part) for part in parts]
     part = parts[0]
     look = _material(run, part.look, mesh)
-    if hull == key and not _is_altered(part, mesh):
+    if hull == key and not _is_altered(part):
         return [_Piece(key, look)]
     target = key if hull is None else run.names.take("mesh", f"{key.name}_visual")
     _store(run, target, key, mesh, part, file, solid=False)
@@ -226,15 +227,25 @@ def _pack_hull(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], file
 
 def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Part, file: _File, *, solid: bool) -> None:
     """The file as it is where MuJoCo takes it, else converted; the report says why."""
+    _check_surface(part)
     path, data = file
     suffix = suffix_of(path)
     reason = _refusal(part, suffix, data, solid=solid)
     if reason is None:
         uri = run.shelf.copy(_MESHES, stem_of(mesh.uri or path), suffix, path, data)
-        _add_mesh(run, target, replace(mesh, uri=uri), part, solid=solid)
+        _add_mesh(run, target, replace(mesh, uri=uri), part)
         return
     _say_converted(run, key, reason)
     _write_mesh(run, target, mesh, part, stem_of(mesh.uri or path), solid=solid, stl=suffix == ".stl")
+
+
+def _check_surface(part: Part) -> None:
+    """Raises: Unreadable for a mesh that has no surface at all, which nothing can repair."""
+    from hymeko_x.assets.mesh import Unreadable, extents
+
+    _, middle, high = extents(part)
+    if middle <= _FLAT * high:
+        raise Unreadable("all of its points lie on a line")
 
 
 def _refusal(part: Part, suffix: str, data: bytes, *, solid: bool) -> str | None:
@@ -255,26 +266,21 @@ def _refusal(part: Part, suffix: str, data: bytes, *, solid: bool) -> str | None
 
 
 def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part, stem: str, *, solid: bool, stl: bool = False) -> None:
-    """A converted file: STL stays STL where that is enough, all else becomes OBJ.
+    """A converted file: STL stays STL where that is enough, all else becomes OBJ."""
+    from hymeko_x.assets.mesh import obj_bytes, stl_bytes, thickened
 
-    Raises: Unreadable for a mesh without any surface.
-    """
-    from hymeko_x.assets.mesh import Unreadable, extents, obj_bytes, stl_bytes, thickened
-
-    if len(part.faces) == 0 or extents(part)[1] <= _FLAT * extents(part)[2]:
-        raise Unreadable("all of its points lie on a line")
     if (solid and _is_flat(part)) or len(part.points) < _FEWEST_POINTS:
         part = thickened(part, _THICKNESS)
     if stl and len(part.faces) <= MOST_STL_FACES:
         uri = run.shelf.place(_MESHES, stem, ".stl", stl_bytes(part))
     else:
         uri = run.shelf.place(_MESHES, stem, ".obj", obj_bytes(part))
-    _add_mesh(run, key, replace(mesh, uri=uri), part, solid=solid)
+    _add_mesh(run, key, replace(mesh, uri=uri), part)
 
 
-def _add_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part, *, solid: bool) -> None:
+def _add_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part) -> None:
     run.vertices[key] = mesh
-    if not solid and _is_sheet(part, mesh):
+    if _is_sheet(part, mesh):
         run.surfaces.add(key)
 
 
@@ -296,9 +302,9 @@ def _is_sheet(part: Part, mesh: Mesh) -> bool:
     return volume_of_sheets(part) * abs(x * y * z) < _LEAST_VOLUME
 
 
-def _is_altered(part: Part, mesh: Mesh) -> bool:
+def _is_altered(part: Part) -> bool:
     """Whether the mesh for contact is not also the one to show."""
-    return _is_flat(part) or len(part.points) < _FEWEST_POINTS or _is_sheet(part, mesh)
+    return _is_flat(part) or len(part.points) < _FEWEST_POINTS
 
 
 # ---- looks ----------------------------------------------------------------------------------------------------------------------
