@@ -33,8 +33,8 @@ def check_chains(pair: Pair) -> Iterator[Check]:
             angles.append(max(_apart(x.theta, y.theta), _apart(x.alpha, y.alpha), _apart(x.beta, y.beta)))
             labels.append(f"{pair.a.dof_label(dof)} in the chain to {pair.a.body_label(i)}")
     if labels:
-        yield worst("DH parameters, lengths", "m", np.array(lengths), pair.allowed(_ALLOWED, 500.0), lambda k: labels[k])
-        yield worst("DH parameters, angles", "rad", np.array(angles), pair.allowed(_ALLOWED, 500.0), lambda k: labels[k])
+        yield worst("DH parameters, lengths", "m", np.array(lengths), pair.allowed(_ALLOWED, 50.0), lambda k: labels[k])
+        yield worst("DH parameters, angles", "rad", np.array(angles), pair.allowed(_ALLOWED, 50.0), lambda k: labels[k])
 
 
 def _chains(pair: Pair) -> Iterator[tuple[int, int, list[int], list[int]]]:

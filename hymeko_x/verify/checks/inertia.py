@@ -58,7 +58,7 @@ def made_for_mujoco(pair: Pair) -> bool:
 
 def repaired_bodies(pair: Pair) -> list[tuple[int, int]]:
     """Pairs of bodies whose inertia was accepted although it differs: what differs there says nothing about dynamics."""
-    found = [(i, j) for i, j in pair.match.bodies[1:] if not (pair.a.bodies[i].weighed and pair.b.bodies[j].weighed)]
+    found = [(i, j) for i, j in pair.match.bodies[1:] if not _comparable(pair.a.bodies[i], pair.b.bodies[j])]
     if not made_for_mujoco(pair):
         return found
     for i, j in pair.match.bodies[1:]:
@@ -86,7 +86,7 @@ def _units(pair: Pair) -> tuple[list[str], list[Inertia], list[Inertia]]:
     unweighed: list[str] = []
     for i, j in pair.match.bodies[1:]:
         groups = group_a[i], group_b[j]
-        if not (pair.a.bodies[i].weighed and pair.b.bodies[j].weighed):
+        if not _comparable(pair.a.bodies[i], pair.b.bodies[j]):
             unweighed.append(pair.a.body_label(i))
             continue
         whole = groups[0] in merged_a or groups[1] in merged_b
@@ -101,6 +101,11 @@ def _units(pair: Pair) -> tuple[list[str], list[Inertia], list[Inertia]]:
             f"inertia of {len(unweighed)} bodies: not said in one of the files, so every engine computes another ({unweighed[0]})"
         )
     return _without_unphysical(pair, labels, ours, theirs)
+
+
+def _comparable(ours: Body, theirs: Body) -> bool:
+    """Whether both files say something. A mass that the first says and the second does not is a difference."""
+    return ours.weighed and (theirs.weighed or ours.mass > 0.0)
 
 
 def _without_unphysical(
