@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -11,6 +12,7 @@ from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.language.comments import TOKENS
+from hymeko_x.language.excerpts import excerpt
 from hymeko_x.language.generate import grammar_text
 
 if TYPE_CHECKING:
@@ -49,7 +51,13 @@ _WORDS = {
 _IGNORED = {"MODIFIER", "LEGACY_HEADER", "COMMENT"}
 _KEYWORDS = {"USE", "IMPORT", "AS", "EDGE_WORD"}
 _PAIRS = {"}": "{", "]": "[", ")": "("}
-_MAX_LINE = 160
+_CLOSERS = {"RBRACE": "{", "RSQB": "[", "RPAR": "("}
+_DIGIT_NAME = re.compile(r"\d+[^\W\d]\w*")
+_BEGINNINGS = {
+    "<": "this looks like XML: --from urdf, --from xacro or --from mjcf reads it",
+    "{": "a text begins with a name: robot { ... }",
+}
+_BEHIND = {":": "the name of a type follows ':'; a value stands behind '=' or behind the name alone: mass 1", "=": "a value follows '='"}
 
 _CHARACTER_HINTS = {
     '"': "the string that begins here is never closed",
@@ -83,11 +91,18 @@ def _lark() -> Lark:
 
 
 def _unexpected_character(error: UnexpectedCharacters, text: str, name: str) -> Refusal:
-    character = text[error.pos_in_stream or 0]
-    message = f"the character {character!r} means nothing here; expected {_list(error.allowed or set())}"
-    hint = _CHARACTER_HINTS.get(character, "")
+    offset = error.pos_in_stream or 0
+    character = text[offset]
+    message = f"the character {character!r} means nothing here; expected {_list(_possible(error.allowed or set(), text, offset))}"
+    hint = _unclosed_before(text, offset) or _character_hint(text, offset)
     place = Origin(name, error.line, error.column)
     return refuse(codes.SYNTAX, message, place, hint=hint, excerpt=excerpt(text, error.line, error.column, 1))
+
+
+def _character_hint(text: str, offset: int) -> str:
+    if text.startswith("/*", offset):
+        return "the comment that begins here is never closed"
+    return _CHARACTER_HINTS.get(text[offset], "")
 
 
 def _unexpected_token(error: UnexpectedToken, text: str, name: str) -> Refusal:
@@ -95,7 +110,7 @@ def _unexpected_token(error: UnexpectedToken, text: str, name: str) -> Refusal:
     at_end = token.type == "$END"
     line, column = _end_of(text) if at_end else (token.line or 1, token.column or 1)
     found = "the text ends" if at_end else f"unexpected {_shown(str(token))}"
-    expected = _list(error.accepts or error.expected)
+    expected = _list(_possible(error.accepts or error.expected, text, len(text) if at_end else token.start_pos or 0))
     width = 1 if at_end else len(str(token).split("\n", 1)[0])
     return refuse(
         codes.SYNTAX,
@@ -109,6 +124,10 @@ def _unexpected_token(error: UnexpectedToken, text: str, name: str) -> Refusal:
 def _token_hint(error: UnexpectedToken, text: str, at_end: bool) -> str:
     """What the user may have meant."""
     token = str(error.token)
+    offset = len(text) if at_end else error.token.start_pos or 0
+    foreign = _other_language(text, offset)
+    if foreign:
+        return foreign
     unclosed, unopened = _brackets(text)
     if at_end and unclosed is not None:
         bracket, line = unclosed
@@ -120,10 +139,39 @@ def _token_hint(error: UnexpectedToken, text: str, at_end: bool) -> str:
         return f"the '{bracket}' in line {line} is still open"
     if token in _PAIRS and unopened == error.token.start_pos:
         return f"there is no '{_PAIRS[token]}' for this '{token}'"
-    return _expectation_hint(error.accepts or error.expected, token)
+    return _unclosed_before(text, offset) or _expectation_hint(error.accepts or error.expected, token, text[:offset].rstrip()[-1:])
 
 
-def _expectation_hint(expected: set[str], token: str) -> str:
+def _other_language(text: str, offset: int) -> str:
+    """A hint for a text that begins like another language."""
+    if text[:offset].strip(" \t\r\n\ufeff"):
+        return ""
+    return _BEGINNINGS.get(text[offset : offset + 1], "")
+
+
+def _unclosed_before(text: str, offset: int) -> str:
+    """A hint for a string over several lines just before the error: it probably begins where another one should have ended."""
+    last = None
+    for match in TOKENS.finditer(text, 0, offset):
+        if match[0][0] in "\"'" and not match[0].startswith('"""'):
+            last = match
+    if last is None or "\n" not in last[0]:
+        return ""
+    begin = text.count("\n", 0, last.start()) + 1
+    end = begin + last[0].count("\n")
+    return f"the string that begins in line {begin} ends in line {end}; a quote may be missing"
+
+
+def _expectation_hint(expected: set[str], token: str, before: str) -> str:
+    """A hint from what was expected, the token that came, and the character before it."""
+    if expected == {"STRING"}:
+        return 'an import names a file: import "legs.hymeko"; as a name the word is written in backticks: `import`'
+    if before == ":":
+        return _BEHIND[before]
+    if "RPAR" in expected and "NAME" in expected and "LBRACE" not in expected and token not in _PAIRS:
+        return "parameters have names: part(mass=2)"
+    if "NAME" in expected and _DIGIT_NAME.fullmatch(token):
+        return f"a name does not begin with a digit; as a name it is written in backticks: `{token}`"
     if token == "=":
         return "one '=' is enough, and only a name stands before it"
     if token == "{" and "NAME" in expected:
@@ -132,7 +180,7 @@ def _expectation_hint(expected: set[str], token: str) -> str:
         return "a node or edge has a block, even if it is empty: name : type { }"
     if expected <= {"NAME", "QUOTED_REF"}:
         return "a direction is followed by the name of an element"
-    return ""
+    return _BEHIND.get(before, "")
 
 
 def _brackets(text: str) -> tuple[tuple[str, int] | None, int | None]:
@@ -156,6 +204,12 @@ def _with_line(stack: list[tuple[str, int]], text: str) -> tuple[str, int] | Non
     return bracket, text.count("\n", 0, position) + 1
 
 
+def _possible(terminals: set[str], text: str, offset: int) -> set[str]:
+    """The terminals without the brackets that would close another one than the innermost open one."""
+    unclosed, _ = _brackets(text[:offset])
+    return {name for name in terminals if name not in _CLOSERS or (unclosed is not None and _CLOSERS[name] == unclosed[0])}
+
+
 def _list(terminals: set[str]) -> str:
     """What was expected, in words, in a fixed order."""
     words = list(dict.fromkeys(word for terminal, word in _WORDS.items() if terminal in terminals))
@@ -175,13 +229,3 @@ def _end_of(text: str) -> tuple[int, int]:
     """Line and column behind the last character that is not white space."""
     rest = text.rstrip()
     return rest.count("\n") + 1, len(rest) - (rest.rfind("\n") + 1) + 1
-
-
-def excerpt(text: str, line: int, column: int, width: int) -> tuple[str, ...]:
-    """The source line and a caret line below it; a long line is cut around the place."""
-    source = text.split("\n")[line - 1].rstrip("\r").replace("\t", " ")
-    start = max(0, column - 1 - _MAX_LINE // 2) if len(source) > _MAX_LINE else 0
-    shown = source[start : start + _MAX_LINE]
-    room = max(1, min(width, len(shown) - (column - 1 - start)))
-    gutter = f"{line:>5}"
-    return (f"{gutter} | {shown}", f"{' ' * len(gutter)} | {' ' * (column - 1 - start)}{'^' * room}")

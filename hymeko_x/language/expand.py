@@ -25,18 +25,24 @@ from hymeko_x.language.syntax import (
     Import,
     Item,
     Node,
+    Quantity,
     QuotedName,
     Ref,
     Stereotype,
     Value,
 )
 
-MAX_ELEMENTS = 2_000_000
+MAX_ITEMS = 500_000
+"""What templates may add to a text: elements, fields, arcs and nested nodes."""
+MAX_TEXT = 100_000
+"""Characters of a text with `${ }` in it."""
 MAX_DEPTH = 64
+MAX_IMPORTS = 200
 _INTERPOLATION = re.compile(r"\$\{([^{}]*)\}")
 
 Fetch = Callable[[str], bytes | None]
 Environment = Mapping[str, float | str]
+_Imported = dict[str, dict[str, Node] | None]  # what each file defines; None while it is being read
 
 
 @dataclass(slots=True)
@@ -117,7 +123,7 @@ def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
     preceding, document, following = _without_outer_comments(document)
     header, roots, loose = _split(document)
     templates = dict(standard_templates())
-    _import(document.items, file, fetch, templates, depth=0)
+    _import(document.items, file, fetch, templates, {})
     for node in roots:
         _define(node.items, templates)
     _define(document.items, templates)
@@ -176,24 +182,35 @@ def _define(items: tuple[Item, ...], templates: dict[str, Node]) -> None:
             templates[item.name] = item
 
 
-def _import(items: tuple[Item, ...], file: str, fetch: Fetch, templates: dict[str, Node], depth: int) -> None:
+def _import(items: tuple[Item, ...], file: str, fetch: Fetch, templates: dict[str, Node], seen: _Imported) -> None:
     """Define what imported files define: by name, and by alias and name."""
     for item in items:
         if not isinstance(item, Import) or item.path.startswith("std/") or item.path == "std":
             continue
         origin = Origin(file, item.line or None, item.column or None)
-        if depth > MAX_DEPTH:
+        if item.path not in seen:
+            seen[item.path] = None
+            seen[item.path] = _definitions(item.path, fetch, templates, seen, origin)
+        found = seen[item.path]
+        if found is None:
             raise refuse(codes.BAD_TEMPLATE, f"the import of '{item.path}' leads back to itself", origin)
-        data = fetch(item.path)
-        if data is None:
-            raise refuse(codes.UNDEFINED_REFERENCE, f"the imported file '{item.path}' was not found", origin)
-        imported = parse(_decode(data, item.path), item.path)
-        _import(imported.items, item.path, fetch, templates, depth + 1)
-        found: dict[str, Node] = {}
-        _define(imported.items, found)
         templates.update(found)
         if item.alias:
             templates.update({f"{item.alias}.{name}": node for name, node in found.items()})
+
+
+def _definitions(path: str, fetch: Fetch, templates: dict[str, Node], seen: _Imported, origin: Origin) -> dict[str, Node]:
+    """What one imported file defines, after those that it imports itself."""
+    if len(seen) > MAX_IMPORTS:
+        raise refuse(codes.TOO_LARGE, f"more than {MAX_IMPORTS} files are imported", origin)
+    data = fetch(path)
+    if data is None:
+        raise refuse(codes.UNDEFINED_REFERENCE, f"the imported file '{path}' was not found", origin)
+    imported = parse(_decode(data, path), path)
+    _import(imported.items, path, fetch, templates, seen)
+    found: dict[str, Node] = {}
+    _define(imported.items, found)
+    return found
 
 
 def _decode(data: bytes, name: str) -> str:
@@ -226,7 +243,8 @@ class _Expansion:
         return found
 
     def _element(self, node: Node, environment: Environment, scope: Scope, depth: int) -> list[Element | Statement]:
-        self._count(node)
+        if depth:
+            self._count(node, 1)
         name = self._text(node.name, environment, node)
         kind = self.type_of(node, environment)
         merged = _merge(kind.items, node.items)
@@ -240,17 +258,17 @@ class _Expansion:
         self, node: Node, name: str, items: tuple[Item, ...], environment: Environment, scope: Scope, depth: int
     ) -> list[Element | Statement]:
         if depth > MAX_DEPTH:
-            raise self._refuse(node, f"'{name}' is nested more than {MAX_DEPTH} levels deep")
+            hint = "an assembly that holds an instance of itself never ends"
+            raise self._refuse(node, f"'{name}' is nested more than {MAX_DEPTH} levels deep", hint)
         inner = Scope(f"{scope.full(name)}_", scope)
         scope.scopes[name] = inner
         nodes: list[Item] = [item for item in items if isinstance(item, Node)]
         return self.elements(nodes, environment, inner, depth + 1)
 
-    def _count(self, node: Node) -> None:
-        self._made += 1
-        if self._made > MAX_ELEMENTS:
-            origin = Origin(self._file, node.line, node.column)
-            raise refuse(codes.TOO_LARGE, f"the templates make more than {MAX_ELEMENTS} elements", origin)
+    def _count(self, node: Node, items: int) -> None:
+        self._made += items
+        if self._made > MAX_ITEMS:
+            raise refuse(codes.TOO_LARGE, f"the templates make more than {MAX_ITEMS} items", self._origin(node))
 
     # ---- types -------------------------------------------------------------------------------------------------------------
 
@@ -259,7 +277,7 @@ class _Expansion:
         result = NO_TYPE
         for stereotype in node.stereotypes:
             kind = self._stereotype(stereotype, environment, node, ())
-            result = _Type((*result.names, *kind.names), _merge(kind.items, result.items))
+            result = _combined(result, kind)
         return result
 
     def _stereotype(self, stereotype: Stereotype, environment: Environment, node: Node, chain: tuple[str, ...]) -> _Type:
@@ -267,11 +285,13 @@ class _Expansion:
         if name in chain or len(chain) > MAX_DEPTH:
             raise self._refuse(node, f"the template '{name}' applies itself: {' -> '.join([*chain, name])}")
         template = self._templates[name]
+        if template is not standard_templates().get(name):
+            self._count(node, 1 + len(template.items))
         inner = self._bind(template, stereotype, environment, node)
         base = NO_TYPE
         for parent in template.stereotypes:
             kind = self._stereotype(parent, inner, node, (*chain, name))
-            base = _Type((*base.names, *kind.names), _merge(kind.items, base.items))
+            base = _combined(base, kind)
         own = tuple(self._item(item, inner) for item in template.items)
         return _Type((name, *base.names), (*_merge(base.items, own), *preset))
 
@@ -292,8 +312,7 @@ class _Expansion:
 
         near = get_close_matches(name, self._templates, n=3)
         hint = f"did you mean {' or '.join(near)}?" if near else "the vocabulary is listed in the language reference"
-        origin = Origin(self._file, node.line, node.column)
-        return refuse(codes.UNKNOWN_TYPE, f"'{node.name}' has the type '{name}', which is not known", origin, hint=hint)
+        return refuse(codes.UNKNOWN_TYPE, f"'{node.name}' has the type '{name}', which is not known", self._origin(node), hint=hint)
 
     def _bind(self, template: Node, stereotype: Stereotype, environment: Environment, node: Node) -> Environment:
         """The parameters of a template with the values of one application."""
@@ -302,22 +321,24 @@ class _Expansion:
         for parameter in template.parameters or ():
             value = given.pop(parameter.name, parameter.default)
             if value is None:
-                raise self._refuse(node, f"'{node.name}' applies '{template.name}' without its parameter '{parameter.name}'")
+                hint = f"it has the parameters {', '.join(parameter.name for parameter in template.parameters or ())}"
+                raise self._refuse(node, f"'{node.name}' applies '{template.name}' without its parameter '{parameter.name}'", hint)
             scope = environment if parameter.name in dict(stereotype.arguments or ()) else bound
-            bound[parameter.name] = self._scalar(value, scope, node)
+            bound[parameter.name] = self._scalar(parameter.name, value, scope, node)
         if given:
             known = ", ".join(parameter.name for parameter in template.parameters or ()) or "no parameters"
             unknown = ", ".join(f"'{name}'" for name in given)
             raise self._refuse(node, f"'{node.name}' gives '{template.name}' the unknown parameter {unknown}; it has {known}")
         return bound
 
-    def _scalar(self, value: Value, environment: Environment, node: Node) -> float | str:
+    def _scalar(self, name: str, value: Value, environment: Environment, node: Node) -> float | str:
         plain = self._value(value, environment, node)
         if isinstance(plain, float | str):
             return plain
         if isinstance(plain, Ref) and len(plain.path) == 1:
             return plain.path[0]
-        raise self._refuse(node, "a template's parameter is a number or a text")
+        hint = "pass a plain number in the unit of the field that uses it" if isinstance(plain, Quantity) else ""
+        raise self._refuse(node, f"the parameter '{name}' takes a number or a text", hint)
 
     # ---- plain values ------------------------------------------------------------------------------------------------------
 
@@ -376,17 +397,22 @@ class _Expansion:
                 return value
             return str(int(value)) if value.is_integer() else repr(value)
 
-        return type(text)(_INTERPOLATION.sub(fill, text))
+        filled = _INTERPOLATION.sub(fill, text)
+        if len(filled) > MAX_TEXT:
+            raise refuse(codes.TOO_LARGE, f"a text grows to more than {MAX_TEXT} characters", self._origin(place))
+        return type(text)(filled)
 
     def _evaluate(self, text: str, environment: Environment, place: Item) -> float | str:
         try:
             return evaluate(text.strip(), environment)
         except ExpressionError as error:
-            origin = Origin(self._file, place.line, place.column)
-            raise refuse(codes.BAD_EXPRESSION, f"${{{text}}}: {error}", origin) from error
+            raise refuse(codes.BAD_EXPRESSION, f"${{{text}}}: {error}", self._origin(place)) from error
 
-    def _refuse(self, node: Node, message: str) -> Refusal:
-        return refuse(codes.BAD_TEMPLATE, message, Origin(self._file, node.line, node.column))
+    def _refuse(self, node: Node, message: str, hint: str = "") -> Refusal:
+        return refuse(codes.BAD_TEMPLATE, message, self._origin(node), hint=hint)
+
+    def _origin(self, item: Item) -> Origin:
+        return Origin(self._file, item.line or None, item.column or None)
 
 
 def _calculates(item: Item | Value | None) -> bool:
@@ -405,6 +431,11 @@ def _calculates(item: Item | Value | None) -> bool:
         case Import() | Comment() | Ref():
             return False
     return any(map(_calculates, item))
+
+
+def _combined(strong: _Type, weak: _Type) -> _Type:
+    """Two types of one element: what the first one says counts."""
+    return _Type(tuple(dict.fromkeys((*strong.names, *weak.names))), _merge(weak.items, strong.items))
 
 
 def _merge(base: tuple[Item, ...], own: tuple[Item, ...]) -> tuple[Item, ...]:

@@ -44,6 +44,13 @@ _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = Mappi
         ast.FloorDiv: lambda a, b: a // b,
     }
 )
+_WORDS: Mapping[type[Exception], str] = MappingProxyType(
+    {
+        ZeroDivisionError: "it divides by zero",
+        OverflowError: "its value is too large",
+        RecursionError: "it is nested too deep",
+    }
+)
 _MAX_LENGTH = 1000  # characters; keeps Python's own recursive parser far from its limits
 
 
@@ -66,10 +73,10 @@ def evaluate(text: str, parameters: Mapping[str, float | str]) -> float | str:
         raise ExpressionError("it is not arithmetic") from error
     try:
         value = _evaluate(tree.body, parameters)
-    except (ZeroDivisionError, OverflowError, RecursionError) as error:
-        raise ExpressionError(str(error)) from error
-    except (ValueError, TypeError) as error:
-        raise error if isinstance(error, ExpressionError) else ExpressionError(str(error)) from error
+    except ExpressionError:
+        raise
+    except (ZeroDivisionError, OverflowError, RecursionError, ValueError, TypeError) as error:
+        raise ExpressionError(_WORDS.get(type(error), f"it has no value: {error}")) from error
     if not math.isfinite(value):
         raise ExpressionError(f"its value is {value}")
     return value

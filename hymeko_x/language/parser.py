@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+import sys
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.language.comments import weave_comments
-from hymeko_x.language.errors import excerpt, explain_syntax_error
+from hymeko_x.language.excerpts import excerpt
 from hymeko_x.language.machine import MAX_DEPTH, Lines, Machine, ParseError, TooDeep
 from hymeko_x.language.syntax import (
     ArcItem,
@@ -53,6 +54,8 @@ def parse(text: str, name: str = "<text>") -> Document:
         line, column = lines.place(error.offset)
         raise refuse(codes.SYNTAX, str(error), Origin(name, line, column), excerpt=excerpt(text, line, column, 1)) from error
     except ParseError as error:
+        from hymeko_x.language.errors import explain_syntax_error  # with lark, which nothing else here needs
+
         raise explain_syntax_error(text, name) from error
     return weave_comments(document, text, gaps, lines)
 
@@ -70,23 +73,35 @@ class _Malformed(Exception):
         self.offset = offset
 
 
-def unescape(text: str) -> str:
+def unescape(text: str, offset: int) -> str:
     """The characters behind the escapes of a quoted string or name: \\n, \\t, \\r, \\0, \\uXXXX, and any character itself."""
     if "\\" not in text:
         return text
 
     def plain(match: re.Match[str]) -> str:
         word = match[1]
-        return chr(int(word[1:], 16)) if len(word) > 1 else _ESCAPED.get(word, word)
+        if len(word) == 1:
+            return _ESCAPED.get(word, word)
+        number = int(word[1:], 16)
+        if number > sys.maxunicode or 0xD800 <= number < 0xE000:
+            raise _Malformed(offset, f"'{match[0]}' is not a character")
+        return chr(number)
 
     return _ESCAPE.sub(plain, text)
 
 
-def _numbers(text: str, offset: int) -> tuple[float, ...]:
-    try:
-        return tuple(map(float, text.replace(",", " ").split()))
-    except ValueError as error:
-        raise _Malformed(offset, f"{text.strip()!r} is not a list of numbers") from error
+def _numbers(text: str) -> tuple[float, ...]:
+    return tuple(map(float, text.replace(",", " ").split()))
+
+
+def _malformed_number(text: str, offset: int) -> _Malformed:
+    """What is wrong with a list of numbers, at the number that is none."""
+    for match in re.finditer(r"[^\s,\[\]]+", text):
+        try:
+            float(match[0])
+        except ValueError:
+            return _Malformed(offset + match.start(), f"'{match[0]}' is not a number; expected numbers such as 1, -0.5 or 1e-3")
+    return _Malformed(offset, "this is not a list of numbers")
 
 
 class _Block(tuple[Item, ...]):
@@ -141,7 +156,7 @@ class _TreeBuilder:
         return Quantity(float(match[1]), match[2])
 
     def _string(self, text: str, offset: int) -> str:
-        return text[3:-3] if text.startswith('"""') else unescape(text[1:-1])
+        return text[3:-3] if text.startswith('"""') else unescape(text[1:-1], offset)
 
     def _expression(self, text: str, offset: int) -> Expression:
         return Expression(text[2:-1].strip())
@@ -150,18 +165,24 @@ class _TreeBuilder:
         return Query()
 
     def _numbers(self, text: str, offset: int) -> tuple[float, ...]:
-        return _numbers(text[1:-1], offset)
+        try:
+            return _numbers(text[1:-1])
+        except ValueError as error:
+            raise _malformed_number(text, offset) from error
 
     def _matrix(self, text: str, offset: int) -> tuple[tuple[float, ...], ...]:
         rows = text[1 : text.rindex("]")].replace("[", "").split("]")[:-1]
-        return tuple(_numbers(row, offset) for row in rows)
+        try:
+            return tuple(map(_numbers, rows))
+        except ValueError as error:
+            raise _malformed_number(text, offset) from error
 
     def _name(self, text: str, offset: int) -> str:
         if text[0] != "`":
             return text
         if len(text) == 2:
             return QuotedName("")
-        return QuotedName(unescape(text[1:-1]))
+        return QuotedName(unescape(text[1:-1], offset))
 
     # ---- references and values ---------------------------------------------------------------------------------------------
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, TypeGuard, cast
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.formats.hymeko import ALIASES, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
 from hymeko_x.frontends.hymeko.block import Block, Context, read_extra, read_units, read_written
 from hymeko_x.frontends.hymeko.bodies import build_uri, read_body
@@ -19,6 +19,7 @@ from hymeko_x.frontends.hymeko.infer import infer_kinds
 from hymeko_x.frontends.hymeko.joints import read_dofs, read_joint, read_limits, unit_axis
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
+from hymeko_x.language.excerpts import with_excerpt
 from hymeko_x.language.expand import Element, Expanded, expand
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
@@ -52,7 +53,10 @@ def read(source: Source, report: Report) -> Mechanism:
         found = source.files.find(path)
         return None if found is None else source.files.read(found)
 
-    return build(expand(parse(text, source.name), source.name, fetch), source.name, report)
+    try:
+        return build(expand(parse(text, source.name), source.name, fetch), source.name, report)
+    except Refusal as refusal:
+        raise with_excerpt(refusal, text, source.name) from refusal
 
 
 def build(expanded: Expanded, file: str, report: Report) -> Mechanism:
@@ -93,7 +97,7 @@ def _read_settings(build: Build, expanded: Expanded) -> None:
         elif isinstance(item.item, Field):
             place += _read_setting(build, item.item, place)
         else:
-            _keep(build, _loose_extra(build, item.item, place))
+            _keep(build, _loose_extra(build, item.item, place, is_robot="robot" in expanded.types))
             place += 1
     for number, comment in enumerate(expanded.preceding):
         _keep(build, Extra("comment", "preceding", comment.text, number))
@@ -105,12 +109,18 @@ def _keep(build: Build, extra: Extra) -> None:
     build.extras[ROOT] = (*build.extras.get(ROOT, ()), extra)
 
 
-def _loose_extra(build: Build, item: ArcItem | Comment, place: int) -> Extra:
-    """A comment, or an arc that stands in no edge, as it is."""
+def _loose_extra(build: Build, item: ArcItem | Comment, place: int, *, is_robot: bool) -> Extra:
+    """A comment, or an arc that stands in no edge (as in graphs of the published examples), as it is.
+
+    Raises: Refusal (HX062) for such an arc in a robot, where it is a mistake.
+    """
     if isinstance(item, Comment):
         return Extra("comment", "", item.text, place)
-    message = f"the arc to '{item.ref.dotted}' stands in no edge; it is kept as it is"
-    build.context.report.warn(codes.UNKNOWN_TYPE, message, build.context.origin(item))
+    message = f"the arc to '{item.ref.dotted}' stands in no edge"
+    hint = f"as one name it is written in backticks: `{item.role}{item.ref.direction}{item.ref.dotted}`" if item.role else ""
+    if is_robot:
+        raise build.context.refuse(item, message, hint=hint)
+    build.context.report.warn(codes.UNKNOWN_TYPE, f"{message}; it is kept as it is", build.context.origin(item), hint=hint)
     return Extra("hymeko", "", print_item(item), place)
 
 

@@ -39,6 +39,8 @@ class Context:
 
     def refuse(self, item: Item, message: str, *, hint: str = "") -> Refusal:
         """A refusal (HX062) at an item."""
+        if not hint and isinstance(item, Field) and item.value is None:
+            hint = f"a value that is a name stands behind '=': {item.name}=name"
         return refuse(codes.BAD_VALUE, message, self.origin(item), hint=hint)
 
     def factor(self, dimension: str) -> float:

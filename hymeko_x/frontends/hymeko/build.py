@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.language.expand import Element, Scope
     from hymeko_x.language.syntax import Item, Ref
 
+_FEW = 8
 _ALL_KINDS = tuple(KINDS.values())
 _SIGNS = {"+": 1, "<-": 1, "-": -1, "->": -1, "~": 0, "<>": 0}
 
@@ -64,7 +65,7 @@ class Build:
         if kind in taken:
             first = self.origins[key].line
             message = f"{key} is defined twice; the first definition is in line {first}"
-            raise refuse(codes.DUPLICATE_NAME, message, self.context.origin(item))
+            raise refuse(codes.DUPLICATE_NAME, message, self.context.origin(item), hint="give one of them another name")
         taken.append(kind)
         self.names.take(kind, name)
         self.origins[key] = self.context.origin(item)
@@ -124,7 +125,9 @@ class Build:
 
         candidates = [known for known, of in self.kinds.items() if not kinds or set(of) & set(kinds)]
         near = get_close_matches(name, candidates, n=3)
-        return f"did you mean {' or '.join(near)}?" if near else ""
+        if near:
+            return f"did you mean {' or '.join(near)}?"
+        return f"defined are {', '.join(candidates)}" if 0 < len(candidates) <= _FEW else ""
 
     def arc(self, kind: str, item: ArcItem, scope: Scope) -> RobotArc:
         """An arc of an edge of this kind, with its weight read as the kind wants it."""

@@ -64,11 +64,20 @@ def _ends(build: Build, key: Id, block: Block, scope: Scope, item: Item) -> tupl
     children = [arc for arc in block.arcs if sign_of(arc) < 0 and (arc.role in _CHILD_ROLES or arc.role.upper() in ROLE_MOVES)]
     if len(parents) != 1 or len(children) != 1:
         message = f"{key} has {len(parents)} parents and {len(children)} children; a joint joins one '+ parent' and one '- child'"
-        raise refuse(codes.MISSING_PART, message, build.context.origin(item), element=str(key))
+        raise refuse(codes.MISSING_PART, message, build.context.origin(item), element=str(key), hint=_end_hint(block))
     for arc in (*parents, *children):
         block.arcs.remove(arc)
     child = children[0]
     return parents[0], child, ROLE_MOVES.get(child.role.upper())
+
+
+def _end_hint(block: Block) -> str:
+    """What a user may have meant who did not give a joint its ends."""
+    for arc in block.arcs:
+        if arc.role and sign_of(arc):
+            text = f"{arc.role} {arc.ref.direction} {arc.ref.dotted}"
+            return f"'{text}' is an arc of the role '{arc.role}'; a comma separates a flag from an arc: {text.replace(' ', ', ', 1)}"
+    return "@joint { + base - tip } joins the bodies base and tip"
 
 
 def _poses(build: Build, parent: ArcItem, child: ArcItem, key: Id) -> tuple[Pose, Pose]:
