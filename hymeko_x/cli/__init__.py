@@ -21,6 +21,7 @@ VERBS = {
     "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
     "diff": ("hymeko_x.cli.diff", "what differs between two robots, element by element"),
     "verify": ("hymeko_x.cli.verify", "are two files the same robot? asked of the formats' own engines"),
+    "dh": ("hymeko_x.cli.dh", "Denavit-Hartenberg tables: standard, modified, Hayati-Roberts"),
     "info": ("hymeko_x.cli.info", "what is in a file"),
     "formats": ("hymeko_x.cli.formats", "the formats that can be read and written"),
     "explain": ("hymeko_x.cli.explain", "what a code such as HX044 means"),

@@ -232,3 +232,27 @@ def _joint_motions(row: Row, values: Array) -> Array:
     out[:, 2, 2] = out[:, 3, 3] = 1.0
     out[:, 2, 3] = row.d + values if sliding else row.d
     return out
+
+
+# ---- proof -----------------------------------------------------------------------------------------------------------
+
+
+def error_against_pinocchio(model: KinematicModel, found: Table, samples: int = 100, seed: int = 0) -> float:
+    """The largest entry in which the table's pose of the tip differs from Pinocchio's at random configurations."""
+    from hymeko_x.verify.pin import build
+    from hymeko_x.verify.sampling import draw
+
+    tip = model.index[found.tip]
+    root = tip
+    while model.bodies[root].parent != WORLD:
+        root = model.bodies[root].parent
+    native = build(model, root)
+    q = draw(model, samples, np.random.default_rng(seed))
+    poses = native.poses(q)
+    order = list(native.frames)
+    ends = poses[:, order.index(tip)]
+    starts = (
+        poses[:, order.index(model.index[found.start])] if model.index[found.start] != WORLD else np.broadcast_to(np.eye(4), ends.shape)
+    )
+    coordinates = q[:, [model.columns[dof] for dof in found.dofs]]
+    return float(np.abs(np.linalg.inv(starts) @ ends - found.poses(coordinates)).max())
