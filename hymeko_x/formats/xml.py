@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
 
+COMMENT = "comment"
+"""The format of an extra that is a comment."""
 PRECEDING = "preceding"
 FOLLOWING = "following"
 """The paths of what stands before and after the root element."""
@@ -166,7 +168,7 @@ class Node:
         if not self._words_taken and self.element in texts:
             index, text = texts[self.element]
             yield Extra(format_name, _below(path, "text()"), text, index)
-        yield from (Extra(format_name, path, verbatim(element), index) for index, element in self._left_children(comments=comments))
+        yield from (_child_extra(format_name, path, element, index) for index, element in self._left_children(comments=comments))
 
     def _left_children(self, *, comments: bool) -> Iterator[tuple[int, Any]]:
         """What was not taken, with its place among the child elements (and comments)."""
@@ -296,6 +298,20 @@ def _prefix_of(uri: str, element: Any) -> str:
     if uri == _XML_NAMESPACE:
         return "xml"
     return next((prefix for prefix, known in element.nsmap.items() if known == uri and prefix), "ns")
+
+
+def _child_extra(format_name: str, path: str, element: Any, index: int) -> Extra:
+    """A child that nobody took; a comment is the same in every format, so it is kept without its signs."""
+    if element.tag is etree.Comment:
+        return Extra(COMMENT, path, (element.text or "").strip(), index)
+    return Extra(format_name, path, verbatim(element), index)
+
+
+def outer_extra(format_name: str, path: str, markup: str, index: int) -> Extra:
+    """What stands outside the root: a comment, or a processing instruction as it is."""
+    if markup.startswith("<!--"):
+        return Extra(COMMENT, path, markup[4:-3].strip(), index)
+    return Extra(format_name, path, markup, index)
 
 
 def verbatim(element: Any) -> str:

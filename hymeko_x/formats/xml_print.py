@@ -9,12 +9,22 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from lxml import etree
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Refusal, refuse
+from hymeko_x.formats.xml import COMMENT
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from hymeko_x.ir.mechanism import Extra
 
 _INDENT = "  "
+_NAME = r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?"
+_STEP = re.compile(rf"{_NAME}(?:\[[1-9]\d*\])?|@{_NAME}|text\(\)")
+_SPACE = re.compile(r"xmlns(?::[^\W\d][\w.-]*)?")
+_UNSAYABLE = re.compile(r"[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
 _SPECIAL = re.compile(r'[&<>"\x00-\x1f\ud800-\udfff\ufffe\uffff]')
 _ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 
@@ -45,9 +55,13 @@ def put_back(tag: Tag, extras: Iterable[Extra], declared: Mapping[str, str]) -> 
     """Write extras into a tag: attributes win over what is there, text and elements go to their place.
 
     ``declared`` are the namespace declarations of the root, which extras then need not repeat.
+
+    Raises: Refusal with HX062 for an extra that is not well-formed.
     """
     for extra in sorted(extras, key=lambda e: (e.index, not e.path.endswith("text()"))):
         *steps, last = extra.path.split("/") if extra.path else [""]
+        if not all(map(_STEP.fullmatch, [*steps, last] if extra.path else [])):
+            raise _not_xml(extra, f"'{extra.path}' is not a path")
         target = tag
         for step in steps:
             target = target.child(step)
@@ -57,7 +71,37 @@ def put_back(tag: Tag, extras: Iterable[Extra], declared: Mapping[str, str]) -> 
             target.children.insert(extra.index, escaped(extra.text))
         else:
             target = target.child(last) if last else target
-            target.children.insert(_place_for(extra, target), without_declared(extra.text, declared))
+            target.children.insert(_place_for(extra, target), foreign_text(extra, declared))
+
+
+def foreign_text(extra: Extra, declared: Mapping[str, str]) -> str:
+    """The text of an extra that is an element, a comment or an instruction, without what ``declared`` says already.
+
+    Raises: Refusal with HX062 when it is not well-formed.
+    """
+    if extra.format == COMMENT:
+        return comment_markup(extra.text)
+    spaces = attributes_text({name: uri for name, uri in declared.items() if _SPACE.fullmatch(name)})
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
+    try:
+        found = list(etree.fromstring(f"<x{spaces}>{extra.text}</x>".encode(), parser))
+    except (etree.XMLSyntaxError, UnicodeEncodeError) as error:
+        raise _not_xml(extra, str(error)) from error
+    if len(found) != 1 or not extra.text.startswith("<"):
+        raise _not_xml(extra, "it is not one element")
+    return without_declared(extra.text, declared)
+
+
+def comment_markup(text: str) -> str:
+    """A comment of whatever format as an XML comment, in which ``--`` is not allowed."""
+    while "--" in text:
+        text = text.replace("--", "- -")
+    return f"<!-- {_UNSAYABLE.sub(chr(0xFFFD), text)} -->"
+
+
+def _not_xml(extra: Extra, why: str) -> Refusal:
+    text = extra.text if len(extra.text) < 60 else extra.text[:60] + "..."
+    return refuse(codes.BAD_VALUE, f"the {extra.format} extra '{text}' cannot be written into XML: {why}")
 
 
 def _place_for(extra: Extra, tag: Tag) -> int:

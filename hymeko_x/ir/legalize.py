@@ -67,6 +67,7 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             make_names_usable,  # once more, for what the rules have added
         ),
         "urdf": (
+            make_names_usable,
             expand_screws,
             chain_dofs,
             hold_or_free_open_bases,
@@ -75,6 +76,7 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             split_shared_shapes,
             prefer_own_colours,
             approximate_shapes,
+            make_names_usable,  # once more, for what the rules have added
         ),
     }
 )

@@ -16,8 +16,8 @@ from hymeko_x.backends.urdf.order import order
 from hymeko_x.backends.urdf.sheet import Sheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import FOLLOWING, PRECEDING
-from hymeko_x.formats.xml_print import Tag, escaped, put_back, render, without_declared
+from hymeko_x.formats.xml import COMMENT, FOLLOWING, PRECEDING
+from hymeko_x.formats.xml_print import Tag, escaped, foreign_text, put_back, render
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Mesh
 from hymeko_x.source import Package
@@ -35,9 +35,9 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     del report  # printing takes no decisions, so there is nothing to say
     root = _root_tag(mechanism)
     sheet = Sheet(mechanism, _declared(root))
-    extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format == words.FORMAT]
+    extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.FORMAT, COMMENT)]
     root.children += _merged(_typed(sheet), extras, sheet)
-    lines = ['<?xml version="1.0"?>', *_around(extras, PRECEDING), *render(root), *_around(extras, FOLLOWING), ""]
+    lines = ['<?xml version="1.0"?>', *_around(extras, PRECEDING, sheet), *render(root), *_around(extras, FOLLOWING, sheet), ""]
     meshes = {path: obj_text(mechanism.vertex(key, Mesh)) for key, path in sheet.mesh_files.items()}
     return Package("\n".join(lines).encode(), meshes)
 
@@ -87,9 +87,9 @@ def _merged(typed: list[Tag], extras: list[Extra], sheet: Sheet) -> list[Tag | s
 
 
 def _text(extra: Extra, sheet: Sheet) -> str:
-    return escaped(extra.text) if extra.path else without_declared(extra.text, sheet.declared)
+    return escaped(extra.text) if extra.path == "text()" else foreign_text(extra, sheet.declared)
 
 
-def _around(extras: list[Extra], path: str) -> list[str]:
-    """The comments before or after the root element."""
-    return [extra.text for extra in sorted(extras, key=lambda extra: extra.index) if extra.path == path]
+def _around(extras: list[Extra], path: str, sheet: Sheet) -> list[str]:
+    """What stands before or after the root element."""
+    return [_text(extra, sheet) for extra in sorted(extras, key=lambda extra: extra.index) if extra.path == path]

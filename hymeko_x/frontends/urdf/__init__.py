@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import FOLLOWING, PRECEDING, Leftovers
+from hymeko_x.formats.xml import FOLLOWING, PRECEDING, Leftovers, outer_extra
 from hymeko_x.formats.xml_parse import parse
 from hymeko_x.frontends.urdf.draft import Draft
 from hymeko_x.frontends.urdf.joints import read_joints
@@ -19,12 +19,12 @@ from hymeko_x.frontends.urdf.links import read_link
 from hymeko_x.frontends.urdf.materials import finish_materials, read_robot_material
 from hymeko_x.frontends.urdf.structure import check_structure
 from hymeko_x.frontends.urdf.transmissions import read_transmission
-from hymeko_x.ir.mechanism import Extra, Mechanism
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats.xml import Node
     from hymeko_x.formats.xml_parse import Document
+    from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.source import Source
 
 
@@ -99,5 +99,5 @@ def _check_templates(root: Node, draft: Draft) -> None:
 
 def _around(document: Document) -> list[Extra]:
     """What stands before and after the root element."""
-    before = [Extra(words.FORMAT, PRECEDING, text, place) for place, text in enumerate(document.preceding)]
-    return before + [Extra(words.FORMAT, FOLLOWING, text, place) for place, text in enumerate(document.following)]
+    before = [outer_extra(words.FORMAT, PRECEDING, markup, place) for place, markup in enumerate(document.preceding)]
+    return before + [outer_extra(words.FORMAT, FOLLOWING, markup, place) for place, markup in enumerate(document.following)]

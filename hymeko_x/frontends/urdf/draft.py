@@ -115,11 +115,11 @@ def take_name(node: Node, kind: str, known: dict[str, Id], draft: Draft) -> Id:
     """The id of a link, joint or transmission from its name; says so when the name is missing or taken."""
     name = node.take("name")
     if not name:
-        said = "no name" if name is None else "an empty name"
-        draft.report.error(codes.BAD_NAME, f"a <{node.tag}> has {said}; it is called '{node.tag}'", node.origin)
-    key = draft.own(node, kind, name or node.tag)
-    first = known.setdefault(name or "", key)
-    if name and first != key:
+        said = f"has no name; it is called '{node.tag}'" if name is None else "has an empty name"
+        draft.report.error(codes.BAD_NAME, f"a <{node.tag}> {said}", node.origin)
+    key = draft.own(node, kind, node.tag if name is None else name)
+    first = known.setdefault(key.name if name is None else name, key)
+    if name is not None and first != key:
         draft.report.error(
             codes.DUPLICATE_NAME,
             f"there are two <{node.tag}> called '{name}' (the other one: {draft.origins[first]}); this one is called '{key.name}'",

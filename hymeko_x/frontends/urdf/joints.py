@@ -60,7 +60,7 @@ def _read_joint(node: Node, draft: Draft) -> Joint:
 
 def _has_ends(node: Node, draft: Draft) -> bool:
     ends = {element.tag: element.get("link") for element in reversed(node.elements()) if element.tag in ("parent", "child")}
-    missing = [f"<{tag} link>" for tag in ("parent", "child") if not ends.get(tag)]
+    missing = [f"<{tag} link>" for tag in ("parent", "child") if ends.get(tag) is None]
     if missing:
         name = node.attributes.get("name", "")
         said = f"joint '{name}' has no {' and no '.join(missing)}; it is kept as written and is not part of the tree"
@@ -159,11 +159,15 @@ def _read_dynamics(joint: Node, draft: Draft) -> tuple[float, float]:
     node = joint.child("dynamics")
     if node is None:
         return 0.0, 0.0
-    damping = take_number(node, "damping", draft.report, instead="0 is used") or 0.0
-    friction = take_number(node, "friction", draft.report, instead="0 is used") or 0.0
+    damping, friction = (_or_zero(node, name, draft) for name in ("damping", "friction"))
     if damping == friction == 0.0:
         draft.style.add(words.STYLE_DYNAMICS)
     return damping, friction
+
+
+def _or_zero(node: Node, name: str, draft: Draft) -> float:
+    value = take_number(node, name, draft.report, instead="0 is used")
+    return 0.0 if value is None else value
 
 
 # ---- limits ------------------------------------------------------------------------------------------------------------------
@@ -237,7 +241,7 @@ def _read_safety(joint: Node, draft: Draft) -> Safety | None:
     if "k_velocity" not in node.attributes:
         said = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
         draft.report.warn(codes.MISSING_ATTRIBUTE, said, node.origin, element=joint.about)
-    return Safety(*(take_number(node, name, draft.report, instead="0 is used") or 0.0 for name in names))
+    return Safety(*(_or_zero(node, name, draft) for name in names))
 
 
 def _read_calibration(joint: Node, draft: Draft) -> Calibration | None:
@@ -271,8 +275,7 @@ def _read_mimic(joint: Node, draft: Draft) -> None:
         return
     node.take("joint")
     multiplier = take_number(node, "multiplier", draft.report, instead="1 is used")
-    offset = take_number(node, "offset", draft.report, instead="0 is used")
-    coefficients = (offset or 0.0, 1.0 if multiplier is None else multiplier)
+    coefficients = (_or_zero(node, "offset", draft), 1.0 if multiplier is None else multiplier)
     key = draft.names.take("coupling", joint.owner.name)
     draft.edges[key] = coupling_edge(joint.owner, ((leader, coefficients),))
     draft.origins[key] = node.origin

@@ -82,7 +82,7 @@ def _read_tensor(inertial: Node, draft: Draft) -> Tensor | None:
         value = take_number(node, name, draft.report, instead="0 is used")
         if value is None and name not in node.attributes:
             _say_missing(node, name, "0 is used", draft)
-        values.append(value or 0.0)
+        values.append(0.0 if value is None else value)
     xx, yy, zz, xy, xz, yz = values
     return (xx, yy, zz, xy, xz, yz)
 

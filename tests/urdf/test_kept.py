@@ -1,0 +1,190 @@
+"""Nothing gets lost: what has no word in the mechanism is kept verbatim and written back where it stood."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from hymeko_x.diagnostics import Refusal
+from hymeko_x.ir.mechanism import ROOT, Extra, Id
+from tests.urdf.samples import LIMIT, TWO_LINKS, again, dump, joint, load, robot, visual
+
+A, J = Id("body", "a"), Id("joint", "j")
+
+
+def extras(text: str, key: Id = ROOT) -> list[tuple[str, str]]:
+    return [(extra.path, extra.text) for extra in load(text).extras.get(key, ())]
+
+
+@pytest.mark.parametrize(
+    "foreign",
+    [
+        '<gazebo reference="a">\n    <mu1>0.2</mu1>\n\t<sensor name="s"/>\n  </gazebo>',
+        '<mujoco><compiler meshdir="m"/></mujoco>',
+        '<ros2_control name="c" type="system"><hardware><plugin>p/P</plugin></hardware></ros2_control>',
+        '<anything at="all"><![CDATA[<raw> & text]]></anything>',
+        "<?pi some data?>",
+        '<frame name="f" link="a" xyz="0 0 1"/>',
+    ],
+)
+def test_foreign_elements_are_kept_verbatim_at_their_place(foreign: str) -> None:
+    source = robot(f'<link name="a"/>\n{foreign}\n<link name="b"/>{joint(LIMIT)}')
+    assert load(source).extras[ROOT] == (Extra("urdf", "", foreign, 1),)
+    assert f'<link name="a"/>\n  {foreign}\n  <link name="b"/>' in again(source)
+
+
+def test_a_comment_is_kept_at_its_place_without_the_signs_of_its_format() -> None:
+    source = robot(f'<link name="a"/>\n<!--a comment-->\n<link name="b"/>{joint(LIMIT)}')
+    assert load(source).extras[ROOT] == (Extra("comment", "", "a comment", 1),)
+    assert '<link name="a"/>\n  <!-- a comment -->\n  <link name="b"/>' in again(source)
+
+
+def test_a_foreign_element_carries_the_namespaces_it_needs_and_the_root_is_not_repeated() -> None:
+    spaces = ' name="r" xmlns:drake="http://drake.mit.edu" xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    source = robot('<link name="a"><drake:proximity><drake:mu value="1"/></drake:proximity></link>', spaces)
+    needed = '<drake:proximity xmlns:drake="http://drake.mit.edu"><drake:mu value="1"/></drake:proximity>'
+    assert extras(source, A) == [("", needed)]
+    assert extras(source) == [("@xmlns:drake", "http://drake.mit.edu"), ("@xmlns:xacro", "http://www.ros.org/wiki/xacro")]
+    assert '    <drake:proximity><drake:mu value="1"/></drake:proximity>\n' in again(source)
+    assert load(again(source)) == load(source)
+
+
+def test_comments_before_and_after_the_robot_are_kept() -> None:
+    source = f"<!-- one -->\n<!-- two -->\n{robot('')}\n<!-- three -->"
+    assert extras(source) == [("preceding", "one"), ("preceding", "two"), ("following", "three")]
+    assert again(source) == '<?xml version="1.0"?>\n<!-- one -->\n<!-- two -->\n<robot name="r"/>\n<!-- three -->\n'
+
+
+@pytest.mark.parametrize(
+    ("body", "key", "path", "text"),
+    [
+        ('<link name="a" type="robot"/>', A, "@type", "robot"),
+        ('<link name="a"><contact/></link>', A, "", "<contact/>"),
+        ('<link name="a"><inertial><mass value="1" unit="kg"/></inertial></link>', A, "inertial/mass/@unit", "kg"),
+        ('<link name="a">stray</link>', A, "text()", "stray"),
+        (visual('<geometry name="g"><sphere radius="1"/></geometry>'), Id("shape", "a/visual"), "geometry/@name", "g"),
+        (TWO_LINKS + joint(LIMIT.replace("/>", ' current="9"/>')), J, "limit/@current", "9"),
+        (TWO_LINKS + joint(LIMIT.replace("/>", "><soft/></limit>")), J, "limit", "<soft/>"),
+        (TWO_LINKS + joint('<safety_controller k_velocity="1"/>', "fixed"), J, "", '<safety_controller k_velocity="1"/>'),
+        ('<link name="a" xml:base="b"/>', A, "@xml:base", "b"),
+        (TWO_LINKS + joint('<axis xyz="0 0 1" rpy="0 0 0"/>' + LIMIT), J, "axis/@rpy", "0 0 0"),
+    ],
+)
+def test_what_nobody_asked_for_belongs_to_the_element_it_stands_in(body: str, key: Id, path: str, text: str) -> None:
+    source = robot(body)
+    assert (path, text) in extras(source, key)
+    assert load(dump(load(source))) == load(source)
+
+
+def test_a_number_that_cannot_be_read_is_written_back_as_it_was() -> None:
+    source = robot(TWO_LINKS + joint('<origin xyz="1 2" rpy="0 0 1"/>', "fixed"))
+    assert extras(source, J) == [("origin/@xyz", "1 2")]
+    assert '<origin xyz="1 2" rpy="0 0 1"/>' in again(source)
+
+
+def test_the_second_of_two_equal_elements_stays_the_second() -> None:
+    source = robot('<link name="a"><inertial><mass value="1"/></inertial><inertial><mass value="2"/></inertial></link>')
+    assert extras(source, A) == [("", '<inertial><mass value="2"/></inertial>')]
+    written = again(source)
+    assert written.index('value="1"') < written.index('value="2"')
+    assert load(written) == load(source)
+
+
+def test_a_joint_without_a_child_is_kept_outside_of_the_tree() -> None:
+    source = robot('<link name="a"/><joint name="j" type="fixed"><parent link="a"/></joint>')
+    assert extras(source) == [("", '<joint name="j" type="fixed"><parent link="a"/></joint>')]
+    assert list(load(source).graph.edges) == []
+
+
+def test_what_most_fixed_joints_say_in_vain_is_said_once() -> None:
+    vain = '<axis xyz="0 0 0"/>'
+    body = TWO_LINKS + '<link name="c"/><link name="d"/>'
+    body += joint(vain, "fixed") + joint(vain, "fixed", name="k", child="c") + joint('<axis xyz="0 0 1"/>', "fixed", name="l", child="d")
+    mechanism = load(robot(body))
+    assert mechanism.notation(ROOT, "urdf.fixed") == vain
+    assert list(mechanism.extras) == [Id("joint", "l")]
+    assert dump(mechanism).count(vain) == 2
+    assert dump(mechanism).count('<axis xyz="0 0 1"/>') == 1
+
+
+def test_what_the_author_wrote_in_vain_is_written_again() -> None:
+    body = (
+        '<link name="a"><inertial><origin xyz="0 0 0"/><mass value="1"/></inertial>'
+        '<visual><origin xyz="0 0 0" rpy="0 0 0"/><geometry><mesh filename="m.stl" scale="1 1 1"/></geometry></visual></link>'
+        '<link name="b"/>' + joint('<origin xyz="0 0 0"/><dynamics damping="0.0" friction="0"/>' + LIMIT)
+    )
+    mechanism = load(robot(body, ' name="r" version="1.0"'))
+    style = "dynamics inertial-origin joint-origin scale version visual-origin"
+    assert mechanism.notation(ROOT, "urdf.style") == style
+    written = dump(mechanism)
+    assert written.count("<origin ") == 3
+    assert '<dynamics damping="0" friction="0"/>' in written
+    assert 'scale="1 1 1"' in written
+    assert '<robot name="r" version="1.0">' in written
+
+
+def test_what_the_author_left_out_is_left_out() -> None:
+    body = '<link name="a"><visual><geometry><mesh filename="m.stl"/></geometry></visual></link><link name="b"/>' + joint(LIMIT)
+    written = again(robot(body))
+    assert "origin" not in written
+    assert "dynamics" not in written
+    assert "scale" not in written
+
+
+SPHERE = '<geometry><sphere radius="1"/></geometry>'
+RED = '<material name="red"><color rgba="1 0 0 1"/></material>'
+USE = '<material name="red"/>'
+
+
+@pytest.mark.parametrize(
+    ("at_robot", "uses"),
+    [
+        (RED, (USE, USE)),
+        ("", (RED, RED)),
+        ("", (RED, USE)),
+        (RED, (RED, RED)),
+        ("", (RED, USE, USE)),
+        (RED, ()),
+    ],
+)
+def test_materials_are_defined_where_their_author_defined_them(at_robot: str, uses: tuple[str, ...]) -> None:
+    shapes = "".join(f"<visual>{SPHERE}{use}</visual>" for use in uses)
+    source = robot(f'{at_robot}<link name="a">{shapes}</link>' if uses else f'{at_robot}<link name="a"/>')
+    written = again(source).replace("\n", "").replace("  ", "")
+    assert written == '<?xml version="1.0"?>' + source.replace("\n", "")
+
+
+def test_a_material_that_is_defined_twice_with_other_looks_keeps_both_looks() -> None:
+    blue = RED.replace("1 0 0 1", "0 0 1 1")
+    source = robot(f'{RED}<link name="a"><visual>{SPHERE}{USE}</visual><visual>{SPHERE}{blue}</visual></link>')
+    mechanism = load(source)
+    assert [view.material for view in mechanism.shapes[A]] == [Id("material", "red"), Id("material", "red#2")]
+    written = dump(mechanism).replace("\n", "").replace("  ", "")
+    assert written == '<?xml version="1.0"?>' + source.replace("\n", "")
+
+
+def test_the_order_of_the_author_is_kept() -> None:
+    body = f'{joint(LIMIT)}\n<link name="b"/>\n<!-- x -->\n<link name="a"/>\n<material name="m"><color rgba="1 1 1 1"/></material>'
+    written = again(robot(body))
+    places = [written.index(text) for text in ("<joint", '<link name="b"', "<!-- x -->", '<link name="a"', "<material")]
+    assert places == sorted(places)
+
+
+@pytest.mark.parametrize(
+    ("extra", "why"),
+    [
+        (Extra("urdf", "", "<a>"), "<a>"),
+        (Extra("urdf", "", "a"), "a"),
+        (Extra("urdf", "", "<a/><b/>"), "<a/><b/>"),
+        (Extra("urdf", "", "<x:a/>"), "<x:a/>"),
+        (Extra("urdf", "limit/<", "<a/>"), "<a/>"),
+        (Extra("urdf", "@a b", "c"), "c"),
+        (Extra("urdf", "preceding", "text"), "text"),
+    ],
+)
+def test_an_extra_that_is_not_xml_is_refused(extra: Extra, why: str) -> None:
+    mechanism = replace(load(robot('<link name="a"/>')), extras={A if "/" in extra.path else ROOT: (extra,)})
+    with pytest.raises(Refusal) as refusal:
+        dump(mechanism)
+    assert str(refusal.value).startswith(f"error[HX062]: the urdf extra '{why}' cannot be written into XML: ")
