@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from hymeko_x.verify.dh import Table
 
 _EXACT = 1e-9
+_DUST = 1e-9  # in rad and m; --json has all digits
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -35,7 +36,7 @@ def run(chosen: argparse.Namespace) -> int:
     from hymeko_x.verify import dh, model_of
 
     model = model_of(chosen.input, packages=dict(chosen.package), search_path=search_path(os.environ), arguments=dict(chosen.arg))
-    tips = [chosen.tip] if chosen.tip else [str(model.bodies[tip].name) for tip in dh.chains(model) if dh.chain(model, tip)[1]]
+    tips = [chosen.tip] if chosen.tip else [tip for tip in dh.chains(model) if dh.chain(model, tip)[1]]
     tables = [dh.table(model, tip, dh.Convention(chosen.convention)) for tip in tips or [None]]
     errors = [dh.error_against_pinocchio(model, table) if chosen.check else None for table in tables]
     if chosen.json:
@@ -84,11 +85,11 @@ def _moving(letter: str, offset: float) -> str:
 
 def _text(value: float) -> str:
     """Seven digits; dust from rounding is zero."""
-    return f"{0.0 if abs(value) < 1e-12 else value:.7g}"
+    return f"{0.0 if abs(value) < _DUST else value:.7g}"
 
 
 def _matrix_lines(name: str, rows: list[list[float]]) -> Iterator[str]:
-    if rows == [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]:
+    if all(abs(value - (i == k)) < _DUST for i, row in enumerate(rows) for k, value in enumerate(row)):
         yield f"  {name}: identity"
         return
     for number, row in enumerate(rows[:3]):

@@ -61,7 +61,8 @@ class Row:
 class Table:
     """The rows of a chain between two constants: T(q) = ``base`` * rows(q) * ``tool``, the tip's pose in the base's frame.
 
-    ``dofs`` are the indices of the rows' dofs in the model, ``start`` and ``tip`` the bodies at both ends.
+    ``dofs`` are the indices of the rows' dofs in the model, ``ends`` the bodies at both ends, ``start`` and
+    ``tip`` their names.
     """
 
     convention: Convention
@@ -71,6 +72,7 @@ class Table:
     base: Array
     tool: Array
     dofs: tuple[int, ...]
+    ends: tuple[int, int]
 
     def poses(self, q: Array) -> Array:
         """Poses (n, 4, 4) of the tip at coordinates (n, rows)."""
@@ -82,8 +84,8 @@ class Table:
         return out @ self.tool
 
 
-def table(model: KinematicModel, tip: str | None = None, convention: Convention = Convention.STANDARD) -> Table:
-    """The table of the chain from the base to a body (to the end of the longest chain by default).
+def table(model: KinematicModel, tip: str | int | None = None, convention: Convention = Convention.STANDARD) -> Table:
+    """The table of the chain from the base to a body by name or index (to the end of the longest chain by default).
 
     Where a ball or a free joint stands above the tip, the chain starts at the body below the last one of them.
     Raises: Refusal HX303 when there is no such body or nothing above it moves.
@@ -160,7 +162,9 @@ def _displaced(kind: Kind, axis: Array, anchor: Array, by: float, pitch: float) 
     return rigid(turn, anchor - turn @ anchor + pitch * by * axis)
 
 
-def _tip(model: KinematicModel, tip: str | None) -> int:
+def _tip(model: KinematicModel, tip: str | int | None) -> int:
+    if isinstance(tip, int):
+        return tip
     if tip is None:
         ends = chains(model)
         if not ends:
@@ -207,8 +211,8 @@ def _grouped(
         Row(_name(model, dof), model.dofs[dof].kind, joint.theta, joint.d, shape.a, shape.alpha, shape.beta)
         for dof, joint, shape in zip(dofs, links[1:], shapes, strict=True)
     )
-    names = [str(model.bodies[end].name) for end in ends]
-    return Table(convention, names[0], names[1], rows, base, tool, tuple(dofs))
+    names = [model.bodies[end].name or f"body {end}" for end in ends]
+    return Table(convention, names[0], names[1], rows, base, tool, tuple(dofs), ends)
 
 
 def _name(model: KinematicModel, dof: int) -> str:
@@ -242,7 +246,7 @@ def error_against_pinocchio(model: KinematicModel, found: Table, samples: int = 
     from hymeko_x.verify.pin import build
     from hymeko_x.verify.sampling import draw
 
-    tip = model.index[found.tip]
+    start, tip = found.ends
     root = tip
     while model.bodies[root].parent != WORLD:
         root = model.bodies[root].parent
@@ -251,8 +255,6 @@ def error_against_pinocchio(model: KinematicModel, found: Table, samples: int = 
     poses = native.poses(q)
     order = list(native.frames)
     ends = poses[:, order.index(tip)]
-    starts = (
-        poses[:, order.index(model.index[found.start])] if model.index[found.start] != WORLD else np.broadcast_to(np.eye(4), ends.shape)
-    )
+    starts = poses[:, order.index(start)] if start != WORLD else np.broadcast_to(np.eye(4), ends.shape)
     coordinates = q[:, [model.columns[dof] for dof in found.dofs]]
     return float(np.abs(np.linalg.inv(starts) @ ends - found.poses(coordinates)).max())
