@@ -51,9 +51,9 @@ def _add_inertial(link: Tag, inertial: Inertial, sheet: Sheet) -> None:
 def _as_written(inertial: Inertial) -> tuple[Pose, Tensor | None]:
     """The tensor in its author's axes if it still is the same one, else in those of the body."""
     written = inertial.written
-    if written is None or written.frame.xyz != inertial.com or rotate_tensor(written.frame.quat, written.tensor) != inertial.tensor:
+    if written is None or rotate_tensor(written.frame.quat, written.tensor) != inertial.tensor:
         return Pose(inertial.com), inertial.tensor
-    return written.frame, written.tensor
+    return Pose(inertial.com, written.frame.quat, written.frame.written), written.tensor
 
 
 def _add_shape(link: Tag, name: str, view: ShapeView, sheet: Sheet) -> None:
