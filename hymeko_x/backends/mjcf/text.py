@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import re
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
+from hymeko_x.formats.mjcf_tree import COMMENT
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, numbers_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from hymeko_x.formats.mjcf_tree import Element
     from hymeko_x.ir.values import Pose
+
+_DEEPEST = 40
+"""Deeper elements are not indented further, so that the text stays linear in their number."""
+
+_NO_ATTRIBUTES: Mapping[str, str | None] = MappingProxyType({})
 
 Attributes = dict[str, str | None]
 """The attributes of an element in the order of printing; None is not printed."""
@@ -38,17 +46,38 @@ class Text:
         """Add an element without children."""
         self._line(f"<{tag}{_attributes_text(attributes)}/>")
 
-    def section(self, tag: str) -> None:
+    def section(self, tag: str, attributes: Mapping[str, str | None] = _NO_ATTRIBUTES) -> None:
         """Start a section: an element with an empty line before it."""
         self._lines.append("")
-        self.open(tag, {})
+        self.open(tag, attributes)
+
+    def raw(self, line: str) -> None:
+        """Add XML that is ready."""
+        self._line(line)
+
+    def tree(self, element: Element) -> None:
+        """Add an element with everything in it; at top level with an empty line before it."""
+        if len(self._open) == 1:
+            self._lines.append("")
+        stack: list[Element | None] = [element]
+        while stack:
+            node = stack.pop()
+            if node is None:
+                self.close()
+            elif node.tag == COMMENT:
+                self._line(f"<!-- {node.words} -->")
+            elif node.children:
+                self.open(node.tag, node.attributes)
+                stack += [None, *reversed(node.children)]
+            else:
+                self.leaf(node.tag, node.attributes)
 
     def bytes(self) -> bytes:
         """The text so far in UTF-8, with a newline at its end."""
         return ("\n".join(self._lines) + "\n").encode()
 
     def _line(self, text: str) -> None:
-        self._lines.append("  " * len(self._open) + text)
+        self._lines.append("  " * min(len(self._open), _DEEPEST) + text)
 
 
 _ESCAPES = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}

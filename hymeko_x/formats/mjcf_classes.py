@@ -1,0 +1,110 @@
+"""Default classes of MJCF: what an element inherits. Shared by reader and writer.
+
+Precedence: the element's own attributes, then its class, then the nearest childclass above it, then the class ``main``;
+a nested class begins with what its parent has. Source: MuJoCo XML reference, default.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from hymeko_x.formats.mjcf_tree import Element
+
+Attributes = dict[str, str]
+
+MAIN = "main"
+
+FAMILIES: Mapping[str, str] = MappingProxyType(
+    {
+        **dict.fromkeys(("connect", "weld", "joint@equality", "tendon@equality", "flex", "flexvert", "flexstrain"), "equality"),
+        **dict.fromkeys(("spatial", "fixed"), "tendon"),
+    }
+)
+"""Under which element of <default> the defaults of an element stand, where that is not its own tag."""
+
+TURNS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
+"""The attributes that say an orientation; an element's own replaces whichever the class has."""
+
+PARTIAL = frozenset({"size", "friction", "gear", "damping", "stiffness", "solref", "solimp", "user"})
+"""Attributes that may have fewer numbers than there are; the rest is inherited."""
+
+_NOTHING: Mapping[str, str] = MappingProxyType({})
+
+
+class Classes:
+    """The default classes of a file, by name, each with all that it inherits."""
+
+    def __init__(self, sections: Iterable[Element] = ()) -> None:
+        self._classes: dict[str, dict[str, Attributes]] = {MAIN: {}}
+        for section in sections:
+            self._add(section)
+
+    def _add(self, section: Element) -> None:
+        """One <default> at top level with all inside it."""
+        stack: list[tuple[Element, str | None]] = [(section, None)]
+        while stack:
+            element, parent = stack.pop()
+            name = element.attributes.get("class")
+            if parent is None:
+                name = MAIN if name is None else name
+                if name != MAIN:
+                    raise refuse(
+                        codes.BAD_NAME, f"the default class at top level is called 'main' and nothing else, not '{name}'", element.origin
+                    )
+            elif not name:
+                raise refuse(codes.MISSING_ATTRIBUTE, "a <default> inside another one needs a class", element.origin)
+            elif name in self._classes:
+                raise refuse(codes.DUPLICATE_NAME, f"the default class '{name}' is defined twice", element.origin)
+            inherited = self._classes[name if parent is None else parent]
+            self._classes[name] = _with_own(inherited, element)
+            stack.extend((child, name) for child in reversed(element.children) if child.tag == "default")
+
+    def has(self, name: str) -> bool:
+        """Whether there is a class of this name."""
+        return name in self._classes
+
+    @property
+    def names(self) -> list[str]:
+        """All classes in order."""
+        return list(self._classes)
+
+    def of(self, tag: str, name: str | None) -> Mapping[str, str]:
+        """What the class gives to elements of this tag; nothing where there is no such class."""
+        return self._classes.get(name or MAIN, {}).get(FAMILIES.get(tag, tag.partition("@")[0]), _NOTHING)
+
+
+def _with_own(inherited: dict[str, Attributes], element: Element) -> dict[str, Attributes]:
+    merged = dict(inherited)
+    for child in element.children:
+        if child.tag != "default" and not child.tag.startswith("#"):
+            merged[child.tag] = dict(merge(merged.get(child.tag, _NOTHING), child.attributes))
+    return merged
+
+
+def merge(base: Mapping[str, str], own: Mapping[str, str]) -> Mapping[str, str]:
+    """The attributes of an element: its own over what it inherits."""
+    if not base:
+        return own
+    if not own:
+        return base
+    merged = {**base, **own}
+    if any(turn in own for turn in TURNS):
+        for turn in TURNS:
+            if turn in base and turn not in own:
+                del merged[turn]
+    for name in PARTIAL:
+        if name in own and name in base:
+            merged[name] = _completed(own[name], base[name])
+    return merged
+
+
+def _completed(own: str, base: str) -> str:
+    first, rest = own.split(), base.split()
+    return own if len(first) >= len(rest) else " ".join([*first, *rest[len(first) :]])

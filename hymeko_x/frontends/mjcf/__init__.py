@@ -1,0 +1,81 @@
+"""MJCF in. Everything in a file becomes typed parts of a mechanism, or an extra, or a diagnostic with its place.
+
+Source: MJCF of MuJoCo 4.0; docs/mapping/mjcf.md says what becomes what.
+"""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats.mjcf_classes import Classes
+from hymeko_x.formats.mjcf_tree import parse
+from hymeko_x.frontends.mjcf.actuators import read_actuators
+from hymeko_x.frontends.mjcf.assets import read_assets
+from hymeko_x.frontends.mjcf.bodies import read_worldbody, reserve_names
+from hymeko_x.frontends.mjcf.check import check_words
+from hymeko_x.frontends.mjcf.contacts import read_contacts
+from hymeko_x.frontends.mjcf.delegate import expand_by_mujoco
+from hymeko_x.frontends.mjcf.draft import Draft
+from hymeko_x.frontends.mjcf.equalities import read_equalities
+from hymeko_x.frontends.mjcf.include import expand_includes
+from hymeko_x.frontends.mjcf.sections import keep_sections, read_settings
+from hymeko_x.frontends.mjcf.sensors import read_sensors
+from hymeko_x.frontends.mjcf.tendons import read_tendons
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.source import Source
+
+
+def read(source: Source, report: Report) -> Mechanism:
+    """The mechanism that an MJCF file describes.
+
+    Raises: Refusal for what MuJoCo refuses as well, with file and line.
+    """
+    root = parse(source, report)
+    _check_root(root)
+    root = expand_includes(root, source, report)
+    root = expand_by_mujoco(root, source, report)
+    check_words(root)
+    draft = Draft(report, read_settings(root), Classes(root_sections(root, "default")), source.name, source.files)
+    name = _read_name(root, source, draft)
+    keep_sections(root, draft)
+    reserve_names(root, draft)
+    read_assets(root.take_children("asset"), draft)
+    read_worldbody(root.take_children("worldbody"), draft)
+    read_contacts(root.take_children("contact"), draft)
+    read_tendons(root.take_children("tendon"), draft)
+    read_equalities(root.take_children("equality"), draft)
+    read_actuators(root.take_children("actuator"), draft)
+    read_sensors(root.take_children("sensor"), draft)
+    draft.keep_rest(root)
+    return draft.mechanism(name)
+
+
+def root_sections(root: Element, tag: str) -> list[Element]:
+    """The sections of this name, which stay in the tree."""
+    return [child for child in root.children if child.tag == tag]
+
+
+def _check_root(root: Element) -> None:
+    if root.tag == "mujoco":
+        return
+    known = {
+        "robot": "it looks like URDF: read it with --from urdf",
+        "sdf": "it looks like SDF: read it with --from sdf",
+        "mujocoinclude": "it is a part that other files include, and no model of its own",
+    }
+    raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <mujoco>", root.origin, hint=known.get(root.tag, ""))
+
+
+def _read_name(root: Element, source: Source, draft: Draft) -> str:
+    name = root.take("model")
+    if name:
+        return name
+    draft.note_root("unnamed", "yes")
+    return PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"

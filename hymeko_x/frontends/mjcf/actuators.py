@@ -1,0 +1,68 @@
+"""<actuator>: what drives, and what it acts on."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.mjcf_codec import parameter_value
+from hymeko_x.formats.mjcf_words import RESOLVED, TRANSMISSIONS
+from hymeko_x.formats.xml import read_numbers
+from hymeko_x.frontends.mjcf.mounts import take_parameters
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.parts import Actuator, Drive
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.ir.mechanism import RobotArc
+    from hymeko_x.ir.parts import Parameters
+
+_KINDS = {"jointinparent": "joint", "cranksite": "site", "slidersite": "site", "refsite": "site"}
+_ROLES = {"cranksite": "crank", "slidersite": "slider", "refsite": "reference"}
+
+
+def read_actuators(sections: list[Element], draft: Draft) -> None:
+    """Actuators in order, each with the edge to what it acts on."""
+    for section in sections:
+        for element in section.children:
+            if element.tag.startswith("#"):
+                draft.keep_at_root(element, "actuator")
+            else:
+                _read_actuator(element, draft)
+
+
+def _read_actuator(element: Element, draft: Draft) -> None:
+    target = next((element.attributes[word] for word in TRANSMISSIONS if word in element.attributes), "")
+    key = draft.own(element, "actuator", f"{target}_{element.tag}")
+    tag = element.tag if element.tag != "plugin" else "general"
+    base = draft.base(element, key, tag=tag)
+    gear = element.take("gear")
+    arcs: list[RobotArc] = [Arc(key, 1)]
+    words = [word for word in TRANSMISSIONS if word in element.attributes]
+    weight = read_numbers(gear or base.get("gear", "")) or None
+    for word in words:
+        arcs.append(_arc(element, word, weight if word == words[0] else None, draft))
+    if not words and gear is not None:
+        element.attributes["gear"] = gear
+    kind = "jointinparent" if "jointinparent" in words else ""
+    draft.vertices[key] = Actuator(element.tag, (*_inherited(element, base), *take_parameters(element)))
+    draft.keep(element, key)
+    draft.show(key)
+    if words:
+        drive = draft.names.take("drive", key.name)
+        draft.edges[drive] = Edge(Drive(kind), tuple(arcs))
+        draft.show(drive)
+
+
+def _arc(element: Element, word: str, gear: tuple[float, ...] | None, draft: Draft) -> RobotArc:
+    name = element.take(word) or ""
+    target = draft.find(element, _KINDS.get(word, word), name)
+    role = _ROLES.get(word) or (draft.roles.get(target, {}).get(name, "") if target.kind == "joint" else "")
+    return Arc(target, -1, gear, role)
+
+
+def _inherited(element: Element, base: Mapping[str, str]) -> Parameters:
+    """Gains and ranges that the class gives."""
+    return tuple((name, parameter_value(name, base[name])) for name in RESOLVED if name in base and name not in element.attributes)

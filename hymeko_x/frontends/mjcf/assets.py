@@ -1,0 +1,100 @@
+"""<asset>: meshes, textures and materials; height fields, skins and models go along as they are."""
+
+from __future__ import annotations
+
+import posixpath
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.mjcf_codec import MATERIAL, MESH
+from hymeko_x.formats.mjcf_words import joined
+from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
+from hymeko_x.ir.parts import Material, Mesh, Texture
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft
+
+
+def read_assets(sections: list[Element], draft: Draft) -> None:
+    """Textures first, since materials refer to them."""
+    for section in sections:
+        for element in section.take_children("texture"):
+            read_texture(element, draft)
+    for section in sections:
+        for element in section.take_children("mesh"):
+            read_mesh(element, draft)
+        for element in section.take_children("material"):
+            read_material(element, draft)
+        for element in section.children:
+            draft.keep_at_root(element, "asset")
+
+
+def _uri(element: Element, file: str, folder: str, draft: Draft) -> str:
+    """The path of a file from the main file: in the folder of <compiler>, else beside the main file, else beside the included one."""
+    uri = joined(folder, file, draft.settings)
+    beside = posixpath.join(posixpath.dirname(element.file), uri)
+    if folder or element.file == draft.file or draft.files.find(uri) is not None or draft.files.find(beside) is None:
+        return uri
+    return beside
+
+
+def read_mesh(element: Element, draft: Draft) -> None:
+    """A mesh: a file below <compiler meshdir>, or inline data."""
+    file = element.take("file")
+    uri = None if file is None else _uri(element, file, draft.settings.mesh_folder, draft)
+    name = element.take("name") or None
+    stem = posixpath.basename(file_stem(uri)) if uri else ""
+    key = draft.names.take("mesh", name or stem or "mesh")
+    draft.origins[key] = element.origin
+    draft.register(element, "mesh", name or stem, key)
+    base = draft.base(element, key)
+    found = draft.values(element, MESH, base, key)
+    faces = tuple(map(int, found["face"]))
+    draft.vertices[key] = Mesh(uri, found["scale"], None if name == stem else name, found["vertex"], faces)
+    draft.keep(element, key)
+    if key in draft.extras or key in draft.notations or key in draft.stereotypes:
+        draft.show(key)
+
+
+def read_texture(element: Element, draft: Draft) -> None:
+    """An image, or a pattern whose description stays with it."""
+    file = element.take("file")
+    uri = None if file is None else _uri(element, file, draft.settings.texture_folder, draft)
+    name = element.take("name") or None
+    stem = file_stem(uri) if uri else ""
+    key = draft.names.take("texture", name or stem or "texture")
+    draft.origins[key] = element.origin
+    draft.register(element, "texture", name or stem or _skybox(element), key)
+    draft.base(element, key)
+    draft.vertices[key] = Texture(uri, None if name == stem else name)
+    draft.keep(element, key)
+    draft.show(key)
+
+
+def _skybox(element: Element) -> str:
+    """Textures may be nameless; none of them is referred to, and there may be several."""
+    return f"\0{element.file}:{element.line}:{id(element)}"
+
+
+def read_material(element: Element, draft: Draft) -> None:
+    """A material with the textures on it."""
+    key = draft.own(element, "material", "material")
+    base = draft.base(element, key)
+    found = draft.values(element, MATERIAL, base, key)
+    texture = found.pop("texture")
+    rgba = found.pop("rgba") or None
+    draft.vertices[key] = Material(None if draft.notations.get(key, {}).get("unnamed") else key.name, rgba, **found)
+    draft.show(key)
+    if texture:
+        _put(element, texture, key, "rgb", draft)
+    elif len([child for child in element.children if child.tag == "layer"]) == 1:
+        draft.note(key, "layers", "yes")
+    for layer in element.take_children("layer"):
+        _put(layer, layer.attributes.get("texture", ""), key, layer.attributes.get("role", "rgb"), draft)
+    draft.keep(element, key)
+
+
+def _put(element: Element, texture: str, material: Id, use: str, draft: Draft) -> None:
+    edge = draft.names.take("layer", material.name)
+    draft.edges[edge] = layer_edge(draft.find(element, "texture", texture), material, use)
+    draft.show(edge)

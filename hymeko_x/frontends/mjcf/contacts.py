@@ -1,0 +1,45 @@
+"""<contact>: pairs of geoms that collide, and pairs of bodies that do not."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.frontends.mjcf.mounts import take_parameters
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.parts import Contact
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.ir.mechanism import Id, RobotArc
+
+_ENDS = {"pair": ("geom", "geom1", "geom2"), "exclude": ("body", "body1", "body2")}
+
+
+def read_contacts(sections: list[Element], draft: Draft) -> None:
+    """Pairs and exclusions in order."""
+    for section in sections:
+        for element in section.children:
+            if element.tag in _ENDS:
+                _read_contact(element, draft)
+            else:
+                draft.keep_at_root(element, "contact")
+
+
+def _read_contact(element: Element, draft: Draft) -> None:
+    kind, *ends = _ENDS[element.tag]
+    key = draft.own(element, "contact", element.tag)
+    draft.base(element, key)
+    arcs: tuple[RobotArc, ...] = tuple(Arc(find_end(element, kind, name, draft)) for name in ends)
+    draft.edges[key] = Edge(Contact(element.tag, take_parameters(element)), arcs)
+    draft.keep(element, key)
+    draft.show(key)
+
+
+def find_end(element: Element, kind: str, attribute: str, draft: Draft) -> Id:
+    """What an attribute refers to; the world may be called a body."""
+    name = element.take(attribute) or ""
+    if kind == "body" and name == "world" and ("body", "world") not in draft.named:
+        return WORLD
+    return draft.find(element, kind, name)

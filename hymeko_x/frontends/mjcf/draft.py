@@ -1,0 +1,194 @@
+"""A mechanism in the making: what the readers of bodies, assets and relations add to."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats import mjcf_words as words
+from hymeko_x.formats.mjcf_classes import merge
+from hymeko_x.formats.mjcf_codec import BadAttribute
+from hymeko_x.formats.mjcf_tree import COMMENT, verbatim
+from hymeko_x.ir.graph import Hypergraph
+from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Mechanism, Names
+from hymeko_x.ir.parts import World
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from hymeko_x.diagnostics import Origin, Refusal, Report
+    from hymeko_x.formats.mjcf_classes import Classes
+    from hymeko_x.formats.mjcf_codec import Group, Settings
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.ir.mechanism import RobotEdge
+    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.source import Files
+
+Values = dict[str, Any]
+
+
+@dataclass(slots=True)
+class Draft:
+    """Vertices, edges and side tables so far. ``named``: elements by MJCF's own kinds and names."""
+
+    report: Report
+    settings: Settings
+    classes: Classes
+    file: str
+    files: Files
+    names: Names = field(default_factory=Names)
+    vertices: dict[Id, VertexPart] = field(default_factory=lambda: {WORLD: World()})
+    edges: dict[Id, RobotEdge] = field(default_factory=dict)
+    extras: dict[Id, list[Extra]] = field(default_factory=dict)
+    origins: dict[Id, Origin] = field(default_factory=dict)
+    notations: dict[Id, dict[str, str]] = field(default_factory=dict)
+    stereotypes: dict[Id, tuple[str, ...]] = field(default_factory=dict)
+    layout: list[Id] = field(default_factory=list)
+    named: dict[tuple[str, str], Id] = field(default_factory=dict)
+    roles: dict[Id, dict[str, str]] = field(default_factory=dict)
+    place: int = 0
+
+    # ---- names -----------------------------------------------------------------------------------------------------------
+
+    def own(self, element: Element, kind: str, unnamed: str) -> Id:
+        """A fresh id for an element of the mechanism: its name, or one made from ``unnamed`` that no other format's reader sees."""
+        name = element.take("name")
+        if name:
+            key = Id(kind, name)
+            self.register(element, words.NAMESPACES.get(kind, kind), name, key)
+        else:
+            key = self.names.take(kind, unnamed)
+            self.note(key, "unnamed", "yes")
+        self.origins[key] = element.origin
+        return key
+
+    def register(self, element: Element, tag: str, name: str, key: Id) -> None:
+        """Make an element known by name. Raises: Refusal when another one of its kind has it."""
+        place = (tag, name)
+        first = self.named.get(place)
+        self.named[place] = key
+        if first is not None:
+            raise refuse(
+                codes.DUPLICATE_NAME,
+                f"{place[0]} '{name}' is defined twice; the first one: {self.origins.get(first, '?')}",
+                element.origin,
+                element=str(key),
+            )
+
+    def find(self, element: Element, kind: str, name: str) -> Id:
+        """The element of this kind and name. Raises: Refusal (HX040)."""
+        found = self.named.get((kind, name))
+        if found is None:
+            from difflib import get_close_matches
+
+            near = get_close_matches(name, [known for of, known in self.named if of == kind], n=3)
+            hint = f"did you mean {' or '.join(near)}?" if near else ""
+            raise refuse(
+                codes.UNDEFINED_REFERENCE, f"<{element.tag}> refers to the {kind} '{name}', which is not there", element.origin, hint=hint
+            )
+        return found
+
+    # ---- values ----------------------------------------------------------------------------------------------------------
+
+    def base(self, element: Element, key: Id, childclass: str | None = None, tag: str = "") -> Mapping[str, str]:
+        """What the element's class gives; the class name is taken and remembered."""
+        own = element.take("class")
+        if own is not None:
+            self.check_class(element, own)
+            self.stereotypes[key] = (own,)
+        return self.classes.of(tag or element.tag, own or childclass)
+
+    def check_class(self, element: Element, name: str) -> None:
+        """Raises: Refusal (HX040) when there is no such class."""
+        if not self.classes.has(name):
+            raise refuse(codes.UNDEFINED_REFERENCE, f"<{element.tag}> has the class '{name}', which is not defined", element.origin)
+
+    def values(
+        self, element: Element, groups: Iterable[Group], base: Mapping[str, str], key: Id, prefix: str = "", *, always: bool = False
+    ) -> Values:
+        """What the attributes mean, with what the class gives.
+
+        Where printing the values again would not say the same, or ``always``, the attributes are noted as they are.
+        """
+        own = element.attributes
+        merged = merge(base, own)
+        found: Values = {}
+        taken: list[str] = []
+        try:
+            for group in groups:
+                value = found[group.key] = group.read(merged, self.settings)
+                touched = [name for name in group.names if name in own]
+                if not touched:
+                    continue
+                taken += touched
+                context = {name: merged[name] for name in group.needs if name in merged}
+                said = merge({**base, **context}, group.write(value, self.settings))
+                if always or group.seen(said, self.settings) != group.seen(merged, self.settings):
+                    for name in touched:
+                        self.note(key, f"{prefix}@{name}", own[name])
+        except BadAttribute as error:
+            raise self.bad(element, error) from error
+        for name in taken:
+            own.pop(name, None)
+        return found
+
+    def bad(self, element: Element, error: BadAttribute) -> Refusal:
+        """The refusal of an attribute that MuJoCo refuses."""
+        text = element.attributes.get(error.attribute)
+        said = f"is '{text}'" if text is not None else "is missing or inherited"
+        return refuse(codes.BAD_NUMBER, f"<{element.tag} {error.attribute}> {said}, expected {error.expected}", element.origin)
+
+    # ---- side tables -----------------------------------------------------------------------------------------------------
+
+    def note(self, key: Id, name: str, text: str) -> None:
+        """Keep how the author wrote something."""
+        self.notations.setdefault(key, {})[name] = text
+
+    def note_root(self, name: str, text: str) -> None:
+        """Keep how the author wrote something about the whole."""
+        self.note(ROOT, name, text)
+
+    def show(self, key: Id) -> None:
+        """Give an element its place among all."""
+        self.layout.append(key)
+        self.place += 1
+
+    def keep(self, element: Element, key: Id, path: str = "") -> None:
+        """Everything that is left of an element goes along with what it became."""
+        if not (element.attributes or element.children or element.words):
+            return
+        step = f"{path}/" if path else ""
+        found = self.extras.setdefault(key, [])
+        found += [Extra(words.NAME, f"{step}@{name}", text) for name, text in element.attributes.items()]
+        if element.words:
+            found.append(Extra(words.NAME, f"{step}text()", element.words.strip()))
+        for index, child in enumerate(element.children):
+            found.append(_extra(child, path, index))
+
+    def keep_at_root(self, element: Element, path: str = "") -> None:
+        """An element that has no word in the IR, as it is."""
+        extra = _extra(element, path, self.place)
+        self.extras.setdefault(ROOT, []).append(extra)
+        self.place += not path
+
+    def keep_rest(self, root: Element) -> None:
+        """What nobody took at top level."""
+        for child in root.children:
+            self.keep_at_root(child)
+        root.children = []
+        self.keep(root, ROOT)
+
+    def mechanism(self, name: str) -> Mechanism:
+        """The finished mechanism."""
+        self.note_root(words.NAME, words.VERSION)
+        extras = {key: tuple(found) for key, found in self.extras.items() if found}
+        graph = Hypergraph(self.vertices, self.edges)
+        return Mechanism(name, graph, extras, self.origins, self.notations, self.stereotypes, tuple(self.layout))
+
+
+def _extra(child: Element, path: str, index: int) -> Extra:
+    if child.tag == COMMENT:
+        return Extra("comment", path, child.words, index)
+    return Extra(words.NAME, path, verbatim(child), index)

@@ -1,0 +1,123 @@
+"""<equality>: closures of loops, and joints that follow joints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.mjcf_codec import BadAttribute, numbers_of
+from hymeko_x.formats.mjcf_words import shifted
+from hymeko_x.frontends.mjcf.contacts import find_end
+from hymeko_x.frontends.mjcf.mounts import take_parameters
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.parts import Coupling, Joint, Loop
+from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, pose
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.ir.mechanism import Id, RobotArc
+
+
+def read_equalities(sections: list[Element], draft: Draft) -> None:
+    """Closures and couplings in order; those of tendons and flexes go along as they are."""
+    placed: dict[Id, Pose] = {}
+    for section in sections:
+        for element in section.children:
+            if element.tag in ("connect", "weld"):
+                _read_loop(element, draft, placed)
+            elif element.tag == "joint" and "joint2" in element.attributes:
+                _read_coupling(element, draft)
+            else:
+                draft.keep_at_root(element, "equality")
+
+
+# ---- couplings -----------------------------------------------------------------------------------------------------------------
+
+
+def _read_coupling(element: Element, draft: Draft) -> None:
+    """Source: MuJoCo, equality/joint: q1 - ref1 = c0 + c1 (q2 - ref2) + ..."""
+    follower, follower_role, follower_ref = _dof(element, "joint1", draft)
+    leader, leader_role, leader_ref = _dof(element, "joint2", draft)
+    key = draft.own(element, "coupling", follower.name)
+    draft.base(element, key, tag="joint@equality")
+    try:
+        found = numbers_of(element.attributes, "polycoef", 1, 5)
+    except BadAttribute as error:
+        raise draft.bad(element, error) from error
+    said = (0.0, 1.0) if found is None else found if len(found) > 1 else (found[0], 1.0)
+    text = element.take("polycoef")
+    coefficients = shifted(said, -leader_ref)
+    coefficients[0] += follower_ref
+    while len(coefficients) > 2 and coefficients[-1] == 0.0:
+        coefficients.pop()
+    if text is not None and (follower_ref or leader_ref):
+        draft.note(key, "@polycoef", text)
+    active = element.take("active") != "false"
+    arcs: tuple[RobotArc, ...] = (
+        Arc(follower, 1, (1.0,), follower_role),
+        Arc(leader, -1, tuple(coefficients), leader_role),
+    )
+    draft.edges[key] = Edge(Coupling(active), arcs)
+    draft.keep(element, key)
+    draft.show(key)
+
+
+def _dof(element: Element, attribute: str, draft: Draft) -> tuple[Id, str, float]:
+    """The joint, the role that names the dof in it, and the dof's reference coordinate."""
+    name = element.take(attribute) or ""
+    joint = draft.find(element, "joint", name)
+    role = draft.roles.get(joint, {}).get(name, "")
+    data = draft.edges[joint].data
+    assert isinstance(data, Joint)
+    dof = next((dof for dof in data.dofs if role and dof.name == role), data.dofs[0])
+    return joint, role, dof.ref
+
+
+# ---- closures ------------------------------------------------------------------------------------------------------------------
+
+
+def _read_loop(element: Element, draft: Draft, placed: dict[Id, Pose]) -> None:
+    key = draft.own(element, "loop", element.tag)
+    draft.base(element, key)
+    active = element.take("active") != "false"
+    if "site1" in element.attributes:
+        arcs: tuple[RobotArc, ...] = tuple(Arc(find_end(element, "site", name, draft)) for name in ("site1", "site2"))
+    else:
+        arcs = _body_arcs(element, key, draft, placed)
+    draft.edges[key] = Edge(Loop(element.tag, (), active, take_parameters(element)), arcs)
+    draft.keep(element, key)
+    draft.show(key)
+
+
+def _body_arcs(element: Element, key: Id, draft: Draft, placed: dict[Id, Pose]) -> tuple[RobotArc, ...]:
+    """Both bodies with the closure's frame in each, where the bodies are at the reference configuration unless it says where."""
+    first = find_end(element, "body", "body1", draft)
+    second = find_end(element, "body", "body2", draft) if "body2" in element.attributes else WORLD
+    said = {name: text for name in ("anchor", "relpose") if (text := element.take(name)) is not None}
+    for name, text in said.items():
+        draft.note(key, f"@{name}", text)
+    try:
+        anchor = numbers_of(said, "anchor", 3, 3) or (0.0, 0.0, 0.0)
+        relative = numbers_of(said, "relpose", 7, 7)
+    except BadAttribute as error:
+        raise draft.bad(element, error) from error
+    at = Pose((anchor[0], anchor[1], anchor[2]))
+    between = compose(inverse(_in_world(first, draft, placed)), _in_world(second, draft, placed))
+    if element.tag == "connect":
+        return Arc(first, 0, at), Arc(second, 0, compose(inverse(between), at))
+    if relative is not None and any(relative[3:]):
+        between = pose((relative[0], relative[1], relative[2]), relative[3:])  # type: ignore[arg-type]
+    return Arc(first, 0, compose(between, at)), Arc(second, 0, at)
+
+
+def _in_world(body: Id, draft: Draft, placed: dict[Id, Pose]) -> Pose:
+    """Where a body is at the reference configuration; filled in for all bodies at first use."""
+    if not placed:
+        placed[WORLD] = IDENTITY
+        for edge in draft.edges.values():
+            if isinstance(edge.data, Joint):
+                parent, child = edge.arcs
+                at = parent.weight if isinstance(parent.weight, Pose) else IDENTITY
+                placed[child.target] = compose(placed[parent.target], at)
+    return placed[body]

@@ -1,0 +1,61 @@
+"""<geom>: shapes on bodies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.mjcf_classes import merge
+from hymeko_x.formats.mjcf_codec import FITTED_GEOM, GEOM, GRID, Place
+from hymeko_x.formats.mjcf_words import PLACES
+from hymeko_x.frontends.mjcf.spot import Spot, placed
+from hymeko_x.ir.mechanism import shape_edge
+from hymeko_x.ir.parts import Role, Shape
+from hymeko_x.ir.values import number_text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft
+
+_SHOWN = 3
+"""Geoms of this group and those above are not shown unless somebody asks for them."""
+
+
+def read_geom(element: Element, spot: Spot, draft: Draft) -> None:
+    """A shape on a body; what only MuJoCo knows of it stays with it as it is."""
+    own_class = element.attributes.get("class")
+    said = merge(draft.classes.of("geom", own_class or spot.childclass), element.attributes)
+    role = role_of(said)
+    key = draft.names.take("shape", f"{spot.body.name}/{PLACES[role]}")
+    draft.origins[key] = element.origin
+    base = draft.base(element, key, spot.childclass)
+    name = element.take("name") or None
+    if name is not None:
+        draft.register(element, "geom", name, key)
+    if spot.frame:
+        draft.note(key, "frame", spot.frame)
+    fitted = "mesh" in said and said.get("type") != "mesh"
+    found = draft.values(element, FITTED_GEOM if fitted else GEOM, base, key, always=bool(spot.frame))
+    place: Place = found["place"]
+    shape = Shape(place.geometry, role, name, found["rgba"] or None, found["mass"], found["density"], found["friction"])
+    mesh = draft.find(element, "mesh", found["mesh"]) if found.get("mesh") else None
+    material = draft.find(element, "material", found["material"]) if found["material"] else None
+    draft.edges[key] = shape_edge(shape, spot.body, placed(place.pose, spot), mesh, material)
+    if place.grid not in (None, GRID):
+        draft.note(key, "grid", number_text(place.grid))
+    draft.keep(element, key)
+
+
+def role_of(said: Mapping[str, str]) -> Role:
+    """For the eye alone when it can touch nothing; for contact alone when it is in a group that is not shown."""
+    if not _number(said.get("contype", "1")) and not _number(said.get("conaffinity", "1")):
+        return Role.VISUAL
+    return Role.COLLISION if _number(said.get("group", "0")) >= _SHOWN else Role.BOTH
+
+
+def _number(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        return 0

@@ -1,0 +1,118 @@
+"""<joint> and <freejoint>: all joints of a body are one edge from its parent, with their dofs in order."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats.mjcf_codec import JOINT
+from hymeko_x.ir.mechanism import WORLD, Id, joint_edge
+from hymeko_x.ir.parts import UNLIMITED, Dof, DofKind, Joint, Limits
+from hymeko_x.ir.values import Z, apply, rotate
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft, Values
+    from hymeko_x.frontends.mjcf.spot import Spot
+    from hymeko_x.ir.values import Pose
+
+_VELOCITIES = {DofKind.HINGE: 1, DofKind.SLIDE: 1, DofKind.BALL: 3, DofKind.FREE: 6}
+
+
+def read_joints(found: list[tuple[Element, Spot]], body: Id, parent: Id, pose: Pose, draft: Draft) -> None:
+    """The edge from the parent to the body; without joints it is a fixed one."""
+    key = _joint_id(found, body, draft)
+    dofs = []
+    stereotypes = []
+    for number, (element, spot) in enumerate(found, 1):
+        prefix = "" if len(found) == 1 else str(number)
+        dofs.append(_read_dof(element, spot, key, prefix, draft))
+        stereotypes.append(draft.stereotypes.pop(key, ("",))[0])
+        draft.origins.setdefault(key, element.origin)
+    if any(stereotypes):
+        draft.stereotypes[key] = tuple(stereotypes)
+    _check_dofs(dofs, found, parent)
+    draft.edges[key] = joint_edge(Joint(tuple(dofs)), parent, body, pose)
+    draft.origins.setdefault(key, draft.origins[body])
+    draft.show(key)
+
+
+def _joint_id(found: list[tuple[Element, Spot]], body: Id, draft: Draft) -> Id:
+    if len(found) == 1 and (name := found[0][0].attributes.get("name")):
+        return Id("joint", name)
+    key = draft.names.take("joint", body.name)
+    if len(found) == 1:
+        draft.note(key, "unnamed", "yes")
+    return key
+
+
+def _read_dof(element: Element, spot: Spot, key: Id, prefix: str, draft: Draft) -> Dof:
+    name = element.take("name") or None
+    if name:
+        draft.register(element, "joint", name, key)
+        draft.roles.setdefault(key, {})[name] = name if prefix else ""
+    if spot.frame:
+        draft.note(key, f"{prefix}frame", spot.frame)
+    dof = _free(element, key, prefix, draft) if element.tag == "freejoint" else _typed(element, spot, key, prefix, draft)
+    draft.keep(element, key, f"joint[{prefix}]" if prefix else "")
+    return dof if not prefix or name is None else _named(dof, name)
+
+
+def _named(dof: Dof, name: str) -> Dof:
+    from dataclasses import replace
+
+    return replace(dof, name=name)
+
+
+def _free(element: Element, key: Id, prefix: str, draft: Draft) -> Dof:
+    return Dof(DofKind.FREE, Z)
+
+
+def _typed(element: Element, spot: Spot, key: Id, prefix: str, draft: Draft) -> Dof:
+    base = draft.base(element, key, spot.childclass)
+    found = draft.values(element, JOINT, base, key, prefix, always=bool(spot.frame))
+    if found["type"] is DofKind.FREE:
+        draft.note(key, f"{prefix}tag", "joint")
+    axis, written = found["axis"]
+    if spot.frame:
+        axis, written = rotate(spot.pose.quat, axis), None
+    return Dof(
+        found["type"],
+        axis,
+        _limits(found),
+        damping=found["damping"],
+        friction=found["frictionloss"],
+        stiffness=found["stiffness"],
+        spring_ref=found["springref"][0],
+        armature=found["armature"],
+        ref=found["ref"][0],
+        anchor=apply(spot.pose, found["pos"]) if spot.frame else found["pos"],
+        written=written,
+    )
+
+
+def _limits(found: Values) -> Limits:
+    span = found["range"][0]
+    force = found["actuatorfrcrange"][0]
+    effort = force[1] if force is not None and force[0] == -force[1] else None
+    if span is None and effort is None:
+        return UNLIMITED
+    low, high = span or (None, None)
+    return Limits(low, high, effort=effort)
+
+
+def _check_dofs(dofs: list[Dof], found: list[tuple[Element, Spot]], parent: Id) -> None:
+    """What MuJoCo refuses."""
+    after_ball = False
+    velocities = 0
+    for dof, (element, _) in zip(dofs, found, strict=True):
+        velocities += _VELOCITIES[dof.kind]
+        if dof.kind is DofKind.FREE and (len(dofs) > 1 or parent != WORLD):
+            why = "it is not the only joint of its body" if len(dofs) > 1 else "its body is not a child of the world"
+            raise refuse(codes.UNKNOWN_WORD, f"a free joint cannot stand here: {why}", element.origin)
+        if after_ball and dof.kind in (DofKind.HINGE, DofKind.BALL):
+            raise refuse(codes.UNKNOWN_WORD, "a ball joint is followed by another rotation in the same body", element.origin)
+        if velocities > 6:
+            raise refuse(codes.UNKNOWN_WORD, "the joints of one body have more than 6 degrees of freedom", element.origin)
+        after_ball = after_ball or dof.kind is DofKind.BALL

@@ -1,0 +1,63 @@
+"""<site>, <camera> and <light>: what is mounted on bodies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.mjcf_codec import CAMERA, LIGHT, SITE, parameter_value
+from hymeko_x.formats.mjcf_words import PLAIN_ATTRIBUTES
+from hymeko_x.frontends.mjcf.spot import Spot, placed
+from hymeko_x.ir.mechanism import mount_edge
+from hymeko_x.ir.parts import Camera, Frame, Light
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.mjcf_codec import Group
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft, Values
+    from hymeko_x.ir.mechanism import Id
+    from hymeko_x.ir.parts import Parameters
+
+
+def read_site(element: Element, spot: Spot, draft: Draft) -> None:
+    """A named pose on a body."""
+    key, found = _read(element, spot, "frame", SITE, draft)
+    draft.vertices[key] = Frame(found["size"])
+    draft.keep(element, key)
+
+
+def read_camera(element: Element, spot: Spot, draft: Draft) -> None:
+    """A camera; whom it follows and how is among its parameters."""
+    key, found = _read(element, spot, "camera", CAMERA, draft)
+    width, height = found["resolution"] or (0.0, 0.0)
+    resolution = (int(width), int(height)) if found["resolution"] else None
+    draft.vertices[key] = Camera(found["fovy"], resolution, take_parameters(element))
+    draft.keep(element, key)
+
+
+def read_light(element: Element, spot: Spot, draft: Draft) -> None:
+    """A light."""
+    key, found = _read(element, spot, "light", LIGHT, draft)
+    x, y, z = found["diffuse"] or (0.0, 0.0, 0.0)
+    draft.vertices[key] = Light(found["kind"], (x, y, z) if found["diffuse"] else None, take_parameters(element))
+    draft.keep(element, key)
+
+
+def take_parameters(element: Element) -> Parameters:
+    """Every attribute that is left, as a parameter."""
+    found = []
+    for name in [name for name in element.attributes if name not in PLAIN_ATTRIBUTES]:
+        found.append((name, parameter_value(name, element.attributes.pop(name))))
+    return tuple(found)
+
+
+def _read(element: Element, spot: Spot, kind: str, groups: tuple[Group, ...], draft: Draft) -> tuple[Id, Values]:
+    key = draft.own(element, kind, f"{spot.body.name}/{element.tag}")
+    base = draft.base(element, key, spot.childclass)
+    if spot.frame:
+        draft.note(key, "frame", spot.frame)
+    found = draft.values(element, groups, base, key, always=bool(spot.frame))
+    draft.show(key)
+    mount = draft.names.take("mount", key.name)
+    draft.edges[mount] = mount_edge(spot.body, key, placed(found["pose"], spot))
+    draft.show(mount)
+    return key, found

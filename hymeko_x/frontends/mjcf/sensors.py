@@ -1,0 +1,53 @@
+"""<sensor>: what measures, and what it measures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.mjcf_words import ALONE, SENSED, SENSED_TYPES
+from hymeko_x.frontends.mjcf.contacts import find_end
+from hymeko_x.frontends.mjcf.mounts import take_parameters
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.parts import Sense, Sensor
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.ir.mechanism import Id, RobotArc
+
+
+def read_sensors(sections: list[Element], draft: Draft) -> None:
+    """Sensors in order, each with the edge to what it measures."""
+    for section in sections:
+        for element in section.children:
+            if element.tag.startswith("#"):
+                draft.keep_at_root(element, "sensor")
+            else:
+                _read_sensor(element, draft)
+
+
+def _read_sensor(element: Element, draft: Draft) -> None:
+    key = draft.own(element, "sensor", element.tag)
+    arcs: list[RobotArc] = []
+    for word in ("objname", "refname"):
+        kind = SENSED_TYPES.get(element.attributes.get("objtype" if word == "objname" else "reftype", ""))
+        if word in element.attributes and kind is not None:
+            arcs.append(_arc(element, kind, word, "" if word == "objname" else "reference", draft))
+    for word, kind in SENSED.items():
+        if word in element.attributes:
+            arcs.append(_arc(element, kind, word, "" if word in ALONE and not arcs else word, draft))
+    draft.vertices[key] = Sensor(element.tag, None, take_parameters(element))
+    draft.keep(element, key)
+    draft.show(key)
+    if arcs:
+        sense = draft.names.take("sense", key.name)
+        draft.edges[sense] = Edge(Sense(), (*arcs, Arc(key, -1)))
+        draft.show(sense)
+
+
+def _arc(element: Element, kind: str, word: str, role: str, draft: Draft) -> RobotArc:
+    name = element.attributes[word]
+    target: Id = find_end(element, kind, word, draft)
+    if target.kind == "joint":
+        role = draft.roles.get(target, {}).get(name, "") or role
+    return Arc(target, 1, None, role)

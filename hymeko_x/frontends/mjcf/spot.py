@@ -1,0 +1,26 @@
+"""Where an element of a body stands."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.values import IDENTITY, Pose, compose
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.mechanism import Id
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """The body of an element, the <frame> around it (its number, empty for none) with its pose in the body, and the childclass."""
+
+    body: Id
+    frame: str = ""
+    pose: Pose = IDENTITY
+    childclass: str | None = None
+
+
+def placed(pose: Pose, spot: Spot) -> Pose:
+    """A pose, given in the frame around the element, seen from the body."""
+    return compose(spot.pose, pose) if spot.frame else pose

@@ -1,0 +1,80 @@
+"""<tendon>: cables along their whole path, and linear combinations of joints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats.mjcf_codec import TENDON, BadAttribute, numbers_of
+from hymeko_x.formats.mjcf_tree import COMMENT
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.parts import UNLIMITED, Limits, Tendon
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.ir.mechanism import Id, RobotArc
+
+
+def read_tendons(sections: list[Element], draft: Draft) -> None:
+    """Spatial and fixed tendons in order."""
+    for section in sections:
+        for element in section.children:
+            if element.tag in ("spatial", "fixed"):
+                _read_tendon(element, draft)
+            else:
+                draft.keep_at_root(element, "tendon")
+
+
+def _read_tendon(element: Element, draft: Draft) -> None:
+    key = draft.own(element, "tendon", "tendon")
+    base = draft.base(element, key)
+    found = draft.values(element, TENDON, base, key)
+    span = found["range"][0]
+    red, green, blue, alpha = found["rgba"] or (0.0,) * 4
+    tendon = Tendon(
+        element.tag,
+        UNLIMITED if span is None else Limits(*span),
+        found["damping"],
+        found["stiffness"],
+        found["frictionloss"],
+        found["armature"],
+        found["width"],
+        (red, green, blue, alpha) if found["rgba"] else None,
+    )
+    arcs: list[RobotArc] = []
+    for step in element.take_children("joint", "site", "geom", "pulley"):
+        arcs += _path(step, key, draft)
+    draft.edges[key] = Edge(tendon, tuple(arcs))
+    element.children = [child for child in element.children if child.tag != COMMENT]
+    draft.keep(element, key)
+    draft.show(key)
+
+
+def _path(step: Element, tendon: Id, draft: Draft) -> list[RobotArc]:
+    """One step of the path: one arc, and one more for the side of a wrapping shape."""
+    if step.tag == "pulley":
+        divisor = _number(step, "divisor", draft)
+        if divisor <= 0.0:
+            raise refuse(codes.BAD_NUMBER, f"<pulley divisor> is {divisor}, expected a positive number", step.origin)
+        return [Arc(tendon, 0, (divisor,), "pulley")]
+    if step.tag == "joint":
+        joint = draft.find(step, "joint", step.attributes.get("joint", ""))
+        role = draft.roles.get(joint, {}).get(step.attributes["joint"], "")
+        return [Arc(joint, 1, (_number(step, "coef", draft),), role)]
+    if step.tag == "site":
+        return [Arc(draft.find(step, "site", step.attributes.get("site", "")))]
+    arcs: list[RobotArc] = [Arc(draft.find(step, "geom", step.attributes.get("geom", "")), 0, None, "wrap")]
+    side = step.attributes.get("sidesite")
+    return arcs if side is None else [*arcs, Arc(draft.find(step, "site", side), 0, None, "side")]
+
+
+def _number(step: Element, name: str, draft: Draft) -> float:
+    try:
+        found = numbers_of(step.attributes, name, 1, 1)
+    except BadAttribute as error:
+        raise draft.bad(step, error) from error
+    if found is None:
+        raise refuse(codes.MISSING_ATTRIBUTE, f"<{step.tag}> needs {name}", step.origin)
+    return found[0]
