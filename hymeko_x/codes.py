@@ -1,6 +1,6 @@
 """Every code that the program can say, in one table. `hymeko-x explain CODE` prints the explanation.
 
-HX00x files and XML, HX02x numbers and names, HX04x structure, HX06x the HyMeKo language, HX1xx loss and
+HX00x files and XML, HX02x numbers and names, HX04x structure, HX05x xacro, HX06x the HyMeKo language, HX1xx loss and
 rewriting for a target, HX2xx assets, HX3xx verification, HX9xx a bug of ours. A code never changes its meaning.
 """
 
@@ -97,6 +97,50 @@ REPEATED = Code(
     "The first one counts, as in urdfdom; the others are kept as they are and written back. MuJoCo refuses such files.",
 )
 
+# ---- HX05x: xacro ----------------------------------------------------------------------------------------------------
+EXPANSION_FAILED = Code(
+    "HX050",
+    "the xacro file cannot be expanded",
+    "The xacro library refused the file in the words shown: a macro that does not exist, a parameter that is missing, an expression that fails. The place is that of the element that it was working on, and below it stand the macro calls and includes that led there.",
+)
+ARGUMENT_MISSING = Code(
+    "HX051",
+    "an argument has no value",
+    "The file uses $(arg NAME) before it gives the argument a default. Give it a value with --arg NAME:=VALUE. The attributes of the root element are evaluated before everything inside it, so that a default given there comes too late for them.",
+)
+PACKAGE_NOT_FOUND = Code(
+    "HX052",
+    "a package was not found",
+    "$(find NAME) is answered without ROS: --package NAME=DIR, the nearest package.xml with that name above or beside the file, ROS_PACKAGE_PATH and AMENT_PREFIX_PATH, and the nearest folder of that name. A folder that bears a shorter or longer form of the name is taken with a warning, if it has the file that is asked for.",
+)
+INCLUDE_NOT_FOUND = Code(
+    "HX053",
+    "a file that a xacro file needs cannot be read",
+    "An included file or a yaml file is not there, may not be read, or is outside the folder to which reading is confined (--confine).",
+)
+EXPANSION_LIMIT = Code(
+    "HX054",
+    "the expansion exceeded a limit",
+    "xacro is a programming language, and a program may run for ever. The expansion runs in a process of its own with limits on processor time, wall-clock time, memory and depth, which are far above what any real robot needs.",
+)
+NOT_URDF = Code(
+    "HX055",
+    "the xacro file does not expand to URDF",
+    "xacro is used for URDF robots, but also for SDF worlds, SRDF and fragments of Gazebo. Only what expands to URDF is a robot that can be read as xacro.",
+)
+XACRO_SAID = Code("HX056", "the xacro library said something", "A warning or message of the xacro library, or of the file itself, at the element that caused it.")
+ENVIRONMENT_CLOSED = Code(
+    "HX057",
+    "a file asks for an environment variable",
+    "Files from strangers do not see the environment. Pass a variable on with --env NAME, or with a value of your own: --env NAME=VALUE. Without that, $(optenv NAME DEFAULT) is its default.",
+)
+FORBIDDEN_EXPRESSION = Code(
+    "HX058",
+    "an expression does what expressions may not",
+    "Expressions in xacro files are Python, of which arithmetic, lists, dictionaries and the functions that xacro names are allowed. Names and attributes that lead out of the expression are not.",
+)
+ARGUMENT_UNKNOWN = Code("HX059", "the file has no argument of that name", "A value was given with --arg for an argument that the file never mentions.")
+
 # ---- HX06x: the HyMeKo language --------------------------------------------------------------------------------------
 SYNTAX = Code("HX060", "the text is not HyMeKo", "The parser met something that the grammar does not allow at this place.")
 UNKNOWN_TYPE = Code(
@@ -175,6 +219,30 @@ NO_CHAIN = Code(
     "there is no such chain",
     "A Denavit-Hartenberg table describes the joints from the base to one body. The body does not exist, or nothing between them moves.",
 )
+
+# ---- HX31x: what `check` finds ---------------------------------------------------------------------------------------
+EMPTY_ROBOT = Code("HX310", "there is no robot", "The file was read, and it describes no links.")
+LOOSE_JOINT = Code("HX311", "a joint does not join two links", "Every joint leads from one parent link to one child link, which is another one.")
+WRONG_COUNT = Code(
+    "HX312",
+    "there are more or fewer links or joints than declared",
+    "The numbers of links and joints that were declared and those in the file differ: something is missing, doubled or invented.",
+)
+BAD_LIMITS = Code(
+    "HX313",
+    "the numbers of a joint contradict each other",
+    "A lower limit above the upper one, both limits equal, a negative effort, velocity, damping, friction or armature, or an angle that can only be in degrees.",
+)
+NO_INERTIA = Code("HX314", "something moves without mass", "A simulator needs a positive mass and an inertia tensor for everything that a joint moves.")
+BAD_MASS = Code("HX315", "a mass is not a mass", "A mass is a finite number of kg that is not negative.")
+BAD_TENSOR = Code(
+    "HX316",
+    "an inertia tensor is not physical",
+    "The principal moments of a body are positive, and none is larger than the sum of the other two. Simulators refuse or explode otherwise.",
+)
+NO_VISUAL = Code("HX317", "a link cannot be seen", "The link has a mass and no visual shape.")
+NO_COLLISION = Code("HX318", "a link cannot be touched", "The link has a mass and no collision shape.")
+BAD_SIZE = Code("HX319", "a shape has an impossible size", "Sizes and scales are finite and not zero, and a robot is not a kilometre large.")
 
 # ---- HX9xx: our bugs -------------------------------------------------------------------------------------------------
 BUG = Code(

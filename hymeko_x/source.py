@@ -44,13 +44,15 @@ class NoFiles:
 class Source:
     """One input: its name as the user typed it (used in messages), its bytes, and the files around it.
 
-    ``arguments`` are the user's values for a format that takes some (xacro's NAME:=VALUE).
+    ``arguments`` are the user's values for a format that takes some (xacro's NAME:=VALUE), ``environment`` the
+    variables that the user passes on to it (xacro's `$(env NAME)`); the program's own environment stays closed.
     """
 
     name: str
     data: bytes
     files: Files = field(default_factory=NoFiles)
     arguments: Mapping[str, str] = field(default_factory=dict)
+    environment: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

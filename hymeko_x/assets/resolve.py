@@ -8,9 +8,10 @@ from __future__ import annotations
 import errno
 import os
 import re
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
 from functools import cached_property
-from itertools import islice
+from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
@@ -60,6 +61,68 @@ class DiskFiles:
         if Path(path).stat().st_size > MOST_BYTES:
             raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), path)
         return Path(path).read_bytes()
+
+    # ---- packages as folders ---------------------------------------------------------------------------------------------
+
+    def find_package(self, name: str, beside: str = "") -> str | None:
+        """The folder of a package, or None.
+
+        First the user's own, then the nearest `package.xml` with that name above or beside the description, the search
+        path, and the nearest folder of that name; then the same once more from the file ``beside``.
+        """
+        if name in ("", ".", "..") or "/" in name or "\\" in name:
+            return None
+        found = (folder for files in self._standpoints(beside) for folder in files._packages_called(name))
+        return next((str(folder) for folder in found if self._may_enter(folder)), None)
+
+    def guess_package(self, name: str, beside: str = "") -> str | None:
+        """The nearest folder above or beside that bears a shorter or longer form of the name, word by word, or None."""
+        words = _words(name)
+        near = (folder for files in self._standpoints(beside) for folder in files._neighbourhood())
+        return next((str(folder) for folder in near if _is_form(_words(folder.name), words) and self._may_enter(folder)), None)
+
+    def match(self, pattern: str) -> list[str]:
+        """The files that a path with wildcards (`*`, `?`, `[a-z]`) in its parts names, sorted."""
+        if not 0 < len(pattern) < 4096 or "\0" in pattern:
+            return []
+        start, *parts = (self.base / pattern).parts
+        places = [Path(start)]
+        for part in parts:
+            step = self._matching(places, part) if _WILDCARD.search(part) else [place / part for place in places]
+            places = step[:MOST_FOLDERS]
+        return [str(_tidy(place)) for place in places if self._may_read(place)]
+
+    def _matching(self, folders: list[Path], pattern: str) -> list[Path]:
+        hidden = pattern.startswith(".")
+        names = ((folder, name) for folder in folders if self._is_inside(folder) for name in _names_in(folder))
+        looked_at = islice(names, MOST_FOLDERS)
+        return [folder / name for folder, name in looked_at if fnmatchcase(name, pattern) and name.startswith(".") <= hidden]
+
+    def _standpoints(self, beside: str) -> Iterator[DiskFiles]:
+        yield self
+        if beside:
+            yield replace(self, base=(self.base / beside).parent)
+
+    def _packages_called(self, name: str) -> Iterator[Path]:
+        if name in self.packages:
+            yield Path(os.path.abspath(self.packages[name]))
+        yield from (folder for folder in self._neighbourhood() if self._package_name(folder) == name)
+        yield from (Path(os.path.abspath(folder)) / name for folder in self.search_path)
+        if name in self._named_on_search_path:
+            yield Path(os.path.abspath(self._named_on_search_path[name]))
+        for folder in self._upwards:
+            yield from (folder,) if folder.name == name else ()
+            yield folder / name
+
+    def _neighbourhood(self) -> Iterator[Path]:
+        """Every folder above the description, nearest first, each followed by the folders in it."""
+        for folder in self._upwards:
+            yield from chain((folder,), (folder / name for name in _names_in(folder)))
+
+    def _may_enter(self, folder: Path) -> bool:
+        return folder.is_dir() and self._is_inside(folder)
+
+    # ---- candidates for a uri --------------------------------------------------------------------------------------------
 
     def _candidates(self, uri: str) -> Iterator[Path]:
         scheme = _SCHEME.match(uri)
@@ -125,6 +188,27 @@ class DiskFiles:
 
     def _is_inside(self, path: Path) -> bool:
         return self.confine is None or path.resolve().is_relative_to(self.confine.resolve())
+
+
+_WILDCARD = re.compile(r"[*?\[]")
+
+
+def _names_in(folder: Path) -> list[str]:
+    """The names of what is in a folder, sorted; nothing when it cannot be listed."""
+    try:
+        return sorted(os.listdir(folder))
+    except (OSError, ValueError):
+        return []
+
+
+def _words(name: str) -> list[str]:
+    return [word for word in re.split(r"[-_.]", name.lower()) if word]
+
+
+def _is_form(words: list[str], others: list[str]) -> bool:
+    """Whether one begins with all of the other."""
+    shorter, longer = sorted((words, others), key=len)
+    return bool(shorter) and longer[: len(shorter)] == shorter
 
 
 def _tidy(path: Path) -> Path:

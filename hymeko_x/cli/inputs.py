@@ -35,6 +35,8 @@ def input_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--package", action="append", default=[], type=_package, metavar="NAME=DIR", help=where)
     parser.add_argument("--confine", type=_folder, metavar="DIR", help="read no file outside this folder")
     parser.add_argument("--arg", action="append", default=[], type=_argument, metavar="NAME:=VALUE", help="an argument of a xacro file")
+    passed = "an environment variable that a xacro file may see (repeatable)"
+    parser.add_argument("--env", action="append", default=[], type=_variable, metavar="NAME[=VALUE]", help=passed)
 
 
 def read_input(path: str, chosen: argparse.Namespace, report: Report) -> Input:
@@ -44,9 +46,11 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report) -> Input:
     """
     source = _standard_input(chosen) if path == "-" else _file(path, chosen)
     format = formats.by_name(chosen.from_format) if chosen.from_format else formats.of_input(source.name, source.data)
-    if chosen.arg and not format.has_arguments:
-        raise UsageError(f"--arg is for formats that take arguments, and {source.name} is {format.name}")
-    return Input(pipeline.read(replace(source, arguments=dict(chosen.arg)), format, report), format, source)
+    if (chosen.arg or chosen.env) and not format.has_arguments:
+        option = "--arg" if chosen.arg else "--env"
+        raise UsageError(f"{option} is for formats that take arguments, and {source.name} is {format.name}")
+    source = replace(source, arguments=dict(chosen.arg), environment=dict(chosen.env))
+    return Input(pipeline.read(source, format, report), format, source)
 
 
 def _file(path: str, chosen: argparse.Namespace) -> Source:
@@ -76,3 +80,12 @@ def _argument(text: str) -> tuple[str, str]:
     if not (name and sign):
         raise argparse.ArgumentTypeError(f"expected NAME:=VALUE, found '{text}'")
     return name, value
+
+
+def _variable(text: str) -> tuple[str, str]:
+    name, sign, value = text.partition("=")
+    if sign:
+        return name, value
+    if name not in os.environ:
+        raise argparse.ArgumentTypeError(f"the environment has no variable '{text}'")
+    return name, os.environ[name]

@@ -1,0 +1,269 @@
+"""Expanding a xacro file: a child process evaluates it, and this side gives out the files that it asks for.
+
+The child (`frontends/xacro_child`) has limits on time and memory, no environment, and opens no file itself, so that what it may
+read is decided here, by the `Files` of the source. Python in ${} is the reason: xacro's own fence around it has gaps.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import threading
+from bisect import bisect_right
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import cached_property
+from importlib.util import find_spec
+from pathlib import Path, PurePosixPath
+from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Diagnostic, Origin, refuse
+from hymeko_x.frontends.xacro import wording
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.frontends.xacro.wording import Message
+    from hymeko_x.source import Source
+
+CHILD = "hymeko_x.frontends.xacro_child"
+MOST_HEADER = 2**28
+MOST_BYTES = 2**30
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What an expansion may use. The slowest of some hundred real robots takes a second and 100 MB."""
+
+    cpu_seconds: int = 20
+    wall_seconds: float = 60.0
+    memory_bytes: int = 2**30
+
+
+LIMITS = Limits()
+
+
+@runtime_checkable
+class Packages(Protocol):
+    """Files that know packages as ROS does."""
+
+    def find_package(self, name: str, beside: str) -> str | None:
+        """The folder of a package, for the file ``beside``."""
+        ...
+
+    def guess_package(self, name: str, beside: str) -> str | None:
+        """A folder near by that may be the package under another name."""
+        ...
+
+    def match(self, pattern: str) -> list[str]:
+        """The files that a pattern with wildcards names."""
+        ...
+
+
+@dataclass(frozen=True)
+class Expansion:
+    """The URDF that a xacro file stands for, and where its elements were written.
+
+    ``name`` is what the text is called while it is read. On ``lines`` (rising) of the text elements start, which stand
+    in the source at ``places``: file, line, and the macro around them. ``root`` and ``children`` are the names of the
+    root element and of what is directly in it.
+    """
+
+    source: str
+    name: str
+    text: bytes
+    lines: tuple[int, ...]
+    places: tuple[tuple[str, int, str | None], ...]
+    root: str
+    children: frozenset[str]
+
+    def origin(self, line: int | None) -> Origin:
+        """The place in the source of what stands on a line of the text."""
+        number = bisect_right(self.lines, line or 0) - 1
+        return Origin(*self.places[number][:2]) if number >= 0 else Origin(self.source)
+
+    def macro(self, line: int | None) -> str | None:
+        """The macro in which the element on this line of the text is written, or None."""
+        number = bisect_right(self.lines, line or 0) - 1
+        return self.places[number][2] if number >= 0 else None
+
+    def traced(self, said: Diagnostic) -> Diagnostic:
+        """What was said about the text, said about the source."""
+        origin = said.origin and (self.origin(said.origin.line) if said.origin.file == self.name else said.origin)
+        return replace(said, origin=origin, message=self._retold(said.message), hint=self._retold(said.hint))
+
+    def _retold(self, text: str) -> str:
+        return self._mentions.sub(lambda found: str(self.origin(int(found[1]))), text)
+
+    @property
+    def root_origin(self) -> Origin:
+        """Where the root element stands."""
+        return Origin(*self.places[0][:2])
+
+    @cached_property
+    def _mentions(self) -> re.Pattern[str]:
+        return re.compile(rf"(?<![\w./-]){re.escape(self.name)}:(\d+)(?::\d+)?")
+
+
+def expand(source: Source, report: Report, limits: Limits = LIMITS) -> Expansion:
+    """Expand a xacro file as the library `xacro` does, with our own answers to $(find ...).
+
+    Raises: Refusal HX050 to HX058, HX004 when a file is not XML, HX008 when it defines entities.
+    """
+    talk = Talk(source, limits)
+    message, text = talk.last_word()
+    if "failed" in message:
+        raise wording.refusal(cast("Message", message["failed"]), source.name, limits)
+    report.extend(wording.notice(said, source.name) for said in cast("list[Message]", message["notices"]))
+    starts = cast("list[tuple[int, str, int, str | None]]", message["places"])
+    return Expansion(
+        source=source.name,
+        name=source.name[: -len(".xacro")] if source.name.lower().endswith(".xacro") else source.name,
+        text=text,
+        lines=tuple(start[0] for start in starts),
+        places=tuple((file, line, macro) for _, file, line, macro in starts),
+        root=str(message["root"]),
+        children=frozenset(cast("list[str]", message["children"])),
+    )
+
+
+class Talk:
+    """One conversation with a child, from the job to its last word."""
+
+    def __init__(self, source: Source, limits: Limits) -> None:
+        self._source = source
+        self._limits = limits
+        self._out_of_time = False
+
+    def last_word(self) -> tuple[Message, bytes]:
+        """The child's result or failure.
+
+        Raises: Refusal HX054 when a limit ended the child before it could say so.
+        """
+        process = self._started()
+        clock = threading.Timer(self._limits.wall_seconds, self._stop, [process])
+        clock.start()
+        with process:
+            try:
+                return self._converse(process)
+            except (EOFError, BrokenPipeError) as error:
+                process.wait()
+                raise wording.ended(process.returncode, self._source.name, self._limits, slow=self._out_of_time) from error
+            finally:
+                clock.cancel()
+                process.kill()
+                _hang_up(process)
+
+    def _started(self) -> subprocess.Popen[bytes]:
+        pipe, nowhere = subprocess.PIPE, subprocess.DEVNULL
+        try:
+            return subprocess.Popen(_command(), env=_environment(), stdin=pipe, stdout=pipe, stderr=nowhere)
+        except OSError as error:
+            message = f"no process can be started for the expansion: {error}"
+            raise refuse(codes.EXPANSION_FAILED, message, Origin(self._source.name)) from error
+
+    def _stop(self, process: subprocess.Popen[bytes]) -> None:
+        self._out_of_time = True
+        process.kill()
+
+    def _converse(self, process: subprocess.Popen[bytes]) -> tuple[Message, bytes]:
+        self._send(process, self._job(), self._source.data)
+        while True:
+            message, data = _receive(process)
+            if "ask" not in message:
+                return message, data
+            self._send(process, *self._answer(message))
+
+    def _job(self) -> Message:
+        return {
+            "name": PurePosixPath(self._source.name.replace("\\", "/")).name,
+            "shown": self._source.name,
+            "arguments": dict(self._source.arguments),
+            "environment": dict(self._source.environment),
+            "cpu_seconds": self._limits.cpu_seconds,
+            "memory_bytes": self._limits.memory_bytes,
+        }
+
+    def _send(self, process: subprocess.Popen[bytes], message: Message, data: bytes) -> None:
+        assert process.stdin is not None
+        process.stdin.write(json.dumps({**message, "bytes": len(data)}).encode() + b"\n")
+        process.stdin.write(data)
+        process.stdin.flush()
+
+    # ---- answers ---------------------------------------------------------------------------------------------------------
+
+    def _answer(self, message: Message) -> tuple[Message, bytes]:
+        match message["ask"]:
+            case "read":
+                return self._read(str(message["path"]))
+            case "match":
+                files = self._source.files
+                found = files.match(str(message["pattern"])) if isinstance(files, Packages) else []
+                return {"paths": found}, b""
+            case "find":
+                return self._find(str(message["package"]), str(message["beside"])), b""
+            case unknown:
+                raise EOFError(f"the child asks for '{unknown}'")
+
+    def _read(self, path: str) -> tuple[Message, bytes]:
+        found = self._source.files.find(path)
+        if found is None:
+            return {"error": "no such file, or none that may be read"}, b""
+        try:
+            return {"path": found}, self._source.files.read(found)
+        except OSError as error:
+            return {"error": error.strerror or str(error)}, b""
+
+    def _find(self, package: str, beside: str) -> Message:
+        """The folder of a package; where the files know no packages, that of its `package.xml`."""
+        files = self._source.files
+        if not isinstance(files, Packages):
+            description = files.find(f"package://{package}/package.xml")
+            return {"folder": description and str(PurePosixPath(description).parent), "guessed": False}
+        folder = files.find_package(package, beside)
+        return {"folder": folder or files.guess_package(package, beside), "guessed": folder is None}
+
+
+def _hang_up(process: subprocess.Popen[bytes]) -> None:
+    """Close the way to the child, who may be gone with half a message unread."""
+    assert process.stdin is not None
+    with suppress(OSError):
+        process.stdin.close()
+
+
+def _receive(process: subprocess.Popen[bytes]) -> tuple[Message, bytes]:
+    """The child's next message. Raises: EOFError when it ended, or speaks nonsense because somebody broke out of xacro."""
+    assert process.stdout is not None
+    line = process.stdout.readline(MOST_HEADER)
+    if not line.endswith(b"\n"):
+        raise EOFError
+    try:
+        message = json.loads(line)
+        size = int(message["bytes"])
+    except (ValueError, KeyError, TypeError) as error:
+        raise EOFError from error
+    if not 0 <= size <= MOST_BYTES:
+        raise EOFError
+    return message, process.stdout.read(size)
+
+
+def _command() -> list[str]:
+    """Python without site packages of its own, which would only cost time: the environment says where the libraries are."""
+    return [sys.executable, "-S", "-P", "-m", CHILD]
+
+
+def _environment() -> Mapping[str, str]:
+    """Nothing that is the user's own: where the libraries are, and a fixed seed, so that the same file gives the same text."""
+    kept = {name: os.environ[name] for name in ("SYSTEMROOT", "LD_LIBRARY_PATH") if name in os.environ}
+    return {"PYTHONPATH": os.pathsep.join(_library_folders()), "PYTHONHASHSEED": "0", **kept}
+
+
+def _library_folders() -> list[str]:
+    """The folders in which this program and the two libraries of the child stand."""
+    places = [spec.origin for name in ("hymeko_x", "xacro", "yaml") if (spec := find_spec(name)) and spec.origin]
+    return list(dict.fromkeys(str(Path(place).parents[1]) for place in places))

@@ -1,0 +1,51 @@
+"""The one job of the child process: hear it, do it, tell the result."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from typing import TYPE_CHECKING
+
+from hymeko_x.frontends.xacro_child.channel import Parent
+from hymeko_x.frontends.xacro_child.desk import Arguments, Desk, Said
+from hymeko_x.frontends.xacro_child.expander import Expander
+from hymeko_x.frontends.xacro_child.failing import failure
+from hymeko_x.frontends.xacro_child.limits import lift_memory_limit, set_limits
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+
+def main() -> None:
+    """Do the one job of this process. Whatever goes wrong reaches the parent through `sys.excepthook`."""
+    parent = Parent(sys.stdin.buffer, sys.stdout.buffer)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent decides what happens then
+    job, data = parent.hear()
+    desk = Desk(parent, job["environment"])
+    expander: Expander | None = None
+
+    def fail(_: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        lift_memory_limit()
+        parent.tell(failed=failure(error, trace, expander and expander.document))
+
+    sys.excepthook = fail
+    arguments = Arguments(job["arguments"])
+    expander = Expander(desk, arguments)
+    sys.stdout = sys.stderr = Said(desk)
+    set_limits(job["cpu_seconds"], job["memory_bytes"])
+    lines = expander.expand(job["name"], job["shown"], data)
+    for name in sorted(job["arguments"].keys() - arguments.mentioned):
+        desk.notice("unknown", None, name=name, known=sorted(arguments.mentioned))
+    root = expander.document.documentElement
+    parent.tell(
+        "".join(lines.pieces).encode("utf-8", "replace"),
+        done=True,
+        places=[(line, *place) for line, place in lines.starts],
+        root=root.tagName,
+        children=sorted({child.nodeName for child in root.childNodes if child.nodeType == child.ELEMENT_NODE}),
+        notices=desk.notices,
+    )
+
+
+if __name__ == "__main__":
+    main()

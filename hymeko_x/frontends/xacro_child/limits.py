@@ -1,0 +1,50 @@
+"""Limits of the operating system on this process."""
+
+from __future__ import annotations
+
+import signal
+from typing import NoReturn
+
+from hymeko_x.frontends.xacro_child.channel import Trouble
+
+GRACE_BYTES = 64 * 1024 * 1024
+GRACE_SECONDS = 2
+"""What there is on top of the limits in order to report that one was reached."""
+
+
+def set_limits(cpu_seconds: int, memory_bytes: int) -> None:
+    """No further file, process or core dump; bounded time and memory. Where the system has no such limits, the parent's clock remains."""
+    try:
+        import resource
+    except ImportError:
+        return
+    signal.signal(signal.SIGXCPU, _too_long)
+    _bound(resource.RLIMIT_CPU, cpu_seconds, cpu_seconds + GRACE_SECONDS)
+    _bound(resource.RLIMIT_AS, memory_bytes, memory_bytes + GRACE_BYTES)
+    _bound(resource.RLIMIT_FSIZE, 0, 0)
+    _bound(resource.RLIMIT_CORE, 0, 0)
+    _bound(resource.RLIMIT_NPROC, 0, 0)
+    _bound(resource.RLIMIT_NOFILE, 3, 3)
+
+
+def _bound(kind: int, soft: int, hard: int) -> None:
+    """Set a limit, never above one that is already there."""
+    import resource
+
+    present = resource.getrlimit(kind)[1]
+    ceiling = hard if present == resource.RLIM_INFINITY else min(hard, present)
+    resource.setrlimit(kind, (min(soft, ceiling), ceiling))
+
+
+def lift_memory_limit() -> None:
+    """Make room for the report of a failure."""
+    try:
+        import resource
+    except ImportError:
+        return
+    ceiling = resource.getrlimit(resource.RLIMIT_AS)[1]
+    resource.setrlimit(resource.RLIMIT_AS, (ceiling, ceiling))
+
+
+def _too_long(*_: object) -> NoReturn:
+    raise Trouble("limit", what="time")

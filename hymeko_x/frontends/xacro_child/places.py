@@ -1,0 +1,123 @@
+"""Where the elements of a document were written, through parsing, cloning and printing."""
+
+from __future__ import annotations
+
+import sys
+import xml.dom.minidom
+from typing import TYPE_CHECKING, Any, NamedTuple, NoReturn
+from xml.dom import expatbuilder
+
+from hymeko_x.frontends.xacro_child.channel import Trouble
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from types import FrameType
+
+
+class Place(NamedTuple):
+    """Where an element was written: file, line, and the macro around it (None at top level)."""
+
+    file: str
+    line: int
+    macro: str | None = None
+
+
+class KeepPlace:
+    """Clones of an element come from the place of the element; a DOM UserDataHandler."""
+
+    def handle(self, operation: int, key: str, data: object, source: object, target: Any) -> None:
+        """Called by minidom with the clone as ``target``."""
+        if target is not None:
+            target.setUserData(key, data, self)
+
+
+PLACE = "place"
+KEEP_PLACE = KeepPlace()
+
+
+class PlacingBuilder(expatbuilder.ExpatBuilderNS):
+    """Builds the DOM as xacro's own parser does, with the place of every element beside it. Entities are refused."""
+
+    def __init__(self, file: str) -> None:
+        super().__init__()
+        self._file = file
+
+    def install(self, parser: Any) -> None:
+        super().install(parser)
+        parser.EntityDeclHandler = self._refuse_entity
+
+    def start_element_handler(self, name: str, attributes: list[str]) -> None:
+        around = self.curNode
+        super().start_element_handler(name, attributes)
+        self.curNode.setUserData(PLACE, Place(self._file, self.getParser().CurrentLineNumber, _macro_around(around)), KEEP_PLACE)
+
+    def _refuse_entity(self, *declaration: object) -> NoReturn:
+        raise Trouble("entities", file=self._file, line=self.getParser().CurrentLineNumber)
+
+
+def _macro_around(node: Any) -> str | None:
+    place = place_of(node)
+    if place is None or node.tagName != "xacro:macro":
+        return place.macro if place else None
+    return str(node.getAttribute("name")).removeprefix("xacro:")
+
+
+def place_of(node: Any) -> Place | None:
+    """Where a node was written; for text and comments, where the element around it was."""
+    while node is not None:
+        found: Place | None = node.getUserData(PLACE)
+        if found is not None:
+            return found
+        node = node.parentNode
+    return None
+
+
+def place_in(frame: FrameType) -> Place | None:
+    """The place of the element that a function of xacro is working on."""
+    values = (frame.f_locals.get(name) for name in ("elt", "node", "tag"))
+    return next((place for value in values if isinstance(value, xml.dom.minidom.Node) and (place := place_of(value))), None)
+
+
+def current_place() -> Place | None:
+    """The element that xacro is working on now."""
+    return next((place for frame in _frames(sys._getframe(1)) if (place := place_in(frame))), None)
+
+
+def _frames(frame: FrameType | None) -> Iterator[FrameType]:
+    while frame is not None:
+        yield frame
+        frame = frame.f_back
+
+
+class Lines:
+    """Collects text that minidom writes and notes on which line each element starts."""
+
+    def __init__(self) -> None:
+        self.pieces: list[str] = []
+        self.line = 1
+        self.starts: list[tuple[int, Place]] = []
+
+    def write(self, text: str) -> None:
+        """Append a piece of text."""
+        self.pieces.append(text)
+        self.line += text.count("\n")
+
+    def mark(self, element: Any) -> None:
+        """Note that the element is about to be written."""
+        place = element.getUserData(PLACE)
+        if place is not None:
+            self.starts.append((self.line, place))
+
+
+def written(document: Any) -> Lines:
+    """The text of a document as minidom prints it, two blanks per level."""
+    lines = Lines()
+    write_element = xml.dom.minidom.Element.writexml
+
+    def write_marked(element: Any, *how: Any) -> None:
+        lines.mark(element)
+        write_element(element, *how)
+
+    xml.dom.minidom.Element.writexml = write_marked  # type: ignore[method-assign, assignment]
+    document.writexml(lines, "", "  ", "\n")
+    return lines
