@@ -26,11 +26,10 @@ Far above the engine's own bound (1e-15), where its mass matrix becomes singular
 """
 _BOUND = 1e-15
 """MuJoCo's mjMINVAL: a moving body below it is refused."""
-_SEEN_PRODUCT = 1e-12
-"""MuJoCo's eigenvalue solver takes products of inertia below this as zero, and is that exact for larger ones."""
-_MARGIN = 4e-12
-"""By how much turned tensors must keep the triangle inequality, for a solver with that error."""
-
+_LEAST_TURNED = 2e-14
+"""The same for a tensor with products: MuJoCo wants its eigenvalues above 1e-14, and of static bodies too."""
+_ACCURACY = 1e-13
+"""By which part of its largest moment a tensor with products must keep the triangle inequality, for a solver with rounding."""
 _ROUNDING = 1e-10
 """A change of a tensor in kg m^2 up to this is worth a note and no warning."""
 
@@ -119,20 +118,18 @@ def physical(tensor: Tensor) -> Tensor:
 
     The principal axes stay. The principal moments are projected onto the cone A + B >= C, which is also A, B, C >= 0.
     """
-    turned = any(abs(product) >= _SEEN_PRODUCT for product in tensor[3:])
-    margin = _MARGIN if turned else 0.0
-    least = _BOUND if any(tensor[3:]) else 0.0
-    low, middle, high = principal_moments(tensor) if turned else sorted(tensor[:3])
-    if low >= least and low + middle >= high + margin:
-        return tensor
-    if not turned:
+    if not any(tensor[3:]) or max(map(abs, tensor)) < _LEAST_TURNED:
         x, y, z = _projected(tensor[:3])
         return (x, y, z, 0.0, 0.0, 0.0)
+    low, middle, high = principal_moments(tensor)
+    if low >= _LEAST_TURNED and low + middle >= high + _ACCURACY * high:
+        return tensor
     import numpy as np
 
     moments, axes = np.linalg.eigh(_matrix(tensor))
     a, b, c = moments.tolist()
-    new = np.array(_projected((a, b, c))) + 2.0 * margin
+    new = np.array(_projected((a, b, c)))
+    new += max(2.0 * _ACCURACY * new.max(), 2.0 * _LEAST_TURNED - new.min(), 0.0)
     fixed = (axes * new) @ axes.T
     return tuple(float(fixed[i, k]) for i, k in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))  # type: ignore[return-value]
 

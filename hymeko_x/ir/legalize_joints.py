@@ -45,12 +45,13 @@ def dof_number(joint: Joint, role: str) -> int | None:
 def expand_screws(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """A screw becomes a hinge and a slide along the same axis that is coupled to it by the pitch."""
     del options
+    screws = [view for view in mechanism.joints.values() if any(dof.kind is DofKind.SCREW for dof in view.joint.dofs)]
+    if not screws:
+        return mechanism
     edges: dict[Id, RobotEdge] = {}
     moved: dict[Place, Place] = {}
     names = names_in_use(mechanism)
-    for view in mechanism.joints.values():
-        if not any(dof.kind is DofKind.SCREW for dof in view.joint.dofs):
-            continue
+    for view in screws:
         dofs: list[Dof] = []
         for number, dof in enumerate(view.joint.dofs):
             name = dof.name or (view.id.name if len(view.joint.dofs) == 1 else f"{view.id.name}_{number}")
@@ -122,14 +123,15 @@ def name_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechani
 def split_overfull_joints(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """Dofs that cannot sit on one body (more than six, or a rotation below a ball) are spread over bodies in between."""
     del options
+    overfull = [view for view in mechanism.joints.values() if len(_legal_groups(view.joint.dofs)) > 1]
+    if not overfull:
+        return mechanism
     vertices: dict[Id, Body] = {}
     edges: dict[Id, RobotEdge] = {}
     moved: dict[Place, Place] = {}
     names = names_in_use(mechanism)
-    for view in mechanism.joints.values():
+    for view in overfull:
         groups = _legal_groups(view.joint.dofs)
-        if len(groups) < 2:
-            continue
         above, pose = view.parent, view.parent_pose
         for group in groups[:-1]:
             body = names.take("body", f"{view.child.name}_carrier")
@@ -145,8 +147,7 @@ def split_overfull_joints(mechanism: Mechanism, options: Options, report: Report
             mechanism.origin(view.id),
             element=str(view.id),
         )
-    mechanism = mechanism.with_graph(mechanism.graph.replace(vertices=vertices)) if vertices else mechanism
-    return _with_edges(mechanism, edges, moved)
+    return _with_edges(mechanism.with_graph(mechanism.graph.replace(vertices=vertices)), edges, moved)
 
 
 # ---- parts of the rules ----------------------------------------------------------------------------------------------------
@@ -192,6 +193,8 @@ def _unused(name: str, *taken: set[str]) -> str:
 
 def _legal_groups(dofs: tuple[Dof, ...]) -> list[tuple[Dof, ...]]:
     """The dofs in as few runs as possible that may each sit on one body."""
+    if len(dofs) < 2:
+        return [dofs] if dofs else []
     groups: list[tuple[Dof, ...]] = []
     run: tuple[Dof, ...] = ()
     for dof in dofs:

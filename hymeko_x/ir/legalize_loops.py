@@ -14,7 +14,7 @@ from hymeko_x.ir.values import IDENTITY, Pose, add, compose, scaled
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.legalize import Options
-    from hymeko_x.ir.mechanism import RobotEdge
+    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
 
 _APART = 0.1
 """Distance in m of the two points on a hinge's axis that are held together."""
@@ -45,12 +45,13 @@ def anchor_closures(mechanism: Mechanism, options: Options, report: Report) -> M
     Nothing is lost and nothing is said: the closure is the same one.
     """
     del options, report
+    loose = [(key, loop, arcs) for key, loop, arcs in mechanism.edges(Loop) if loop.kind == "connect" and not _is_anchored(arcs)]
+    if not loose:
+        return mechanism
     names = names_in_use(mechanism)
     frames: dict[Id, Frame] = {}
     edges: dict[Id, RobotEdge] = {}
-    for key, loop, arcs in mechanism.edges(Loop):
-        if loop.kind != "connect" or all(arc.target.kind == "frame" for arc in arcs):
-            continue
+    for key, loop, arcs in loose:
         anchored = []
         for arc in arcs:
             if arc.target.kind == "frame":
@@ -61,7 +62,11 @@ def anchor_closures(mechanism: Mechanism, options: Options, report: Report) -> M
             edges[names.take("mount", frame.name)] = mount_edge(arc.target, frame, Pose(pose_weight(arc).xyz))
             anchored.append(Arc(frame))
         edges[key] = Edge(loop, tuple(anchored))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=frames, edges=edges)) if edges else mechanism
+    return mechanism.with_graph(mechanism.graph.replace(vertices=frames, edges=edges))
+
+
+def _is_anchored(arcs: tuple[RobotArc, ...]) -> bool:
+    return all(arc.target.kind == "frame" for arc in arcs)
 
 
 def _closing_cycles(mechanism: Mechanism) -> list[JointView]:

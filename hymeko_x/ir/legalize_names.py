@@ -21,11 +21,12 @@ _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 def make_names_usable(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """Empty names become the kind of the element, characters that XML forbids become ``_``."""
     del options
+    unusable = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if not key.name or _NOT_XML.search(key.name)]
+    if not unusable:
+        return mechanism
     names = names_in_use(mechanism)
     renamed: dict[Id, Id] = {}
-    for key in (*mechanism.graph.vertices, *mechanism.graph.edges):
-        if key.name and not _NOT_XML.search(key.name):
-            continue
+    for key in unusable:
         new = names.take(key.kind, _NOT_XML.sub("_", key.name) or key.kind)
         renamed[key] = new
         found = "is empty" if not key.name else f"{key.name!r} has characters that XML cannot hold"

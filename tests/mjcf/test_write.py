@@ -246,7 +246,7 @@ def test_geoms_invent_no_mass() -> None:
 COMPONENT = st.floats(-1.0, 1.0)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=400, deadline=None)
 @given(st.tuples(*[COMPONENT] * 6), st.sampled_from([1.0, 1e-3, 1e-6, 1e-9, 1e-12]))
 def test_every_tensor_compiles_after_repair(tensor: tuple[float, ...], size: float) -> None:
     xx, yy, zz, xy, xz, yz = (size * value for value in tensor)
