@@ -21,6 +21,8 @@ VERBS = {
     "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
     "diff": ("hymeko_x.cli.diff", "what differs between two robots, element by element"),
     "verify": ("hymeko_x.cli.verify", "are two files the same robot? asked of the formats' own engines"),
+    "roundtrip": ("hymeko_x.cli.roundtrip", "through other formats and back, every leg verified"),
+    "check": ("hymeko_x.cli.check", "is a robot complete and sane? for people and for repair loops"),
     "dh": ("hymeko_x.cli.dh", "Denavit-Hartenberg tables: standard, modified, Hayati-Roberts"),
     "info": ("hymeko_x.cli.info", "what is in a file"),
     "formats": ("hymeko_x.cli.formats", "the formats that can be read and written"),

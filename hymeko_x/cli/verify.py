@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.verdict import Check, Verdict
 
-_CODES = {"same": exits.DONE, "different": exits.DIFFERENT, "not comparable": exits.FAILED}
+CODES = {"same": exits.DONE, "different": exits.DIFFERENT, "not comparable": exits.FAILED}
+"""The exit code of each verdict."""
 _COLOURS = {"same": "32", "different": "31", "not comparable": "33"}
 
 
@@ -40,32 +41,37 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared."""
+    verdict = verdict_of(chosen.a, chosen.b, chosen, structure=chosen.match == "structure")
+    print(json.dumps(verdict.as_json(), indent=2, ensure_ascii=False) if chosen.json else "\n".join(lines(verdict)))
+    return CODES[verdict.verdict]
+
+
+def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = False) -> Verdict:
+    """The verdict about two files, with the options of :func:`verify_arguments` and of every verb that reads a robot."""
     from hymeko_x.verify import verify
 
-    verdict = verify(
-        chosen.a,
-        chosen.b,
+    return verify(
+        a,
+        b,
         samples=chosen.samples,
         seed=chosen.seed,
-        structure=chosen.match == "structure",
+        structure=structure,
         packages=dict(chosen.package),
         search_path=search_path(os.environ),
         arguments=dict(chosen.arg),
     )
-    print(json.dumps(verdict.as_json(), indent=2, ensure_ascii=False) if chosen.json else "\n".join(lines(verdict)))
-    return _CODES[verdict.verdict]
 
 
-def lines(verdict: Verdict, *, coloured: bool | None = None) -> Iterator[str]:
-    """The verdict as text: the answer, a table of the checks, and what was not compared."""
+def lines(verdict: Verdict, *, coloured: bool | None = None, brief: bool = False) -> Iterator[str]:
+    """The verdict as text: the answer, a table of the checks (of those that failed, if ``brief``), and what was not compared."""
     colour = is_coloured(sys.stdout) if coloured is None else coloured
     yield _painted(_COLOURS[verdict.verdict], verdict.verdict, colour) + (f": {verdict.reason}" if verdict.reason else "")
-    if verdict.checks:
+    if verdict.failed if brief else verdict.checks:
         yield f"  {verdict.engines[0]}  |  {verdict.engines[1]}"
         yield f"  {'':4} {'quantity':<32} {'worst':>9} {'allowed':>9} {'unit':<10} at"
-    for check in verdict.checks:
+    for check in verdict.failed if brief else verdict.checks:
         yield _line(check, colour)
-    for note in verdict.not_compared:
+    for note in () if brief else verdict.not_compared:
         yield f"  note: {note}"
 
 

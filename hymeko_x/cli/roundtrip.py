@@ -1,0 +1,116 @@
+"""`hymeko-x roundtrip FILE`: through other formats and back into its own, every leg verified against the original."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x import api, formats
+from hymeko_x.cli import exits
+from hymeko_x.cli.guard import UsageError
+from hymeko_x.cli.inputs import input_arguments, read_input
+from hymeko_x.cli.terminal import show
+from hymeko_x.cli.verify import verdict_of, verify_arguments
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.diff import Tolerance, diff
+
+if TYPE_CHECKING:
+    import argparse
+    from collections.abc import Iterator
+
+    from hymeko_x.formats import Format
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.verify.verdict import Verdict
+
+_TOLERANCE = Tolerance(1e-12, 1e-12)
+
+
+class Leg(NamedTuple):
+    """One conversion: into which format, how large the file is, what got lost on the way, and what the engines say."""
+
+    format: str
+    bytes: int
+    losses: int | None
+    differences: int
+    verdict: Verdict
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """The verb's own words."""
+    parser.add_argument("input", metavar="FILE", help="a robot in any format")
+    parser.add_argument("--through", default="all", metavar="F[,F...]", help="the formats on the way, in order (default: all others)")
+    parser.add_argument("--keep", metavar="DIR", help="keep the files of every leg in this folder")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    verify_arguments(parser)
+    input_arguments(parser)
+
+
+def run(chosen: argparse.Namespace) -> int:
+    """Print a row per leg; exit 4 when an engine sees another robot, 1 when one cannot tell."""
+    report = Report()
+    given = read_input(chosen.input, chosen, report)
+    stops = [*_stops(chosen.through, given.format), given.format]
+    show(report)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(chosen.keep or temporary)
+        folder.mkdir(parents=True, exist_ok=True)
+        legs = list(_legs(chosen, given.mechanism, stops, folder))
+    size = os.path.getsize(chosen.input)
+    if chosen.json:
+        print(json.dumps(as_json(chosen.input, given.format.name, size, legs), indent=2, ensure_ascii=False))
+    else:
+        print("\n".join(lines(chosen.input, given.format.name, size, legs)))
+    verdicts = {leg.verdict.verdict for leg in legs}
+    if "different" in verdicts:
+        return exits.DIFFERENT
+    return exits.FAILED if "not comparable" in verdicts else exits.DONE
+
+
+def _stops(words: str, own: Format) -> list[Format]:
+    """The formats on the way. `all` are those that can be both written and read, except the file's own."""
+    if words == "all":
+        return [format for format in formats.FORMATS if format.backend and format.frontend and format.name != own.name]
+    stops = [formats.by_name(word) for word in words.split(",") if word]
+    if not stops:
+        raise UsageError("--through wants at least one format")
+    return stops
+
+
+def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], folder: Path) -> Iterator[Leg]:
+    """Converts from leg to leg; compares each result with the original, by our own eyes and by the engines'."""
+    packages = dict(chosen.package)
+    before = chosen.input
+    for number, format in enumerate(stops, start=1):
+        after = folder / f"leg{number}" / f"robot{format.suffixes[0]}"
+        after.parent.mkdir(exist_ok=True)
+        result = api.convert(before, after, to_format=format.name, packages=packages)
+        back = api.load(after, format.name, packages=packages)
+        losses = None if result.losses is None else len(result.losses)
+        differences = len(diff(original, back, _TOLERANCE))
+        yield Leg(format.name, after.stat().st_size, losses, differences, verdict_of(chosen.input, str(after), chosen))
+        before = str(after)
+
+
+def lines(path: str, format: str, size: int, legs: list[Leg]) -> Iterator[str]:
+    """A table: the file, then one row per leg, with the checks that failed below it."""
+    yield f"  {'leg':<4} {'format':<8} {'bytes':>9} {'losses':>7} {'differs':>8}  verdict"
+    yield f"  {0:<4} {format:<8} {size:>9} {'':>7} {'':>8}  {path}"
+    for number, leg in enumerate(legs, start=1):
+        losses = "-" if leg.losses is None else str(leg.losses)
+        yield f"  {number:<4} {leg.format:<8} {leg.bytes:>9} {losses:>7} {leg.differences:>8}  {leg.verdict.verdict}"
+        if leg.verdict.reason:
+            yield f"       {leg.verdict.reason}"
+        for check in leg.verdict.failed:
+            yield f"       {check.quantity}: {check.worst:.3g} {check.unit} at {check.at}"
+
+
+def as_json(path: str, format: str, size: int, legs: list[Leg]) -> dict[str, object]:
+    """The document of `--json`: the file, and every leg with its verdict."""
+    rows = [
+        {"format": leg.format, "bytes": leg.bytes, "losses": leg.losses, "differences": leg.differences, **leg.verdict.as_json()}
+        for leg in legs
+    ]
+    return {"source": {"path": path, "format": format, "bytes": size}, "legs": rows}
