@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import signal
 import sys
 from typing import TYPE_CHECKING
@@ -29,6 +30,7 @@ def main() -> None:
         parent.tell(failed=failure(error, trace, expander and expander.document))
 
     sys.excepthook = fail
+    gc.disable()  # everything lives until the end
     arguments = Arguments(job["arguments"])
     expander = Expander(desk, arguments)
     sys.stdout = sys.stderr = Said(desk)

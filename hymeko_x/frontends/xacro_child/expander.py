@@ -6,6 +6,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 from xml.parsers import expat
 
+from hymeko_x.frontends.xacro_child import quick
 from hymeko_x.frontends.xacro_child.channel import Trouble
 from hymeko_x.frontends.xacro_child.expressions import eval_extension, safe_eval
 from hymeko_x.frontends.xacro_child.places import PlacingBuilder, written
@@ -25,6 +26,7 @@ class Expander:
         import yaml  # noqa: F401  (xacro imports it when it is needed first, and then no file can be opened any more)
         from xacro import substitution_args
 
+        quick.install()
         self._xacro = xacro
         self._desk = desk
         self._arguments = arguments
