@@ -86,8 +86,8 @@ def read(path: Path, places: Places = NOWHERE, *, format: str | None = None) -> 
     if not path.is_file():
         raise refuse(codes.CANNOT_READ, f"there is no file '{path}'", Origin(str(path)))
     kind = format or format_of(path)
-    module = cast("Reader", importlib.import_module(READERS[kind]))
     try:
+        module = cast("Reader", importlib.import_module(READERS[kind]))
         return module.read(path, places)
     except ModuleNotFoundError as error:
         package = EXTRAS.get((error.name or "").partition(".")[0])

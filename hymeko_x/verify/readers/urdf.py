@@ -34,6 +34,9 @@ def read(path: Path, places: Places) -> KinematicModel:
     text = path.read_bytes().decode("utf-8", "replace").replace("\x00", "")
     model = _build(text, str(path), mimic=False)
     second = load(path, places)
+    if second.still:
+        words = f"joint '{second.still}' has an axis of zero, about which nothing can move"
+        raise refuse(codes.ENGINE_REFUSED, words, Origin(str(path)))
     found = KinematicModel(
         name=model.name,
         format="urdf",

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
     from hymeko_x.verify.readers import Places
 
+_MOVING = ("revolute", "continuous", "prismatic")
 _SLACK = 1e-9  # m and rad; both readers work in doubles
 
 
@@ -36,11 +37,15 @@ class Mimic:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Second:
-    """What yourdfpy read; ``robot`` and ``shapes`` are None when it refused the file, and ``notes`` say so."""
+    """What yourdfpy read; ``robot`` and ``shapes`` are None when it refused the file, and ``notes`` say so.
+
+    ``still`` is a joint whose axis is zero, which urdfdom takes for a default.
+    """
 
     robot: Any | None
     shapes: Mapping[str, tuple[Shape, ...]] | None
     mimics: tuple[Mimic, ...]
+    still: str = ""
     notes: tuple[str, ...] = ()
 
 
@@ -63,7 +68,8 @@ def load(path: Path, places: Places) -> Second:
     )
     files = places.files(path.parent)
     shapes = {link.name: tuple(_shapes(link, files)) for link in robot.links}
-    return Second(robot, shapes, mimics)
+    still = next((j.name for j in robot.joints if j.type in _MOVING and j.axis is not None and not np.any(j.axis)), "")
+    return Second(robot, shapes, mimics, still)
 
 
 @contextlib.contextmanager
@@ -162,7 +168,7 @@ def _joint(joint: Any, model: KinematicModel) -> Joint:
     origin = np.eye(4) if joint.origin is None else np.asarray(joint.origin, dtype=float)
     if joint.type == "fixed":
         return Joint(joint.name, origin)
-    if joint.type not in {"revolute", "continuous", "prismatic"}:
+    if joint.type not in _MOVING:
         index = next((i for i, body in enumerate(model.bodies[1:], start=1) if body.name == joint.child), WORLD)
         return Joint(joint.name, origin, model.bodies[index].joint.dofs)
     axis: Array = np.asarray(joint.axis, dtype=float)

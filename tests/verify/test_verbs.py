@@ -1,0 +1,248 @@
+"""The verbs around the verifier: what they print, and how they end."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+import hymeko_x as hx
+from hymeko_x import codes
+from hymeko_x.cli import exits, main
+from hymeko_x.diagnostics import Refusal
+from hymeko_x.ir.legalize import RULES
+from tests.verify.robots import ARM_MJCF, ARM_URDF, RIG_MJCF
+
+Write = Callable[[str, str], Path]
+
+
+@pytest.fixture
+def arm(written: Write) -> str:
+    return str(written("urdf", ARM_URDF))
+
+
+@pytest.fixture
+def longer_arm(written: Write) -> str:
+    return str(written("urdf", ARM_URDF.replace('xyz="0 0.03 0.3"', 'xyz="0 0.03 0.4"')))
+
+
+# ---- verify ----------------------------------------------------------------------------------------------------------
+
+
+def test_verify_prints_a_table_and_ends_with_0(arm: str, written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", arm, str(written("mjcf", ARM_MJCF)), "--samples", "5"]) == exits.DONE
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "same"
+    assert lines[1].strip().startswith("urdfdom in Pinocchio ")
+    assert all(line.startswith(("  ok   ", "  note: ")) for line in lines[3:])
+    assert "\x1b" not in "".join(lines)
+
+
+def test_verify_ends_with_4_when_the_robots_differ(arm: str, longer_arm: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", arm, longer_arm, "--samples", "5"]) == exits.DIFFERENT
+    out = capsys.readouterr().out
+    assert out.startswith("different\n")
+    assert "  FAIL forward kinematics, position        0.1     1e-09 m          body 'fore' " in out
+
+
+def test_verify_prints_json_with_the_keys_of_the_contract(arm: str, longer_arm: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", arm, longer_arm, "--json", "--samples", "5"]) == exits.DIFFERENT
+    document = json.loads(capsys.readouterr().out)
+    assert document.keys() == {"verdict", "engines", "checks", "not_compared"}
+    assert document["verdict"] == "different"
+    assert len(document["engines"]) == 2
+    assert all(check.keys() == {"quantity", "unit", "worst", "at", "allowed", "passed"} for check in document["checks"])
+    assert [check["quantity"] for check in document["checks"] if not check["passed"]][:1] == ["forward kinematics, position"]
+
+
+def test_verify_says_in_the_engines_words_why_it_cannot_compare(arm: str, written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    broken = written("mjcf", ARM_MJCF.replace('type="slide"', 'type="slyde"', 1))
+    assert main(["verify", arm, str(broken)]) == exits.FAILED
+    out = capsys.readouterr().out
+    assert out.startswith("not comparable: MuJoCo refuses the file: ")
+    assert "slyde" in out
+
+
+def test_a_urdf_that_urdfdom_refuses_is_not_comparable(written: Write) -> None:
+    broken = written("urdf", ARM_URDF.replace('<limit lower="-2" upper="2.5" effort="80" velocity="3"/>', ""))
+    verdict = hx.verify(broken, written("urdf", ARM_URDF))
+    assert verdict.verdict == "not comparable"
+    assert verdict.reason.startswith("urdfdom refuses the file: ")
+    assert "shoulder" in verdict.reason
+
+
+def test_an_axis_of_zero_is_not_comparable(written: Write) -> None:
+    broken = written("urdf", ARM_URDF.replace('<axis xyz="0 0.6 0.8"/>', '<axis xyz="0 0 0"/>'))
+    verdict = hx.verify(broken, broken)
+    assert verdict.verdict == "not comparable"
+    assert "elbow" in verdict.reason
+
+
+def test_a_missing_engine_is_named_with_its_package(written: Write, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = written("mjcf", ARM_MJCF)
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    monkeypatch.delitem(sys.modules, "hymeko_x.verify.readers.mjcf", raising=False)
+    monkeypatch.delitem(sys.modules, "hymeko_x.verify.readers.mjcf_constraints", raising=False)
+    with pytest.raises(Refusal) as caught:
+        hx.verify(file, file)
+    assert caught.value.diagnostic.code == codes.ENGINE_MISSING
+    assert caught.value.diagnostic.hint == "pip install mujoco"
+
+
+def test_a_file_that_is_not_there_is_refused_in_one_line(arm: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["verify", arm, "nowhere.urdf"]) == exits.FAILED
+    assert capsys.readouterr().err == "nowhere.urdf: error[HX001]: there is no file 'nowhere.urdf'\n"
+
+
+def test_a_seed_gives_the_same_verdict_again(arm: str, longer_arm: str) -> None:
+    first, again, other = (hx.verify(arm, longer_arm, samples=7, seed=seed).as_json() for seed in (3, 3, 4))
+    assert first == again
+    assert first != other
+
+
+def test_a_mechanism_in_memory_is_verified_and_not_trusted(arm: str) -> None:
+    verdict = hx.verify(arm, hx.load(arm))
+    assert verdict.verdict == "same"
+    assert any(note.startswith("trust: the mechanism side was read by hymeko-x itself") for note in verdict.not_compared)
+
+
+def test_verify_is_a_function_and_a_package() -> None:
+    import hymeko_x.verify
+
+    assert hx.verify is hymeko_x.verify
+    assert callable(hx.verify)
+
+
+# ---- convert --verify ------------------------------------------------------------------------------------------------
+
+
+def test_convert_verifies_what_it_wrote(arm: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["convert", arm, str(tmp_path / "out.xml"), "--verify", "--samples", "5"]) == exits.DONE
+    assert capsys.readouterr().err.splitlines()[-1] == "same"
+
+
+def test_convert_ends_with_4_when_the_result_is_another_robot(
+    arm: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A rewriting rule that forgets the couplings, as a bug of ours might."""
+    from hymeko_x.ir import legalize
+
+    def forget(mechanism: hx.Mechanism, options: object, report: object) -> hx.Mechanism:
+        gone = [key for key in mechanism.graph.edges if key.kind == "coupling"]
+        return mechanism.with_graph(mechanism.graph.replace(without=gone))
+
+    monkeypatch.setattr(legalize, "RULES", {**RULES, "mjcf": (*RULES["mjcf"], forget)})
+    assert main(["convert", arm, str(tmp_path / "out.xml"), "--verify", "--samples", "5"]) == exits.DIFFERENT
+    err = capsys.readouterr().err
+    assert "\ndifferent\n" in err
+    assert "joint 'right_slide' follows nothing in the other" in err
+
+
+# ---- roundtrip -------------------------------------------------------------------------------------------------------
+
+
+def test_roundtrip_prints_a_leg_per_format_and_comes_back(arm: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["roundtrip", arm, "--through", "hymeko", "--samples", "5"]) == exits.DONE
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert [row[1] for row in rows] == ["format", "urdf", "hymeko", "urdf"]
+    assert [row[-1] for row in rows[2:]] == ["same", "same"]
+
+
+def test_roundtrip_prints_json(arm: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["roundtrip", arm, "--through", "hymeko", "--samples", "5", "--json"]) == exits.DONE
+    document = json.loads(capsys.readouterr().out)
+    assert document["source"]["bytes"] == len(ARM_URDF.encode())
+    assert [(leg["format"], leg["verdict"], leg["differences"]) for leg in document["legs"]] == [("hymeko", "same", 0), ("urdf", "same", 0)]
+
+
+# ---- dh --------------------------------------------------------------------------------------------------------------
+
+
+def test_dh_prints_a_table_per_chain_and_proves_it(written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["dh", str(written("mjcf", RIG_MJCF)), "--check"]) == exits.DONE
+    out = capsys.readouterr().out
+    assert "torso -> rod (standard)" in out
+    errors = [float(line.rpartition(" ")[2]) for line in out.splitlines() if "Pinocchio" in line]
+    assert len(errors) >= 3
+    assert max(errors) < 1e-12
+
+
+def test_dh_prints_json_of_one_chain(arm: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["dh", arm, "--tip", "hand", "--convention", "modified", "--json"]) == exits.DONE
+    (table,) = json.loads(capsys.readouterr().out)
+    assert (table["from"], table["to"], table["convention"]) == ("base", "hand", "modified")
+    assert [row["joint"] for row in table["rows"]] == ["shoulder", "elbow", "roll", "rail"]
+
+
+def test_dh_of_a_body_that_is_not_there(arm: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["dh", arm, "--tip", "foot"]) == exits.FAILED
+    assert capsys.readouterr().err == "error[HX303]: there is no body 'foot'\n  hint: chains end at: left, right\n"
+
+
+# ---- check -----------------------------------------------------------------------------------------------------------
+
+LISTING = """<robot name="r">
+  <link name="a">
+    <visual><geometry><box size="1 1 1"/></geometry></visual><collision><geometry><box size="1 1 1"/></geometry></collision>
+  </link>
+  <link name="b">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <visual><geometry><sphere radius="1"/></geometry></visual><collision><geometry><sphere radius="1"/></geometry></collision>
+  </link>
+  <joint name="j" type="revolute">
+    <parent link="a"/><child link="b"/><axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/>
+  </joint>
+</robot>"""
+
+FAULTS = {
+    "no mass on a moving link": ('<mass value="1"/>', '<mass value="0"/>', "HX314"),
+    "a negative mass": ('<mass value="1"/>', '<mass value="-1"/>', "HX315"),
+    "a tensor that is not positive definite": ('izz="1"', 'izz="-1"', "HX316"),
+    "a tensor that breaks the triangle inequality": ('izz="1"', 'izz="5"', "HX316"),
+    "no visual": ("<visual><geometry><sphere radius='1'/></geometry></visual>".replace("'", '"'), "", "HX317"),
+    "no collision": ("<collision><geometry><sphere radius='1'/></geometry></collision>".replace("'", '"'), "", "HX318"),
+    "a radius of zero": ('<visual><geometry><sphere radius="1"/>', '<visual><geometry><sphere radius="0"/>', "HX319"),
+    "a size in millimetres": ('<visual><geometry><sphere radius="1"/>', '<visual><geometry><sphere radius="2500"/>', "HX319"),
+    "a mesh that is not there": ('<visual><geometry><sphere radius="1"/>', '<visual><geometry><mesh filename="m.stl"/>', "HX201"),
+    "limits that contradict each other": ('lower="-1" upper="1"', 'lower="1" upper="-1"', "HX313"),
+    "limits in degrees": ('lower="-1" upper="1"', 'lower="-180" upper="180"', "HX313"),
+    "a negative effort": ('effort="1"', 'effort="-1"', "HX313"),
+    "an axis of zero": ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 0"/>', "HX026"),
+    "a child that is not defined": ('<child link="b"/>', '<child link="c"/>', "HX040"),
+    "a link that is defined twice": ('<link name="b">', '<link name="a">', "HX023"),
+    "a link without a joint": ("<robot name='r'>".replace("'", '"'), '<robot name="r"><link name="lost"/>', "HX042"),
+    "a type that does not exist": ('type="revolute"', 'type="revolut"', "HX027"),
+}
+
+
+def found_codes(file: Path, capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, set[str]]:
+    code = main(["check", str(file), "--json", *words])
+    document = json.loads(capsys.readouterr().out)
+    assert document["passed"] == (code == exits.DONE)
+    return code, {row["code"] for row in document["diagnostics"] if row["severity"] != "note"}
+
+
+def test_check_finds_nothing_wrong_with_a_sound_robot(written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    assert found_codes(written("urdf", LISTING), capsys, "--links", "2", "--joints", "1") == (exits.DONE, set())
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_check_finds(fault: str, written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    before, after, expected = FAULTS[fault]
+    assert before in LISTING
+    code, found = found_codes(written("urdf", LISTING.replace(before, after, 1)), capsys, "--fail-on", "warning")
+    assert code == exits.FAIL_ON
+    assert expected in found
+
+
+def test_check_compares_the_declared_numbers(written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    assert found_codes(written("urdf", LISTING), capsys, "--links", "3") == (exits.FAIL_ON, {"HX312"})
+
+
+def test_a_profile_asks_only_for_what_it_needs(written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    file = written("urdf", LISTING.replace('<mass value="1"/>', '<mass value="0"/>'))
+    assert found_codes(file, capsys, "--profile", "kinematics") == (exits.DONE, set())
+    assert found_codes(file, capsys, "--profile", "simulation") == (exits.FAIL_ON, {"HX314"})
