@@ -45,7 +45,7 @@ def test_verify_ends_with_4_when_the_robots_differ(arm: str, longer_arm: str, ca
     assert main(["verify", arm, longer_arm, "--samples", "5"]) == exits.DIFFERENT
     out = capsys.readouterr().out
     assert out.startswith("different\n")
-    assert "  FAIL forward kinematics, position        0.1     1e-09 m          body 'fore' " in out
+    assert "  FAIL forward kinematics, position           0.1     1e-09 m          body 'fore' " in out
 
 
 def test_verify_prints_json_with_the_keys_of_the_contract(arm: str, longer_arm: str, capsys: pytest.CaptureFixture[str]) -> None:

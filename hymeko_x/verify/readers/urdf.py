@@ -31,9 +31,14 @@ SAYS = frozenset(Feature) - {Feature.ARMATURE, Feature.SPRINGS, Feature.REFS, Fe
 
 def read(path: Path, places: Places) -> KinematicModel:
     """The robot that urdfdom sees. Raises: Refusal HX302 in urdfdom's words, or where yourdfpy sees another robot."""
-    text = path.read_bytes().decode("utf-8", "replace").replace("\x00", "")
+    return read_text(path.read_bytes(), path, places)
+
+
+def read_text(data: bytes, path: Path, places: Places) -> KinematicModel:
+    """The same for a text that stands for the file at ``path``. Raises: Refusal HX302."""
+    text = data.decode("utf-8", "replace").replace("\x00", "")
     model = _build(text, str(path), mimic=False)
-    second = load(path, places)
+    second = load(text.encode(), path, places)
     if second.still:
         words = f"joint '{second.still}' has an axis of zero, about which nothing can move"
         raise refuse(codes.ENGINE_REFUSED, words, Origin(str(path)))

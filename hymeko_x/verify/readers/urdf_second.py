@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import io
 import logging
 from dataclasses import dataclass
 from pathlib import Path
@@ -49,14 +50,14 @@ class Second:
     notes: tuple[str, ...] = ()
 
 
-def load(path: Path, places: Places) -> Second:
+def load(data: bytes, path: Path, places: Places) -> Second:
     """The file through yourdfpy; its refusal is a note, not an error, because urdfdom decides."""
     import yourdfpy
     from lxml import etree
 
     try:
         with _hushed("yourdfpy.urdf"):
-            robot = yourdfpy.URDF.load(str(path), build_scene_graph=False, load_meshes=False).robot
+            robot = yourdfpy.URDF.load(_well_formed(data), build_scene_graph=False, load_meshes=False).robot
     except (yourdfpy.urdf.URDFError, etree.LxmlError, ValueError, TypeError, KeyError, AttributeError) as error:
         words = " ".join(str(error).split()) or type(error).__name__
         said = f"yourdfpy refuses the file ({words}): shapes are not compared, and there is no second opinion"
@@ -109,6 +110,18 @@ def _shape(element: Any, role: Role, files: Files) -> Shape | None:
     uri = str(geometry.mesh.filename)
     mesh = MeshFile(uri, _found(files.find(uri)), (float(scale[0]), float(scale[1]), float(scale[2])))
     return Shape("mesh", role, pose, (), element.name, mesh)
+
+
+def _well_formed(data: bytes) -> io.BytesIO:
+    """The text as a file, mended where lxml would refuse it and urdfdom does not."""
+    from lxml import etree
+
+    try:
+        etree.fromstring(data)
+    except etree.XMLSyntaxError:
+        mended = etree.fromstring(data, etree.XMLParser(recover=True))
+        return io.BytesIO(data if mended is None else etree.tostring(mended))
+    return io.BytesIO(data)
 
 
 def _found(path: str | None) -> Path | None:
