@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from hymeko_x.language.syntax import Value
 
 _ROLES = {"visual": parts.Role.VISUAL, "collision": parts.Role.COLLISION, "shape": parts.Role.BOTH, "geometry": parts.Role.BOTH}
+_FILE_WORDS = ("file", "url", "uri")
 SHAPE_PLACES = {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts.Role.BOTH: "shape"}
 """What a shape without a given id is called after: its body and this word."""
 
@@ -32,7 +33,7 @@ def read_body(build: Build, key: Id, element: Element) -> None:
         build.vertices[key] = parts.Body(inertial)
     for item in element.node.items:
         if _is_shape(item):
-            _read_shape(build, key, item, place, element.scope)
+            _read_shape(build, key, _with_geometry(item, block), place, element.scope)
     for node in [node for node in block.nodes if _named_geometry(element.node.items, node)]:
         block.nodes.remove(node)
     block.rest(str(key))
@@ -46,6 +47,20 @@ def _is_shape(item: object) -> bool:
 def _named_geometry(items: tuple[object, ...], node: Node) -> bool:
     """Whether a nested node is the geometry that a `visual -> name` of the same body refers to."""
     return any(isinstance(item, ArcItem) and item.role in _ROLES and item.ref.path == (node.name,) for item in items)
+
+
+def _with_geometry(item: object, block: Block) -> object:
+    """``visual -> name`` with what a nested ``name : mesh { .. }`` or ``name : capsule { .. }`` of the same body says of it."""
+    if not isinstance(item, ArcItem):
+        return item
+    node = next((node for node in block.nodes if item.ref.path == (node.name,)), None)
+    if node is None:
+        return item
+    said = tuple(inner._replace(name="mesh") if isinstance(inner, Field) and inner.name in _FILE_WORDS else inner for inner in node.items)
+    kind = node.stereotypes[0].ref.path[-1] if node.stereotypes else "mesh"
+    if kind != "mesh":
+        said = (Field("type", kind, "", node.line, node.column), *said)
+    return Node(item.role, (*said, *item.items), line=item.line, column=item.column)
 
 
 # ---- inertials -----------------------------------------------------------------------------------------------------------
