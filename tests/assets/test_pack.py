@@ -119,6 +119,15 @@ def test_a_visual_with_three_materials_becomes_three_shapes_with_their_colours()
     assert (model.ngeom, list(model.mesh_scale[0])) == (3, [2.0, 2.0, 2.0])
 
 
+def test_the_colours_of_a_file_win_over_the_shapes_own_colour() -> None:
+    key = Id("mesh", "m")
+    shape = Shape(MeshShape(), Role.VISUAL, rgba=(0.1, 0.2, 0.3, 1.0))
+    mechanism = chain(vertices={key: Mesh("a.dae")}, edges={Id("shape", "s"): shape_edge(shape, body("b0"), IDENTITY, key)})
+    assert [view.shape.rgba for view in packed(mechanism, {"a.dae": dae()})[0].shapes[body("b0")]] == [None, None, None]
+    plain = packed(mechanism, {"a.dae": dae(materials=0)})[0].shapes[body("b0")]
+    assert [view.shape.rgba for view in plain] == [(0.1, 0.2, 0.3, 1.0)]
+
+
 def test_a_collision_with_three_materials_stays_one_shape() -> None:
     result, new, _, _ = packed(with_meshes(Mesh("a.dae"), role=Role.COLLISION), {"a.dae": dae()})
     assert (len(result.shapes[body("b0")]), list(new)) == (1, ["meshes/a.obj"])

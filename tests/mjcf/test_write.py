@@ -133,6 +133,12 @@ def test_the_same_mechanism_gives_the_same_bytes() -> None:
 
 # ---- kinematics ------------------------------------------------------------------------------------------------------------------
 
+
+def test_the_frame_of_a_joint_in_the_child_moves_the_child_back() -> None:
+    model = compiled(chain(hinge(axis=Z), child_pose=Pose((0.25, 0.0, 0.5))))
+    assert (list(model.body_pos[2]), list(model.jnt_pos[0])) == ([-0.25, 0.0, 0.5], [0.25, 0.0, 0.5])
+
+
 LENGTH = st.floats(-2.0, 2.0)
 POINTS = st.tuples(LENGTH, LENGTH, LENGTH)
 TURNS = st.tuples(LENGTH, LENGTH, LENGTH, LENGTH).filter(lambda q: max(map(abs, q)) > 0.1)
