@@ -5,7 +5,7 @@ Attributes and children are taken out by the readers; what is left of an element
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from xml.parsers import expat
 
 from hymeko_x import codes
@@ -73,7 +73,7 @@ def parse(source: Source, report: Report) -> Element:
     try:
         return builder.read(source.data)
     except expat.ExpatError:
-        return _converted(parse_leniently(source, report).root.element, source.name)
+        return _Builder(source.name).read(parse_leniently(source, report).data)
 
 
 def parse_text(text: str) -> Element:
@@ -120,21 +120,6 @@ class _Builder:
 
     def _entity(self, *_: object) -> None:
         raise refuse(codes.ENTITIES, "the file defines XML entities, which are never expanded", Origin(self._file))
-
-
-def _converted(root: Any, file: str) -> Element:
-    """An lxml tree as one of ours."""
-    top = Element("", {})
-    stack = [(root, top)]
-    while stack:
-        node, parent = stack.pop()
-        if not isinstance(node.tag, str):
-            continue
-        element = Element(node.tag, dict(node.items()), file, node.sourceline)
-        element.words = (node.text or "").strip()
-        parent.children.append(element)
-        stack.extend((child, element) for child in reversed(node))
-    return top.children[0]
 
 
 def verbatim(element: Element) -> str:

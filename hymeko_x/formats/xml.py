@@ -1,64 +1,64 @@
-"""Reading XML so that nothing gets lost: nodes that remember what was asked for, and what is left over at the end.
+"""XML elements that remember what was asked for, so that what nobody asked for can be kept.
 
-Shared by the frontends of all XML formats. A frontend takes attributes, children and text out of a :class:`Node`; what
-it never took becomes an :class:`Extra` by :class:`Leftovers`, so that no list of known tags decides what survives.
+A frontend takes attributes, children and text out of a :class:`Node`; what it never took becomes an :class:`Extra` by
+:class:`Leftovers`. No list of known tags decides what survives.
 """
 
 from __future__ import annotations
 
 import math
+import re
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
-
-from lxml import etree
+from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
-from hymeko_x.ir.mechanism import ROOT, Extra, Id
+from hymeko_x.ir.mechanism import ROOT, Extra
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator
 
     from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Id
 
 COMMENT = "comment"
 """The format of an extra that is a comment."""
+COMMENT_NODE = "#comment"
+INSTRUCTION_NODE = "#instruction"
+"""The tags of the nodes of comments and processing instructions, which no element can have."""
 PRECEDING = "preceding"
 FOLLOWING = "following"
 """The paths of what stands before and after the root element."""
-
-_XML_NAMESPACE = "http://www.w3.org/XML/1998/namespace"
-_words_in = etree.XPath("//text()[normalize-space()]")
 
 
 class Node:
     """An XML element whose attributes, children and text are taken out one by one.
 
     ``owner`` is the element of the mechanism that the node became; a node without one belongs to its parent's.
+    ``start`` and ``end`` are where the element starts, and where its end tag does, in the bytes of the file.
     """
 
-    __slots__ = ("_family", "_kids", "_parent", "_place", "_words_taken", "attributes", "element", "file", "owner", "tag")
+    __slots__ = ("attributes", "end", "file", "kids", "line", "owner", "parent", "start", "tag", "taken", "text", "text_index")
 
-    def __init__(self, element: Any, file: str, parent: Node | None = None, place: int = 0, family: list[Node] | None = None) -> None:
-        self.element = element
+    end: int
+    text_index: int
+
+    def __init__(self, tag: str, attributes: dict[str, str], parent: Node | None, file: str, line: int, start: int) -> None:
+        self.tag = tag
+        self.attributes = attributes
+        self.parent = parent
         self.file = file
-        self.tag: str = element.tag
-        self.attributes: dict[str, str] = dict(element.items())
+        self.line = line
+        self.start = start
+        self.kids: list[Node] = []
+        self.taken = False
         self.owner: Id | None = None
-        self._parent = parent
-        self._place = place
-        self._kids = _kids_of(element) if len(element) else {}
-        self._words_taken = False
-        if family is None:
-            self._family = [self]
-        else:
-            self._family = family
-            family.append(self)
+        self.text: str | None = None
 
     @property
     def origin(self) -> Origin:
         """Where the element starts."""
-        return Origin(self.file, self.element.sourceline)
+        return Origin(self.file, self.line)
 
     @property
     def subject(self) -> str:
@@ -72,10 +72,15 @@ class Node:
         owner = self._owning().owner
         return "" if owner is None else str(owner)
 
+    @property
+    def is_element(self) -> bool:
+        """False for a comment or a processing instruction."""
+        return self.tag[0] != "#"
+
     def _owning(self) -> Node:
         node = self
-        while node.owner is None and node._parent is not None:
-            node = node._parent
+        while node.owner is None and node.parent is not None:
+            node = node.parent
         return node
 
     # ---- taking ----------------------------------------------------------------------------------------------------------
@@ -86,181 +91,130 @@ class Node:
 
     def child(self, tag: str) -> Node | None:
         """The first child of this name that was not taken yet, or None."""
-        return self._enter(tag) if tag in self._kids else None
+        for kid in self.kids:
+            if kid.tag == tag and not kid.taken:
+                kid.taken = True
+                return kid
+        return None
 
     def child_among(self, tags: Container[str]) -> Node | None:
         """The first child that was not taken yet and has one of these names, or None."""
-        found = [tag for tag in self._kids if tag in tags]
-        if len(found) > 1:
-            found = [element.tag for element in self.elements() if element.tag in tags]
-        return self._enter(found[0]) if found else None
+        for kid in self.kids:
+            if kid.tag in tags and not kid.taken:
+                kid.taken = True
+                return kid
+        return None
 
     def children(self, tag: str) -> Iterator[Node]:
         """All children of this name that were not taken yet, one after the other."""
-        for place, element in self._kids.pop(tag, ()):
-            yield self._node(place, element)
+        for kid in self.kids:
+            if kid.tag == tag and not kid.taken:
+                kid.taken = True
+                yield kid
 
     def take_whole(self, tag: str) -> None:
         """Take the first child of this name with all that is in it, without reading it."""
-        if tag in self._kids:
-            self._pop(tag)
+        child = self.child(tag)
+        if child is not None:
+            child.attributes, child.kids, child.text = {}, [], None
 
     def words(self) -> str:
         """The text of the element, stripped; none, and nothing taken, where elements stand between the words."""
-        if any(isinstance(tag, str) for tag in self._kids):
+        if self.kids:
             return ""
-        self._words_taken = True
-        return "".join([self.element.text or "", *(comment.tail or "" for comment in self.element)]).strip()
+        text = (self.text or "").strip()
+        self.text = None
+        return text
 
     def put_back(self, child: Node) -> None:
-        """Undo the taking of a child, with all that was taken from it: it becomes an extra as a whole."""
-        self._kids.setdefault(child.tag, []).append((child._place, child.element))
-        self._family[:] = [node for node in self._family if not node._is_within(child)]
-
-    def _enter(self, tag: str) -> Node:
-        return self._node(*self._pop(tag))
-
-    def _pop(self, tag: str) -> tuple[int, Any]:
-        waiting = self._kids[tag]
-        if len(waiting) == 1:
-            del self._kids[tag]
-        return waiting.pop(0)
-
-    def _node(self, place: int, element: Any) -> Node:
-        return Node(element, self.file, self, place, None if self._parent is None else self._family)
-
-    def _is_within(self, other: Node) -> bool:
-        node: Node | None = self
-        while node is not None and node is not other:
-            node = node._parent
-        return node is other
+        """Undo the taking of a child: it becomes an extra as a whole, in the words of the file."""
+        child.taken = False
 
     # ---- looking without taking ------------------------------------------------------------------------------------------
 
     def has(self, tag: str) -> bool:
         """Whether a child of this name is left."""
-        return tag in self._kids
+        return any(kid.tag == tag and not kid.taken for kid in self.kids)
 
     def has_among(self, tags: Container[str]) -> bool:
         """Whether a child with one of these names is left."""
-        return any(tag in tags for tag in self._kids)
+        return any(kid.tag in tags and not kid.taken for kid in self.kids)
 
     def took(self, tag: str) -> bool:
         """Whether a child of this name was taken."""
-        count = sum(1 for element in self.element if element.tag == tag)
-        return count > len(self._kids.get(tag, ()))
+        return any(kid.tag == tag and kid.taken for kid in self.kids)
 
-    def look(self, tag: str) -> str | None:
-        """The first child of this name that is left, verbatim."""
-        return verbatim(self._kids[tag][0][1]) if tag in self._kids else None
-
-    def elements(self) -> list[Any]:
-        """The child elements that are left, in the order of the file."""
-        left = [item for tag, items in self._kids.items() if isinstance(tag, str) for item in items]
-        return [element for _, element in sorted(left, key=_place_of)]
-
-    # ---- what is left ----------------------------------------------------------------------------------------------------
-
-    def _left(self, format_name: str, path: str, texts: Texts, *, comments: bool) -> Iterator[Extra]:
-        """The extras of this node itself: attributes, then loose text and children in their order."""
-        for step, value in self._left_attributes():
-            yield Extra(format_name, _below(path, step), value)
-        if not self._words_taken and self.element in texts:
-            index, text = texts[self.element]
-            yield Extra(format_name, _below(path, "text()"), text, index)
-        yield from (_child_extra(format_name, path, element, index) for index, element in self._left_children(comments=comments))
-
-    def _left_children(self, *, comments: bool) -> Iterator[tuple[int, Any]]:
-        """What was not taken, with its place among the child elements (and comments)."""
-        left = {place for items in self._kids.values() for place, _ in items}
-        index = 0
-        for place, element in enumerate(self.element if left else ()):
-            counts = comments or isinstance(element.tag, str)
-            if counts and place in left:
-                yield index, element
-            index += counts
-
-    def _left_attributes(self) -> Iterator[tuple[str, str]]:
-        for name, value in sorted(self.attributes.items()):
-            if not name.startswith("{"):
-                yield f"@{name}", value
-                continue
-            uri, _, local = name[1:].partition("}")
-            prefix = _prefix_of(uri, self.element)
-            if uri != _XML_NAMESPACE and self.element.getroottree().getroot().nsmap.get(prefix) != uri:
-                yield f"@xmlns:{prefix}", uri
-            yield f"@{prefix}:{local}", value
-
-    def _place_below_owner(self) -> tuple[Id, str]:
-        """Whose the node is, and the path from that element to it; repeated steps are numbered: ``joint[2]``."""
-        node = self
-        path = ""
-        while node.owner is None and node._parent is not None:
-            path = _below(node._step(node._parent), path) if path else node._step(node._parent)
-            node = node._parent
-        return node.owner or ROOT, path
-
-    def _step(self, parent: Node) -> str:
-        left = {place for place, _ in parent._kids.get(self.tag, ())}
-        number = 1
-        for place, element in enumerate(parent.element):
-            if place == self._place:
-                break
-            number += element.tag == self.tag and place not in left
-        return self.tag if number == 1 else f"{self.tag}[{number}]"
+    def left(self) -> list[Node]:
+        """The child elements that are left."""
+        return [kid for kid in self.kids if not kid.taken and kid.is_element]
 
 
-def _kids_of(element: Any) -> dict[Any, list[tuple[int, Any]]]:
-    """The children by name, with their places; comments by what lxml has for their name."""
-    kids: dict[Any, list[tuple[int, Any]]] = {}
-    for place, child in enumerate(element):
-        tag = child.tag
-        if tag in kids:
-            kids[tag].append((place, child))
-        else:
-            kids[tag] = [(place, child)]
-    return kids
-
-
-def _place_of(item: tuple[int, Any]) -> int:
-    return item[0]
-
-
-Texts = dict[Any, tuple[int, str]]
+# ---- what is left ------------------------------------------------------------------------------------------------------------
 
 
 class Leftovers:
-    """Collects what nobody took out of a file. Closing an element early frees its nodes; nothing of it counts twice."""
+    """Collects what nobody took out of a file, whose bytes are ``data`` in UTF-8, element by element."""
 
-    def __init__(self, root: Node, format_name: str) -> None:
+    def __init__(self, root: Node, data: bytes, format_name: str) -> None:
         self._root = root
+        self._data = data
         self._format = format_name
-        self._texts = _loose_texts(root.element)
         self._found: dict[Id, list[Extra]] = {}
         self._owners: dict[int, Id] = {}
+
+    def verbatim(self, node: Node) -> str:
+        """The element as the file has it, with the namespace declarations that it needs from further up."""
+        end = node.end
+        closed_itself = not node.kids and node.text is None and self._data[end - 2 : end] == b"/>"
+        if not closed_itself:
+            end = self._data.index(b">", end) + 1
+        text = self._data[node.start : end].decode().replace("\r\n", "\n").replace("\r", "\n")
+        return _with_declarations(text, node)
 
     def close(self, node: Node) -> list[Node]:
         """Collect what is left in a child of the root. Returns its nodes in which child elements were left."""
         if node.owner is not None:
-            self._owners[node._place] = node.owner
-        texts = self._texts
-        left = [member for member in node._family if member.attributes or member._kids or (texts and member.element in texts)]
-        for member in left:
-            owner, path = member._place_below_owner()
-            extras = list(member._left(self._format, path, texts, comments=False))
-            if extras:
-                self._found.setdefault(owner, []).extend(extras)
-        node._family = []
-        return [member for member in left if member._kids]
+            self._owners[node.start] = node.owner
+        with_left_kids = []
+        stack = [node]
+        while stack:
+            member = stack.pop()
+            if member.attributes or member.text is not None:
+                self._keep(member)
+            kept = False
+            for kid in member.kids:
+                if kid.taken:
+                    stack.append(kid)
+                elif not kept and kid.is_element:
+                    kept = True
+                    self._keep_kids(member)
+                    with_left_kids.append(member)
+        return with_left_kids
+
+    def _keep(self, node: Node) -> None:
+        owner, path = _place_below_owner(node)
+        found = self._found.setdefault(owner, [])
+        for name in sorted(node.attributes):
+            found.append(Extra(self._format, _below(path, f"@{name}"), node.attributes[name]))
+        if node.text is not None:
+            found.append(Extra(self._format, _below(path, "text()"), node.text.strip(), node.text_index))
+
+    def _keep_kids(self, node: Node) -> None:
+        owner, path = _place_below_owner(node)
+        found = self._found.setdefault(owner, [])
+        elements = [kid for kid in node.kids if kid.is_element]
+        found += [Extra(self._format, path, self.verbatim(kid), place) for place, kid in enumerate(elements) if not kid.taken]
 
     def finish(self) -> dict[Id, tuple[Extra, ...]]:
-        """Everything that was left, by element. The root's comments and namespaces (``@xmlns:drake``) are among it."""
-        spaces = self._root.element.nsmap.items()
-        own = [Extra(self._format, "@xmlns" + (f":{prefix}" if prefix else ""), uri) for prefix, uri in spaces]
-        own += self._root._left(self._format, "", self._texts, comments=True)
-        if own:
-            self._found.setdefault(ROOT, []).extend(own)
-        return {owner: tuple(extras) for owner, extras in self._found.items()}
+        """Everything that was left, by element. The root's comments, and its namespaces (``@xmlns:drake``), are among it."""
+        self._keep(self._root)
+        own = self._found.setdefault(ROOT, [])
+        for place, kid in enumerate(self._root.kids):
+            if not kid.is_element:
+                own.append(outer_extra(self._format, "", kid, place))
+            elif not kid.taken:
+                own.append(Extra(self._format, "", self.verbatim(kid), place))
+        return {owner: tuple(sorted(extras, key=_by_place)) for owner, extras in self._found.items() if extras}
 
     @property
     def layout(self) -> tuple[Id, ...]:
@@ -268,63 +222,60 @@ class Leftovers:
         return tuple(self._owners[place] for place in sorted(self._owners))
 
 
-def _loose_texts(root: Any) -> Texts:
-    """The non-blank text of each element in one piece, with the place of its beginning among the element's children."""
-    pieces: dict[Any, list[str]] = {}
-    first: dict[Any, Any] = {}
-    for text in _words_in(root):
-        near = text.getparent()
-        holder = near.getparent() if text.is_tail else near
-        if holder is None:
-            continue
-        pieces.setdefault(holder, []).append(text.strip())
-        first.setdefault(holder, near)
-    return {holder: (_index_behind(first[holder], holder, root), "\n".join(said)) for holder, said in pieces.items()}
+def _by_place(extra: Extra) -> tuple[bool, str, int]:
+    """What stands deeper comes first, then the element's own content; each in the order of the file."""
+    return extra.path == "", extra.path, extra.index
 
 
-def _index_behind(near: Any, holder: Any, root: Any) -> int:
-    """How many children stand up to this one, among which the comments count at top level only."""
-    if near is holder:
-        return 0
-    before = [near, *near.itersiblings(preceding=True)]
-    return sum(1 for element in before if holder is root or isinstance(element.tag, str))
+def outer_extra(format_name: str, path: str, node: Node, index: int) -> Extra:
+    """A comment, which is the same in every format and is kept without its signs, or a processing instruction as it is."""
+    text = node.text or ""
+    if node.tag == COMMENT_NODE:
+        return Extra(COMMENT, path, text.strip(), index)
+    return Extra(format_name, path, f"<?{text}?>", index)
+
+
+def _place_below_owner(node: Node) -> tuple[Id, str]:
+    """Whose the node is, and the path from that element to it; repeated steps are numbered: ``joint[2]``."""
+    path = ""
+    while node.owner is None and node.parent is not None:
+        path = _below(_step(node, node.parent), path) if path else _step(node, node.parent)
+        node = node.parent
+    return node.owner or ROOT, path
+
+
+def _step(node: Node, parent: Node) -> str:
+    number = 1
+    for kid in parent.kids:
+        if kid is node:
+            break
+        number += kid.tag == node.tag and kid.taken
+    return node.tag if number == 1 else f"{node.tag}[{number}]"
 
 
 def _below(path: str, step: str) -> str:
     return f"{path}/{step}" if path else step
 
 
-def _prefix_of(uri: str, element: Any) -> str:
-    if uri == _XML_NAMESPACE:
-        return "xml"
-    return next((prefix for prefix, known in element.nsmap.items() if known == uri and prefix), "ns")
-
-
-def _child_extra(format_name: str, path: str, element: Any, index: int) -> Extra:
-    """A child that nobody took; a comment is the same in every format, so it is kept without its signs."""
-    if element.tag is etree.Comment:
-        return Extra(COMMENT, path, (element.text or "").strip(), index)
-    return Extra(format_name, path, verbatim(element), index)
-
-
-def outer_extra(format_name: str, path: str, markup: str, index: int) -> Extra:
-    """What stands outside the root: a comment, or a processing instruction as it is."""
-    if markup.startswith("<!--"):
-        return Extra(COMMENT, path, markup[4:-3].strip(), index)
-    return Extra(format_name, path, markup, index)
-
-
-def verbatim(element: Any) -> str:
-    """The element as text of its own, with those namespace declarations that it needs and no others."""
-    text: str = etree.tostring(element, encoding="unicode", with_tail=False)
-    if not isinstance(element.tag, str):
+def _with_declarations(text: str, node: Node) -> str:
+    """The text of an element with the declarations of those prefixes that it uses and does not declare."""
+    added: dict[str, str] = {}
+    above = node.parent
+    while above is not None:
+        for name, uri in above.attributes.items():
+            if name.startswith("xmlns:") and f"{name[6:]}:" in text and f"{name}=" not in text:
+                added.setdefault(name, uri)
+        above = above.parent
+    if not added:
         return text
-    for prefix, uri in element.nsmap.items():
-        declaration = f' xmlns:{prefix}="{uri}"' if prefix else f' xmlns="{uri}"'
-        bare = text.replace(declaration, "", 1)
-        if prefix and f"{prefix}:" not in bare:
-            text = bare
-    return text
+    name_end = re.match(r"<[^\s/>]+", text)
+    assert name_end is not None
+    declarations = "".join(f' {name}="{_quoted(uri)}"' for name, uri in added.items())
+    return text[: name_end.end()] + declarations + text[name_end.end() :]
+
+
+def _quoted(text: str) -> str:
+    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------

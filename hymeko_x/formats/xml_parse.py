@@ -1,7 +1,8 @@
-"""From bytes to an XML tree, leniently: what other readers of real robot files overlook is repaired and reported.
+"""From bytes to a tree of nodes, leniently: what other readers of real robot files overlook is repaired and reported.
 
-Strict first. Then known mistakes are repaired in the text (line numbers stay as they are) and the result is read
-strictly again. Only then libxml2's recovery has a try, which may leave things out. Entities are never expanded.
+Strict first, with expat. Then known mistakes are repaired in the text (line numbers stay as they are) and the result is
+read strictly again. Only then libxml2's recovery has a try, which may leave things out. Entities are never expanded,
+nothing recurses, and nothing is ever fetched.
 """
 
 from __future__ import annotations
@@ -10,18 +11,21 @@ import codecs
 import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
+from xml.parsers import expat
 
 from lxml import etree
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.formats.xml import Node, verbatim
+from hymeko_x.diagnostics import Origin, Report, refuse
+from hymeko_x.formats.xml import COMMENT_NODE, INSTRUCTION_NODE, Node
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
+    from collections.abc import Iterator
+
     from hymeko_x.source import Source
 
 MAX_BYTES = 256 * 1024 * 1024
+MAX_DEPTH = 2048
 KNOWN_PREFIXES = {
     "xacro": "http://www.ros.org/wiki/xacro",
     "drake": "http://drake.mit.edu",
@@ -32,11 +36,12 @@ KNOWN_PREFIXES = {
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A read file: its root, and the comments and processing instructions around it, verbatim."""
+    """A read file: its root, the comments and processing instructions around it, and the text that was read, in UTF-8."""
 
     root: Node
-    preceding: tuple[str, ...]
-    following: tuple[str, ...]
+    preceding: tuple[Node, ...]
+    following: tuple[Node, ...]
+    data: bytes
 
 
 def parse(source: Source, report: Report) -> Document:
@@ -46,33 +51,144 @@ def parse(source: Source, report: Report) -> Document:
     """
     if len(source.data) > MAX_BYTES:
         raise refuse(codes.TOO_LARGE, f"the file has {len(source.data)} bytes, at most {MAX_BYTES} are read", Origin(source.name))
-    root = _read(source, report)
-    _check_doctype(root, source, report)
-    _drop_default_namespace(root)
-    before = [verbatim(node) for node in root.itersiblings(preceding=True) if not _is_declaration(node)]
-    after = [verbatim(node) for node in root.itersiblings() if not _is_declaration(node)]
-    return Document(Node(root, source.name), tuple(reversed(before)), tuple(after))
-
-
-def _is_declaration(node: Any) -> bool:
-    """Whether a recovered tree took a misplaced XML declaration for a processing instruction."""
-    return node.tag is etree.PI and node.target.lower() == "xml"
-
-
-def _read(source: Source, report: Report) -> Any:
+    said = Report()
     try:
-        return etree.fromstring(source.data, _parser())
-    except (etree.XMLSyntaxError, ValueError) as error:
-        return _read_again(source, report, error)
+        document = _Builder(source.name, _utf8(source, said), said).document()
+    except expat.ExpatError as error:
+        said = Report()
+        document = _read_again(source, said, error)
+    report.extend(said)
+    _declare_prefixes(document, report)
+    return document
 
 
-def _parser(*, recover: bool = False) -> Any:
-    return etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True, strip_cdata=False, recover=recover)
+def _utf8(source: Source, report: Report) -> bytes:
+    """The same text in UTF-8 where it is in the other encoding that its mark or its declaration names."""
+    declared = _ENCODING.match(source.data[:200])
+    marked = source.data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    if not marked and (declared is None or declared[1].lower() in (b"utf-8", b"utf8", b"us-ascii", b"ascii")):
+        return source.data.removeprefix(codecs.BOM_UTF8)
+    text, wrong = _decoded(source.data)
+    text, said = _without_declaration(text)
+    for repaired in filter(None, (wrong, said)):
+        report.warn(codes.REPAIRED_XML, repaired, Origin(source.name, 1))
+    return text.encode()
 
 
-def _read_again(source: Source, report: Report, error: Exception) -> Any:
+# ---- building ----------------------------------------------------------------------------------------------------------------
+
+
+class _Builder:
+    """Makes nodes of what expat finds."""
+
+    def __init__(self, file: str, data: bytes, report: Report, lines: Iterator[int] | None = None) -> None:
+        self._file = file
+        self._data = data
+        self._report = report
+        self._lines = lines
+        self._outside = Node("#outside", {}, None, file, 1, 0)
+        parser = expat.ParserCreate()
+        parser.buffer_text = True
+        parser.XmlDeclHandler = self._declaration
+        parser.StartDoctypeDeclHandler = self._doctype
+        parser.EntityDeclHandler = self._entity
+        self._parser = parser
+
+    def document(self) -> Document:
+        """The finished document. Raises: ExpatError where the text is not well-formed."""
+        self._set_handlers()
+        self._parser.Parse(self._data, True)
+        around = self._outside.kids
+        place = next(place for place, node in enumerate(around) if node.is_element)
+        root = around[place]
+        root.parent = None
+        return Document(root, tuple(around[:place]), tuple(around[place + 1 :]), self._data)
+
+    def _set_handlers(self) -> None:
+        """The handlers of elements and text, which share what stands open; called for every element, so they are closures."""
+        parser, file, lines, make = self._parser, self._file, self._lines, Node
+        current = self._outside
+        depth = 0
+
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            nonlocal current, depth
+            line = parser.CurrentLineNumber if lines is None else next(lines)
+            node = make(tag, attributes, current, file, line, parser.CurrentByteIndex)
+            current.kids.append(node)
+            current = node
+            depth += 1
+            if depth > MAX_DEPTH:
+                raise refuse(codes.TOO_LARGE, f"the elements are nested more than {MAX_DEPTH} deep", Origin(file, line))
+
+        def end(tag: str) -> None:
+            nonlocal current, depth
+            current.end = parser.CurrentByteIndex
+            depth -= 1
+            current = current.parent  # type: ignore[assignment]
+
+        def characters(text: str) -> None:
+            if current.text is not None:
+                current.text += text
+            elif not text.isspace():
+                current.text = text
+                current.text_index = len(current.kids)
+
+        def aside(tag: str, text: str) -> None:
+            if depth > 1:  # inside of the root's children nobody keeps it
+                return
+            node = make(tag, {}, current, file, parser.CurrentLineNumber, parser.CurrentByteIndex)
+            node.text = text
+            current.kids.append(node)
+
+        parser.StartElementHandler = start
+        parser.EndElementHandler = end
+        parser.CharacterDataHandler = characters
+        parser.CommentHandler = lambda text: aside(COMMENT_NODE, text)
+        parser.ProcessingInstructionHandler = lambda target, text: aside(INSTRUCTION_NODE, f"{target} {text}".strip())
+
+    def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
+        del encoding, standalone
+        if version not in ("1.0", "1.1"):
+            said = f"the XML declaration says version '{version}'; read as 1.0"
+            self._report.warn(codes.REPAIRED_XML, said, Origin(self._file, self._parser.CurrentLineNumber))
+
+    def _doctype(self, name: str, *_: object) -> None:
+        said = f"'<!DOCTYPE {name}>' is left out: robot files have no document type"
+        self._report.warn(codes.REPAIRED_XML, said, Origin(self._file, self._parser.CurrentLineNumber))
+
+    def _entity(self, *_: object) -> None:
+        place = Origin(self._file, self._parser.CurrentLineNumber)
+        raise refuse(codes.ENTITIES, "the file defines XML entities, which are never expanded", place)
+
+
+# ---- prefixes ----------------------------------------------------------------------------------------------------------------
+
+
+def _declare_prefixes(document: Document, report: Report) -> None:
+    """Declare at the root what is declared nowhere. A quick look at the text first: few files have prefixes at all."""
+    declared = {found.decode() for found in re.findall(rb"\sxmlns:([^\s=]+)\s*=", document.data)} | {"xml", "xmlns"}
+    if not any(found.decode() not in declared for found in set(_PREFIXED.findall(document.data))):
+        return
+    stack = [document.root]
+    while stack:
+        node = stack.pop()
+        for name in (node.tag, *node.attributes):
+            prefix, colon, _ = name.partition(":")
+            if colon and prefix not in declared:
+                declared.add(prefix)
+                document.root.attributes[f"xmlns:{prefix}"] = KNOWN_PREFIXES.get(prefix, f"urn:{prefix}")
+                report.warn(codes.REPAIRED_XML, f"undeclared prefix '{prefix}'; read as if the root declared it", node.origin)
+        stack.extend(reversed(node.kids))
+
+
+# ---- the second and the third try --------------------------------------------------------------------------------------------
+
+
+def _read_again(source: Source, report: Report, error: expat.ExpatError) -> Document:
     """The second try on repaired text, repair by repair; then the third with libxml2's recovery."""
-    _refuse_hopeless(source, error)
+    if not source.data.strip(b"\0 \t\r\n\xef\xbb\xbf"):
+        raise refuse(codes.NOT_XML, "the file is empty", Origin(source.name)) from error
+    place = _place(source, error)
     text, said = _decoded(source.data)
     repairs = [said] if said else []
     still = error
@@ -82,66 +198,69 @@ def _read_again(source: Source, report: Report, error: Exception) -> Any:
             continue
         repairs += [said] if said else []
         try:
-            root = etree.fromstring(text.encode(), _parser())
-        except (etree.XMLSyntaxError, ValueError) as next_error:
+            document = _Builder(source.name, text.encode(), report).document()
+        except expat.ExpatError as next_error:
             still = next_error
             continue
-        _say_repairs(source, repairs, report, error)
-        return root
+        for said in repairs:
+            report.warn(codes.REPAIRED_XML, said, place)
+        return document
     return _recover(source, text, repairs, report, still)
 
 
-def _refuse_hopeless(source: Source, error: Exception) -> None:
-    if not source.data.strip(b"\0 \t\r\n\xef\xbb\xbf"):
-        raise refuse(codes.NOT_XML, "the file is empty", Origin(source.name)) from error
-    if "depth" in str(error):
-        raise refuse(codes.TOO_LARGE, "the elements are nested more than 2048 deep", _place(source, error)) from error
-
-
-def _recover(source: Source, text: str, repairs: list[str], report: Report, error: Exception) -> Any:
-    parser = _parser(recover=True)
+def _recover(source: Source, text: str, repairs: list[str], report: Report, error: expat.ExpatError) -> Document:
+    place = _place(source, error)
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True, strip_cdata=False, recover=True)
     try:
         root = etree.fromstring(text.encode(), parser)
     except (etree.XMLSyntaxError, ValueError):
         root = None
     if root is None:
-        raise refuse(codes.NOT_XML, f"not XML: {_said(error)}", _place(source, error)) from error
-    _say_repairs(source, repairs, report, error)
-    report.warn(
-        codes.REPAIRED_XML,
-        f"not well-formed: {_said(error)}; what could be read was read, and what could not is missing",
-        _place(source, error),
-    )
-    _tidy(root)
-    return root
-
-
-def _say_repairs(source: Source, repairs: list[str], report: Report, error: Exception) -> None:
+        raise refuse(codes.NOT_XML, f"not XML: {expat.errors.messages[error.code]}", place) from error
     for said in repairs:
-        report.warn(codes.REPAIRED_XML, said, _place(source, error))
+        report.warn(codes.REPAIRED_XML, said, place)
+    said = f"not well-formed: {expat.errors.messages[error.code]}; what could be read was read, and what could not is missing"
+    report.warn(codes.REPAIRED_XML, said, place)
+    _tidy(root)
+    around = [*reversed(list(root.itersiblings(preceding=True))), root, *root.itersiblings()]
+    data = b"\n".join(etree.tostring(node, encoding="utf-8", with_tail=False) for node in around if not _is_declaration(node))
+    lines = iter([element.sourceline for element in root.iter("*")])
+    try:
+        return _Builder(source.name, data, report, lines).document()
+    except expat.ExpatError as worse:
+        raise refuse(codes.NOT_XML, f"not XML: {expat.errors.messages[error.code]}", place) from worse
 
 
-def _said(error: Exception) -> str:
-    """libxml2's message without the place, which the diagnostic has in a field of its own."""
-    return re.sub(r", line \d+, column \d+.*", "", str(error), flags=re.DOTALL).strip()
+def _place(source: Source, error: expat.ExpatError) -> Origin:
+    return Origin(source.name, error.lineno, error.offset + 1)
 
 
-def _place(source: Source, error: Exception) -> Origin:
-    line, column = getattr(error, "position", (None, None))
-    return Origin(source.name, line, column)
+def _is_declaration(node: Any) -> bool:
+    """Whether a recovered tree took a misplaced XML declaration for a processing instruction."""
+    return node.tag is etree.PI and node.target.lower() == "xml"
 
 
 def _tidy(root: Any) -> None:
     """Make a recovered tree writable again: no ``--`` in comments, names that are names, no attribute twice."""
     for element in [*root.itersiblings(preceding=True), *root.iter(), *root.itersiblings()]:
-        if _is_declaration(element) and element.getparent() is not None:
-            element.getparent().remove(element)
+        if element.getparent() is not None and (_is_declaration(element) or element.tag is etree.Entity):
+            _drop(element)
         elif element.tag is etree.Comment:
             element.text = re.sub("-(?=-)|-$", "- ", element.text or "")
         elif isinstance(element.tag, str):
             if not _NAME.fullmatch(element.tag):
                 element.tag = "_" + re.sub(r"[^\w.-]", "_", element.tag)
             _tidy_attributes(element)
+
+
+def _drop(node: Any) -> None:
+    """Take a node out, but leave the text behind it."""
+    parent, before, text = node.getparent(), node.getprevious(), node.tail or ""
+    if before is not None:
+        before.tail = (before.tail or "") + text
+    else:
+        parent.text = (parent.text or "") + text
+    parent.remove(node)
 
 
 def _tidy_attributes(element: Any) -> None:
@@ -155,25 +274,6 @@ def _tidy_attributes(element: Any) -> None:
         element.set(name, value)
 
 
-def _check_doctype(root: Any, source: Source, report: Report) -> None:
-    doctype = root.getroottree().docinfo
-    if not doctype.doctype:
-        return
-    if any(True for _ in (doctype.internalDTD.iterentities() if doctype.internalDTD is not None else ())):
-        raise refuse(codes.ENTITIES, "the file defines XML entities, which are never expanded", Origin(source.name))
-    report.warn(codes.REPAIRED_XML, f"'{doctype.doctype}' is left out: robot files have no document type", Origin(source.name))
-
-
-def _drop_default_namespace(root: Any) -> None:
-    """Elements of the root's default namespace (``<robot xmlns="...">``) go by their plain names."""
-    uri = root.nsmap.get(None)
-    if uri is None:
-        return
-    start = f"{{{uri}}}"
-    for element in root.iter(f"{start}*"):
-        element.tag = element.tag.removeprefix(start)
-
-
 # ---- repairs of the text -----------------------------------------------------------------------------------------------------
 
 _NAME = re.compile(r"(?:\{[^}]*\})?[^\W\d][\w.-]*")
@@ -182,7 +282,8 @@ _DECLARATION = re.compile(r"<\?xml\s[^?>]*\?>")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 _BARE_AMPERSAND = re.compile(r"&(?![A-Za-z_][\w.-]*;|#\d+;|#x[0-9a-fA-F]+;)")
 _NO_BLANK = re.compile(r"""(=\s*(?:"[^"]*"|'[^']*'))(?=[\w:])""")
-_PREFIX = re.compile(r"""(?:<|\s)([A-Za-z_][\w.-]*):[\w.-]+(?=[\s=/>])""")
+_PREFIXED = re.compile(rb"[<\s]([A-Za-z_][\w.-]*):[A-Za-z_]")
+_ENCODING = re.compile(rb"""\s*<\?xml[^?>]*encoding\s*=\s*["']([\w.-]+)""")
 
 
 def _decoded(data: bytes) -> tuple[str, str]:
@@ -232,12 +333,15 @@ def _without_rest(text: str) -> tuple[str, str]:
 
 
 def _with_clean_tags(text: str) -> tuple[str, str]:
-    """Blanks between attributes and escaped ampersands; comments and CDATA stay as they are."""
+    """Blanks between attributes, escaped ampersands, and comments without ``--``; CDATA stays as it is."""
     pieces = []
-    changed = set()
+    changed: set[str] = set()
     for piece in _PIECES.findall(text):
         clean = piece
-        if not piece.startswith(("<!", "<?")):
+        if piece.startswith("<!--"):
+            clean = "<!--" + re.sub("-(?=-)|-$", "- ", piece[4:].removesuffix("-->")) + "-->"
+            changed |= {"'--' within a comment; read as '- -'"} if clean != piece else set()
+        elif not piece.startswith(("<!", "<?")):
             clean, count = _BARE_AMPERSAND.subn("&amp;", piece)
             changed |= {"'&' stands where '&amp;' is needed; read as '&'"} if count else set()
         if piece.startswith("<") and not piece.startswith(("<!", "<?")):
@@ -247,25 +351,5 @@ def _with_clean_tags(text: str) -> tuple[str, str]:
     return "".join(pieces), "; ".join(sorted(changed))
 
 
-def _with_prefixes(text: str) -> tuple[str, str]:
-    """Declare at the root what is declared nowhere."""
-    used: dict[str, None] = {}
-    root_end = 0
-    place = 0
-    for piece in _PIECES.findall(text):
-        place += len(piece)
-        if not piece.startswith("<") or piece.startswith(("<!", "<?")):
-            continue
-        root_end = root_end or place
-        used.update(dict.fromkeys(_PREFIX.findall(re.sub(r"""=\s*(?:"[^"]*"|'[^']*')""", "=", piece))))
-    missing = [p for p in used if p not in ("xml", "xmlns") and not re.search(rf"xmlns:{re.escape(p)}\s*=", text)]
-    if not missing or not root_end:
-        return text, ""
-    at = root_end - (2 if text[root_end - 2] == "/" else 1)
-    declared = "".join(f' xmlns:{p}="{KNOWN_PREFIXES.get(p, "urn:" + p)}"' for p in missing)
-    said = ", ".join(f"'{p}'" for p in missing)
-    return text[:at] + declared + text[at:], f"undeclared prefix {said}; read as if the root declared it"
-
-
-_REPAIRS = (_without_declaration, _without_controls, _without_rest, _with_clean_tags, _with_prefixes)
+_REPAIRS = (_without_declaration, _without_controls, _without_rest, _with_clean_tags)
 """Cheap ones first. Each takes a text and returns it repaired, with what was repaired in words; lines stay where they are."""

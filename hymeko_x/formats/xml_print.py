@@ -112,12 +112,15 @@ def _place_for(extra: Extra, tag: Tag) -> int:
 
 
 def without_declared(text: str, declared: Mapping[str, str]) -> str:
-    """An element's text without those namespace declarations (attribute -> uri) that stand further up already."""
-    for name, uri in declared.items():
-        declaration = f' {name}="{escaped(uri)}"'
-        start, end, rest = text.partition(">")
-        text = start.replace(declaration, "", 1) + end + rest
-    return text
+    """An element's text without the namespace declarations (attribute -> uri) right behind its name that stand further up already."""
+    name = re.match(r"<[^\s/>]+", text)
+    if name is None:
+        return text
+    rest = text[name.end() :]
+    known = [f' {attribute}="{escaped(uri)}"' for attribute, uri in declared.items()]
+    while (said := next((words for words in known if rest.startswith(words)), None)) is not None:
+        rest = rest.removeprefix(said)
+    return name[0] + rest
 
 
 def render(tag: Tag, depth: int = 0) -> list[str]:

@@ -36,7 +36,7 @@ def read(source: Source, report: Report) -> Mechanism:
     document = parse(source, report)
     root = document.root
     _check_root(root)
-    draft = Draft(report, Leftovers(root, words.FORMAT))
+    draft = Draft(report, Leftovers(root, document.data, words.FORMAT))
     name = _read_name(root, source, draft)
     _read_version(root, draft)
     for node in root.children("material"):
@@ -85,10 +85,10 @@ def _read_version(root: Node, draft: Draft) -> None:
 def _check_templates(root: Node, draft: Draft) -> None:
     """Say it once when the file was meant for xacro: templates in names, or xacro's elements."""
     named = next((key.name for key in (*draft.vertices, *draft.edges) if "${" in key.name or "$(" in key.name), None)
-    tag = next((element.tag for element in root.elements() if "}" in element.tag and "xacro" in element.tag), None)
+    tag = next((node.tag for node in root.kids if node.tag.startswith("xacro:")), None)
     if named is None and tag is None:
         return
-    found = f"the name '{named}'" if named is not None else f"<xacro:{str(tag).rpartition('}')[2]}>"
+    found = f"the name '{named}'" if named is not None else f"<{tag}>"
     draft.report.warn(
         codes.LEFTOVER_TEMPLATE,
         f"{found} is text for xacro; it is kept as it is",
@@ -99,5 +99,5 @@ def _check_templates(root: Node, draft: Draft) -> None:
 
 def _around(document: Document) -> list[Extra]:
     """What stands before and after the root element."""
-    before = [outer_extra(words.FORMAT, PRECEDING, markup, place) for place, markup in enumerate(document.preceding)]
-    return before + [outer_extra(words.FORMAT, FOLLOWING, markup, place) for place, markup in enumerate(document.following)]
+    before = [outer_extra(words.FORMAT, PRECEDING, node, place) for place, node in enumerate(document.preceding)]
+    return before + [outer_extra(words.FORMAT, FOLLOWING, node, place) for place, node in enumerate(document.following)]

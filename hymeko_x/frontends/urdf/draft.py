@@ -89,15 +89,16 @@ class Draft:
     def close(self, node: Node) -> None:
         """Collect what is left in a top-level element, and say what stands there twice."""
         for member in self.leftovers.close(node):
-            for element in member.elements():
-                if element.tag in words.SINGLE and member.took(element.tag):
-                    said = f"{member.subject}: <{member.tag}> holds <{element.tag}> more than once"
+            for kid in member.left():
+                if kid.tag in words.SINGLE and member.took(kid.tag):
+                    said = f"{member.subject}: <{member.tag}> holds <{kid.tag}> more than once"
                     self.report.warn(
                         codes.REPEATED,
                         f"{said}; the first one counts, the others are kept as written",
                         member.origin,
                         element=member.about,
                     )
+        node.kids = []  # nobody looks at them again, and a large robot has millions
 
     def mechanism(self, name: str, around: list[Extra]) -> Mechanism:
         """The finished mechanism; ``around`` is what stood before and after the root element."""

@@ -9,6 +9,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats import urdf as words
+from hymeko_x.formats.xml_print import attributes_text
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Joint
 
@@ -27,8 +28,8 @@ def gather_meaningless(joints: list[Node], draft: Draft) -> None:
 
 def _take_usual(fixed: list[Node], tag: str) -> str:
     """The most frequent text of this child, taken out of the joints that have it; empty when it is not frequent enough."""
-    said = [(node, node.look(tag)) for node in fixed]
-    votes = Counter(text for _, text in said if text is not None and text.endswith("/>"))
+    said = [(node, _text(node, tag)) for node in fixed]
+    votes = Counter(text for _, text in said if text)
     text, count = votes.most_common(1)[0] if votes else ("", 0)
     if count < 2 or 2 * count < len(fixed):
         return ""
@@ -36,6 +37,14 @@ def _take_usual(fixed: list[Node], tag: str) -> str:
         if own == text:
             node.take_whole(tag)
     return text
+
+
+def _text(node: Node, tag: str) -> str:
+    """The first such child as text, if it has nothing but attributes; empty otherwise."""
+    kid = next((kid for kid in node.left() if kid.tag == tag), None)
+    if kid is None or kid.kids or kid.text is not None:
+        return ""
+    return f"<{tag}{attributes_text(kid.attributes)}/>"
 
 
 def _is_fixed(node: Node, draft: Draft) -> bool:

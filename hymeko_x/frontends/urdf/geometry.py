@@ -31,7 +31,7 @@ def read_geometry(shape: Node, draft: Draft) -> tuple[Geometry, Id | None]:
         return NoShape(), None
     found = node.child_among(_READERS)
     if found is None:
-        tags = ", ".join(f"<{element.tag}>" for element in node.elements())
+        tags = ", ".join(f"<{kid.tag}>" for kid in node.left())
         known = ", ".join(f"<{tag}>" for tag in _READERS)
         _say(node, f"<geometry> holds {tags or 'nothing'}, expected one of {known}", draft)
         return NoShape(), None

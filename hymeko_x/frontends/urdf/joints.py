@@ -59,7 +59,7 @@ def _read_joint(node: Node, draft: Draft) -> Joint:
 
 
 def _has_ends(node: Node, draft: Draft) -> bool:
-    ends = {element.tag: element.get("link") for element in reversed(node.elements()) if element.tag in ("parent", "child")}
+    ends = {kid.tag: kid.attributes.get("link") for kid in reversed(node.kids) if kid.tag in ("parent", "child")}
     missing = [f"<{tag} link>" for tag in ("parent", "child") if ends.get(tag) is None]
     if missing:
         name = node.attributes.get("name", "")
@@ -182,9 +182,10 @@ def _read_limits(joint: Node, draft: Draft) -> Limits:
         )
         draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.about)
         return UNLIMITED
+    missing = [name for name in ("effort", "velocity") if name not in node.attributes]
     bounds = [_bound(node, name, draft) for name in ("lower", "upper")]
     limits = _rates(node, Limits(*bounds), draft)
-    _check_limits(joint, node, limits, draft)
+    _check_limits(joint, node, limits, missing, draft)
     return limits
 
 
@@ -217,8 +218,7 @@ def _limited(value: float | None) -> float | None:
     return None if value is None or abs(value) >= words.NO_LIMIT else value
 
 
-def _check_limits(joint: Node, node: Node, limits: Limits, draft: Draft) -> None:
-    missing = [name for name in ("effort", "velocity") if name not in node.element.attrib]
+def _check_limits(joint: Node, node: Node, limits: Limits, missing: list[str], draft: Draft) -> None:
     if missing:
         said = f"{joint.subject}: <limit> has no {' and no '.join(missing)}; read as unlimited (urdfdom refuses the file as it is)"
         draft.report.warn(codes.MISSING_LIMIT, said, node.origin, element=joint.about)

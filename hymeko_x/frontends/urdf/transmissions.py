@@ -134,12 +134,12 @@ def _take_role(node: Node) -> str:
 
 def _take_parameters(node: Node) -> Parameters:
     """What an element says in children that hold nothing but text, in their order; numbers become numbers."""
-    plain = [element.tag for element in node.elements() if not len(element) and not element.attrib and (element.text or "").strip()]
-    found = []
-    for tag in plain:
-        child = node.child(tag)
-        assert child is not None
-        text = child.words()
+    found: list[tuple[str, float | str | tuple[float, ...]]] = []
+    for kid in node.left():
+        if kid.kids or kid.attributes or kid.text is None:
+            continue
+        kid.taken = True
+        text = kid.words()
         numbers = read_numbers(text)
-        found.append((tag, numbers[0] if numbers is not None and len(numbers) == 1 else text))
+        found.append((kid.tag, numbers[0] if numbers is not None and len(numbers) == 1 else text))
     return tuple(found)
