@@ -32,6 +32,9 @@ if TYPE_CHECKING:
     from hymeko_x.ir.values import Quat, Vec3
 
 _AXES = {"x": X, "y": Y, "z": Z}
+NOTATIONS = ("quat", "rpy", "euler:xyz", "axisangle", "xyaxes", "zaxis", "fromto", "dir")
+"""Every kind; ``euler`` goes with any sequence."""
+
 _COUNTS = {"quat": 4, "rpy": 3, "axisangle": 4, "xyaxes": 6, "zaxis": 3, "fromto": 6, "dir": 3}
 
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 
 import pytest
+from mjmodels import read_text
 
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.parts import Body, Capsule, DofKind, Loop, MeshShape, Plane, Role
-
-from mjmodels import read_text
 
 
 def in_world(content: str, head: str = "") -> str:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.ir.mechanism import Mechanism, ShapeView
+    from hymeko_x.ir.values import Pose
 
 _PLACES = {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts.Role.BOTH: "shape"}
 
@@ -37,11 +38,18 @@ def _inertial_items(inertial: parts.Inertial) -> list[Item]:
     tensor = inertial.tensor
     if tensor is not None:
         if inertial.written is not None:
-            rotation = pose_value(inertial.written.frame)
-            items.append(Field("axes", rotation[1] if len(rotation) == 2 else (0.0, 0.0, 0.0)))
+            items.append(Field("axes", _axes(inertial.written.frame)))
             tensor = inertial.written.tensor
         items.append(Field("inertia", tensor[:3] if tensor[3:] == ZERO else tensor))
     return items or [Node("inertial")]
+
+
+def _axes(frame: Pose) -> Value:
+    """A rotation: roll-pitch-yaw, a quaternion, or another notation with its kind before it."""
+    rotation = pose_value(frame)
+    if len(rotation) == 2:
+        return rotation[1]
+    return rotation[1:] if isinstance(rotation[1], str) else (0.0, 0.0, 0.0)
 
 
 # ---- shapes --------------------------------------------------------------------------------------------------------------
@@ -54,6 +62,7 @@ def _shape(context: Context, view: ShapeView, names: Names) -> Item:
     expected = names.take("shape", f"{view.body.name}/{word}")
     if expected != view.id:
         items.append(Field("id", view.id.name))
+    items.extend(context.class_items(view.id))
     notations = context.mechanism.notations.get(view.id)
     if notations:
         items.append(written_field(notations))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, cast
 
 from hymeko_x.formats.hymeko import LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, TARGETS, Word
 from hymeko_x.ir import parts
-from hymeko_x.ir.mechanism import KINDS, WORLD, Id
+from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, Ref, Stereotype, Value
 
@@ -19,7 +19,9 @@ if TYPE_CHECKING:
 _ALL_KINDS = tuple(KINDS.values())
 _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
 _FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
-_SETTINGS = _FOREIGN | {"hymeko", "extra", "written", "kind", "moves", "scope", "limit", "limits", "range"} | {w.word for w in LIMIT_WORDS}
+_SETTINGS = (
+    _FOREIGN | {"hymeko", "extra", "class", "written", "kind", "moves", "scope", "limit", "limits", "range"} | {w.word for w in LIMIT_WORDS}
+)
 
 
 @dataclass(frozen=True)
@@ -49,12 +51,20 @@ class Context:
     def node(self, key: Id, items: list[Item], kind: str, *, edge: bool = False) -> Node:
         """An element's node with its notations and extras at the end of its block."""
         notations = self.mechanism.notations.get(key)
+        items.extend(self.class_items(key))
         if notations:
             items.append(written_field(notations))
         items.extend(extra_fields(self.mechanism.extras.get(key, ())))
         stereotypes = (Stereotype(Ref((kind,))),) if kind else ()
         name = key.name if key == WORLD else name_of(key.name)
         return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
+
+    def class_items(self, key: Id) -> list[Item]:
+        """``class "a"``: the default classes that MJCF's author gave an element, of a joint one for each of its dofs."""
+        classes = self.mechanism.stereotypes.get(key)
+        if not classes or self.mechanism.notation(ROOT, "mjcf") is None:
+            return []
+        return [Field("class", classes[0] if len(classes) == 1 else classes)]
 
     def ref(self, target: Id, kinds: tuple[str, ...], direction: str = "") -> Ref:
         """A reference: by name alone where the name means the target, else with its kind before it."""
@@ -88,9 +98,16 @@ def typed(kind: str) -> str:
 
 
 def pose_value(pose: Pose) -> tuple[Value, ...]:
-    """``[x y z]`` for a translation, else ``[[x y z] rotation]``, roll-pitch-yaw if written so, else a quaternion."""
-    if pose.written is not None and pose.written.kind in ("rpy", "quat"):
-        return (pose.xyz, pose.written.numbers)
+    """``[x y z]`` for a translation, else ``[[x y z] rotation]``, roll-pitch-yaw if written so, else a quaternion.
+
+    Other notations say their kind: ``[[x y z] "zaxis" [0 1 0]]``, and ``["fromto" [two points]]``.
+    """
+    if pose.written is not None:
+        if pose.written.kind in ("rpy", "quat"):
+            return (pose.xyz, pose.written.numbers)
+        if pose.written.kind == "fromto":
+            return ("fromto", pose.written.numbers)
+        return (pose.xyz, pose.written.kind, pose.written.numbers)
     if pose.quat == NO_ROTATION:
         return pose.xyz
     return (pose.xyz, pose.quat)

@@ -10,7 +10,8 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.ir.mechanism import Extra
-from hymeko_x.ir.values import Pose, Vec3, pose, pose_from_rpy
+from hymeko_x.ir.values import Pose, Vec3, Written, pose, pose_from_rpy
+from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, QuotedName, Ref, Value, is_list
 from hymeko_x.language.units import BASE_UNITS, unit_factor
 
@@ -91,11 +92,15 @@ class Context:
         if not is_list(value):
             raise self.refuse(item, f"a pose is [x y z] or [[x y z] [roll pitch yaw]], not {describe(value)}")
         values = cast("tuple[Value, ...]", value)
+        if len(values) == 2 and values[0] == "fromto":
+            return self._as_written((0.0, 0.0, 0.0), "fromto", values[1], item)
         if not values or not is_list(values[0]):
             return Pose(self.vec3(value, "length", item))
         xyz = self.vec3(values[0], "length", item)
         if len(values) == 1:
             return Pose(xyz)
+        if len(values) == 3 and isinstance(values[1], str):
+            return self._as_written(xyz, values[1], values[2], item)
         if len(values) != 2 or not is_list(values[1]):
             raise self.refuse(item, f"a pose has a position and a rotation, not {len(values)} parts")
         return self._rotated(xyz, cast("tuple[Value, ...]", values[1]), item)
@@ -110,6 +115,19 @@ class Context:
         if isinstance(value, Ref):
             return value.dotted
         return value if isinstance(value, str) else self.number(value, "", item)
+
+    def _as_written(self, xyz: Vec3, kind: str, value: Value, item: Item) -> Pose:
+        """A rotation whose notation is said: ``"euler:xyz" [a b c]``, ``"zaxis" [x y z]``, and so on."""
+        count = number_count(kind)
+        if count is None:
+            raise self.refuse(item, f"'{kind}' is not a notation of rotations; there are {', '.join(NOTATIONS)}")
+        plain = self.numbers(value, "length" if kind == "fromto" else "angle" if kind.startswith("euler") else "", item, count)
+        if kind == "axisangle":
+            plain = (*plain[:3], plain[3] * self.factor("angle"))
+        try:
+            return pose_as_written(xyz, Written(kind, plain))
+        except ZeroDivisionError as error:
+            raise self.refuse(item, f"{plain} is no rotation") from error
 
     def _rotated(self, xyz: Vec3, rotation: tuple[Value, ...], item: Item) -> Pose:
         if len(rotation) == 3:
@@ -135,6 +153,7 @@ class Block:
         self.arcs: list[ArcItem] = []
         self.extras: list[Extra] = []
         self.written: dict[str, str] = {}
+        self.classes: tuple[str, ...] = ()
         for item in items:
             if isinstance(item, Field):
                 self._field(item)
@@ -150,6 +169,8 @@ class Block:
             return
         if item.name in FOREIGN or item.name == "extra":
             self.extras.append(read_extra(item, self.context))
+        elif item.name == "class":
+            self.classes = read_classes(item, self.context)
         elif item.name == "written":
             self.written.update(read_written(item, self.context))
         elif item.name in self.fields and self.free is None:
@@ -257,6 +278,12 @@ def read_extra(item: Field, context: Context) -> Extra:
     if len(parts) == 3:
         return Extra(name, context.text(parts[0], item), context.text(parts[2], item), int(context.number(parts[1], "", item)))
     raise context.refuse(item, f"'{item.name}' takes a text, [path text] or [path place text]")
+
+
+def read_classes(item: Field, context: Context) -> tuple[str, ...]:
+    """``class "a"`` or, of a joint with several dofs, ``class ["a" "" "b"]``."""
+    values = cast("tuple[Value, ...]", item.value) if is_list(item.value) else (item.value,)
+    return tuple(context.text(value, item) for value in values)
 
 
 def read_written(item: Field, context: Context) -> dict[str, str]:

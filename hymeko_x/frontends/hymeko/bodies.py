@@ -94,7 +94,8 @@ def _inertial(block: Block, place: Pose) -> parts.Inertial | None:
     local = _tensor(context.numbers(tensor.value, "", tensor), tensor, block)
     if axes is None:
         return replace(inertial, tensor=local)
-    frame = context.pose(((0.0, 0.0, 0.0), cast("tuple[Value, ...]", axes.value)), axes)
+    turn = cast("tuple[Value, ...]", axes.value)
+    frame = context.pose((ZERO, *turn) if turn and isinstance(turn[0], str) else (ZERO, turn), axes)
     return replace(inertial, tensor=rotate_tensor(frame.quat, local), written=parts.InertialWritten(frame, local))
 
 

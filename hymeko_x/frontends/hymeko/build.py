@@ -86,6 +86,8 @@ class Build:
         """Keep the block's extras and notations beside its element."""
         if block.extras:
             self.extras[key] = (*self.extras.get(key, ()), *block.extras)
+        if block.classes:
+            self.stereotypes[key] = block.classes
         if block.written:
             self.notations[key] = {**self.notations.get(key, {}), **block.written}
 

@@ -20,13 +20,23 @@ def read_assets(sections: list[Element], draft: Draft) -> None:
     for section in sections:
         for element in section.take_children("texture"):
             read_texture(element, draft)
+    meshes = len(draft.vertices)
     for section in sections:
         for element in section.take_children("mesh"):
             read_mesh(element, draft)
+    _note_order([key.name for key in list(draft.vertices)[meshes:]], draft)
+    for section in sections:
         for element in section.take_children("material"):
             read_material(element, draft)
         for element in section.children:
             draft.keep_at_root(element, "asset")
+
+
+def _note_order(names: list[str], draft: Draft) -> None:
+    """Meshes are defined where they are used first, elsewhere; their order in the file is a list of places among the sorted names."""
+    places = {name: place for place, name in enumerate(sorted(names))}
+    if names != sorted(names):
+        draft.note_root("meshes", " ".join([str(places[name]) for name in names]))
 
 
 def _uri(element: Element, file: str, folder: str, draft: Draft) -> str:
@@ -50,7 +60,7 @@ def read_mesh(element: Element, draft: Draft) -> None:
     base = draft.base(element, key)
     found = draft.values(element, MESH, base, key)
     faces = tuple(map(int, found["face"]))
-    draft.vertices[key] = Mesh(uri, found["scale"], None if name == stem else name, found["vertex"], faces)
+    draft.vertices[key] = Mesh(uri, found["scale"], None if name in (stem, key.name) else name, found["vertex"], faces)
     draft.keep(element, key)
     if key in draft.extras or key in draft.notations or key in draft.stereotypes:
         draft.show(key)
@@ -66,7 +76,9 @@ def read_texture(element: Element, draft: Draft) -> None:
     draft.origins[key] = element.origin
     draft.register(element, "texture", name or stem or _skybox(element), key)
     draft.base(element, key)
-    draft.vertices[key] = Texture(uri, None if name == stem else name)
+    draft.vertices[key] = Texture(uri, None if name == key.name else name)
+    if not (name or stem):
+        draft.note(key, "unnamed", "yes")
     draft.keep(element, key)
     draft.show(key)
 

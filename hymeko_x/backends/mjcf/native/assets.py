@@ -8,6 +8,7 @@ from hymeko_x.backends.mjcf.native.sheet import section_lines
 from hymeko_x.formats.mjcf_codec import MATERIAL, MESH
 from hymeko_x.formats.mjcf_words import below
 from hymeko_x.ir.graph import Arc
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Layer, Material, Mesh, Texture
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ def write_assets(sheet: Sheet) -> None:
     mechanism = sheet.mechanism
     textures = list(mechanism.vertices(Texture))
     materials = list(mechanism.vertices(Material))
-    meshes = list(mechanism.vertices(Mesh))
+    meshes = _in_order(list(mechanism.vertices(Mesh)), mechanism.notation(ROOT, "meshes"))
     rest = section_lines(sheet, "asset")
     if not (textures or materials or meshes or rest):
         return
@@ -38,6 +39,15 @@ def write_assets(sheet: Sheet) -> None:
     sheet.text.close()
 
 
+def _in_order(meshes: list[tuple[Id, Mesh]], places: str | None) -> list[tuple[Id, Mesh]]:
+    """The meshes in the order of their file, while there are as many as there were."""
+    order = [int(place) for place in (places or "").split() if place.isdigit()]
+    if sorted(order) != list(range(len(meshes))):
+        return meshes
+    by_name = sorted(meshes, key=lambda item: item[0].name)
+    return [by_name[place] for place in order]
+
+
 def _file(sheet: Sheet, uri: str | None, folder: str) -> str | None:
     """The file as it is called in the folder that <compiler> names."""
     if uri is None:
@@ -47,7 +57,7 @@ def _file(sheet: Sheet, uri: str | None, folder: str) -> str | None:
 
 def _texture(sheet: Sheet, key: Id, texture: Texture) -> Attributes:
     return {
-        "name": texture.name,
+        "name": sheet.name(key),
         "class": sheet.own_class(key),
         "file": _file(sheet, texture.uri, sheet.settings.texture_folder),
         **sheet.said(key),
@@ -62,7 +72,7 @@ def _mesh(sheet: Sheet, key: Id, mesh: Mesh) -> Attributes:
     if mesh.faces and "face" in found:
         found["face"] = " ".join(map(str, mesh.faces))
     return {
-        "name": mesh.name,
+        "name": sheet.name(key),
         "class": own_class,
         "file": _file(sheet, mesh.uri, sheet.settings.mesh_folder),
         **found,

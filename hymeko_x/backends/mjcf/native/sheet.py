@@ -55,8 +55,10 @@ class Sheet:
     def name(self, key: Id) -> str | None:
         """The name to print; None for what its author left unnamed."""
         part = self.mechanism.graph.vertices.get(key)
-        if isinstance(part, Mesh | Texture):
+        if isinstance(part, Mesh | Texture) and part.name:
             return part.name
+        if isinstance(part, Mesh) and part.uri and file_stem(part.uri) == key.name:
+            return None
         return None if self.mechanism.notation(key, "unnamed") else key.name
 
     def reference(self, arc: RobotArc) -> str:
@@ -72,7 +74,7 @@ class Sheet:
             return (edge.data.name if edge is not None and isinstance(edge.data, Shape) else None) or key.name
         part = self.mechanism.graph.vertices.get(key)
         if isinstance(part, Mesh | Texture):
-            return part.name or (file_stem(part.uri) if part.uri else key.name)
+            return part.name or key.name
         return key.name
 
     # ---- attributes --------------------------------------------------------------------------------------------------------
