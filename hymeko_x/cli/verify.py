@@ -36,6 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def verify_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of every verb that verifies."""
     parser.add_argument("--samples", type=_count, default=100, metavar="N", help="random configurations to compare at (default 100)")
+    parser.add_argument("--no-meshes", dest="meshes", action="store_false", help="do not read mesh files, which takes most of the time")
     parser.add_argument("--seed", type=int, default=0, metavar="S", help="where the random numbers start (default 0)")
 
 
@@ -56,6 +57,7 @@ def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = 
         samples=chosen.samples,
         seed=chosen.seed,
         structure=structure,
+        meshes=chosen.meshes,
         packages=dict(chosen.package),
         search_path=search_path(os.environ),
         arguments=dict(chosen.arg),

@@ -33,6 +33,7 @@ def verify(
     samples: int = 100,
     seed: int = 0,
     structure: bool = False,
+    meshes: bool = True,
     packages: Packages | None = None,
     search_path: tuple[Path, ...] = (),
     arguments: Mapping[str, str] | None = None,
@@ -40,7 +41,8 @@ def verify(
     """Whether two robots (files, mechanisms or models) are the same one.
 
     They are compared at the zero pose, at their limits and at ``samples`` random configurations drawn with ``seed``. Bodies
-    are matched by name, or with ``structure`` by the shape of the tree. ``packages`` says where ``package://NAME`` is, ``search_path`` in
+    are matched by name, or with ``structure`` by the shape of the tree. Without ``meshes`` no mesh file is read, which is what
+    takes most of the time. ``packages`` says where ``package://NAME`` is, ``search_path`` in
     which folders packages stand, ``arguments`` the values of a xacro file's arguments.
 
     Raises: Refusal HX001, HX003 or HX301 when a file is not there, its format unknown or its engine not installed. A file
@@ -60,7 +62,7 @@ def verify(
             reasons.append(str(refusal.diagnostic.message))
     if reasons:
         return Verdict(("", ""), reason="; ".join(reasons))
-    return compare(models[0], models[1], samples=samples, seed=seed, structure=structure)
+    return compare(models[0], models[1], samples=samples, seed=seed, structure=structure, meshes=meshes)
 
 
 def model_of(

@@ -23,14 +23,16 @@ if TYPE_CHECKING:
 _OPINION = 2  # configurations at which Pinocchio is asked about the batched kinematics
 
 
-def compare(a: KinematicModel, b: KinematicModel, *, samples: int = 100, seed: int = 0, structure: bool = False) -> Verdict:
+def compare(
+    a: KinematicModel, b: KinematicModel, *, samples: int = 100, seed: int = 0, structure: bool = False, meshes: bool = True
+) -> Verdict:
     """Whether two models are the same robot, at ``samples`` configurations drawn with ``seed`` in the first one's limits."""
     engines = a.engine, b.engine
     for model in (a, b):
         reason = _unusable(model)
         if reason:
             return Verdict(engines, reason=reason)
-    pair = pair_up(a, b, match(a, b, structure=structure), samples, seed)
+    pair = pair_up(a, b, match(a, b, structure=structure), samples, seed, meshes=meshes)
     for model, q in ((a, pair.q_a), (b, pair.q_b)):
         apart = disagreement(model, q[-_OPINION:])
         if apart:

@@ -13,7 +13,7 @@ from hymeko_x.verify.spatial import rigid, rotation_about, rotation_from_quat
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_POSES_AT_ONCE = 200_000  # bounds the memory of one batch to a few tens of MB, however many samples are asked for
+_POSES_AT_ONCE = 20_000  # bounds the memory of one batch to a few MB, however many samples are asked for
 
 
 @dataclass(frozen=True, slots=True, eq=False)

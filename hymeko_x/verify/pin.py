@@ -16,7 +16,7 @@ import pinocchio as pin
 from hymeko_x.verify.model import WORLD, Array, Body, Dof, Index, Kind, KinematicModel
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
 GRAVITY = (0.0, 0.0, -9.81)
 
@@ -36,36 +36,38 @@ class PinModel:
     frames: Mapping[int, int]
     joints: Mapping[int, int]
 
-    def configuration(self, q: Array) -> Array:
-        """One configuration (width,) in Pinocchio's coordinates: displacements, and quaternions as (x, y, z, w)."""
-        out = np.array(pin.neutral(self.model))
+    def configurations(self, q: Array) -> Array:
+        """Configurations (n, width) in Pinocchio's coordinates: displacements, and quaternions as (x, y, z, w)."""
+        out = np.broadcast_to(pin.neutral(self.model), (len(q), self.model.nq)).copy()
         for index, joint in self.joints.items():
             dof, column = self.source.dofs[index], self.source.columns[index]
             at = self.model.joints[joint].idx_q
             if dof.kind.scalar:
-                out[at] = q[column] - dof.ref
+                out[:, at] = q[:, column] - dof.ref
             elif dof.kind is Kind.BALL:
-                out[at : at + 4] = _xyzw(q[column : column + 4])
+                out[:, at : at + 4] = _xyzw(q[:, column : column + 4])
             else:
-                out[at : at + 3] = q[column : column + 3]
-                out[at + 3 : at + 7] = _xyzw(q[column + 3 : column + 7])
+                out[:, at : at + 3] = q[:, column : column + 3]
+                out[:, at + 3 : at + 7] = _xyzw(q[:, column + 3 : column + 7])
         return out
 
     def poses(self, q: Array) -> Array:
         """World poses (n, bodies, 4, 4) of the tree's bodies, in the order of ``frames``, at configurations (n, width)."""
         out = np.empty((len(q), len(self.frames), 4, 4))
-        for row, values in enumerate(q):
-            pin.framesForwardKinematics(self.model, self.data, self.configuration(values))
+        for row, values in enumerate(self.configurations(q)):
+            pin.framesForwardKinematics(self.model, self.data, values)
             out[row] = [self.data.oMf[frame].homogeneous for frame in self.frames.values()]
         return out
 
-    def dynamics(self, q: Array, columns: Index) -> tuple[Array, Array]:
-        """Mass matrix and gravity torque of these velocity columns at one configuration (width,), without armature."""
-        values = self.configuration(q)
-        mass = np.triu(pin.crba(self.model, self.data, values))
-        full = mass + np.triu(mass, 1).T
-        gravity = np.array(pin.computeGeneralizedGravity(self.model, self.data, values))
-        return full[np.ix_(columns, columns)], gravity[columns]
+    def dynamics(self, q: Array, columns: Index) -> Iterator[tuple[Array, Array]]:
+        """Mass matrix and gravity torque of these velocity columns at each configuration (n, width), without armature."""
+        chosen = np.ix_(columns, columns)
+        lower = np.tri(self.model.nv, k=-1, dtype=bool)
+        for values in self.configurations(q):
+            mass = np.array(pin.crba(self.model, self.data, values))  # only its upper triangle is filled
+            np.copyto(mass, mass.T, where=lower)
+            gravity = np.array(pin.computeGeneralizedGravity(self.model, self.data, values))
+            yield mass[chosen], gravity[columns]
 
     def columns(self, dofs: Sequence[int]) -> Index:
         """The velocity columns of these dofs, in their order."""
@@ -74,7 +76,7 @@ class PinModel:
 
 
 def _xyzw(quat: Array) -> Array:
-    turned: Array = np.roll(quat / np.linalg.norm(quat), -1)
+    turned: Array = np.roll(quat / np.linalg.norm(quat, axis=-1, keepdims=True), -1, axis=-1)
     return turned
 
 

@@ -28,6 +28,8 @@ MASS_MATRIX = 1e-8
 class Pair:
     """Two robots, their match, the same configurations (n, width) in the coordinates of each, and notes for the verdict.
 
+    ``meshes`` says whether mesh files are to be read and compared.
+
     ``shifts`` holds for each pair of dofs by how much the second's coordinate is larger for the same pose.
     """
 
@@ -37,6 +39,7 @@ class Pair:
     q_a: Array
     q_b: Array
     shifts: tuple[float, ...]
+    meshes: bool = True
     notes: list[str] = field(default_factory=list)
 
     @cached_property
@@ -70,7 +73,7 @@ class Pair:
         return ("in the zero pose", "at all lower limits", "at all upper limits")[row] if row < 3 else f"at sample {row - 2}"
 
 
-def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, seed: int) -> Pair:
+def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, seed: int, *, meshes: bool = True) -> Pair:
     """Configurations drawn in the first robot's limits and said in the coordinates of both."""
     rng = np.random.default_rng(seed)
     q_a = draw(a, samples, rng)
@@ -82,7 +85,7 @@ def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, 
     follow(b, q_b)
     for turned in matched.turned:
         _turn_alike(a, b, turned, q_a, q_b, rng)
-    return Pair(a, b, matched, q_a, q_b, shifts, list(matched.notes))
+    return Pair(a, b, matched, q_a, q_b, shifts, meshes, list(matched.notes))
 
 
 def worst(quantity: str, unit: str, differences: Array, allowed: Array | float, label: Callable[[int], str]) -> Check:

@@ -45,7 +45,7 @@ class _Result:
 
 def check_shapes(pair: Pair) -> Iterator[Check]:
     """Collision shapes and visual shapes of every pair of bodies."""
-    meshes = Meshes()
+    meshes = Meshes(read=pair.meshes)
     for feature, (word, roles) in _ROLES.items():
         if not pair.both_say(feature):
             pair.notes.append(
