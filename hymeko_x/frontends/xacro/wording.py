@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     """A message of the child, as JSON gives it."""
 
 LONGEST_TEXT = 600
+_KILLED = (-9, -24)
+"""What the system does to a process whose time is up, where it had no chance to say so: SIGKILL, SIGXCPU."""
 _XACRO_NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
@@ -84,6 +86,9 @@ def ended(status: int, source: str, limits: Limits, *, slow: bool) -> Refusal:
     """The refusal for a child that ended without a word, with its exit status; ``slow`` when the clock ran out."""
     if slow:
         said = f"it takes more than {limits.wall_seconds:g} s"
+    elif status in _KILLED:
+        said, _ = _limit("time", limits)
+        return refuse(codes.EXPANSION_LIMIT, said, Origin(source))
     else:
         bounds = f"the limits are {limits.cpu_seconds} s of processor time and {limits.memory_bytes // 2**20} MiB of memory"
         said = f"its process ended with status {status}; {bounds}"

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.frontends.xacro_child.channel import Trouble
+from hymeko_x.frontends.xacro_child.places import EXPRESSION
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -31,12 +32,12 @@ def compiled(text: str) -> CodeType:
 
     xacro itself looks only at the names outside of those.
     """
-    tree = ast.parse(text.strip(), "<expression>", "eval")
+    tree = ast.parse(text.strip(), EXPRESSION, "eval")
     for node in ast.walk(tree):
         name = node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
         if name.startswith("__") or (isinstance(node, ast.Attribute) and name in FORBIDDEN_ATTRIBUTES):
             raise Trouble("forbidden", name=name, text=text)
-    return compile(tree, "<expression>", "eval")
+    return compile(tree, EXPRESSION, "eval")
 
 
 def safe_eval(text: str, symbols: dict[str, Any], local: Mapping[str, Any] | None = None) -> Any:

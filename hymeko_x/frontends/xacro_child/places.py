@@ -31,6 +31,8 @@ class KeepPlace:
             target.setUserData(key, data, self)
 
 
+EXPRESSION = "<expression>"
+"""The file name of the code of expressions."""
 PLACE = "place"
 KEEP_PLACE = KeepPlace()
 
@@ -73,7 +75,9 @@ def place_of(node: Any) -> Place | None:
 
 
 def place_in(frame: FrameType) -> Place | None:
-    """The place of the element that a function of xacro is working on."""
+    """The place of the element that a function of xacro is working on; None for the frames of expressions."""
+    if frame.f_code.co_filename == EXPRESSION:
+        return None
     values = (frame.f_locals.get(name) for name in ("elt", "node", "tag"))
     return next((place for value in values if isinstance(value, xml.dom.minidom.Node) and (place := place_of(value))), None)
 
