@@ -5,11 +5,12 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 JOBS ?= 2
 
-.PHONY: demo test lint types pytest clean help
+.PHONY: demo test lint types pytest bench clean help
 
 help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
 	@echo "make test   ruff, mypy --strict, pytest"
+	@echo "make bench  speed as ratios against yardsticks timed in the same run"
 	@echo "make clean  remove .venv and everything that was built"
 
 $(STAMP): pyproject.toml
@@ -33,6 +34,9 @@ types: $(STAMP)
 
 pytest: $(STAMP)
 	$(BIN)/python -m pytest -W error -n $(JOBS) tests
+
+bench: $(STAMP)
+	@for name in parse load chain; do $(BIN)/python benchmarks/$$name.py || failed=1; done; exit $${failed:-0}
 
 clean:
 	rm -rf .venv build dist demo .mypy_cache .pytest_cache .ruff_cache
