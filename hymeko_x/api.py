@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -24,14 +25,24 @@ if TYPE_CHECKING:
     Actuators = Literal["none", "motor", "position", "velocity"] | None
 
 
-def load(path: Place, format: str | None = None, *, packages: Mapping[str, Place] | None = None, report: Report | None = None) -> Mechanism:
+def load(
+    path: Place,
+    format: str | None = None,
+    *,
+    packages: Mapping[str, Place] | None = None,
+    arguments: Mapping[str, str] | None = None,
+    environment: Mapping[str, str] | None = None,
+    report: Report | None = None,
+) -> Mechanism:
     """The robot in a file. The format is taken from suffix and content unless it is given.
 
-    ``packages`` says where `package://NAME` is. What there is to say goes into ``report``.
+    ``packages`` says where `package://NAME` is, ``arguments`` and ``environment`` what $(arg NAME) and $(env NAME) are in
+    a xacro file. What there is to say goes into ``report``.
 
     Raises: Refusal when the file cannot be read.
     """
     source = disk.open_source(os.fspath(path), packages=_folders(packages))
+    source = replace(source, arguments=dict(arguments or {}), environment=dict(environment or {}))
     return pipeline.read(source, _input_format(source, format), Report() if report is None else report)
 
 
@@ -87,6 +98,8 @@ def convert(
     from_format: str | None = None,
     to_format: str | None = None,
     packages: Mapping[str, Place] | None = None,
+    arguments: Mapping[str, str] | None = None,
+    environment: Mapping[str, str] | None = None,
     base: Base = None,
     actuators: Actuators = None,
     assets: Assets = None,
@@ -97,6 +110,7 @@ def convert(
     """
     report = Report()
     given = disk.open_source(os.fspath(source), packages=_folders(packages))
+    given = replace(given, arguments=dict(arguments or {}), environment=dict(environment or {}))
     robot = pipeline.read(given, _input_format(given, from_format), report)
     form = formats.by_name(to_format) if to_format else formats.of_output(os.fspath(target))
     options = Options(base=base, actuators=actuators)

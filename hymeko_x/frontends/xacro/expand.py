@@ -38,7 +38,7 @@ MOST_BYTES = 2**30
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What an expansion may use. The slowest of some hundred real robots takes a second and 100 MB."""
+    """What an expansion may use: a hundred times what a real robot needs, and some 25,000 links of macros."""
 
     cpu_seconds: int = 20
     wall_seconds: float = 60.0
