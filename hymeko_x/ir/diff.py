@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, is_dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
@@ -42,9 +43,11 @@ class Tolerance:
     relative: float = 0.0
 
     def accepts(self, a: float, b: float) -> bool:
-        """Whether two numbers count as equal; infinities and NaN equal themselves."""
+        """Whether two numbers count as equal; infinities and NaN equal themselves, and nothing else."""
         if a == b or (a != a and b != b):
             return True
+        if math.isinf(a) or math.isinf(b):
+            return False
         return abs(a - b) <= self.absolute + self.relative * max(abs(a), abs(b))
 
 

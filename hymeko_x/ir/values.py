@@ -72,7 +72,7 @@ def unit_quat(quat: Quat) -> Quat:
     """
     w, x, y, z = quat
     square = w * w + x * x + y * y + z * z
-    if abs(square - 1.0) >= _UNIT_TOLERANCE:
+    if not abs(square - 1.0) < _UNIT_TOLERANCE:  # also where a component is not a number
         length = math.hypot(w, x, y, z)
         if length < 1e-300 or not math.isfinite(length):
             raise ZeroDivisionError(f"{quat} is no rotation")
@@ -100,7 +100,7 @@ def quat_from_rpy(rpy: Vec3) -> Quat:
 
     Source: URDF <origin rpy>: fixed axes, roll about x first.
     """
-    roll, pitch, yaw = (angle / 2.0 for angle in rpy)
+    roll, pitch, yaw = rpy[0] / 2.0, rpy[1] / 2.0, rpy[2] / 2.0
     cr, sr, cp, sp, cy, sy = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch), math.cos(yaw), math.sin(yaw)
     return unit_quat(
         (
