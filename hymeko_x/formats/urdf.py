@@ -41,19 +41,16 @@ JOINT_TYPES: Mapping[str, JointType] = MappingProxyType(
 """The last two are not in the standard. MuJoCo and Bullet read ``spherical``; both are written only where they were read."""
 
 
-_BY_DOFS: Mapping[tuple[tuple[DofKind, ...], bool], str] = MappingProxyType(
-    {(known.dofs, known.bounded): word for word, known in JOINT_TYPES.items() if DofKind.BALL not in known.dofs}
-)
-
-
 def default_type(joint: Joint) -> str | None:
     """The word for a joint by its dofs; None when URDF has none. A slide is always bounded, a hinge if it has limits."""
     dofs = joint.dofs
     if len(dofs) != 1:
-        return _BY_DOFS.get((tuple(dof.kind for dof in dofs), False))
+        kinds = tuple(dof.kind for dof in dofs)
+        return "planar" if kinds == JOINT_TYPES["planar"].dofs else None if dofs else "fixed"
     kind, limits = dofs[0].kind, dofs[0].limits
-    bounded = kind is DofKind.SLIDE or (kind is DofKind.HINGE and (limits.lower is not None or limits.upper is not None))
-    return _BY_DOFS.get(((kind,), bounded))
+    if kind is DofKind.HINGE:
+        return "continuous" if limits.lower is None and limits.upper is None else "revolute"
+    return "prismatic" if kind is DofKind.SLIDE else "floating" if kind is DofKind.FREE else None
 
 
 NO_LIMIT = 1.7976931348623157e308

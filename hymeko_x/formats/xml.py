@@ -31,6 +31,14 @@ FOLLOWING = "following"
 """The paths of what stands before and after the root element."""
 
 
+KNOWN_PREFIXES = {
+    "xacro": "http://www.ros.org/wiki/xacro",
+    "drake": "http://drake.mit.edu",
+    "gz": "http://gazebosim.org/schema",
+}
+"""What an undeclared prefix stands for; others become ``urn:prefix``."""
+
+
 class Node:
     """An XML element whose attributes, children and text are taken out one by one.
 
@@ -155,8 +163,9 @@ class Node:
 class Leftovers:
     """Collects what nobody took out of a file, whose bytes are ``data`` in UTF-8, element by element."""
 
-    def __init__(self, root: Node, data: bytes, format_name: str) -> None:
+    def __init__(self, root: Node, data: bytes, format_name: str, report: Report) -> None:
         self._root = root
+        self._report = report
         self._data = data
         self._format = format_name
         self._found: dict[Id, list[Extra]] = {}
@@ -164,12 +173,35 @@ class Leftovers:
 
     def verbatim(self, node: Node) -> str:
         """The element as the file has it, with the namespace declarations that it needs from further up."""
+        self._declare_prefixes(node)
         end = node.end
         closed_itself = not node.kids and node.text is None and self._data[end - 2 : end] == b"/>"
         if not closed_itself:
             end = self._data.index(b">", end) + 1
         text = self._data[node.start : end].decode().replace("\r\n", "\n").replace("\r", "\n")
         return _with_declarations(text, node)
+
+    def _declare_prefixes(self, node: Node) -> None:
+        """Declare at the root the prefixes in an element that are declared nowhere."""
+        stack = [node]
+        while stack:
+            member = stack.pop()
+            self._declare_prefix(member, member.tag)
+            for name in member.attributes:
+                self._declare_prefix(member, name)
+            stack.extend(reversed(member.kids))
+
+    def _declare_prefix(self, node: Node, name: str) -> None:
+        prefix, colon, _ = name.partition(":")
+        if not colon or prefix in ("xml", "xmlns"):
+            return
+        above: Node | None = node
+        while above is not None and f"xmlns:{prefix}" not in above.attributes:
+            above = above.parent
+        if above is None:
+            self._root.attributes[f"xmlns:{prefix}"] = KNOWN_PREFIXES.get(prefix, f"urn:{prefix}")
+            said = f"undeclared prefix '{prefix}'; read as if the root declared it"
+            self._report.warn(codes.REPAIRED_XML, said, node.origin)
 
     def close(self, node: Node) -> list[Node]:
         """Collect what is left in a child of the root. Returns its nodes in which child elements were left."""
@@ -194,6 +226,8 @@ class Leftovers:
     def _keep(self, node: Node) -> None:
         owner, path = _place_below_owner(node)
         found = self._found.setdefault(owner, [])
+        for name in list(node.attributes):
+            self._declare_prefix(node, name)
         for name in sorted(node.attributes):
             found.append(Extra(self._format, _below(path, f"@{name}"), node.attributes[name]))
         if node.text is not None:
@@ -207,13 +241,13 @@ class Leftovers:
 
     def finish(self) -> dict[Id, tuple[Extra, ...]]:
         """Everything that was left, by element. The root's comments, and its namespaces (``@xmlns:drake``), are among it."""
-        self._keep(self._root)
         own = self._found.setdefault(ROOT, [])
         for place, kid in enumerate(self._root.kids):
             if not kid.is_element:
                 own.append(outer_extra(self._format, "", kid, place))
             elif not kid.taken:
                 own.append(Extra(self._format, "", self.verbatim(kid), place))
+        self._keep(self._root)  # last, since prefixes may have been declared at the root
         return {owner: tuple(sorted(extras, key=_by_place)) for owner, extras in self._found.items() if extras}
 
     @property
@@ -317,6 +351,8 @@ def take_numbers(node: Node, attribute: str, count: int, report: Report, *, inst
 
 def take_number(node: Node, attribute: str, report: Report, *, instead: str) -> float | None:
     """The one number of an attribute; None when it is missing or bad. See :func:`take_numbers`."""
+    if attribute not in node.attributes:
+        return None
     numbers = take_numbers(node, attribute, 1, report, instead=instead)
     return None if numbers is None else numbers[0]
 

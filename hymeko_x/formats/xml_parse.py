@@ -26,12 +26,6 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 256 * 1024 * 1024
 MAX_DEPTH = 2048
-KNOWN_PREFIXES = {
-    "xacro": "http://www.ros.org/wiki/xacro",
-    "drake": "http://drake.mit.edu",
-    "gz": "http://gazebosim.org/schema",
-}
-"""What an undeclared prefix stands for; others become ``urn:prefix``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +52,6 @@ def parse(source: Source, report: Report) -> Document:
         said = Report()
         document = _read_again(source, said, error)
     report.extend(said)
-    _declare_prefixes(document, report)
     return document
 
 
@@ -159,26 +152,6 @@ class _Builder:
     def _entity(self, *_: object) -> None:
         place = Origin(self._file, self._parser.CurrentLineNumber)
         raise refuse(codes.ENTITIES, "the file defines XML entities, which are never expanded", place)
-
-
-# ---- prefixes ----------------------------------------------------------------------------------------------------------------
-
-
-def _declare_prefixes(document: Document, report: Report) -> None:
-    """Declare at the root what is declared nowhere. A quick look at the text first: few files have prefixes at all."""
-    declared = {found.decode() for found in re.findall(rb"\sxmlns:([^\s=]+)\s*=", document.data)} | {"xml", "xmlns"}
-    if not any(found.decode() not in declared for found in set(_PREFIXED.findall(document.data))):
-        return
-    stack = [document.root]
-    while stack:
-        node = stack.pop()
-        for name in (node.tag, *node.attributes):
-            prefix, colon, _ = name.partition(":")
-            if colon and prefix not in declared:
-                declared.add(prefix)
-                document.root.attributes[f"xmlns:{prefix}"] = KNOWN_PREFIXES.get(prefix, f"urn:{prefix}")
-                report.warn(codes.REPAIRED_XML, f"undeclared prefix '{prefix}'; read as if the root declared it", node.origin)
-        stack.extend(reversed(node.kids))
 
 
 # ---- the second and the third try --------------------------------------------------------------------------------------------
@@ -282,7 +255,6 @@ _DECLARATION = re.compile(r"<\?xml\s[^?>]*\?>")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 _BARE_AMPERSAND = re.compile(r"&(?![A-Za-z_][\w.-]*;|#\d+;|#x[0-9a-fA-F]+;)")
 _NO_BLANK = re.compile(r"""(=\s*(?:"[^"]*"|'[^']*'))(?=[\w:])""")
-_PREFIXED = re.compile(rb"[<\s]([A-Za-z_][\w.-]*):[A-Za-z_]")
 _ENCODING = re.compile(rb"""\s*<\?xml[^?>]*encoding\s*=\s*["']([\w.-]+)""")
 
 

@@ -36,7 +36,7 @@ def read(source: Source, report: Report) -> Mechanism:
     document = parse(source, report)
     root = document.root
     _check_root(root)
-    draft = Draft(report, Leftovers(root, document.data, words.FORMAT))
+    draft = Draft(report, Leftovers(root, document.data, words.FORMAT, report))
     name = _read_name(root, source, draft)
     _read_version(root, draft)
     for node in root.children("material"):

@@ -59,13 +59,19 @@ def _read_joint(node: Node, draft: Draft) -> Joint:
 
 
 def _has_ends(node: Node, draft: Draft) -> bool:
-    ends = {kid.tag: kid.attributes.get("link") for kid in reversed(node.kids) if kid.tag in ("parent", "child")}
-    missing = [f"<{tag} link>" for tag in ("parent", "child") if ends.get(tag) is None]
+    missing = [f"<{tag} link>" for tag in ("parent", "child") if not _names_link(node, tag)]
     if missing:
         name = node.attributes.get("name", "")
         said = f"joint '{name}' has no {' and no '.join(missing)}; it is kept as written and is not part of the tree"
         draft.report.error(codes.MISSING_PART, said, node.origin, element=f"joint '{name}'")
     return not missing
+
+
+def _names_link(joint: Node, tag: str) -> bool:
+    for kid in joint.kids:
+        if kid.tag == tag:
+            return "link" in kid.attributes
+    return False
 
 
 def _read_end(joint: Node, tag: str, draft: Draft) -> Id:
@@ -183,8 +189,7 @@ def _read_limits(joint: Node, draft: Draft) -> Limits:
         draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.about)
         return UNLIMITED
     missing = [name for name in ("effort", "velocity") if name not in node.attributes]
-    bounds = [_bound(node, name, draft) for name in ("lower", "upper")]
-    limits = _rates(node, Limits(*bounds), draft)
+    limits = _rates(node, Limits(_bound(node, "lower", draft), _bound(node, "upper", draft)), draft)
     _check_limits(joint, node, limits, missing, draft)
     return limits
 
@@ -207,11 +212,18 @@ def _bound(node: Node, name: str, draft: Draft) -> float | None:
 
 
 def _rates(node: Node, bounds: Limits, draft: Draft) -> Limits:
-    velocity, effort, acceleration, jerk = (
-        _limited(take_number(node, name, draft.report, instead="unlimited is used"))
-        for name in ("velocity", "effort", "acceleration", "jerk")
+    return Limits(
+        bounds.lower,
+        bounds.upper,
+        _rate(node, "velocity", draft),
+        _rate(node, "effort", draft),
+        _rate(node, "acceleration", draft),
+        _rate(node, "jerk", draft),
     )
-    return Limits(bounds.lower, bounds.upper, velocity, effort, acceleration, jerk)
+
+
+def _rate(node: Node, name: str, draft: Draft) -> float | None:
+    return _limited(take_number(node, name, draft.report, instead="unlimited is used"))
 
 
 def _limited(value: float | None) -> float | None:
