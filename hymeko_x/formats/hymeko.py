@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 class Word(NamedTuple):
     """A field of the language: its word, the part's attribute, the form of its value, and its dimension for units.
 
-    Forms: number, integer, text, flag, numbers (any count), vec3, integers, limits (two numbers).
+    Forms: number, text, flag, numbers (any count), vec3, rgba (three numbers or four), integers (any count), pixels (two).
     """
 
     word: str
@@ -41,7 +41,7 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
             parts.Material,
             (
                 Word("name", "name", "text"),
-                Word("rgba", "rgba", "numbers"),
+                Word("rgba", "rgba", "rgba"),
                 Word("specular", "specular", "number"),
                 Word("shininess", "shininess", "number"),
                 Word("reflectance", "reflectance", "number"),
@@ -63,9 +63,7 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
         ),
         "actuator": PartWords(parts.Actuator, (_TYPE,), open=True),
         "sensor": PartWords(parts.Sensor, (_TYPE, Word("rate", "rate", "number")), open=True),
-        "camera": PartWords(
-            parts.Camera, (Word("fovy", "fovy", "number", "angle"), Word("resolution", "resolution", "integers")), open=True
-        ),
+        "camera": PartWords(parts.Camera, (Word("fovy", "fovy", "number", "angle"), Word("resolution", "resolution", "pixels")), open=True),
         "light": PartWords(parts.Light, (_TYPE, Word("diffuse", "diffuse", "vec3")), open=True),
         "pose": PartWords(parts.PoseSet, (Word("group", "group", "text"), Word("time", "time", "number", "time")), open=True),
         "spring": PartWords(parts.Spring, (Word("stiffness", "stiffness", "number"), Word("rest", "rest", "number"))),
@@ -86,7 +84,7 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
                 Word("friction", "friction", "number"),
                 Word("armature", "armature", "number"),
                 Word("width", "width", "number", "length"),
-                Word("rgba", "rgba", "numbers"),
+                Word("rgba", "rgba", "rgba"),
             ),
             open=True,
         ),
@@ -149,7 +147,7 @@ CALIBRATION_WORDS = (
 
 SHAPE_WORDS = (
     Word("name", "name", "text"),
-    Word("rgba", "rgba", "numbers"),
+    Word("rgba", "rgba", "rgba"),
     Word("mass", "mass", "number", "mass"),
     Word("density", "density", "number"),
     Word("friction", "friction", "numbers"),
@@ -212,6 +210,7 @@ _NO_AXIS = frozenset({parts.DofKind.BALL, parts.DofKind.FREE})
 def default_axis(kind: parts.DofKind) -> tuple[float, float, float]:
     """The axis of a dof that names none: z, and what every format says where no axis has a meaning."""
     return X if kind in _NO_AXIS else (0.0, 0.0, 1.0)
+
 
 POSED_EDGES = frozenset({"joint", "shape", "mount", "loop"})
 """Edges whose arcs are weighted with poses; the others carry plain numbers."""

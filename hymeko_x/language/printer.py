@@ -216,9 +216,9 @@ def _field(field: Field) -> str:
     name = print_name(field.name) + (f" <{field.type}>" if field.type else "")
     if field.value is None:
         return name
-    text = print_value(field.value)
-    between = "=" if isinstance(field.value, Ref) else " "
-    return f"{name}{between}{text}"
+    if isinstance(field.value, Ref):
+        return f"{name}={_ref(field.value, '')}"
+    return f"{name} {print_value(field.value)}"
 
 
 def _arc(arc: ArcItem) -> str:
@@ -231,7 +231,7 @@ def _arc(arc: ArcItem) -> str:
     return " ".join(parts)
 
 
-def _ref(ref: Ref) -> str:
+def _ref(ref: Ref, between: str = " ") -> str:
     path = ".".join(map(print_name, ref.path))
     modifier = f"{ref.modifier} " if ref.modifier else ""
-    return f"{modifier}{ref.direction} {path}" if ref.direction else path
+    return f"{modifier}{ref.direction}{between}{path}" if ref.direction else path

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from types import MappingProxyType
 
 _LENGTH = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "um": 1e-6, "µm": 1e-6, "in": 0.0254, "ft": 0.3048}
@@ -54,3 +55,9 @@ def unit_factor(unit: str) -> float | None:
         factor *= _FACTORS[name] ** (sign * int(power or "1"))
         sign = 1
     return factor
+
+
+def unit_dimension(unit: str) -> str:
+    """What the first factor of a unit measures (``rad/s``: angle), or nothing when that is none of the base dimensions."""
+    first = re.split(r"[/*·^-]", unit, maxsplit=1)[0]
+    return next((dimension for dimension, units in BASE_UNITS.items() if first in units), "")

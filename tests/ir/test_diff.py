@@ -223,7 +223,7 @@ def test_rotations_are_compared_by_their_angle() -> None:
     assert diff(turned(math.pi), turned(-math.pi), Tolerance(absolute=1e-12)) == ()
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@settings(max_examples=30, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(mechanisms(), mechanisms())
 def test_a_difference_is_found_exactly_where_mechanisms_are_not_equal(a: Mechanism, b: Mechanism) -> None:
     assert diff(a, a) == ()

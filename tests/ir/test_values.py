@@ -43,7 +43,7 @@ from hymeko_x.ir.values import (
 from tests.strategies import POSES, QUATERNIONS, VECTORS
 
 ANGLES = st.floats(-10.0, 10.0) | st.sampled_from([0.0, math.pi, -math.pi, math.pi / 2, -math.pi / 2])
-MANY = settings(max_examples=300, deadline=None)
+MANY = settings(max_examples=100, deadline=None)
 
 
 def scipy_rotation(quat: Quat) -> Rotation:

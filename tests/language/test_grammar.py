@@ -63,7 +63,7 @@ def _agree(lark: Lark, text: str) -> bool:
     return _accepts(lark, text)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(DOCUMENTS, st.randoms(use_true_random=False))
 def test_lark_and_the_machine_accept_the_same_texts(lark: Lark, document: object, chance: random.Random) -> None:
     words = _words(print_document(document))  # type: ignore[arg-type]

@@ -15,7 +15,7 @@ from hymeko_x.language.syntax import ArcItem, Document, Field, Import, Item, Nod
 from hymeko_x.source import Source
 from tests.strategies import DOCUMENTS, mechanisms
 
-FEW = settings(max_examples=120, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+FEW = settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 
 
 def text_of(mechanism: Mechanism) -> str:

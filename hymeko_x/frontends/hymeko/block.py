@@ -13,12 +13,13 @@ from hymeko_x.ir.mechanism import Extra
 from hymeko_x.ir.values import Pose, Vec3, Written, pose, pose_from_rpy
 from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, QuotedName, Ref, Value, is_list
-from hymeko_x.language.units import BASE_UNITS, unit_factor
+from hymeko_x.language.units import BASE_UNITS, unit_dimension, unit_factor
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from hymeko_x.formats.hymeko import Word
+    from hymeko_x.ir.parts import Rgba
 
 Parameter = float | str | tuple[float, ...]
 
@@ -63,6 +64,10 @@ class Context:
                     f"'{value.unit}' is not a unit that is known",
                     hint="lengths m mm, angles rad deg, mass kg g, time s ms, and products such as kg*m^2 or rad/s",
                 )
+            kind = unit_dimension(value.unit)
+            if dimension in BASE_UNITS and kind and kind != dimension:
+                message = f"{_name_of(item)} takes a unit of {dimension}, and '{value.unit}' is one of {kind}"
+                raise self.refuse(item, message, hint=f"such as {', '.join(list(BASE_UNITS[dimension])[:4])}")
             return value.number * factor_of_unit
         raise self.refuse(item, f"{_name_of(item)} takes a number, not {describe(value)}")
 
@@ -78,6 +83,14 @@ class Context:
     def vec3(self, value: Value | None, dimension: str, item: Item) -> Vec3:
         """Three numbers in SI."""
         return cast("Vec3", self.numbers(value, dimension, item, 3))
+
+    def rgba(self, value: Value | None, item: Item) -> Rgba:
+        """``[r g b a]``, or ``[r g b]`` for an opaque colour."""
+        numbers = self.numbers(value, "", item)
+        if len(numbers) not in (3, 4):
+            raise self.refuse(item, f"{_name_of(item)} takes [r g b] or [r g b a], not {len(numbers)} numbers")
+        r, g, b, a = (*numbers, 1.0)[:4]
+        return (r, g, b, a)
 
     def text(self, value: Value | None, item: Item) -> str:
         """A string, or a bare name."""
@@ -231,8 +244,11 @@ class Block:
                 return context.vec3(value, dimension, item)
             case "numbers":
                 return context.numbers(value, dimension, item)
-            case "integers":
-                return tuple(self._integer(number, item) for number in context.numbers(value, "", item))
+            case "rgba":
+                return context.rgba(value, item)
+            case "integers" | "pixels":
+                count = 2 if word.form == "pixels" else None
+                return tuple(self._integer(number, item) for number in context.numbers(value, "", item, count))
             case "flag":
                 return self._flag(item)
             case _:

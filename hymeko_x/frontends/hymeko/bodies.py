@@ -232,9 +232,5 @@ def _material(build: Build, block: Block, key: Id, scope: Scope) -> Id | None:
     if color is None:
         return None
     material = build.name_after_place("material", f"{key.name}/material", color)
-    numbers = block.context.numbers(color.value, "", color)
-    if len(numbers) not in (3, 4):
-        raise block.context.refuse(color, f"'color' takes [r g b] or [r g b a], not {len(numbers)} numbers")
-    r, g, b, a = (*numbers, 1.0)[:4]
-    build.vertices[material] = parts.Material(None, (r, g, b, a))
+    build.vertices[material] = parts.Material(None, block.context.rgba(color.value, color))
     return material
