@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 MOST_BYTES = 2**30
 MOST_FOLDERS = 20_000
 """How many folders below the search path are looked at for packages."""
+MOST_WILDCARDS = 4
+"""In how many parts of a path there may be wildcards: each can multiply the folders that are looked into."""
 
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):/*")  # one letter would be a Windows drive
 _PACKAGE_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
@@ -82,10 +84,10 @@ class DiskFiles:
         return next((str(folder) for folder in near if _is_form(_words(folder.name), words) and self._may_enter(folder)), None)
 
     def match(self, pattern: str) -> list[str]:
-        """The files that a path with wildcards (`*`, `?`, `[a-z]`) in its parts names, sorted."""
-        if not 0 < len(pattern) < 4096 or "\0" in pattern:
+        """The files that a path with wildcards (`*`, `?`, `[a-z]`) in at most four of its parts names, sorted."""
+        start, *parts = (self.base / pattern).parts or ("",)
+        if "\0" in pattern or sum(bool(_WILDCARD.search(part)) for part in parts) > MOST_WILDCARDS:
             return []
-        start, *parts = (self.base / pattern).parts
         places = [Path(start)]
         for part in parts:
             step = self._matching(places, part) if _WILDCARD.search(part) else [place / part for place in places]

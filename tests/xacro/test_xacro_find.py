@@ -140,3 +140,11 @@ def read_or_refusal(source: Source, report: Report) -> object:
         return refusal.diagnostic.code
     assert [key.name for key in mechanism.graph.vertices if key.kind == "body"] == ["a"]
     return None
+
+
+def test_a_pattern_that_would_look_everywhere_names_nothing(folder: Folder) -> None:
+    folder.put("a/b/c.xacro", "")
+    files = DiskFiles(folder.path)
+    assert files.match("*/?/[a-c]*.xacro") == [str(folder.path / "a/b/c.xacro")]
+    assert files.match("*/../*/../*/../*/../a/b/*.xacro") == []
+    assert [files.match(pattern) for pattern in ("", "*\0", "no/*", "a", "x" * 5000 + "*")] == [[], [], [], [], []]
