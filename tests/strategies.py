@@ -5,6 +5,7 @@ from __future__ import annotations
 import string
 from collections.abc import Callable
 
+from hypothesis import reject
 from hypothesis import strategies as st
 
 from hymeko_x.ir import parts
@@ -25,6 +26,7 @@ from hymeko_x.ir.mechanism import (
     shape_edge,
 )
 from hymeko_x.ir.values import Pose, Written, pose, pose_from_rpy, rotate_tensor, unit
+from hymeko_x.ir.written import pose_as_written
 from hymeko_x.language import syntax
 
 # ---- texts and names -----------------------------------------------------------------------------------------------------
@@ -48,11 +50,26 @@ DIRECTIONS = st.sampled_from([(1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)
     lambda v: max(map(abs, v)) > 1e-3
 )
 QUATERNIONS = st.tuples(SMALL, SMALL, SMALL, SMALL).filter(lambda q: max(map(abs, q)) > 1e-3)
+_NOTATIONS = {"euler:xyz": 3, "euler:ZYX": 3, "axisangle": 4, "xyaxes": 6, "zaxis": 3, "fromto": 6, "dir": 3}
+
+
+@st.composite
+def _written_poses(draw: st.DrawFn) -> Pose:
+    """A pose whose rotation was written in one of the other notations."""
+    kind, count = draw(st.sampled_from(sorted(_NOTATIONS.items())))
+    numbers = draw(st.tuples(*[SMALL] * count))
+    try:
+        return pose_as_written(draw(VECTORS), Written(kind, numbers))
+    except ZeroDivisionError:
+        reject()
+
+
 POSES = st.one_of(
     st.just(Pose()),
     st.builds(Pose, VECTORS),
     st.builds(pose_from_rpy, VECTORS, VECTORS),
     st.builds(pose, VECTORS, QUATERNIONS),
+    _written_poses(),
 )
 COLOURS = st.tuples(*[st.floats(0.0, 1.0)] * 4)
 
