@@ -42,7 +42,7 @@ def keep_references(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
     for key, part in mechanism.graph.vertices.items():
         if not isinstance(part, Mesh | Texture) or part.uri is None:
             continue
-        uri = _new_uri(part.uri, _FOLDERS[type(part)], shelf, files, keep)
+        uri = new_uri(part.uri, _FOLDERS[type(part)], shelf, files, keep)
         if uri is None:
             report.warn(
                 codes.ASSET_NOT_FOUND,
@@ -56,7 +56,7 @@ def keep_references(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 
-def _new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> str | None:
+def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> str | None:
     """The uri to write, or None when there is no such file. What is kept because it is a package's is not looked for."""
     if _REMOTE.match(uri) or (keep is not Keep.NOTHING and _PACKAGE.match(uri)):
         return uri

@@ -286,7 +286,6 @@ def _children() -> dict[str, dict[str, str]]:
     for path in _BODY_LIKE:
         content = {tag: below for tag, below in found["body"].items() if path == "body" or tag != "inertial"}
         found[path] = {**content, "body": "body", "frame": "body/frame", "replicate": "body/replicate"}
-    del found["mujoco"]["body"]
     found["mujoco"]["worldbody"] = "worldbody"
     return found
 

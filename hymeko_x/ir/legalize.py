@@ -22,6 +22,7 @@ from hymeko_x.ir.legalize_names import make_names_usable, name_assets_once
 from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.ir.legalize_urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
 from hymeko_x.ir.legalize_urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
+from hymeko_x.ir.mechanism import ROOT
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -42,8 +43,13 @@ class Options:
 
 Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]
 
+_USD: tuple[Rule, ...] = (make_names_usable, hold_or_free_open_bases, expand_screws)
+
 RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
     {
+        "usd": _USD,
+        "usdc": _USD,
+        "usdz": _USD,
         "mjcf": (
             make_names_usable,
             name_assets_once,
@@ -84,7 +90,12 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
 
 
 def legalize(mechanism: Mechanism, target: str, options: Options, report: Report) -> Mechanism:
-    """The mechanism rewritten so that the target's backend can print all of it. Idempotent."""
+    """The mechanism rewritten so that the target's backend can print all of it. Idempotent.
+
+    What came from the target itself, directly or through HyMeKo text, is legal already.
+    """
+    if target == "mjcf" and mechanism.notation(ROOT, target) is not None:
+        return mechanism
     for rule in RULES.get(target, ()):
         mechanism = rule(mechanism, options, report)
     return mechanism

@@ -97,6 +97,12 @@ def test_the_model_is_the_same_bit_for_bit(content: str) -> None:
 
 
 @pytest.mark.parametrize("content", [pytest.param(text, id=name) for name, text in ROBOTS.items()])
+def test_what_is_written_is_read_as_the_same_mechanism(content: str) -> None:
+    robot = read_text(f'<mujoco model="robot">{content}</mujoco>')
+    assert list(diff(robot, read_text(write(robot)))) == []
+
+
+@pytest.mark.parametrize("content", [pytest.param(text, id=name) for name, text in ROBOTS.items()])
 def test_hymeko_text_loses_nothing_of_it(content: str) -> None:
     text = f'<mujoco model="robot">{content}</mujoco>'
     robot = read_text(text)

@@ -42,6 +42,7 @@ def read(source: Source, report: Report) -> Mechanism:
     root = expand_includes(root, source, report)
     root = expand_by_mujoco(root, source, report)
     check_words(root)
+    _warn_of_ignored(root, report)
     draft = Draft(report, read_settings(root), Classes(root_sections(root, "default")), source.name, source.files)
     name = _read_name(root, source, draft)
     keep_sections(root, draft)
@@ -71,6 +72,12 @@ def _check_root(root: Element) -> None:
         "mujocoinclude": "it is a part that other files include, and no model of its own",
     }
     raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <mujoco>", root.origin, hint=known.get(root.tag, ""))
+
+
+def _warn_of_ignored(root: Element, report: Report) -> None:
+    for child in root_sections(root, "body"):
+        said = "a <body> outside of <worldbody> is ignored by MuJoCo; it goes along as it is"
+        report.warn(codes.UNKNOWN_WORD, said, child.origin)
 
 
 def _read_name(root: Element, source: Source, draft: Draft) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_codec import parameter_value
 from hymeko_x.formats.mjcf_words import RESOLVED, TRANSMISSIONS
 from hymeko_x.formats.xml import read_numbers
 from hymeko_x.frontends.mjcf.mounts import take_parameters
@@ -12,12 +11,9 @@ from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Actuator, Drive
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from hymeko_x.formats.mjcf_tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
     from hymeko_x.ir.mechanism import RobotArc
-    from hymeko_x.ir.parts import Parameters
 
 _KINDS = {"jointinparent": "joint", "cranksite": "site", "slidersite": "site", "refsite": "site"}
 _ROLES = {"cranksite": "crank", "slidersite": "slider", "refsite": "reference"}
@@ -47,7 +43,7 @@ def _read_actuator(element: Element, draft: Draft) -> None:
     if not words and gear is not None:
         element.attributes["gear"] = gear
     kind = "jointinparent" if "jointinparent" in words else ""
-    draft.vertices[key] = Actuator(element.tag, (*_inherited(element, base), *take_parameters(element)))
+    draft.vertices[key] = Actuator(element.tag, take_parameters(element, base, RESOLVED))
     draft.keep(element, key)
     draft.show(key)
     if words:
@@ -61,8 +57,3 @@ def _arc(element: Element, word: str, gear: tuple[float, ...] | None, draft: Dra
     target = draft.find(element, _KINDS.get(word, word), name)
     role = _ROLES.get(word) or (draft.roles.get(target, {}).get(name, "") if target.kind == "joint" else "")
     return Arc(target, -1, gear, role)
-
-
-def _inherited(element: Element, base: Mapping[str, str]) -> Parameters:
-    """Gains and ranges that the class gives."""
-    return tuple((name, parameter_value(name, base[name])) for name in RESOLVED if name in base and name not in element.attributes)

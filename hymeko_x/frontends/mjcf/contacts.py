@@ -30,9 +30,9 @@ def read_contacts(sections: list[Element], draft: Draft) -> None:
 def _read_contact(element: Element, draft: Draft) -> None:
     kind, *ends = _ENDS[element.tag]
     key = draft.own(element, "contact", element.tag)
-    draft.base(element, key)
+    base = draft.base(element, key)
     arcs: tuple[RobotArc, ...] = tuple(Arc(find_end(element, kind, name, draft)) for name in ends)
-    draft.edges[key] = Edge(Contact(element.tag, take_parameters(element)), arcs)
+    draft.edges[key] = Edge(Contact(element.tag, take_parameters(element, base)), arcs)
     draft.keep(element, key)
     draft.show(key)
 

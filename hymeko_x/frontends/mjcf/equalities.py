@@ -79,13 +79,13 @@ def _dof(element: Element, attribute: str, draft: Draft) -> tuple[Id, str, float
 
 def _read_loop(element: Element, draft: Draft, placed: dict[Id, Pose]) -> None:
     key = draft.own(element, "loop", element.tag)
-    draft.base(element, key)
+    base = draft.base(element, key)
     active = element.take("active") != "false"
     if "site1" in element.attributes:
         arcs: tuple[RobotArc, ...] = tuple(Arc(find_end(element, "site", name, draft)) for name in ("site1", "site2"))
     else:
         arcs = _body_arcs(element, key, draft, placed)
-    draft.edges[key] = Edge(Loop(element.tag, (), active, take_parameters(element)), arcs)
+    draft.edges[key] = Edge(Loop(element.tag, (), active, take_parameters(element, base)), arcs)
     draft.keep(element, key)
     draft.show(key)
 

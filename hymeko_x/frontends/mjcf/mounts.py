@@ -11,6 +11,8 @@ from hymeko_x.ir.mechanism import mount_edge
 from hymeko_x.ir.parts import Camera, Frame, Light
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.formats.mjcf_codec import Group
     from hymeko_x.formats.mjcf_tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft, Values
@@ -20,37 +22,44 @@ if TYPE_CHECKING:
 
 def read_site(element: Element, spot: Spot, draft: Draft) -> None:
     """A named pose on a body."""
-    key, found = _read(element, spot, "frame", SITE, draft)
+    key, found, _ = _read(element, spot, "frame", SITE, draft)
     draft.vertices[key] = Frame(found["size"])
     draft.keep(element, key)
 
 
 def read_camera(element: Element, spot: Spot, draft: Draft) -> None:
     """A camera; whom it follows and how is among its parameters."""
-    key, found = _read(element, spot, "camera", CAMERA, draft)
+    key, found, base = _read(element, spot, "camera", CAMERA, draft)
     width, height = found["resolution"] or (0.0, 0.0)
     resolution = (int(width), int(height)) if found["resolution"] else None
-    draft.vertices[key] = Camera(found["fovy"], resolution, take_parameters(element))
+    draft.vertices[key] = Camera(found["fovy"], resolution, take_parameters(element, base))
     draft.keep(element, key)
 
 
 def read_light(element: Element, spot: Spot, draft: Draft) -> None:
     """A light."""
-    key, found = _read(element, spot, "light", LIGHT, draft)
+    key, found, base = _read(element, spot, "light", LIGHT, draft)
     x, y, z = found["diffuse"] or (0.0, 0.0, 0.0)
-    draft.vertices[key] = Light(found["kind"], (x, y, z) if found["diffuse"] else None, take_parameters(element))
+    draft.vertices[key] = Light(found["kind"], (x, y, z) if found["diffuse"] else None, take_parameters(element, base))
     draft.keep(element, key)
 
 
-def take_parameters(element: Element) -> Parameters:
-    """Every attribute that is left, as a parameter."""
-    found = []
-    for name in [name for name in element.attributes if name not in PLAIN_ATTRIBUTES]:
-        found.append((name, parameter_value(name, element.attributes.pop(name))))
+def take_parameters(element: Element, base: Mapping[str, str], resolved: tuple[str, ...] = ()) -> Parameters:
+    """Every attribute that is left and says something else than the class, as a parameter.
+
+    Those in ``resolved`` come first, and are parameters even where the class gives them.
+    """
+    own = {name: element.attributes.pop(name) for name in list(element.attributes) if name not in PLAIN_ATTRIBUTES}
+    first = [(name, own.get(name, base.get(name))) for name in resolved]
+    found = [(name, parameter_value(name, text)) for name, text in first if text is not None]
+    for name, text in own.items():
+        value = parameter_value(name, text)
+        if name not in resolved and (name not in base or parameter_value(name, base[name]) != value):
+            found.append((name, value))
     return tuple(found)
 
 
-def _read(element: Element, spot: Spot, kind: str, groups: tuple[Group, ...], draft: Draft) -> tuple[Id, Values]:
+def _read(element: Element, spot: Spot, kind: str, groups: tuple[Group, ...], draft: Draft) -> tuple[Id, Values, Mapping[str, str]]:
     key = draft.own(element, kind, f"{spot.body.name}/{element.tag}")
     base = draft.base(element, key, spot.childclass)
     if spot.frame:
@@ -60,4 +69,4 @@ def _read(element: Element, spot: Spot, kind: str, groups: tuple[Group, ...], dr
     mount = draft.names.take("mount", key.name)
     draft.edges[mount] = mount_edge(spot.body, key, placed(found["pose"], spot))
     draft.show(mount)
-    return key, found
+    return key, found, base

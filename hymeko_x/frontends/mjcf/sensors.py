@@ -36,7 +36,7 @@ def _read_sensor(element: Element, draft: Draft) -> None:
     for word, kind in SENSED.items():
         if word in element.attributes:
             arcs.append(_arc(element, kind, word, "" if word in ALONE and not arcs else word, draft))
-    draft.vertices[key] = Sensor(element.tag, None, take_parameters(element))
+    draft.vertices[key] = Sensor(element.tag, None, take_parameters(element, {}))
     draft.keep(element, key)
     draft.show(key)
     if arcs:
