@@ -135,7 +135,8 @@ class _Builder:
 
         parser.StartElementHandler = start
         parser.EndElementHandler = end
-        parser.CharacterDataHandler = characters
+        if _WORDS.search(self._data):  # else there is nothing but blanks, of which a file has thousands
+            parser.CharacterDataHandler = characters
         parser.CommentHandler = lambda text: aside(COMMENT_NODE, text)
         parser.ProcessingInstructionHandler = lambda target, text: aside(INSTRUCTION_NODE, f"{target} {text}".strip())
 
@@ -255,6 +256,7 @@ _DECLARATION = re.compile(r"<\?xml\s[^?>]*\?>")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 _BARE_AMPERSAND = re.compile(r"&(?![A-Za-z_][\w.-]*;|#\d+;|#x[0-9a-fA-F]+;)")
 _NO_BLANK = re.compile(r"""(=\s*(?:"[^"]*"|'[^']*'))(?=[\w:])""")
+_WORDS = re.compile(rb">\s*[^\s<]")
 _ENCODING = re.compile(rb"""\s*<\?xml[^?>]*encoding\s*=\s*["']([\w.-]+)""")
 
 

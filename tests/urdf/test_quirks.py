@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
+import sys
+
 import pytest
 
 from hymeko_x.ir.mechanism import Id
@@ -200,3 +203,18 @@ def test_a_namespace_as_the_default_changes_nothing() -> None:
     with_space = load(robot('<link name="a"><foo/></link>', ' name="r" xmlns="http://drake.mit.edu"'))
     assert with_space.graph == plain.graph
     assert again(robot('<link name="a"><foo/></link>', ' name="r" xmlns="http://drake.mit.edu"')).count("xmlns") == 1
+
+
+def test_a_chain_of_ten_thousand_links_needs_no_recursion() -> None:
+    count = 10_000
+    links = "".join(f'<link name="l{number}"/>' for number in range(count))
+    joints = "".join(joint(LIMIT, name=f"j{number}", parent=f"l{number - 1}", child=f"l{number}") for number in range(1, count))
+    before = sys.getrecursionlimit()
+    depth = len(inspect.stack())
+    sys.setrecursionlimit(depth + 60)
+    try:
+        text = again(robot(links + joints))
+    finally:
+        sys.setrecursionlimit(before)
+    assert text.count("<link name=") == count
+    assert text.count("<joint ") == count - 1
