@@ -54,8 +54,8 @@ ROBOTS = {
         <worldbody><geom size=".1" material="m"/><geom size=".1" material="l"/></worldbody>""",
     "mocap, gravity and users": f"""<size nuser_body="2"/><worldbody>{BODY.format("")}<body name="m" mocap="true" gravcomp="1"/>
         <body user="1 2" gravcomp=".5"/></worldbody><keyframe><key name="k" qpos="0 0 1 1 0 0 0" mpos="1 2 3"/></keyframe>""",
-    "closures": f"""<worldbody>{BODY.format('<site name="s"/>')}<body name="c" pos="1 0 0"><freejoint/><geom size=".1"/><site name="t"/></body>
-        </worldbody><equality><weld body1="b" body2="c" relpose="1 2 3 1 1 0 0" torquescale="2"/><connect body1="b" anchor="1 2 3"/>
+    "closures": f"""<worldbody>{BODY.format('<site name="s"/>')}
+        <body name="c" pos="1 0 0"><freejoint/><geom size=".1"/><site name="t"/></body></worldbody><equality><weld body1="b" body2="c" relpose="1 2 3 1 1 0 0" torquescale="2"/><connect body1="b" anchor="1 2 3"/>
         <weld body1="b" body2="c"/><connect name="n" body1="c" body2="b" anchor=".1 .2 .3" active="false" solref=".1 1"/>
         <weld site1="s" site2="t"/></equality>""",
     "couplings": """<worldbody><body><joint name="x" ref="10" type="slide"/><joint name="r" ref="30"/><geom size=".1"/>
@@ -112,7 +112,8 @@ def test_hymeko_text_loses_nothing_of_it(content: str) -> None:
 
 
 def test_degrees_and_notations_are_written_as_they_were() -> None:
-    body = '<body name="b" euler="12.3 45 -7"><joint name="j" range="-33.3 77.7"/><geom name="g" type="capsule" size="0.1" fromto="0 0 0 1 0 0"/></body>'
+    geom = '<geom name="g" type="capsule" size="0.1" fromto="0 0 0 1 0 0"/>'
+    body = f'<body name="b" euler="12.3 45 -7"><joint name="j" range="-33.3 77.7"/>{geom}</body>'
     written = write(read_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>"))
     for said in ('euler="12.3 45 -7"', 'range="-33.3 77.7"', 'fromto="0 0 0 1 0 0"'):
         assert said in written

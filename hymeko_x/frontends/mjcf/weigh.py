@@ -1,0 +1,106 @@
+"""Inertias that MuJoCo computes from geoms, made explicit for formats that have no such thing.
+
+MuJoCo itself is asked, so that meshes, <compiler> and everything that changes masses count as they do there.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x import codes
+from hymeko_x.formats.mjcf_tree import parse_text
+from hymeko_x.formats.mjcf_words import NAME, joined, settings_of
+from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
+from hymeko_x.ir.parts import Body, Inertial, Mesh, Texture
+from hymeko_x.ir.values import rotate_tensor, unit_quat
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.source import Files
+
+_SCALES = ("settotalmass", "boundmass", "boundinertia", "balanceinertia")
+"""Attributes of <compiler> that change inertias which are said."""
+
+
+def weigh(mechanism: Mechanism, text: bytes, files: Files, report: Report) -> Mechanism:
+    """The mechanism, which came from MJCF and is ``text`` in it, with the mass, centre of mass and tensor of every body.
+
+    Bodies that weigh nothing stay without. Where MuJoCo is not there or refuses the text, nothing changes, with a warning.
+    """
+    wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
+    scaled = _is_scaled(mechanism)
+    if not wanted and not scaled:
+        return mechanism
+    try:
+        import mujoco
+    except ImportError:
+        report.warn(codes.ENGINE_MISSING, "MuJoCo computes inertias from geoms, and is not installed; such bodies are written without")
+        return mechanism
+    try:
+        model = _compiled(mujoco, text, _assets(mechanism, files))
+    except (ValueError, mujoco.FatalError) as error:
+        said = str(error).strip().splitlines()[0]
+        report.warn(codes.ENGINE_REFUSED, f"MuJoCo refuses the model, so that bodies without inertia are written without: {said}")
+        return mechanism
+    order = {key: number for number, key in enumerate(mechanism.depth_first(), 1)}
+    chosen = [key for key, _ in mechanism.vertices(Body)] if scaled else wanted
+    return mechanism.with_graph(mechanism.graph.replace(vertices={key: _weighed(mechanism, model, key, order[key]) for key in chosen}))
+
+
+def _is_scaled(mechanism: Mechanism) -> bool:
+    texts = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.format == NAME and extra.text.startswith("<compiler")]
+    return any(f"{name}=" in text for text in texts for name in _SCALES)
+
+
+def _compiled(mujoco: Any, text: bytes, assets: dict[str, bytes]) -> Any:
+    """The model with every body frame where its author put it."""
+    import warnings
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        spec = mujoco.MjSpec.from_string(text.decode(), assets=assets)
+        spec.compiler.fusestatic = False
+        spec.compiler.alignfree = False
+        for joint in spec.joints:
+            with contextlib.suppress(AttributeError):
+                joint.align = 0
+        return spec.compile()
+
+
+def _assets(mechanism: Mechanism, files: Files) -> dict[str, bytes]:
+    """Every file that the model refers to, by its path from the model."""
+    uris = [part.uri for part in mechanism.graph.vertices.values() if isinstance(part, Mesh | Texture) and part.uri]
+    for key, extras in mechanism.extras.items():
+        for extra in extras:
+            if extra.format == NAME and key.kind == "texture" and extra.path.startswith("@file"):
+                uris.append(joined(_settings(mechanism).texture_folder, extra.text, _settings(mechanism)))
+            elif extra.format == NAME and key == ROOT and extra.path == "asset":
+                uris.append(
+                    joined(_settings(mechanism).mesh_folder, parse_text(extra.text).attributes.get("file", ""), _settings(mechanism))
+                )
+    found: dict[str, bytes] = {}
+    for uri in uris:
+        path = files.find(uri)
+        if path is not None:
+            with contextlib.suppress(OSError):
+                found[uri] = files.read(path)
+    return found
+
+
+def _settings(mechanism: Mechanism) -> Any:
+    texts = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.format == NAME and extra.text.startswith("<compiler")]
+    return settings_of([parse_text(text).attributes for text in texts])
+
+
+def _weighed(mechanism: Mechanism, model: Any, key: Id, number: int) -> Body:
+    body = mechanism.vertex(key, Body)
+    mass = float(model.body_mass[number])
+    if mass == 0.0:
+        return body
+    w, x, y, z = model.body_iquat[number].tolist()
+    a, b, c = model.body_inertia[number].tolist()
+    px, py, pz = model.body_ipos[number].tolist()
+    tensor = rotate_tensor(unit_quat((w, x, y, z)), (a, b, c, 0.0, 0.0, 0.0))
+    return replace(body, inertial=Inertial(mass, (px, py, pz), tensor))

@@ -1,0 +1,62 @@
+"""Inertias from geoms: what MuJoCo computes is said explicitly where a format has no such thing."""
+
+from __future__ import annotations
+
+import pytest
+from mjmodels import read_text, write
+
+from hymeko_x.diagnostics import Report
+from hymeko_x.frontends.mjcf.weigh import weigh
+from hymeko_x.ir.mechanism import Id, Mechanism
+from hymeko_x.ir.parts import Body, Inertial
+from hymeko_x.source import NoFiles
+
+CUBE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1"
+
+
+def weighed(content: str, head: str = "") -> Mechanism:
+    robot = read_text(f"<mujoco>{head}<worldbody>{content}</worldbody></mujoco>")
+    return weigh(robot, write(robot).encode(), NoFiles(), Report())
+
+
+def inertial(mechanism: Mechanism, body: str) -> Inertial:
+    found = mechanism.vertex(Id("body", body), Body).inertial
+    assert found is not None
+    return found
+
+
+def test_a_sphere_weighs_its_volume_times_the_density_of_water() -> None:
+    found = inertial(weighed('<body name="b"><freejoint/><geom size=".1" pos="1 2 3"/></body>'), "b")
+    mass = 1000.0 * 4.0 / 3.0 * 3.141592653589793 * 1e-3
+    assert found.mass == pytest.approx(mass, rel=1e-12)
+    assert found.com == pytest.approx((1.0, 2.0, 3.0))
+    assert found.tensor == pytest.approx((0.4 * mass * 0.01,) * 3 + (0.0,) * 3, abs=1e-12)
+
+
+def test_a_mesh_weighs_what_mujoco_says() -> None:
+    head = f'<asset><mesh name="m" vertex="{CUBE}"/></asset>'
+    found = inertial(weighed('<body name="b"><geom type="mesh" mesh="m" density="1"/></body>', head), "b")
+    assert found.mass == pytest.approx(8.0, rel=1e-6)
+
+
+def test_an_inertia_that_is_said_stays_as_it_is() -> None:
+    body = '<body name="b"><inertial pos="0 0 1" mass="2" diaginertia="1 2 2"/><geom size=".1"/></body>'
+    assert inertial(weighed(body), "b") == Inertial(2.0, (0.0, 0.0, 1.0), (1.0, 2.0, 2.0, 0.0, 0.0, 0.0))
+
+
+def test_a_total_mass_scales_what_is_said_as_well() -> None:
+    body = '<body name="b"><inertial pos="0 0 1" mass="2" diaginertia="1 2 2"/></body>'
+    assert inertial(weighed(body, '<compiler settotalmass="4"/>'), "b").mass == pytest.approx(4.0)
+
+
+def test_a_free_body_keeps_its_frame_though_mujoco_would_move_it() -> None:
+    found = inertial(weighed('<body name="b"><freejoint align="true"/><geom size=".1" pos="1 2 3"/></body>'), "b")
+    assert found.com == pytest.approx((1.0, 2.0, 3.0))
+
+
+def test_without_a_mesh_there_is_a_warning_and_no_inertia() -> None:
+    asset = '<asset><mesh name="m" file="gone.stl"/></asset>'
+    text = f'<mujoco>{asset}<worldbody><body name="b"><geom type="mesh" mesh="m"/></body></worldbody></mujoco>'
+    robot, report = read_text(text), Report()
+    assert weigh(robot, write(robot).encode(), NoFiles(), report) == robot
+    assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
