@@ -145,10 +145,20 @@ def _written(
 ) -> tuple[Package, Mechanism]:
     """The package, and the mechanism as it was printed."""
     backend = writer(format)
+    mechanism = _explicit(mechanism, format, files, report)
     legal = legalize(mechanism, format.name, options, report)
     packed, new, copies = pack(legal, format.name, files, place.assets, report, out_dir=place.folder)
     package = backend(packed, report)
     return replace(package, files={**package.files, **new}, copies={**package.copies, **copies}), packed
+
+
+def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
+    """What came from MJCF, with the inertias that MuJoCo computes from shapes, for formats in which they have to be said."""
+    if format in (formats.MJCF, formats.HYMEKO) or mechanism.notation(ROOT, formats.MJCF.name) is None:
+        return mechanism
+    from hymeko_x.frontends.mjcf.weigh import weigh
+
+    return weigh(mechanism, writer(formats.MJCF)(mechanism, Report()).main, files, report)
 
 
 def ledger(mechanism: Mechanism, package: Package, format: Format, files: Files) -> tuple[Loss, ...]:
