@@ -46,7 +46,7 @@ def hold_or_free_open_bases(mechanism: Mechanism, options: Options, report: Repo
 
 def _stands_for_world(root: Id, mechanism: Mechanism) -> bool:
     """Whether a root is the link without mass that stands for the world."""
-    return root.name == WORLD.name and mechanism.vertex(root, Body).inertial is None
+    return root.name.partition("#")[0] == WORLD.name and mechanism.vertex(root, Body).inertial is None
 
 
 def make_world_a_link(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
