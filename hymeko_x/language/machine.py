@@ -127,7 +127,7 @@ class Machine:
                         raise TooDeep(start)
             action = stack[-3].get(kind)
             if action is None:
-                kind = self._kind(word, stack[-3], start)
+                kind = self._kind(kind, word, stack[-3], start)
                 action = stack[-3][kind]
             while type(action) is _Reduction:
                 size, origin, number, pick = action
@@ -164,12 +164,12 @@ class Machine:
             raise ParseError(end)
         return "$END", "", end
 
-    def _kind(self, word: str, state: _State, start: int) -> str:
+    def _kind(self, kind: str, word: str, state: _State, start: int) -> str:
         """A word of the language is one only where the grammar has room for it, and a name elsewhere."""
         keyword = self._keywords.get(word)
         if keyword is not None and keyword in state:
             return keyword
-        if word.isidentifier() and "NAME" in state:
+        if kind != "NUMBER" and word.isidentifier() and "NAME" in state:  # the numbers inf and nan are never names
             return "NAME"
         raise ParseError(start)
 
