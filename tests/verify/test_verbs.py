@@ -92,6 +92,17 @@ def test_a_missing_engine_is_named_with_its_package(written: Write, monkeypatch:
     assert caught.value.diagnostic.hint == "pip install mujoco"
 
 
+def test_sdf_without_drake_names_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "robot.sdf"
+    file.write_text("<sdf version='1.9'><model name='m'><link name='a'/></model></sdf>", "utf-8")
+    monkeypatch.setitem(sys.modules, "pydrake", None)
+    monkeypatch.delitem(sys.modules, "hymeko_x.verify.readers.sdf", raising=False)
+    with pytest.raises(Refusal) as caught:
+        hx.verify(file, file)
+    assert caught.value.diagnostic.message == "sdf is verified with pydrake, which is not installed"
+    assert caught.value.diagnostic.hint == "pip install drake"
+
+
 def test_a_file_that_is_not_there_is_refused_in_one_line(arm: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", arm, "nowhere.urdf"]) == exits.FAILED
     assert capsys.readouterr().err == "nowhere.urdf: error[HX001]: there is no file 'nowhere.urdf'\n"

@@ -90,12 +90,13 @@ def read(path: Path, places: Places = NOWHERE, *, format: str | None = None) -> 
         module = cast("Reader", importlib.import_module(READERS[kind]))
         return module.read(path, places)
     except ModuleNotFoundError as error:
-        package = EXTRAS.get((error.name or "").partition(".")[0])
+        engine = (error.name or "").partition(".")[0]
+        package = EXTRAS.get(engine)
         if package is None:
             raise
         raise refuse(
             codes.ENGINE_MISSING,
-            f"{kind} is verified with {error.name}, which is not installed",
+            f"{kind} is verified with {engine}, which is not installed",
             Origin(str(path)),
             hint=f"pip install {package}",
         ) from error
