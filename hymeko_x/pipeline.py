@@ -168,7 +168,13 @@ def ledger(mechanism: Mechanism, package: Package, format: Format, files: Files)
         back = reader(format)(result, Report())
     except Refusal as error:
         raise refuse(codes.BUG, f"what was written as {format.name} cannot be read back: {error}") from error
-    return tuple(_loss(difference, mechanism) for difference in diff(mechanism, back, LEDGER_TOLERANCE))
+    found = diff(mechanism, back, LEDGER_TOLERANCE)
+    return tuple(_loss(difference, mechanism) for difference in found if not _is_dress(difference, format))
+
+
+def _is_dress(difference: Difference, format: Format) -> bool:
+    """Whether the format only wears its own clothes: settings of the file that every file of the format has."""
+    return difference.element == ROOT and difference.before is None and difference.field.startswith(f"{format.name} ")
 
 
 def with_references_of(packed: Mechanism, mechanism: Mechanism) -> Mechanism:
