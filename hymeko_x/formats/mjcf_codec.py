@@ -77,7 +77,10 @@ class Settings:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Attributes that make one value. ``needs``: attributes of other groups on which their meaning depends."""
+    """Attributes that make one value.
+
+    ``needs``: attributes of other groups on which their meaning depends. ``exact``: what is written always says the same.
+    """
 
     key: str
     names: tuple[str, ...]
@@ -85,6 +88,7 @@ class Group:
     write: Callable[[Any, Settings], dict[str, str]]
     seen: Callable[[Mapping[str, str], Settings], Any]
     needs: tuple[str, ...] = ()
+    exact: bool = False
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------
@@ -259,7 +263,7 @@ def real(name: str, default: float | None = None) -> Group:
     def write(value: float | None, settings: Settings) -> dict[str, str]:
         return {} if value is None else {name: number_text(value)}
 
-    return Group(name, (name,), read, write, _seen(name, default))
+    return Group(name, (name,), read, write, _seen(name, default), exact=True)
 
 
 def first_real(name: str, default: float) -> Group:
@@ -284,7 +288,7 @@ def reals(name: str, least: int, most: int) -> Group:
     def write(value: tuple[float, ...], settings: Settings) -> dict[str, str]:
         return {name: numbers_text(value)} if value else {}
 
-    return Group(name, (name,), read, write, _seen(name, None))
+    return Group(name, (name,), read, write, _seen(name, None), exact=True)
 
 
 def text(name: str) -> Group:
@@ -295,6 +299,7 @@ def text(name: str) -> Group:
         lambda said, settings: said.get(name),
         lambda value, settings: {} if value is None else {name: value},
         lambda said, settings: said.get(name),
+        exact=True,
     )
 
 

@@ -19,6 +19,7 @@ from hymeko_x.ir.legalize_joints import expand_screws, lower_inner_free_joints, 
 from hymeko_x.ir.legalize_limits import make_limits_intervals
 from hymeko_x.ir.legalize_loops import anchor_closures, open_second_parents
 from hymeko_x.ir.legalize_names import make_names_usable, name_assets_once
+from hymeko_x.ir.legalize_native import drop_shapes_of_mujoco
 from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.ir.legalize_urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
 from hymeko_x.ir.legalize_urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
@@ -74,6 +75,7 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
         ),
         "urdf": (
             make_names_usable,
+            drop_shapes_of_mujoco,
             expand_screws,
             chain_dofs,
             hold_or_free_open_bases,

@@ -55,7 +55,8 @@ ROBOTS = {
     "mocap, gravity and users": f"""<size nuser_body="2"/><worldbody>{BODY.format("")}<body name="m" mocap="true" gravcomp="1"/>
         <body user="1 2" gravcomp=".5"/></worldbody><keyframe><key name="k" qpos="0 0 1 1 0 0 0" mpos="1 2 3"/></keyframe>""",
     "closures": f"""<worldbody>{BODY.format('<site name="s"/>')}
-        <body name="c" pos="1 0 0"><freejoint/><geom size=".1"/><site name="t"/></body></worldbody><equality><weld body1="b" body2="c" relpose="1 2 3 1 1 0 0" torquescale="2"/><connect body1="b" anchor="1 2 3"/>
+        <body name="c" pos="1 0 0"><freejoint/><geom size=".1"/><site name="t"/></body></worldbody>
+        <equality><weld body1="b" body2="c" relpose="1 2 3 1 1 0 0" torquescale="2"/><connect body1="b" anchor="1 2 3"/>
         <weld body1="b" body2="c"/><connect name="n" body1="c" body2="b" anchor=".1 .2 .3" active="false" solref=".1 1"/>
         <weld site1="s" site2="t"/></equality>""",
     "couplings": """<worldbody><body><joint name="x" ref="10" type="slide"/><joint name="r" ref="30"/><geom size=".1"/>

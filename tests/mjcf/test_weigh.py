@@ -7,8 +7,9 @@ from mjmodels import read_text, write
 
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.mjcf.weigh import weigh
+from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Id, Mechanism
-from hymeko_x.ir.parts import Body, Inertial
+from hymeko_x.ir.parts import Body, Inertial, NoShape, Shape
 from hymeko_x.source import NoFiles
 
 CUBE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1"
@@ -60,3 +61,20 @@ def test_without_a_mesh_there_is_a_warning_and_no_inertia() -> None:
     robot, report = read_text(text), Report()
     assert weigh(robot, write(robot).encode(), NoFiles(), report) == robot
     assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
+
+
+def test_a_time_constant_and_a_damping_ratio_become_stiffness_and_damping() -> None:
+    text = '<mujoco><worldbody><body><joint name="j" springdamper="1 1"/><geom size="1" mass="1"/></body></worldbody></mujoco>'
+    robot = read_text(text)
+    dof = weigh(robot, write(robot).encode(), NoFiles(), Report()).joints[Id("joint", "j")].joint.dofs[0]
+    assert dof.stiffness > 0.0
+    assert dof.damping == pytest.approx(2.0 * (dof.stiffness * 0.4) ** 0.5)
+
+
+def test_a_geometry_that_only_mujoco_knows_is_left_out_elsewhere_with_a_warning() -> None:
+    head = '<asset><hfield name="h" nrow="2" ncol="2" size="1 1 1 1"/></asset>'
+    text = f'<mujoco>{head}<worldbody><geom name="g" type="hfield" hfield="h"/><geom size="1"/></worldbody></mujoco>'
+    report = Report()
+    legal = legalize(read_text(text), "urdf", Options(), report)
+    assert not [shape for _, shape, _ in legal.edges(Shape) if isinstance(shape.geometry, NoShape)]
+    assert any("has a geometry that only MuJoCo knows; it is left out" in str(said) for said in report)

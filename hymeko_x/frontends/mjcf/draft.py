@@ -123,6 +123,8 @@ class Draft:
                 if not touched:
                     continue
                 taken += touched
+                if group.exact and not always:
+                    continue
                 context = {name: merged[name] for name in group.needs if name in merged}
                 said = merge({**base, **context}, group.write(value, self.settings))
                 if always or group.seen(said, self.settings) != group.seen(merged, self.settings):

@@ -13,11 +13,13 @@ from hymeko_x import codes
 from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.formats.mjcf_words import NAME, joined, settings_of
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
-from hymeko_x.ir.parts import Body, Inertial, Mesh, Texture
+from hymeko_x.ir.parts import Body, DofKind, Inertial, Joint, Mesh, Texture
 from hymeko_x.ir.values import rotate_tensor, unit_quat
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import RobotEdge
+    from hymeko_x.ir.parts import Dof
     from hymeko_x.source import Files
 
 _SCALES = ("settotalmass", "boundmass", "boundinertia", "balanceinertia")
@@ -31,7 +33,8 @@ def weigh(mechanism: Mechanism, text: bytes, files: Files, report: Report) -> Me
     """
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
     scaled = _is_scaled(mechanism)
-    if not wanted and not scaled:
+    sprung = b"springdamper=" in text
+    if not (wanted or scaled or sprung):
         return mechanism
     try:
         import mujoco
@@ -46,7 +49,9 @@ def weigh(mechanism: Mechanism, text: bytes, files: Files, report: Report) -> Me
         return mechanism
     order = {key: number for number, key in enumerate(mechanism.depth_first(), 1)}
     chosen = [key for key, _ in mechanism.vertices(Body)] if scaled else wanted
-    return mechanism.with_graph(mechanism.graph.replace(vertices={key: _weighed(mechanism, model, key, order[key]) for key in chosen}))
+    bodies = {key: _weighed(mechanism, model, key, order[key]) for key in chosen}
+    joints = _sprung(mechanism, model, order) if sprung else {}
+    return mechanism.with_graph(mechanism.graph.replace(vertices=bodies, edges=joints))
 
 
 def _is_scaled(mechanism: Mechanism) -> bool:
@@ -104,3 +109,20 @@ def _weighed(mechanism: Mechanism, model: Any, key: Id, number: int) -> Body:
     px, py, pz = model.body_ipos[number].tolist()
     tensor = rotate_tensor(unit_quat((w, x, y, z)), (a, b, c, 0.0, 0.0, 0.0))
     return replace(body, inertial=Inertial(mass, (px, py, pz), tensor))
+
+
+def _sprung(mechanism: Mechanism, model: Any, order: dict[Id, int]) -> dict[Id, RobotEdge]:
+    """The joints whose stiffness and damping follow from a time constant and a damping ratio (<joint springdamper>)."""
+    found: dict[Id, RobotEdge] = {}
+    for view in mechanism.joints.values():
+        first = int(model.body_jntadr[order[view.child]]) if view.child in order else -1
+        if first < 0 or any(dof.kind in (DofKind.BALL, DofKind.FREE) for dof in view.joint.dofs):
+            continue
+        dofs = tuple(_with_spring(dof, model, first + number) for number, dof in enumerate(view.joint.dofs))
+        if dofs != view.joint.dofs:
+            found[view.id] = replace(mechanism.graph.edges[view.id], data=Joint(dofs))
+    return found
+
+
+def _with_spring(dof: Dof, model: Any, number: int) -> Dof:
+    return replace(dof, stiffness=float(model.jnt_stiffness[number]), damping=float(model.dof_damping[model.jnt_dofadr[number]]))
