@@ -301,7 +301,7 @@ def _match_joint(
     kinds_a, kinds_b = ([model.dofs[d].kind for d in path.dofs] for model, path in ((a, path_a), (b, path_b)))
     if kinds_a == kinds_b:
         found.dofs += zip(path_a.dofs, path_b.dofs, strict=True)
-    elif _turns(kinds_a) and _turns(kinds_b) and Kind.BALL in (*kinds_a, *kinds_b):
+    elif "urdf" in (a.format, b.format) and _turns(kinds_a) and _turns(kinds_b) and Kind.BALL in (*kinds_a, *kinds_b):
         found.turned.append(Turned(i, j, path_a.dofs, path_b.dofs))
         return
     else:

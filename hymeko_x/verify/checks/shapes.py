@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _LENGTH = 1e-8  # m; primitive sizes and poses are read from text by both sides
 _MESH = 3e-6  # relative to the mesh's extent: engines keep vertices as floats
 _MOST_POINTS = 4000  # of each side are looked up among all points of the other
+_NOT_IN_URDF = ("plane", "hfield", "ellipsoid")
 _INFINITE = ("plane", "hfield", "none")
 _ROLES = {Feature.COLLISIONS: ("collision", (Role.COLLISION, Role.BOTH)), Feature.VISUALS: ("visual", (Role.VISUAL, Role.BOTH))}
 
@@ -90,7 +91,7 @@ def _compare_body(pair: Pair, i: int, j: int, roles: tuple[Role, Role], meshes: 
     What collides is often drawn as well, and formats differ in whether they say so: a shape of both roles may be missing
     among the visual ones of the other robot.
     """
-    ours, theirs = pair.a.bodies[i].shapes, pair.b.bodies[j].shapes
+    ours, theirs = _in_common_words(pair, pair.a.bodies[i].shapes, pair.b.bodies[j].shapes)
     best: _Result | None = None
     for left in _readings(ours, roles):
         for right in _readings(theirs, roles):
@@ -101,6 +102,34 @@ def _compare_body(pair: Pair, i: int, j: int, roles: tuple[Role, Role], meshes: 
                 return best
     assert best is not None
     return best
+
+
+def _in_common_words(pair: Pair, ours: Sequence[Shape], theirs: Sequence[Shape]) -> tuple[Sequence[Shape], Sequence[Shape]]:
+    """Against URDF a capsule is a cylinder with two spheres; what URDF cannot say at all is left out with what stands for it."""
+    if (pair.a.format == "urdf") == (pair.b.format == "urdf"):
+        return ours, theirs
+    rich, poor = (theirs, ours) if pair.a.format == "urdf" else (ours, theirs)
+    unsaid = [shape for shape in rich if shape.kind in _NOT_IN_URDF]
+    names = {shape.name for shape in unsaid if shape.name is not None}
+    for shape in unsaid:
+        pair.notes.append(f"shapes: URDF has no {shape.kind}; {_label(shape)} was not compared")
+    capsules = not any(shape.kind == "capsule" for shape in poor)
+    rich = [part for shape in rich if shape.kind not in _NOT_IN_URDF for part in (_split_capsule(shape) if capsules else [shape])]
+    poor = [shape for shape in poor if shape.name not in names]
+    return (poor, rich) if pair.a.format == "urdf" else (rich, poor)
+
+
+def _split_capsule(shape: Shape) -> list[Shape]:
+    """A capsule as a cylinder and a sphere at each end; any other shape as it is."""
+    if shape.kind != "capsule":
+        return [shape]
+    radius, length = shape.size
+    ends = []
+    for side in (-0.5, 0.5):
+        place = shape.pose.copy()
+        place[:3, 3] += side * length * shape.pose[:3, 2]
+        ends.append(replace(shape, kind="sphere", size=(radius,), pose=place))
+    return [replace(shape, kind="cylinder"), *ends]
 
 
 def _readings(shapes: Sequence[Shape], roles: tuple[Role, Role]) -> list[list[Shape]]:

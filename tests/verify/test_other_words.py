@@ -1,0 +1,66 @@
+"""What one format says in other words is the same robot; what is said in other words by mistake is not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import hymeko_x as hx
+
+Write = Callable[[str, str], Path]
+
+BALL_MJCF = """<mujoco>
+  <worldbody>
+    <body name="leg">
+      <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
+      <geom name="bone" type="capsule" size="0.05 0.1" group="3"/>
+      <body name="foot" pos="0 0 -0.3" quat="0.9 0.1 0.3 0.2">
+        <joint name="ankle" type="ball" pos="0 0 0.01"/>
+        <inertial pos="0.03 0 0" mass="0.3" diaginertia="0.0004 0.0006 0.0007"/>
+        <body name="toe" pos="0.1 0 0">
+          <joint name="toe_joint" axis="0 1 0"/>
+          <inertial pos="0.03 0 0" mass="0.1" diaginertia="0.0004 0.0006 0.0007"/>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>"""
+BALL = '<joint name="ankle" type="ball" pos="0 0 0.01"/>'
+HINGES = "".join(f'<joint name="ankle_{k}" axis="{axis}" pos="0 0 0.01"/>' for k, axis in enumerate(("1 0 0", "0 1 0", "0 0 1")))
+
+
+def as_urdf(written: Write, tmp_path: Path, text: str) -> Path:
+    target = tmp_path / "robot.urdf"
+    hx.convert(written("mjcf", text), target)
+    return target
+
+
+def test_a_ball_is_three_hinges_in_urdf_and_a_capsule_is_three_shapes(written: Write, tmp_path: Path) -> None:
+    original = written("mjcf", BALL_MJCF)
+    verdict = hx.verify(original, as_urdf(written, tmp_path, BALL_MJCF))
+    assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
+    assert verdict.verdict == "same"
+
+
+def test_a_ball_elsewhere_is_found_through_its_hinges(written: Write, tmp_path: Path) -> None:
+    moved = BALL_MJCF.replace('pos="0 0 0.01"', 'pos="0 0 0.011"')
+    verdict = hx.verify(written("mjcf", BALL_MJCF), as_urdf(written, tmp_path, moved))
+    assert [check.quantity for check in verdict.failed] == ["forward kinematics, position"]
+
+
+def test_a_shorter_capsule_is_found_through_its_parts(written: Write, tmp_path: Path) -> None:
+    shorter = BALL_MJCF.replace('size="0.05 0.1"', 'size="0.05 0.09"')
+    verdict = hx.verify(written("mjcf", BALL_MJCF), as_urdf(written, tmp_path, shorter))
+    assert "collision shapes, size and pose" in {check.quantity for check in verdict.failed}
+
+
+def test_three_hinges_are_no_ball_where_both_formats_have_balls(written: Write) -> None:
+    verdict = hx.verify(written("mjcf", BALL_MJCF), written("mjcf", BALL_MJCF.replace(BALL, HINGES)))
+    assert {check.quantity for check in verdict.failed} >= {"joints"}
+
+
+def test_three_hinges_on_one_body_are_a_chain_in_urdf(written: Write, tmp_path: Path) -> None:
+    text = BALL_MJCF.replace(BALL, HINGES)
+    verdict = hx.verify(written("mjcf", text), as_urdf(written, tmp_path, text))
+    assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
+    assert any(note.startswith("bodies that only carry dofs: ") for note in verdict.not_compared)
