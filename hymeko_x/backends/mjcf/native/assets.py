@@ -40,12 +40,12 @@ def write_assets(sheet: Sheet) -> None:
 
 
 def _in_order(meshes: list[tuple[Id, Mesh]], places: str | None) -> list[tuple[Id, Mesh]]:
-    """The meshes in the order of their file, while there are as many as there were."""
-    order = [int(place) for place in (places or "").split() if place.isdigit()]
-    if sorted(order) != list(range(len(meshes))):
-        return meshes
+    """The meshes in the order of their file: by name, or as was noted while there are as many as there were."""
     by_name = sorted(meshes, key=lambda item: item[0].name)
-    return [by_name[place] for place in order]
+    if places is None:
+        return by_name
+    order = [int(place) for place in places.split() if place.isdigit()]
+    return [by_name[place] for place in order] if sorted(order) == list(range(len(meshes))) else by_name
 
 
 def _file(sheet: Sheet, uri: str | None, folder: str) -> str | None:
