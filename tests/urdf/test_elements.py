@@ -165,6 +165,13 @@ def test_mimic_without_numbers_follows_one_to_one() -> None:
     assert load(robot(body)).graph.edges[Id("coupling", "j")] == coupling_edge(J, ((Id("joint", "k"), (0.0, 1.0)),))
 
 
+def test_a_multiplier_of_zero_is_zero() -> None:
+    body = (
+        TWO_LINKS + '<link name="c"/>' + joint(LIMIT) + joint(LIMIT + '<mimic joint="j" multiplier="0" offset="1"/>', name="k", child="c")
+    )
+    assert load(robot(body)).graph.edges[Id("coupling", "k")] == coupling_edge(Id("joint", "k"), ((J, (1.0, 0.0)),))
+
+
 def test_a_named_material_is_one_vertex_for_all_that_use_it() -> None:
     shape = '<geometry><sphere radius="1"/></geometry><material name="red"/>'
     source = robot(f'<material name="red"><color rgba="1 0 0 0.5"/><texture filename="t/red.png"/></material>{visual(shape)}')

@@ -91,6 +91,13 @@ def test_the_second_of_two_equal_elements_stays_the_second() -> None:
     assert load(written) == load(source)
 
 
+def test_the_first_of_two_axes_counts_also_after_writing_them_in_another_order() -> None:
+    ends = '<parent link="a"/><child link="b"/>'
+    source = robot(f'{TWO_LINKS}<joint name="j" type="continuous"><axis xyz="0 0 1"/><axis xyz="0 1 0"/>{ends}</joint>')
+    assert load(source).joints[J].joint.dofs[0].axis == (0.0, 0.0, 1.0)
+    assert load(again(source)) == load(source)
+
+
 def test_a_joint_without_a_child_is_kept_outside_of_the_tree() -> None:
     source = robot('<link name="a"/><joint name="j" type="fixed"><parent link="a"/></joint>')
     assert extras(source) == [("", '<joint name="j" type="fixed"><parent link="a"/></joint>')]
@@ -106,6 +113,16 @@ def test_what_most_fixed_joints_say_in_vain_is_said_once() -> None:
     assert list(mechanism.extras) == [Id("joint", "l")]
     assert dump(mechanism).count(vain) == 2
     assert dump(mechanism).count('<axis xyz="0 0 1"/>') == 1
+
+
+def test_what_few_fixed_joints_say_in_vain_stays_theirs() -> None:
+    names = "bcdef"
+    links = "".join(f'<link name="{name}"/>' for name in f"a{names}")
+    vain = '<axis xyz="0 0 1"/>'
+    joints = "".join(joint(vain if name in "bc" else "", "fixed", name=name, child=name) for name in names)
+    mechanism = load(robot(links + joints))
+    assert mechanism.notation(ROOT, "urdf.fixed") is None
+    assert list(mechanism.extras) == [Id("joint", "b"), Id("joint", "c")]
 
 
 def test_what_the_author_wrote_in_vain_is_written_again() -> None:
