@@ -119,10 +119,11 @@ def test_every_element_of_a_real_robot_stands_where_its_file_says(robot: Path) -
 
 @pytest.mark.corpus
 def test_every_xacro_file_of_rtb_data_whose_packages_are_there_expands(real_robot: RealRobots) -> None:
-    """The catalogue's package with the most xacro files: 60, of which 51 have links and the others are libraries of macros."""
+    """The catalogue's package with the most xacro files: 36 robots, 21 libraries of macros and fragments, 3 incomplete ones."""
     package = real_robot.package(catalog.select(("rtb_data",))[0])
     library = Library(package)
     refused = {}
+    links = []
     for path in sorted(package.rglob("*.xacro")):
         try:
             text = expand(disk.open_source(str(path)), Report()).text
@@ -130,4 +131,6 @@ def test_every_xacro_file_of_rtb_data_whose_packages_are_there_expands(real_robo
             refused[path.name] = refusal.diagnostic.message
         else:
             assert canonical(text) == canonical(library.expand(path)), path
+            links.append(text.count(b"<link "))
     assert refused == INCOMPLETE
+    assert [len(links), sum(count >= 2 for count in links)] == [57, 36]
