@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Literal
 from hymeko_x.assets.mujoco import pack_for_mujoco
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import Shelf
+from hymeko_x.assets.usd import pack_for_usd
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -42,12 +43,16 @@ def _keeping(keep: Keep) -> Packer:
 
 _TEXT = Policy("reference", copy=_keeping(Keep.NOTHING), reference=_keeping(Keep.PACKAGES))
 _ROS = Policy("copy", copy=_keeping(Keep.PACKAGES_AND_PATHS), reference=_keeping(Keep.PACKAGES))
+_USD = Policy("copy", copy=pack_for_usd, reference=pack_for_usd)
 
 POLICIES: Mapping[str, Policy] = MappingProxyType(
     {
         "hymeko": _TEXT,
         "mjcf": Policy("copy", copy=pack_for_mujoco, reference=pack_for_mujoco),
         "urdf": _ROS,
+        "usd": _USD,
+        "usdc": _USD,
+        "usdz": _USD,
         "xacro": _ROS,
     }
 )

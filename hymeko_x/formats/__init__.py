@@ -32,8 +32,14 @@ HYMEKO = Format("hymeko", "HyMeKo hypergraph text", (".hymeko", ".himeko"), "hym
 URDF = Format("urdf", "Unified Robot Description Format (ROS)", (".urdf",), "hymeko_x.frontends.urdf", "hymeko_x.backends.urdf", ("robot",))
 XACRO = Format("xacro", "XML macros for URDF (ROS)", (".xacro",), "hymeko_x.frontends.xacro", None, has_arguments=True)
 MJCF = Format("mjcf", "MuJoCo XML", (".mjcf", ".xml"), "hymeko_x.frontends.mjcf", "hymeko_x.backends.mjcf", ("mujoco", "mujocoinclude"))
+_USD_MAGIC = (b"#usda", b"PXR-USDC")
+USD = Format(
+    "usd", "Universal Scene Description, text", (".usda", ".usd"), "hymeko_x.frontends.usd", "hymeko_x.backends.usd", magic=_USD_MAGIC
+)
+USDC = Format("usdc", "Universal Scene Description, binary", (".usdc",), "hymeko_x.frontends.usd", "hymeko_x.backends.usd.crate")
+USDZ = Format("usdz", "Universal Scene Description, package", (".usdz",), "hymeko_x.frontends.usd", "hymeko_x.backends.usd.bundle")
 
-FORMATS = (HYMEKO, URDF, XACRO, MJCF)
+FORMATS = (HYMEKO, URDF, XACRO, MJCF, USD, USDC, USDZ)
 """Every format that can be read or written. Where two claim a suffix, the content decides, and then the first one."""
 
 

@@ -1,0 +1,80 @@
+"""USD out: one stage in metres and kilograms with z up, flat bodies, joint frames on both sides, drives and materials.
+
+What USD has no word for, and every number that it holds in single precision only, stands in ``hymeko:`` attributes.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pxr import Kind, Sdf, UsdGeom
+
+from hymeko_x.backends.usd.bodies import write_bodies, write_mounts
+from hymeko_x.backends.usd.carry import carry_elements
+from hymeko_x.backends.usd.extras import restore_extras
+from hymeko_x.backends.usd.joints import write_joints, write_loops
+from hymeko_x.backends.usd.materials import write_materials
+from hymeko_x.backends.usd.relations import write_drives, write_mimics
+from hymeko_x.backends.usd.shapes import write_shapes
+from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
+from hymeko_x.formats import usd as words
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.source import Package
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Mechanism
+
+_ARTICULATION = "PhysicsArticulationRootAPI"
+
+
+def write(mechanism: Mechanism, report: Report) -> Package:
+    """The mechanism as USD text. Textures are not part of it: `assets.pack` returns them."""
+    return Package(write_layer(mechanism, report).ExportToString().encode())
+
+
+def write_layer(mechanism: Mechanism, report: Report) -> Any:
+    """The mechanism as one layer in memory."""
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    sheet = Sheet(mechanism, layer, _root(mechanism))
+    with Sdf.ChangeBlock():
+        _write_stage(sheet)
+        for section in (write_materials, write_bodies, write_shapes, write_mounts, write_joints, write_loops, write_drives, write_mimics):
+            section(sheet)
+        restore_extras(sheet, report)
+        _write_articulations(sheet)
+        carry_elements(sheet)
+    return layer
+
+
+def _root(mechanism: Mechanism) -> Any:
+    noted = mechanism.notation(ROOT, words.ROOT_PRIM)
+    if noted is not None and Sdf.Path.IsValidPathString(noted) and Sdf.Path(noted).IsRootPrimPath():
+        return Sdf.Path(noted)
+    return Sdf.Path.absoluteRootPath.AppendChild(valid_name(mechanism.name))
+
+
+def _write_stage(sheet: Sheet) -> None:
+    """Units, up axis and the default prim, which stands for the robot."""
+    stage = sheet.layer.pseudoRoot
+    stage.SetInfo("metersPerUnit", 1.0)
+    stage.SetInfo("kilogramsPerUnit", 1.0)
+    stage.SetInfo("upAxis", UsdGeom.Tokens.z)
+    sheet.layer.defaultPrim = sheet.root.name
+    spec = sheet.define(sheet.root, "Xform", sheet.mechanism.name)
+    sheet.made[sheet.root] = []
+    if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is None:
+        spec.SetInfo("kind", Kind.Tokens.component)
+    sheet.made[sheet.root] += ["kind", "displayName", "@type"]
+
+
+def _write_articulations(sheet: Sheet) -> None:
+    """The robot's prim is the root of its articulation; several trees have one root each. Those of the source stay."""
+    if any(_ARTICULATION in extra.text for extras in sheet.mechanism.extras.values() for extra in extras if extra.format == words.FORMAT):
+        return
+    roots = sheet.mechanism.roots
+    if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is not None or not sheet.dofs:
+        return
+    for path in [sheet.root] if len(roots) == 1 else [sheet.homes[root] for root in roots if sheet.mechanism.children.get(root)]:
+        apply(sheet.layer.GetPrimAtPath(path), _ARTICULATION)
+        sheet.made[path].append(f"@{_ARTICULATION}")

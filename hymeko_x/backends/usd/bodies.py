@@ -1,0 +1,133 @@
+"""Bodies with their poses in the world and mass properties, and the frames and cameras on them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from pxr import Gf, Vt
+
+from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
+from hymeko_x.formats import usd as words
+from hymeko_x.formats.xml import read_numbers
+from hymeko_x.ir.mechanism import WORLD, pose_weight
+from hymeko_x.ir.parts import Body, Camera, Frame, Mount
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, unit_quat
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.parts import Inertial
+    from hymeko_x.ir.values import Quat, Tensor, Vec3
+
+
+def write_bodies(sheet: Sheet) -> None:
+    """Every body, flat below the robot's prim or where it was before; one inside of another starts again from the world."""
+    poses = world_poses(sheet.mechanism)
+    placed: set[Any] = set()
+    for key, body in sheet.mechanism.vertices(Body):
+        spec = sheet.place(key, sheet.root, "Xform")
+        placed.add(spec.path)
+        apply(spec, "PhysicsRigidBodyAPI")
+        if body.inertial is not None:
+            write_inertial(spec, body.inertial)
+            sheet.made[spec.path] += ["@PhysicsMassAPI", "physics:centerOfMass", "physics:diagonalInertia"]
+    for key, _ in sheet.mechanism.vertices(Body):
+        path = sheet.homes[key]
+        is_inside = any(prefix in placed for prefix in path.GetParentPath().GetPrefixes())
+        pose = _noted_pose(sheet.mechanism, key) or poses.get(key, IDENTITY)
+        transform(sheet.layer.GetPrimAtPath(path), pose, reset=is_inside)
+
+
+def _noted_pose(mechanism: Mechanism, body: Id) -> Pose | None:
+    """Where the body's prim stood in the stage that it was read from, if not where its joints put it."""
+    numbers = read_numbers(mechanism.notation(body, words.POSE) or "")
+    if numbers is None or len(numbers) != 7 or not any(numbers[3:]):
+        return None
+    x, y, z, qw, qx, qy, qz = numbers
+    return Pose((x, y, z), unit_quat((qw, qx, qy, qz)))
+
+
+def world_poses(mechanism: Mechanism) -> dict[Id, Pose]:
+    """Where each body is when every coordinate is at its reference. Not recursive."""
+    poses: dict[Id, Pose] = {WORLD: IDENTITY}
+    for body in mechanism.depth_first():
+        view = mechanism.parent_joint.get(body)
+        if view is None:
+            poses[body] = IDENTITY
+        else:
+            poses[body] = compose(poses.get(view.parent, IDENTITY), compose(view.parent_pose, inverse(view.child_pose)))
+    return poses
+
+
+# ---- mass --------------------------------------------------------------------------------------------------------------------
+
+
+def write_inertial(spec: Any, inertial: Inertial) -> None:
+    """Mass, centre of mass, and the tensor both as principal moments and as Newton's six doubles."""
+    apply(spec, "PhysicsMassAPI")
+    if inertial.mass is not None:
+        put(spec, "physics:mass", T.Float, inertial.mass)
+    put(spec, "physics:centerOfMass", T.Point3f, Gf.Vec3f(*inertial.com))
+    if inertial.tensor is None:
+        return
+    moments, quat = principal(inertial)
+    put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*moments))
+    put(spec, "physics:principalAxes", T.Quatf, quatf(quat))
+    apply(spec, "NewtonMassAPI")
+    put(spec, "newton:inertia", T.DoubleArray, Vt.DoubleArray(list(inertial.tensor)))
+
+
+def principal(inertial: Inertial) -> tuple[Vec3, Quat]:
+    """Principal moments and the rotation of their axes: as they were given where they were, else computed."""
+    written, tensor = inertial.written, inertial.tensor
+    assert tensor is not None
+    if written is not None and not any(written.tensor[3:]):
+        return written.tensor[:3], written.frame.quat
+    if not any(tensor[3:]):
+        return tensor[:3], NO_ROTATION
+    return _eigen(tensor)
+
+
+def _eigen(tensor: Tensor) -> tuple[Vec3, Quat]:
+    import numpy as np
+
+    xx, yy, zz, xy, xz, yz = tensor
+    matrix = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    if not np.isfinite(matrix).all():
+        return (xx, yy, zz), NO_ROTATION
+    moments, axes = np.linalg.eigh(matrix)
+    if np.linalg.det(axes) < 0.0:
+        axes[:, 0] = -axes[:, 0]
+    turn = Gf.Matrix3d(*axes.T.ravel().tolist()).ExtractRotation().GetQuat()
+    x, y, z = turn.GetImaginary()
+    a, b, c = moments.tolist()
+    return (a, b, c), (turn.GetReal(), x, y, z)
+
+
+# ---- what is mounted on bodies -----------------------------------------------------------------------------------------------
+
+
+def write_mounts(sheet: Sheet) -> None:
+    """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras as cameras; each carries where it is mounted."""
+    for key, _, arcs in sheet.mechanism.edges(Mount):
+        body = next((arc for arc in arcs if arc.sign > 0), None)
+        thing = next((arc for arc in arcs if arc.sign < 0), None)
+        part = sheet.mechanism.graph.vertices.get(thing.target) if thing else None
+        if body is None or thing is None or not isinstance(part, Frame | Camera) or thing.target in sheet.homes:
+            continue
+        home = sheet.root if body.target == WORLD else sheet.homes.get(body.target)
+        if home is None:
+            continue
+        spec = sheet.place(thing.target, home, "Xform" if isinstance(part, Frame) else "Camera", below=body.target != WORLD)
+        sheet.carried[spec.path]["mount"] = key
+        sheet.homes[key] = spec.path
+        transform(spec, pose_weight(body))
+        if isinstance(part, Frame):
+            apply(spec, "MjcSiteAPI", "NewtonSiteAPI")
+            sheet.made[spec.path] += ["@MjcSiteAPI", "@NewtonSiteAPI", "@type"]
+        elif part.fovy is not None and 0.0 < part.fovy < math.pi:
+            aperture = 15.2908
+            put(spec, "verticalAperture", T.Float, aperture)
+            put(spec, "focalLength", T.Float, aperture / 2.0 / math.tan(part.fovy / 2.0))
+            sheet.made[spec.path] += ["@type", "verticalAperture", "focalLength"]

@@ -1,0 +1,256 @@
+"""Joints of UsdPhysics from joints and closures: one prim per dof, local frames on both sides, degrees."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from pxr import Gf
+
+from hymeko_x.backends.usd.sheet import T, apply, point, put, quatf
+from hymeko_x.formats import usd as words
+from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
+from hymeko_x.ir.parts import Dof, DofKind, Loop, Mount
+from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, scaled, unit_quat
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.ir.mechanism import JointView, RobotArc
+    from hymeko_x.ir.values import Quat, Vec3
+
+GENERIC = "PhysicsJoint"
+_TYPES = {DofKind.HINGE: "PhysicsRevoluteJoint", DofKind.SLIDE: "PhysicsPrismaticJoint", DofKind.BALL: "PhysicsSphericalJoint"}
+_TOKENS = {axis: token for token, axis in words.AXES.items()}
+
+
+def write_joints(sheet: Sheet) -> None:
+    """Every joint of the tree. A base that floats needs no prim: its body is just where it is."""
+    for view in sheet.mechanism.joints.values():
+        if view.parent == WORLD and _floats(view):
+            _carry_on_body(sheet, view)
+        else:
+            write_joint(sheet, view)
+
+
+def _floats(view: JointView) -> bool:
+    return len(view.joint.dofs) == 1 and view.joint.dofs[0].kind is DofKind.FREE
+
+
+def _carry_on_body(sheet: Sheet, view: JointView) -> None:
+    home = sheet.homes.get(view.child)
+    if home is not None and "joint" not in sheet.carried[home]:
+        sheet.homes[view.id] = home
+        sheet.carried[home]["joint"] = view.id
+
+
+def write_joint(sheet: Sheet, view: JointView) -> None:
+    """One prim for a joint with at most one dof or with the axes of a generic one, else one for each dof."""
+    dofs = view.joint.dofs
+    is_turned = sheet.mechanism.notation(view.id, words.REVERSED) is not None
+    ends = (
+        ((view.child, view.child_pose), (view.parent, view.parent_pose))
+        if is_turned
+        else (
+            (view.parent, view.parent_pose),
+            (view.child, view.child_pose),
+        )
+    )
+    if is_turned:
+        dofs = tuple(opposite(dof) for dof in reversed(dofs))
+    numbers = range(len(dofs) - 1, -1, -1) if is_turned else range(len(dofs))
+    if not dofs or len(dofs) == 1 or sheet.mechanism.notation(view.id, words.TYPE) == GENERIC:
+        spec = sheet.place(view.id, sheet.scope("joints"), _type_of(sheet, view.id, dofs))
+        write_frames(sheet, spec, ends, dofs)
+        for number, dof in zip(numbers, dofs, strict=True):
+            sheet.dofs[view.id, number] = (spec.path, axis_name(dof) if spec.typeName == GENERIC else "")
+        return
+    _write_parallel(sheet, view, ends, dofs, list(numbers))
+
+
+def opposite(dof: Dof) -> Dof:
+    """The dof as its child sees it."""
+    from dataclasses import replace
+
+    if dof.kind in (DofKind.BALL, DofKind.FREE):
+        return dof
+    x, y, z = scaled(dof.axis, -1.0)
+    return replace(dof, axis=(x + 0.0, y + 0.0, z + 0.0))
+
+
+def _type_of(sheet: Sheet, key: Id, dofs: tuple[Dof, ...]) -> str:
+    if sheet.mechanism.notation(key, words.TYPE) == GENERIC:
+        return GENERIC
+    return "PhysicsFixedJoint" if not dofs else _TYPES.get(dofs[0].kind, GENERIC)
+
+
+def axis_name(dof: Dof) -> str:
+    """The axis of a generic joint that a dof in its frame is; empty where it is along none."""
+    token = _TOKENS.get(dof.axis)
+    return "" if token is None else f"{'trans' if dof.kind is DofKind.SLIDE else 'rot'}{token}"
+
+
+End = tuple[Id, Pose]
+
+
+def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: tuple[Dof, ...], numbers: list[int]) -> None:
+    """Several dofs: a joint for each between the same two bodies, which together are one (Newton, MuJoCo's converters)."""
+    noted = (sheet.mechanism.notation(view.id, words.PATH) or "").split()
+    for place, (number, dof) in enumerate(zip(numbers, dofs, strict=True)):
+        name = dof.name or f"{view.id.name}_{place + 1}"
+        path = sheet.free_path(sheet.scope("joints"), name)
+        if len(noted) == len(dofs) and not sheet.layer.GetPrimAtPath(noted[place]):
+            from pxr import Sdf
+
+            path = Sdf.Path(noted[place])
+        spec = sheet.define(path, _TYPES.get(dof.kind, GENERIC), name)
+        sheet.made.setdefault(path, []).extend(["displayName"] if spec.HasInfo("displayName") else [])
+        write_frames(sheet, spec, ends, (dof,))
+        sheet.dofs[view.id, number] = (path, "")
+        if place == 0:
+            sheet.homes[view.id] = path
+            sheet.carried[path] = {"joint": view.id}
+        else:
+            sheet.carried.setdefault(path, {})
+
+
+# ---- one prim ------------------------------------------------------------------------------------------------------------------
+
+
+def write_frames(sheet: Sheet, spec: Any, ends: tuple[End, End], dofs: tuple[Dof, ...]) -> None:
+    """Bodies, local frames, axis and limits. An axis that is none of x, y, z turns both frames so that it is their x."""
+    turn, token = _turn(dofs[0]) if len(dofs) == 1 and spec.typeName not in (GENERIC, _TYPES[DofKind.BALL]) else (IDENTITY.quat, "X")
+    anchor = dofs[0].anchor if len(dofs) == 1 else (0.0, 0.0, 0.0)
+    for side, (body, pose) in enumerate(ends):
+        if body != WORLD and body in sheet.homes:
+            point(spec, f"physics:body{side}", sheet.homes[body])
+        frame = compose(pose, Pose(anchor, turn)) if any(anchor) or turn != IDENTITY.quat else pose
+        put(spec, f"physics:localPos{side}", T.Point3f, Gf.Vec3f(*frame.xyz))
+        put(spec, f"physics:localRot{side}", T.Quatf, quatf(frame.quat))
+    if spec.typeName == GENERIC:
+        _write_generic(spec, dofs)
+    elif len(dofs) == 1 and dofs[0].kind in (DofKind.HINGE, DofKind.SLIDE):
+        put(spec, "physics:axis", T.Token, token)
+        _write_limits(spec, dofs[0])
+    for dof in dofs[:1]:
+        write_behaviour(spec, dof)
+
+
+def _turn(dof: Dof) -> tuple[Quat, str]:
+    """The rotation from the token's axis to the dof's, and the token."""
+    if dof.axis in _TOKENS:
+        return IDENTITY.quat, _TOKENS[dof.axis]
+    return quat_between_x_and(dof.axis), "X"
+
+
+def quat_between_x_and(axis: Vec3) -> Quat:
+    """A rotation that turns x into the axis, by way of z."""
+    return unit_quat(quat_product(quat_from_z(axis), quat_inverse(quat_from_z(X))))
+
+
+def _write_limits(spec: Any, dof: Dof) -> None:
+    for name, value in (("lower", dof.limits.lower), ("upper", dof.limits.upper)):
+        if value is not None:
+            put(spec, f"physics:{name}Limit", T.Float, _coordinate(dof, value))
+
+
+def _coordinate(dof: Dof, value: float) -> float:
+    """Degrees of a hinge, metres of a slide."""
+    return math.degrees(value) if dof.kind is DofKind.HINGE else value
+
+
+def _write_generic(spec: Any, dofs: tuple[Dof, ...]) -> None:
+    """A LimitAPI on each axis that is limited or locked, which low above high says; the others are free."""
+    if dofs and dofs[0].kind is DofKind.FREE:
+        return
+    said = {axis_name(dof): dof for dof in dofs if dof.kind is not DofKind.BALL}
+    bare = {"rotX", "rotY", "rotZ"} if any(dof.kind is DofKind.BALL for dof in dofs) else set()
+    for name in words.D6_AXES:
+        if name in bare:
+            continue
+        dof = said.get(name)
+        if dof is None or dof.limits.lower is not None or dof.limits.upper is not None:
+            apply(spec, f"PhysicsLimitAPI:{name}")
+        low, high = (1.0, -1.0) if dof is None else (dof.limits.lower, dof.limits.upper)
+        for end, value in (("low", low), ("high", high)):
+            if value is not None:
+                put(spec, f"limit:{name}:physics:{end}", T.Float, value if dof is None else _coordinate(dof, value))
+
+
+def write_behaviour(spec: Any, dof: Dof) -> None:
+    """What a dof does beyond moving, in MuJoCo's schema (doubles, radians) and in Newton's (degrees), where it is not the default."""
+    turns = dof.kind is not DofKind.SLIDE
+    degree = math.pi / 180.0 if turns else 1.0
+    mjc = {
+        "armature": dof.armature,
+        "damping": dof.damping,
+        "frictionloss": dof.friction,
+        "stiffness": dof.stiffness,
+        "ref": dof.ref / degree,
+        "springref": dof.spring_ref / degree,
+    }
+    newton = {"armature": dof.armature, "damping": dof.damping * degree, "friction": dof.friction}
+    if dof.limits.velocity is not None:
+        newton["velocityLimit"] = dof.limits.velocity / degree
+    _write_schema(spec, "MjcJointAPI", "mjc", T.Double, mjc)
+    _write_schema(spec, "NewtonJointAPI", "newton", T.Float, newton)
+    if dof.limits.effort is not None:
+        apply(spec, "MjcJointAPI")
+        put(spec, "mjc:actuatorfrcrange:min", T.Double, -dof.limits.effort)
+        put(spec, "mjc:actuatorfrcrange:max", T.Double, dof.limits.effort)
+
+
+def _write_schema(spec: Any, schema: str, prefix: str, kind: Any, values: dict[str, float]) -> None:
+    said = {name: value for name, value in values.items() if value}
+    if said:
+        apply(spec, schema)
+    for name, value in said.items():
+        put(spec, f"{prefix}:{name}", kind, value)
+
+
+# ---- closures --------------------------------------------------------------------------------------------------------------------
+
+
+def write_loops(sheet: Sheet) -> None:
+    """Each closure between two bodies as a joint that is not part of the articulation."""
+    frames = _frames(sheet)
+    for key, loop, arcs in sheet.mechanism.edges(Loop):
+        ends = [_closure_end(arc, frames) for arc in arcs]
+        if len(ends) != 2 or any(body != WORLD and body not in sheet.homes for body, _ in ends):
+            continue
+        spec = sheet.place(key, sheet.scope("joints"), _loop_type(sheet, key, loop))
+        write_frames(sheet, spec, (ends[0], ends[1]), loop.dofs)
+        if sheet.mechanism.notation(key, "usd.articulated") is None:
+            put(spec, "physics:excludeFromArticulation", T.Bool, True)
+        if not loop.active:
+            put(spec, "physics:jointEnabled", T.Bool, False)
+        if loop.kind == "distance":
+            for name, value in loop.parameters:
+                if isinstance(value, float):
+                    put(spec, f"physics:{name}", T.Float, value)
+
+
+def _loop_type(sheet: Sheet, key: Id, loop: Loop) -> str:
+    noted = sheet.mechanism.notation(key, words.TYPE)
+    if noted is not None:
+        return noted
+    if loop.kind in ("weld", "connect", "distance"):
+        return {"weld": "PhysicsFixedJoint", "connect": "PhysicsSphericalJoint", "distance": "PhysicsDistanceJoint"}[loop.kind]
+    return _type_of(sheet, key, loop.dofs) if len(loop.dofs) < 2 else GENERIC
+
+
+def _frames(sheet: Sheet) -> dict[Id, End]:
+    """The body and pose of each thing that is mounted somewhere."""
+    found: dict[Id, End] = {}
+    for _, _, arcs in sheet.mechanism.edges(Mount):
+        body = next((arc for arc in arcs if arc.sign > 0), None)
+        thing = next((arc for arc in arcs if arc.sign < 0), None)
+        if body is not None and thing is not None:
+            found[thing.target] = (body.target, pose_weight(body))
+    return found
+
+
+def _closure_end(arc: RobotArc, frames: dict[Id, End]) -> End:
+    if arc.target in frames:
+        body, pose = frames[arc.target]
+        return body, compose(pose, pose_weight(arc))
+    return arc.target, pose_weight(arc)

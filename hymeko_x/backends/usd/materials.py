@@ -1,0 +1,70 @@
+"""Materials as UsdPreviewSurface, with one image for the colour where there is one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pxr import Gf, Sdf
+
+from hymeko_x.backends.usd.sheet import T, put
+from hymeko_x.formats.usd import FORMAT
+from hymeko_x.ir.parts import Layer, Material, Texture
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.ir.mechanism import Id
+
+
+def write_materials(sheet: Sheet) -> None:
+    """Every material; one whose shader network was kept as it is gets that network back instead."""
+    images = _images(sheet)
+    for key, material in sheet.mechanism.vertices(Material):
+        spec = sheet.place(key, sheet.scope("materials"), "Material", material.name)
+        has_own = any(extra.format == FORMAT and extra.path for extra in sheet.mechanism.extras.get(key, ()))
+        if not has_own:
+            _write_surface(sheet, spec, material, images.get(key))
+
+
+def _images(sheet: Sheet) -> dict[Id, tuple[Id, Texture]]:
+    """The texture that colours each material."""
+    found: dict[Id, tuple[Id, Texture]] = {}
+    for _, layer, arcs in sheet.mechanism.edges(Layer):
+        texture = next((arc.target for arc in arcs if arc.sign > 0), None)
+        material = next((arc.target for arc in arcs if arc.sign < 0), None)
+        part = sheet.mechanism.graph.vertices.get(texture) if texture is not None else None
+        if layer.use == "rgb" and texture is not None and material is not None and isinstance(part, Texture) and part.uri:
+            found.setdefault(material, (texture, part))
+    return found
+
+
+def _write_surface(sheet: Sheet, spec: Any, material: Material, image: tuple[Id, Texture] | None) -> None:
+    shader = _shader(sheet, spec, "surface", "UsdPreviewSurface")
+    output = Sdf.AttributeSpec(shader, "outputs:surface", T.Token)
+    surface = Sdf.AttributeSpec(spec, "outputs:surface", T.Token)
+    surface.connectionPathList.explicitItems = [output.path]
+    if material.rgba is not None and image is None:
+        put(shader, "inputs:diffuseColor", T.Color3f, Gf.Vec3f(*material.rgba[:3]))
+    if material.rgba is not None:
+        put(shader, "inputs:opacity", T.Float, material.rgba[3])
+    for name, value in (("metallic", material.metallic), ("roughness", material.roughness)):
+        if value is not None:
+            put(shader, f"inputs:{name}", T.Float, value)
+    if image is not None:
+        _write_image(sheet, spec, shader, image[1])
+
+
+def _write_image(sheet: Sheet, spec: Any, shader: Any, texture: Texture) -> None:
+    coordinates = _shader(sheet, spec, "coordinates", "UsdPrimvarReader_float2")
+    put(coordinates, "inputs:varname", T.String, "st")
+    place = Sdf.AttributeSpec(coordinates, "outputs:result", T.Float2)
+    image = _shader(sheet, spec, "image", "UsdUVTexture")
+    put(image, "inputs:file", T.Asset, Sdf.AssetPath(texture.uri or ""))
+    Sdf.AttributeSpec(image, "inputs:st", T.Float2).connectionPathList.explicitItems = [place.path]
+    colour = Sdf.AttributeSpec(image, "outputs:rgb", T.Float3)
+    Sdf.AttributeSpec(shader, "inputs:diffuseColor", T.Color3f).connectionPathList.explicitItems = [colour.path]
+
+
+def _shader(sheet: Sheet, spec: Any, name: str, kind: str) -> Any:
+    shader = sheet.define(spec.path.AppendChild(name), "Shader")
+    put(shader, "info:id", T.Token, kind)
+    return shader

@@ -1,0 +1,86 @@
+"""What acts on joints, where UsdPhysics or Newton has a schema for it: drives and mimics."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x.backends.usd.sheet import T, apply, point, put
+from hymeko_x.ir.parts import Actuator, Coupling, DofKind, Drive, Joint
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.ir.mechanism import RobotArc
+    from hymeko_x.ir.parts import Dof
+
+_KINDS = ("position", "velocity", "motor", "general")
+
+
+def write_drives(sheet: Sheet) -> None:
+    """Each servo or motor on one dof as a DriveAPI of its joint; gains per degree, force limits from its force range."""
+    for key, _, arcs in sheet.mechanism.edges(Drive):
+        source = next((arc.target for arc in arcs if arc.sign > 0), None)
+        driven = next((arc for arc in arcs if arc.sign < 0), None)
+        actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
+        found = dof_of(sheet, driven) if driven is not None else None
+        if found is None or source is None or not isinstance(actuator, Actuator) or actuator.kind not in _KINDS:
+            continue
+        spec, axis, dof = found
+        _write_drive(spec, axis or ("angular" if dof.kind is DofKind.HINGE else "linear"), actuator, dof)
+        if not {"actuator", "drive"} & {*sheet.carried[spec.path]}:
+            sheet.carried[spec.path] |= {"actuator": source, "drive": key}
+            sheet.homes |= {source: spec.path, key: spec.path}
+
+
+def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None:
+    unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else 1.0
+    said = dict(actuator.parameters)
+    apply(spec, f"PhysicsDriveAPI:{instance}")
+    for name, parameter in (("stiffness", "kp"), ("damping", "kv")):
+        value = said.get(parameter)
+        if isinstance(value, int | float):
+            put(spec, f"drive:{instance}:physics:{name}", T.Float, value * unit)
+    most = said.get("forcerange")
+    if isinstance(most, tuple) and len(most) == 2:
+        put(spec, f"drive:{instance}:physics:maxForce", T.Float, max(map(abs, most)))
+
+
+def dof_of(sheet: Sheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
+    """The prim of the dof that an arc means, its axis where that is a generic joint, and the dof itself (hinge or slide)."""
+    from hymeko_x.ir.legalize_joints import dof_number
+
+    edge = sheet.mechanism.graph.edges.get(arc.target)
+    if edge is None or not isinstance(edge.data, Joint):
+        return None
+    number = dof_number(edge.data, arc.role)
+    place = sheet.dofs.get((arc.target, number)) if number is not None else None
+    if place is None or number is None or edge.data.dofs[number].kind not in (DofKind.HINGE, DofKind.SLIDE):
+        return None
+    return sheet.layer.GetPrimAtPath(place[0]), place[1], edge.data.dofs[number]
+
+
+def write_mimics(sheet: Sheet) -> None:
+    """Each affine coupling with one leader as Newton's mimic; the constant of a hinge in degrees."""
+    for key, coupling, arcs in sheet.mechanism.edges(Coupling):
+        follower = next((arc for arc in arcs if arc.sign > 0), None)
+        leaders = [arc for arc in arcs if arc.sign < 0]
+        if follower is None or len(leaders) != 1:
+            continue
+        here, there = dof_of(sheet, follower), dof_of(sheet, leaders[0])
+        weight = leaders[0].weight if isinstance(leaders[0].weight, tuple) else (0.0, 1.0)
+        if here is None or there is None or len(weight) > 2 or here[0].relationships.get("newton:mimicJoint"):
+            continue
+        _write_mimic(here[0], there[0].path, here[2], weight, coupling.active)
+        if "coupling" not in sheet.carried[here[0].path]:
+            sheet.carried[here[0].path]["coupling"] = key
+            sheet.homes[key] = here[0].path
+
+
+def _write_mimic(spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is_active: bool) -> None:
+    apply(spec, "NewtonMimicAPI")
+    point(spec, "newton:mimicJoint", leader)
+    constant = weight[0] if weight else 0.0
+    put(spec, "newton:mimicCoef0", T.Float, math.degrees(constant) if dof.kind is DofKind.HINGE else constant)
+    put(spec, "newton:mimicCoef1", T.Float, weight[1] if len(weight) > 1 else 0.0)
+    if not is_active:
+        put(spec, "newton:mimicEnabled", T.Bool, False)

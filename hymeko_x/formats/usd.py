@@ -1,0 +1,203 @@
+"""The words of USD that its reader and its writer share, and how parts of the IR are carried in ``hymeko:`` attributes.
+
+Data and plain values only; nothing here knows the USD libraries. A part is carried as flat pairs of name and value:
+``inertial:mass = 1.5``, ``dofs:0:limits:upper = 1.57``; a nested part whose type is not obvious says it under ``is``.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import hashlib
+import json
+import math
+import struct
+from enum import Enum
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple, get_type_hints
+
+from hymeko_x.ir import parts, values
+from hymeko_x.ir.mechanism import KINDS
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+FORMAT = "usd"
+PATH = "usd.path"
+"""The notation that keeps the path of the prim that an element was read from."""
+TYPE = "usd.type"
+"""The notation of a joint that keeps the type of its prim where the dofs alone would make it another one."""
+REVERSED = "usd.reversed"
+"""The notation of a joint whose parent in the tree is its ``body1``."""
+POSE = "usd.pose"
+"""The notation of a body that keeps where its prim stands (x y z qw qx qy qz) where its joints put it elsewhere."""
+ROOT_PRIM = "usd.root"
+"""The notation of the mechanism that keeps the path of the prim that stands for the robot."""
+
+PREFIX = "hymeko:"
+DIGEST = "hymeko:digest"
+SCOPE = "hymeko"
+"""The prim below the robot's that holds what USD has no prim for."""
+VERSION = 1
+
+AXES: Mapping[str, values.Vec3] = MappingProxyType({"X": values.X, "Y": values.Y, "Z": values.Z})
+D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
+"""The axes of a generic joint in the order in which they move: what comes first is nearer to the parent."""
+
+Value = bool | int | float | str | tuple[float, ...] | tuple[int, ...] | tuple[str, ...]
+
+
+class D6Axis(NamedTuple):
+    """One axis of a generic joint: how it moves, and along or about what."""
+
+    kind: parts.DofKind
+    axis: values.Vec3
+
+
+def d6_axis(name: str) -> D6Axis:
+    """The meaning of ``transX`` ... ``rotZ``."""
+    kind = parts.DofKind.SLIDE if name.startswith("trans") else parts.DofKind.HINGE
+    return D6Axis(kind, AXES[name[-1]])
+
+
+# ---- single precision ----------------------------------------------------------------------------------------------------
+
+
+def single(value: float) -> float:
+    """The shortest decimal that names a single-precision number: 0.1 for the float that is closest to 0.1.
+
+    So that what an author wrote comes back, not its rounding error; the float that it rounds to is the same.
+    """
+    if not math.isfinite(value) or value == int(value):
+        return float(value)
+    for digits in (6, 7, 8):
+        short = float(f"{value:.{digits}g}")
+        if struct.pack("f", short) == struct.pack("f", value):
+            return short
+    return float(f"{value:.9g}")
+
+
+# ---- digests ---------------------------------------------------------------------------------------------------------------
+
+
+def digest(pairs: Iterable[tuple[str, bytes]]) -> str:
+    """A short hash of named native values, in whatever order they come."""
+    found = hashlib.sha256()
+    for name, value in sorted(pairs):
+        found.update(b"%d:%s%d:" % (len(name), name.encode(), len(value)))
+        found.update(value)
+    return found.hexdigest()[:16]
+
+
+# ---- names of attributes -------------------------------------------------------------------------------------------------
+
+
+def attribute_name(kind: str, key: str) -> str:
+    """The attribute that carries a value of an element of this kind; a number in the key becomes a word, as USD wants it."""
+    return f"{PREFIX}{kind}:" + ":".join(f"i{step}" if step.isdigit() else step for step in key.split(":"))
+
+
+def key_of(name: str) -> str:
+    """The key behind the kind in an attribute's name."""
+    return ":".join(step[1:] if step[:1] == "i" and step[1:].isdigit() else step for step in name.split(":"))
+
+
+# ---- parts as flat values ----------------------------------------------------------------------------------------------------
+
+_TYPES: Mapping[str, type] = MappingProxyType(
+    {
+        kind.__name__: kind
+        for module in (parts, values)
+        for kind in vars(module).values()
+        if isinstance(kind, type) and (dataclasses.is_dataclass(kind) or kind is values.Written)
+    }
+)
+PART_OF: Mapping[str, type] = MappingProxyType({kind: part for part, kind in KINDS.items()})
+"""The part of each kind of element."""
+
+
+def flat(part: object) -> dict[str, Value]:
+    """A part as flat pairs; values that its fields have anyway are left out. Reads back with :func:`part_of`."""
+    found: dict[str, Value] = {}
+    _flatten(part, "", found)
+    return found
+
+
+def _flatten(part: Any, prefix: str, found: dict[str, Value]) -> None:
+    for name, default in _fields(type(part)):
+        value = getattr(part, name)
+        key = f"{prefix}{name}"
+        if name == "parameters":
+            if value:
+                found[key] = json.dumps(value, ensure_ascii=False)
+        elif _is_part(value):
+            if type(value) is not type(default):
+                found[f"{key}:is"] = type(value).__name__
+            _flatten(value, f"{key}:", found)
+        elif isinstance(value, tuple) and value and all(_is_part(item) for item in value):
+            found[f"{key}:count"] = len(value)
+            for number, item in enumerate(value):
+                found[f"{key}:{number}:is"] = type(item).__name__
+                _flatten(item, f"{key}:{number}:", found)
+        elif value != default or value != value:
+            found[key] = value.value if isinstance(value, Enum) else value
+
+
+def part_of(kind: type, pairs: Mapping[str, Value]) -> Any:
+    """The part of this type that :func:`flat` wrote.
+
+    Raises: ValueError, TypeError or KeyError for pairs that are no such part.
+    """
+    return _build(kind, _nested(pairs))
+
+
+def _nested(pairs: Mapping[str, Value]) -> dict[str, Any]:
+    tree: dict[str, Any] = {}
+    for key, value in pairs.items():
+        *way, last = key.split(":")
+        node = tree
+        for step in way:
+            node = node.setdefault(step, {})
+            if not isinstance(node, dict):
+                raise ValueError(f"'{key}' is inside of a plain value")
+        node[last] = value
+    return tree
+
+
+def _build(kind: type, tree: Mapping[str, Any]) -> Any:
+    hints = _hints(kind)
+    arguments: dict[str, Any] = {}
+    for name, default in _fields(kind):
+        if name not in tree:
+            continue
+        said = tree[name]
+        hint = hints.get(name)
+        if name == "parameters":
+            arguments[name] = tuple((key, tuple(value) if isinstance(value, list) else value) for key, value in json.loads(said))
+        elif isinstance(said, dict):
+            arguments[name] = _build_several(said) if "count" in said else _build(_TYPES.get(said.get("is", ""), type(default)), said)
+        elif isinstance(hint, type) and issubclass(hint, Enum):
+            arguments[name] = hint(said)
+        else:
+            arguments[name] = said
+    return kind(**arguments)
+
+
+def _build_several(tree: Mapping[str, Any]) -> tuple[Any, ...]:
+    return tuple(_build(_TYPES[tree[str(number)]["is"]], tree[str(number)]) for number in range(tree["count"]))
+
+
+def _is_part(value: object) -> bool:
+    return (dataclasses.is_dataclass(value) and not isinstance(value, type)) or isinstance(value, values.Written)
+
+
+def _fields(kind: type) -> list[tuple[str, object]]:
+    """The fields of a part with their defaults; a required field has the default ``MISSING``."""
+    if kind is values.Written:
+        return [("kind", dataclasses.MISSING), ("numbers", dataclasses.MISSING)]
+    return [(field.name, field.default) for field in dataclasses.fields(kind)]
+
+
+@functools.cache
+def _hints(kind: type) -> dict[str, Any]:
+    return get_type_hints(kind, {**vars(parts), **vars(values)})

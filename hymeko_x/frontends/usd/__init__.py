@@ -1,0 +1,144 @@
+"""USD in: a composed stage becomes bodies, joints, shapes and materials; whatever else is on any prim becomes extras.
+
+Source: UsdPhysics as its own parser reads it, UsdGeom, and the MjcPhysics and Newton schemas; docs/mapping/usd.md says
+what becomes what.
+"""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin
+from hymeko_x.formats import usd as words
+from hymeko_x.frontends.usd.bodies import BODY, read_body, read_mass
+from hymeko_x.frontends.usd.carried import put_carried
+from hymeko_x.frontends.usd.draft import Draft, api_schemas
+from hymeko_x.frontends.usd.joints import TYPES, ReadJoint, read_joint
+from hymeko_x.frontends.usd.leftovers import gather_leftovers
+from hymeko_x.frontends.usd.materials import read_material
+from hymeko_x.frontends.usd.relations import driven_ends, read_camera, read_drives, read_mimic, read_site
+from hymeko_x.frontends.usd.shapes import SITES, Read, is_shape, read_shape
+from hymeko_x.frontends.usd.stage import Scene, open_scene
+from hymeko_x.frontends.usd.structure import build_trees, note_poses
+from hymeko_x.ir.graph import Hypergraph
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism
+from hymeko_x.ir.parts import Mesh
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.source import Source
+
+_ARTICULATION = "PhysicsArticulationRootAPI"
+
+
+def read(source: Source, report: Report) -> Mechanism:
+    """The mechanism that a USD file describes, with everything that it refers to composed.
+
+    Raises: Refusal with HX001 (USD cannot read it), HX007 (too large).
+    """
+    with open_scene(source, report) as scene:
+        draft = Draft(source, report, scene)
+        prims = _prims(scene)
+        for prim in prims:
+            if BODY in api_schemas(prim):
+                read_body(prim, draft)
+        for prim in prims:
+            if prim.GetTypeName() == "Material":
+                read_material(prim, draft)
+        _read_shapes(prims, draft)
+        _read_joints(prims, draft)
+        for prim in prims:
+            if prim.GetTypeName() == "Camera":
+                read_camera(prim, draft)
+            elif any(site in api_schemas(prim) for site in SITES):
+                read_site(prim, draft)
+        note_poses(draft)
+        draft.native_meshes = _native_meshes(draft)
+        carried = put_carried(draft)
+        gather_leftovers(draft)
+        return _finished(scene, carried, draft)
+
+
+def _prims(scene: Scene) -> list[Any]:
+    """All prims in stage order, without what only carries our own residue."""
+    found = []
+    hidden = ""
+    for prim in scene.stage.Traverse():
+        path = str(prim.GetPath())
+        if hidden and path.startswith(hidden):
+            continue
+        if prim.HasAttribute(f"{words.PREFIX}scope"):
+            hidden = path + "/"
+            continue
+        found.append(prim)
+    return found
+
+
+def _read_shapes(prims: list[Any], draft: Draft) -> None:
+    """Shapes first, then the masses that may follow from them."""
+    on: dict[Id, list[Read]] = {}
+    for prim in prims:
+        found = read_shape(prim, draft) if is_shape(prim) else None
+        if found is not None:
+            on.setdefault(found[0], []).append(found[1])
+    for path, body in draft.bodies.items():
+        read_mass(draft.scene.stage.GetPrimAtPath(path), body, on.get(body, []), draft)
+
+
+def _read_joints(prims: list[Any], draft: Draft) -> None:
+    joints = [joint for prim in prims if str(prim.GetTypeName()) in TYPES for joint in [read_joint(prim, draft)] if joint is not None]
+    joints = build_trees(joints, _articulation_roots(prims, joints, draft), _held(draft), draft)
+    ends = {str(prim.GetPath()): end for joint in joints for prim, end in driven_ends(joint)}
+    for joint in joints:
+        for prim, end in driven_ends(joint):
+            read_drives(prim, end, draft)
+            read_mimic(prim, end, ends, draft)
+
+
+def _articulation_roots(prims: list[Any], joints: list[ReadJoint], draft: Draft) -> list[Id]:
+    """The bodies at which articulations begin: those that bear the API, or an end of the joint that does."""
+    ends = {str(joint.prim.GetPath()): [end.body for end in joint.ends if end.body != WORLD] for joint in joints}
+    roots: list[Id] = []
+    for prim in prims:
+        if _ARTICULATION in api_schemas(prim):
+            path = str(prim.GetPath())
+            roots += [draft.bodies[path]] if path in draft.bodies else ends.get(path, [])[:1]
+    return roots
+
+
+def _held(draft: Draft) -> list[Id]:
+    """The bodies whose simulation is switched off: they are geometry that stands still."""
+    stage = draft.scene.stage
+    return [
+        body for path, body in draft.bodies.items() if stage.GetPrimAtPath(path).GetAttribute("physics:rigidBodyEnabled").Get() is False
+    ]
+
+
+def _native_meshes(draft: Draft) -> dict[str, Mesh]:
+    """The mesh that was read at each path, also where it is shared."""
+    found: dict[str, Mesh] = {}
+    for path, keys in draft.elements.items():
+        for key in keys:
+            edge = draft.edges.get(key)
+            for arc in edge.arcs if edge is not None and key.kind == "shape" else ():
+                part = draft.vertices.get(arc.target)
+                if isinstance(part, Mesh):
+                    found[path] = part
+    return found
+
+
+def _finished(scene: Scene, carried: str | None, draft: Draft) -> Mechanism:
+    default = scene.stage.GetDefaultPrim()
+    first = next(iter(draft.bodies), "")
+    root = default or scene.stage.GetPrimAtPath("/" + first.split("/")[1] if first else "/")
+    stem = PurePath(draft.source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
+    name = carried if carried is not None else str(default.GetName()) if default else stem
+    if carried is None and root and not root.IsPseudoRoot():
+        draft.note(ROOT, words.ROOT_PRIM, str(root.GetPath()))
+    if not draft.bodies and carried is None:
+        draft.report.error(codes.MISSING_PART, "the stage has no rigid bodies; the result has no bodies", Origin(draft.source.name))
+    graph = Hypergraph(draft.vertices, draft.edges)
+    extras = {key: tuple(found) for key, found in draft.extras.items()}
+    return Mechanism(name, graph, extras, draft.origins, draft.notations, draft.stereotypes, tuple(draft.layout))

@@ -1,0 +1,127 @@
+"""A mechanism in the making, and what has been read of each prim so far: the rest becomes extras by itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from pxr import Usd
+
+from hymeko_x.diagnostics import Origin
+from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd import single
+from hymeko_x.frontends.usd.places import Places
+from hymeko_x.ir.mechanism import Names
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.frontends.usd.stage import Scene
+    from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
+    from hymeko_x.ir.parts import Mesh, VertexPart
+    from hymeko_x.source import Source
+
+_SINGLE = frozenset(("float", "float2", "float3", "float4", "point3f", "vector3f", "normal3f", "color3f", "color4f", "quatf", "half"))
+
+
+@dataclass(slots=True)
+class Draft:
+    """Vertices, edges and side tables so far.
+
+    ``bodies`` and ``elements`` lead from a prim's path to its body and to all elements that were read from it; ``taken`` holds,
+    by prim path, the names of properties that are typed now, with ``apiSchemas`` entries as ``@Name`` and the type as ``@type``.
+    """
+
+    source: Source
+    report: Report
+    scene: Scene
+    places: Places = field(init=False)
+    names: Names = field(default_factory=Names)
+    vertices: dict[Id, VertexPart] = field(default_factory=dict)
+    edges: dict[Id, RobotEdge] = field(default_factory=dict)
+    origins: dict[Id, Origin] = field(default_factory=dict)
+    notations: dict[Id, dict[str, str]] = field(default_factory=dict)
+    extras: dict[Id, list[Extra]] = field(default_factory=dict)
+    bodies: dict[str, Id] = field(default_factory=dict)
+    elements: dict[str, list[Id]] = field(default_factory=dict)
+    taken: dict[str, set[str]] = field(default_factory=dict)
+    meshes: dict[str, Id] = field(default_factory=dict)
+    materials: dict[str, Id] = field(default_factory=dict)
+    native_meshes: dict[str, Mesh] = field(default_factory=dict)
+    stereotypes: dict[Id, tuple[str, ...]] = field(default_factory=dict)
+    layout: list[Id] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.places = Places(self.scene)
+
+    @property
+    def origin(self) -> Origin:
+        """The file; USD keeps no lines."""
+        return Origin(self.source.name)
+
+    def own(self, prim: Any, kind: str, fallback: str | None = None) -> Id:
+        """A fresh id for the element that a prim stands for, after the name that it carries."""
+        key = self.names.take(kind, self._name(prim, kind, fallback))
+        path = str(prim.GetPath())
+        self.elements.setdefault(path, []).append(key)
+        self.origins[key] = self.origin
+        if fallback is None:
+            self.note(key, words.PATH, path)
+        return key
+
+    def _name(self, prim: Any, kind: str, fallback: str | None) -> str:
+        carried = prim.GetAttribute(f"{words.PREFIX}{kind}:id")
+        if carried and isinstance(carried.Get(), str):
+            return str(carried.Get())
+        if fallback is not None:
+            return fallback
+        shown = prim.GetMetadata("displayName")
+        return shown if isinstance(shown, str) and shown else str(prim.GetName())
+
+    def note(self, key: Id, name: str, text: str) -> None:
+        """Keep how the author wrote something."""
+        self.notations.setdefault(key, {})[name] = text
+
+    def take(self, prim: Any, *names: str) -> None:
+        """These properties, ``@Api`` schemas or the ``@type`` of a prim are typed now."""
+        self.taken.setdefault(str(prim.GetPath()), set()).update(names)
+
+    def get(self, prim: Any, name: str) -> Any:
+        """An authored value, single precision as the decimal that it stands for; None without one. The property counts as read.
+
+        A value that changes with time stays an extra as well.
+        """
+        attribute = prim.GetAttribute(name)
+        if not attribute or not attribute.HasAuthoredValue():
+            return None
+        value = attribute.Get()
+        if value is None:
+            value = attribute.Get(Usd.TimeCode.EarliestTime())
+        if attribute.GetNumTimeSamples() == 0 and value is not None:
+            self.take(prim, name)
+        return _rounded(value, str(attribute.GetTypeName()))
+
+    def number(self, prim: Any, name: str, default: float) -> float:
+        """An authored number, or the default."""
+        value = self.get(prim, name)
+        return float(value) if isinstance(value, int | float) else default
+
+
+def _rounded(value: Any, kind: str) -> Any:
+    if value is None or kind not in _SINGLE:
+        return value
+    if isinstance(value, float):
+        return single(value)
+    if kind == "quatf":
+        return (single(value.GetReal()), *map(single, value.GetImaginary()))
+    return tuple(map(single, value))
+
+
+def api_schemas(prim: Any) -> list[str]:
+    """The API schemas of a prim as authored, also those that no plugin knows."""
+    listed = prim.GetMetadata("apiSchemas")
+    return list(listed.GetAppliedItems()) if listed is not None else []
+
+
+def has_api(prim: Any, name: str) -> bool:
+    """Whether the schema is applied."""
+    return name in api_schemas(prim)

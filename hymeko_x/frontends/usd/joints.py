@@ -1,0 +1,234 @@
+"""Joints of UsdPhysics: their two frames, dofs, limits, and what MuJoCo's and Newton's schemas say about them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x import codes
+from hymeko_x.formats import usd as words
+from hymeko_x.frontends.usd.bodies import body_at
+from hymeko_x.frontends.usd.draft import has_api
+from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.parts import Dof, DofKind, Limits
+from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, X, compose, inverse, unit_quat
+
+if TYPE_CHECKING:
+    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.ir.mechanism import Id
+
+GENERIC = "PhysicsJoint"
+DISTANCE = "PhysicsDistanceJoint"
+_MJC = ("armature", "damping", "frictionloss", "stiffness", "ref", "springref")
+_NEWTON = ("armature", "damping", "friction", "velocityLimit")
+TYPES = (
+    "PhysicsRevoluteJoint",
+    "PhysicsPrismaticJoint",
+    "PhysicsSphericalJoint",
+    "PhysicsFixedJoint",
+    GENERIC,
+    DISTANCE,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """One side of a joint: the body (or the world) and the joint's frame in it."""
+
+    body: Id
+    pose: Pose
+
+
+@dataclass(frozen=True, slots=True)
+class ReadJoint:
+    """A joint as its prim says it, not yet part of a tree: ``ends`` are those of body0 and body1.
+
+    ``merged`` are the prims of its dofs where it was made of several joints.
+    """
+
+    prim: Any
+    id: Id
+    dofs: tuple[Dof, ...]
+    ends: tuple[End, End]
+    is_enabled: bool
+    is_excluded: bool
+    merged: tuple[Any, ...] = ()
+
+
+def read_joint(prim: Any, draft: Draft) -> ReadJoint | None:
+    """The joint of a prim; None, said and kept as an extra, where it does not connect two bodies."""
+    first, second = _end(prim, 0, draft), _end(prim, 1, draft)
+    if first is None or second is None:
+        return None
+    if first.body == second.body:
+        said = f"joint '{prim.GetPath()}' connects {first.body} with itself; it is kept as written and moves nothing"
+        draft.report.warn(codes.MISSING_PART, said, draft.origin, element=str(prim.GetPath()))
+        return None
+    key = draft.own(prim, "joint")
+    kind = str(prim.GetTypeName())
+    dofs = _dofs(prim, kind, draft)
+    draft.take(prim, "@type", "physics:body0", "physics:body1", *(f"physics:local{what}{side}" for what in ("Pos", "Rot") for side in "01"))
+    _take_schemas(prim, draft)
+    enabled = prim.GetAttribute("physics:jointEnabled").Get() is not False
+    excluded = bool(prim.GetAttribute("physics:excludeFromArticulation").Get())
+    if kind == GENERIC:
+        draft.note(key, words.TYPE, kind)
+    return ReadJoint(prim, key, dofs, (first, second), enabled, excluded)
+
+
+def _take_schemas(prim: Any, draft: Draft) -> None:
+    """A schema of which every value is typed needs no extra."""
+    taken = draft.taken.get(str(prim.GetPath()), set())
+    left = {str(name).split(":")[0] for name in prim.GetAuthoredPropertyNames() if name not in taken}
+    draft.take(prim, *(f"@{schema}" for prefix, schema in (("mjc", "MjcJointAPI"), ("newton", "NewtonJointAPI")) if prefix not in left))
+
+
+# ---- ends --------------------------------------------------------------------------------------------------------------------
+
+
+def _end(prim: Any, side: int, draft: Draft) -> End | None:
+    """The joint's frame in the body of one side; without a body in the world, in the frame of whatever prim is named."""
+    position = draft.get(prim, f"physics:localPos{side}") or ZERO
+    quat = draft.get(prim, f"physics:localRot{side}") or NO_ROTATION
+    local = Pose(position, unit_quat(quat) if any(quat) else NO_ROTATION)
+    targets = prim.GetRelationship(f"physics:body{side}").GetTargets()
+    if not targets:
+        return End(WORLD, _in_world(local, draft))
+    target = prim.GetStage().GetPrimAtPath(targets[0])
+    if not target:
+        said = f"joint '{prim.GetPath()}': body{side} is '{targets[0]}', which does not exist; the joint is kept as written"
+        draft.report.error(codes.UNDEFINED_REFERENCE, said, draft.origin, element=str(prim.GetPath()))
+        return None
+    found = body_at(target, draft)
+    frame = _frame_on(target, local, draft)
+    if found is None:
+        return End(WORLD, frame)
+    body, key = found
+    if body == target:
+        return End(key, Pose(_stretched(position, draft.places.of(body).scale), local.quat))
+    return End(key, compose(inverse(draft.places.of(body).pose), frame))
+
+
+def _in_world(local: Pose, draft: Draft) -> Pose:
+    from hymeko_x.frontends.usd.places import placed
+
+    world = placed(draft.scene.world)
+    return compose(world.pose, Pose(_stretched(local.xyz, world.scale), local.quat))
+
+
+def _frame_on(target: Any, local: Pose, draft: Draft) -> Pose:
+    """A frame given in the scaled space of a prim, seen from the world."""
+    at = draft.places.of(target)
+    return compose(at.pose, Pose(_stretched(local.xyz, at.scale), local.quat))
+
+
+def _stretched(vector: Vec3, scale: Vec3) -> Vec3:
+    return (vector[0] * scale[0] + 0.0, vector[1] * scale[1] + 0.0, vector[2] * scale[2] + 0.0)
+
+
+# ---- dofs --------------------------------------------------------------------------------------------------------------------
+
+
+def _dofs(prim: Any, kind: str, draft: Draft) -> tuple[Dof, ...]:
+    match kind:
+        case "PhysicsRevoluteJoint":
+            return (_behaving(prim, Dof(DofKind.HINGE, _axis(prim, draft), _limits(prim, DofKind.HINGE, draft)), draft),)
+        case "PhysicsPrismaticJoint":
+            return (_behaving(prim, Dof(DofKind.SLIDE, _axis(prim, draft), _limits(prim, DofKind.SLIDE, draft)), draft),)
+        case "PhysicsSphericalJoint":
+            return (_behaving(prim, Dof(DofKind.BALL), draft),)
+        case "PhysicsJoint":
+            return _generic_dofs(prim, draft)
+        case _:
+            return ()
+
+
+def _axis(prim: Any, draft: Draft) -> Vec3:
+    return words.AXES.get(str(draft.get(prim, "physics:axis") or "X"), X)
+
+
+def _limits(prim: Any, kind: DofKind, draft: Draft) -> Limits:
+    """Degrees or lengths of the stage as rad or m. Infinite bounds are none; lower above upper switches both off."""
+    lower = draft.number(prim, "physics:lowerLimit", -math.inf)
+    upper = draft.number(prim, "physics:upperLimit", math.inf)
+    if lower > upper:
+        return Limits()
+    return Limits(_bound(lower, kind, draft), _bound(upper, kind, draft))
+
+
+def _bound(value: float, kind: DofKind, draft: Draft) -> float | None:
+    if not math.isfinite(value) or abs(value) > 3e38:
+        return None
+    return math.radians(value) if kind is DofKind.HINGE else value * draft.scene.metres
+
+
+def _generic_dofs(prim: Any, draft: Draft) -> tuple[Dof, ...]:
+    """The axes that are left free: low above high locks one, an axis without a LimitAPI is free.
+
+    A point that turns freely in all directions is a ball, and one without any limit at all floats.
+    """
+    free = [name for name in words.D6_AXES if not _is_locked(prim, name)]
+    bare = [name for name in free if not has_api(prim, f"PhysicsLimitAPI:{name}")]
+    if len(bare) == len(words.D6_AXES):
+        return (Dof(DofKind.FREE),)
+    is_ball = bare[-3:] == list(words.D6_AXES[3:]) and not any(has_api(prim, f"PhysicsDriveAPI:{name}") for name in bare[-3:])
+    dofs = []
+    for name in free[:-3] if is_ball else free:
+        kind, axis = words.d6_axis(name)
+        is_limited = has_api(prim, f"PhysicsLimitAPI:{name}")
+        low = draft.number(prim, f"limit:{name}:physics:low", -math.inf) if is_limited else -math.inf
+        high = draft.number(prim, f"limit:{name}:physics:high", math.inf) if is_limited else math.inf
+        if math.isfinite(low) or math.isfinite(high):
+            draft.take(prim, f"@PhysicsLimitAPI:{name}")
+        limits = Limits(_bound(low, kind, draft), _bound(high, kind, draft))
+        dofs.append(_behaving(prim, Dof(kind, axis, limits), draft))
+    if is_ball:
+        dofs.append(_behaving(prim, Dof(DofKind.BALL), draft))
+    for name in words.D6_AXES:
+        if name not in free:
+            draft.take(prim, f"@PhysicsLimitAPI:{name}", f"limit:{name}:physics:low", f"limit:{name}:physics:high")
+    return tuple(dofs)
+
+
+def _is_locked(prim: Any, name: str) -> bool:
+    if not has_api(prim, f"PhysicsLimitAPI:{name}"):
+        return False
+    low, high = (prim.GetAttribute(f"limit:{name}:physics:{end}") for end in ("low", "high"))
+    return (low.Get() if low and low.Get() is not None else -math.inf) > (high.Get() if high and high.Get() is not None else math.inf)
+
+
+def _behaving(prim: Any, dof: Dof, draft: Draft) -> Dof:
+    """The dof with what MuJoCo's and Newton's schemas say about the whole joint. Newton counts angles in degrees, MuJoCo in radians."""
+    scene = draft.scene
+    turns = dof.kind is not DofKind.SLIDE
+    inertia = scene.kilograms * (scene.metres**2 if turns else 1.0)
+    effort = scene.kilograms * scene.metres * (scene.metres if turns else 1.0)
+    degree = 180.0 / math.pi if turns else 1.0
+    angle = math.pi / 180.0 if turns else scene.metres
+    mjc = {name: draft.number(prim, f"mjc:{name}", math.nan) for name in _MJC}
+    newton = {name: draft.number(prim, f"newton:{name}", math.nan) for name in _NEWTON}
+    speed = newton["velocityLimit"] * angle
+    return replace(
+        dof,
+        armature=_first(mjc["armature"] * inertia, newton["armature"] * inertia),
+        damping=_first(mjc["damping"] * inertia, newton["damping"] * inertia * degree),
+        friction=_first(mjc["frictionloss"] * effort, newton["friction"] * effort),
+        stiffness=_first(mjc["stiffness"] * inertia),
+        ref=_first(mjc["ref"] * angle),
+        spring_ref=_first(mjc["springref"] * angle),
+        limits=replace(dof.limits, velocity=speed if math.isfinite(speed) else None, effort=_effort(prim, effort, draft)),
+    )
+
+
+def _effort(prim: Any, unit: float, draft: Draft) -> float | None:
+    """MuJoCo's symmetric limit of the force at the joint; a one-sided one stays an extra."""
+    low, high = (prim.GetAttribute(f"mjc:actuatorfrcrange:{end}") for end in ("min", "max"))
+    if not (low and high and low.HasAuthoredValue() and high.HasAuthoredValue()) or low.Get() != -high.Get():
+        return None
+    return abs(draft.number(prim, "mjc:actuatorfrcrange:max", 0.0) * unit) + 0.0 * draft.number(prim, "mjc:actuatorfrcrange:min", 0.0)
+
+
+def _first(*values: float) -> float:
+    """The first value that was said, else 0."""
+    return next((value for value in values if not math.isnan(value)), 0.0)

@@ -1,0 +1,97 @@
+"""Where prims are: matrices of USD as poses in metres with z up, and the scale that is left."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from pxr import Gf, UsdGeom
+
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, unit_quat
+
+if TYPE_CHECKING:
+    from hymeko_x.frontends.usd.stage import Scene
+
+_UNIT = 1e-6
+"""Scales this close to one another, or to 1, are rounding errors of single-precision rotations."""
+
+
+@dataclass(frozen=True, slots=True)
+class Placed:
+    """A rigid pose in m and the scale along its axes; ``sheared`` when the matrix says more than that."""
+
+    pose: Pose
+    scale: Vec3
+    sheared: bool = False
+
+
+class Places:
+    """World matrices in metres with z up, each computed once."""
+
+    def __init__(self, scene: Scene) -> None:
+        self._cache = UsdGeom.XformCache()
+        self._world = scene.world
+        self._bodies: dict[Any, Placed] = {}
+
+    def matrix(self, prim: Any) -> Any:
+        """Local to world, for row vectors."""
+        return self._cache.GetLocalToWorldTransform(prim) * self._world
+
+    def of(self, prim: Any) -> Placed:
+        """The prim in the world."""
+        path = prim.GetPath()
+        if path not in self._bodies:
+            self._bodies[path] = placed(self.matrix(prim))
+        return self._bodies[path]
+
+    def seen_from(self, prim: Any, body: Any | None) -> Placed:
+        """The prim in the rigid frame of a body; in the world without one."""
+        return placed(self.relative(prim, body))
+
+    def relative(self, prim: Any, body: Any | None) -> Any:
+        """The matrix from a prim to the rigid frame of a body, or to the world."""
+        if body is None:
+            return self.matrix(prim)
+        return self.matrix(prim) * matrix_of(self.of(body).pose).GetInverse()
+
+
+def matrix_of(pose: Pose) -> Any:
+    """The matrix of a rigid pose, for row vectors."""
+    w, x, y, z = pose.quat
+    rotation = Gf.Matrix4d().SetRotate(Gf.Quatd(w, Gf.Vec3d(x, y, z)))
+    return rotation * Gf.Matrix4d().SetTranslate(Gf.Vec3d(*pose.xyz))
+
+
+def placed(matrix: Any) -> Placed:
+    """The rigid pose and the scale of a matrix; a mirrored one has a negative scale along x."""
+    rows = [Gf.Vec3d(*(matrix[i][j] for j in range(3))) for i in range(3)]
+    lengths = [row.GetLength() for row in rows]
+    at = matrix.ExtractTranslation()
+    xyz = (at[0] + 0.0, at[1] + 0.0, at[2] + 0.0)
+    if min(lengths) < 1e-12 or not all(map(math.isfinite, (*lengths, *xyz))):
+        x, y, z = (v if math.isfinite(v) else 0.0 for v in xyz)
+        return Placed(Pose((x, y, z)), (lengths[0], lengths[1], lengths[2]), True)
+    if Gf.Dot(Gf.Cross(rows[0], rows[1]), rows[2]) < 0.0:
+        lengths[0] = -lengths[0]
+    axes = [row / length for row, length in zip(rows, lengths, strict=True)]
+    sheared = max(abs(Gf.Dot(axes[0], axes[1])), abs(Gf.Dot(axes[0], axes[2])), abs(Gf.Dot(axes[1], axes[2]))) > 1e-4
+    turn = Gf.Matrix3d(*axes[0], *axes[1], *axes[2])
+    turn.Orthonormalize(False)
+    return Placed(_pose(xyz, quat_of(turn.ExtractRotation().GetQuat())), _scale(lengths), sheared)
+
+
+def _pose(xyz: Vec3, quat: Quat) -> Pose:
+    return IDENTITY if quat == NO_ROTATION and xyz == IDENTITY.xyz else Pose(xyz, quat)
+
+
+def _scale(lengths: list[float]) -> Vec3:
+    x, y, z = (math.copysign(1.0, v) if abs(abs(v) - 1.0) < _UNIT else v for v in lengths)
+    return (x, y, z)
+
+
+def quat_of(quat: Any) -> Quat:
+    """A quaternion of USD as one of ours; the zero one turns nothing."""
+    x, y, z = map(float, quat.GetImaginary())
+    numbers = (float(quat.GetReal()), x, y, z)
+    return unit_quat(numbers) if any(numbers) else NO_ROTATION

@@ -1,0 +1,138 @@
+"""What acts on joints and what sits on bodies: drives, mimics, sites, cameras."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from hymeko_x.formats import usd as words
+from hymeko_x.frontends.usd.bodies import body_at
+from hymeko_x.frontends.usd.draft import api_schemas
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import WORLD, mount_edge
+from hymeko_x.ir.parts import Actuator, Camera, Coupling, DofKind, Drive, Frame, Joint, World
+
+if TYPE_CHECKING:
+    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.joints import ReadJoint
+    from hymeko_x.ir.mechanism import Id, RobotArc
+
+DRIVE = "PhysicsDriveAPI"
+MIMIC = "NewtonMimicAPI"
+
+
+# ---- drives --------------------------------------------------------------------------------------------------------------------
+
+
+class Driven(NamedTuple):
+    """A joint, or by its name one dof of a joint that was made of several."""
+
+    joint: Id
+    dof: str
+
+
+def driven_ends(joint: ReadJoint) -> list[tuple[Any, Driven]]:
+    """Each prim of a joint with what it moves."""
+    if not joint.merged:
+        return [(joint.prim, Driven(joint.id, ""))]
+    return [(prim, Driven(joint.id, dof.name or "")) for prim, dof in zip(joint.merged, joint.dofs, strict=True)]
+
+
+def read_drives(prim: Any, end: Driven, draft: Draft) -> None:
+    """Each DriveAPI of a joint as an actuator: position with a stiffness, velocity with damping alone, else motor."""
+    edge = draft.edges.get(end.joint)
+    if edge is None or not isinstance(edge.data, Joint):
+        return
+    for schema in api_schemas(prim):
+        instance = schema.removeprefix(f"{DRIVE}:")
+        number = _driven(instance, end.dof, edge.data) if instance != schema else None
+        if number is not None:
+            draft.take(prim, f"@{schema}")
+            _add_drive(prim, end.joint, instance, number, edge.data, draft)
+
+
+def _driven(instance: str, name: str, joint: Joint) -> int | None:
+    """Which dof a drive moves; None where the joint has no such axis or the drive is for another kind of motion."""
+    kinds = {"angular": DofKind.HINGE, "linear": DofKind.SLIDE}
+    for number, dof in enumerate(joint.dofs):
+        if instance in kinds:
+            if (dof.name == name if name else len(joint.dofs) == 1) and dof.kind is kinds[instance]:
+                return number
+        elif instance in words.D6_AXES:
+            kind, axis = words.d6_axis(instance)
+            if dof.kind is kind and tuple(map(abs, dof.axis)) == axis:
+                return number
+    return None
+
+
+def _add_drive(prim: Any, key: Id, instance: str, number: int, joint: Joint, draft: Draft) -> None:
+    """Gains per degree become gains per radian; what a drive aims at stays an extra."""
+    scene, turns = draft.scene, joint.dofs[number].kind is DofKind.HINGE
+    gain = scene.kilograms * (scene.metres**2 * 180.0 / math.pi if turns else 1.0)
+    effort = scene.kilograms * scene.metres * (scene.metres if turns else 1.0)
+    prefix = f"drive:{instance}:physics"
+    kp = draft.number(prim, f"{prefix}:stiffness", 0.0) * gain
+    kv = draft.number(prim, f"{prefix}:damping", 0.0) * gain
+    most = draft.number(prim, f"{prefix}:maxForce", math.inf) * effort
+    kind = "position" if kp else "velocity" if kv else "motor"
+    gains = [(name, value) for name, value in (("kp", kp), ("kv", kv)) if value]
+    limits: list[tuple[str, float | str | tuple[float, ...]]] = [("forcerange", (-most, most))] if math.isfinite(most) else []
+    own = joint.dofs[number].name
+    name = own or (key.name if len(joint.dofs) == 1 else f"{key.name}_{instance}")
+    actuator = draft.own(prim, "actuator", name)
+    draft.vertices[actuator] = Actuator(kind, (*gains, *limits))
+    draft.note(actuator, words.TYPE, instance)
+    role = "" if len(joint.dofs) == 1 else own or str(number)
+    draft.edges[draft.own(prim, "drive", name)] = Edge(Drive(), (Arc(actuator, 1), Arc(key, -1, None, role)))
+
+
+# ---- mimics --------------------------------------------------------------------------------------------------------------------
+
+
+def read_mimic(prim: Any, end: Driven, ends: dict[str, Driven], draft: Draft) -> None:
+    """NewtonMimicAPI: this joint follows another one; the constant is in degrees for a hinge."""
+    leaders = prim.GetRelationship("newton:mimicJoint").GetTargets() if prim.HasRelationship("newton:mimicJoint") else []
+    leader = ends.get(str(leaders[0])) if leaders else None
+    follower = draft.edges.get(end.joint)
+    if leader is None or follower is None or not isinstance(follower.data, Joint):
+        return
+    dof = next((dof for dof in follower.data.dofs if dof.name == end.dof or not end.dof), None)
+    if dof is None or dof.kind not in (DofKind.HINGE, DofKind.SLIDE):
+        return
+    unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else draft.scene.metres
+    constant = draft.number(prim, "newton:mimicCoef0", 0.0) * unit
+    factor = draft.number(prim, "newton:mimicCoef1", 1.0)
+    enabled = prim.GetAttribute("newton:mimicEnabled").Get() if prim.HasAttribute("newton:mimicEnabled") else True
+    draft.take(prim, f"@{MIMIC}", "newton:mimicJoint", "newton:mimicEnabled")
+    coupling = draft.own(prim, "coupling", end.dof or end.joint.name)
+    arcs: tuple[RobotArc, ...] = (Arc(end.joint, 1, (1.0,), end.dof), Arc(leader.joint, -1, (constant, factor), leader.dof))
+    draft.edges[coupling] = Edge(Coupling(enabled is not False), arcs)
+
+
+# ---- things that sit somewhere -------------------------------------------------------------------------------------------------
+
+
+def read_site(prim: Any, draft: Draft) -> None:
+    """A frame at the prim; the shape by which it is shown stays an extra."""
+    key = draft.own(prim, "frame")
+    draft.vertices[key] = Frame()
+    _mount(prim, key, draft)
+
+
+def read_camera(prim: Any, draft: Draft) -> None:
+    """A camera with its vertical field of view, 2 atan(aperture / 2 f); the rest of its lens stays extras."""
+    key = draft.own(prim, "camera")
+    focal = prim.GetAttribute("focalLength").Get() or 50.0
+    aperture = prim.GetAttribute("verticalAperture").Get() or 15.2908
+    draft.vertices[key] = Camera(2.0 * math.atan(words.single(aperture) / (2.0 * words.single(focal))))
+    _mount(prim, key, draft)
+
+
+def _mount(prim: Any, key: Id, draft: Draft) -> None:
+    found = body_at(prim, draft)
+    body, owner = found if found is not None else (None, WORLD)
+    if owner == WORLD:
+        draft.vertices.setdefault(WORLD, World())
+    pose = draft.places.seen_from(prim, body).pose
+    draft.edges[draft.own(prim, "mount", key.name)] = mount_edge(owner, key, pose)
+    draft.take(prim, *(name for name in prim.GetAuthoredPropertyNames() if name.startswith("xformOp") and "scale" not in name))

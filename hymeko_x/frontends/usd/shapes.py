@@ -1,0 +1,195 @@
+"""Geometry: gprims as shapes on bodies or the world, in metres; what is for looking and what for colliding."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING, Any
+
+from pxr import UsdGeom
+
+from hymeko_x import codes
+from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd import single
+from hymeko_x.frontends.usd.bodies import body_at
+from hymeko_x.frontends.usd.draft import has_api
+from hymeko_x.frontends.usd.materials import bound_material
+from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, MeshShape, Plane, Role, Shape, Sphere, World
+from hymeko_x.ir.values import Pose, Vec3, X, Y, compose, quat_about
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.ir.parts import Geometry, Rgba
+
+COLLISION = "PhysicsCollisionAPI"
+SITES = ("MjcSiteAPI", "NewtonSiteAPI")
+TYPES = ("Cube", "Sphere", "Cylinder", "Capsule", "Plane", "Mesh")
+_TURNS = {"X": quat_about(Y, 1.5707963267948966), "Y": quat_about(X, -1.5707963267948966)}
+_XFORM = "xformOp"
+
+Read = tuple[Any, Shape, Pose, "NDArray[Any] | None"]
+"""A shape that was read: its prim, part, pose in the body, and for a mesh its points in the shape's frame (n x 3)."""
+
+
+def is_shape(prim: Any) -> bool:
+    """Whether a prim is a geometry that the IR has, and no site."""
+    return str(prim.GetTypeName()) in TYPES and not any(has_api(prim, site) for site in SITES)
+
+
+def read_shape(prim: Any, draft: Draft) -> tuple[Id, Read] | None:
+    """Add the shape of a gprim; returns the body (or the world) that it is on with what was read. None where it cannot be one."""
+    found = body_at(prim, draft)
+    body, owner = found if found is not None else (None, WORLD)
+    at = draft.places.seen_from(prim, body)
+    pose, points, mesh = at.pose, None, None
+    geometry: Geometry | None
+    if prim.GetTypeName() == "Mesh":
+        points, mesh = _read_mesh(prim, draft, at.scale)
+        geometry = MeshShape() if mesh is not None else None
+    else:
+        geometry, turn = _primitive(prim, at.scale, draft)
+        pose = compose(pose, turn)
+    if geometry is None:
+        return None
+    if owner == WORLD:
+        draft.vertices.setdefault(WORLD, World())
+    draft.take(prim, "@type", "extent", *(name for name in prim.GetAuthoredPropertyNames() if name.startswith(_XFORM)))
+    shape = Shape(geometry, _role(prim, draft), name=str(prim.GetName()), rgba=_colour(prim, draft))
+    key = draft.own(prim, "shape")
+    draft.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, draft))
+    return owner, (prim, shape, pose, points)
+
+
+# ---- primitives ------------------------------------------------------------------------------------------------------------------
+
+
+def _primitive(prim: Any, scale: Vec3, draft: Draft) -> tuple[Geometry | None, Pose]:
+    """A primitive with its scale in its sizes, and the rotation from its axis to z.
+
+    Where a scale would bend a round shape, the largest factor counts, as in UsdPhysics' parser; a sphere becomes an ellipsoid.
+    """
+    x, y, z = map(abs, scale)
+    number = draft.number
+    match str(prim.GetTypeName()):
+        case "Cube":
+            size = number(prim, "size", 2.0)
+            return Box((size * x, size * y, size * z)), Pose()
+        case "Sphere":
+            radius = number(prim, "radius", 1.0)
+            round_ = max(x, y, z) - min(x, y, z) < 1e-6 * max(x, y, z)
+            return (Sphere(radius * x) if round_ else Ellipsoid((radius * x, radius * y, radius * z))), Pose()
+        case "Plane":
+            return _plane(prim, scale, draft)
+        case kind:
+            axis, turn = _axis(prim, draft)
+            along = (x, y, z)["XYZ".index(axis)]
+            across = max(value for letter, value in zip("XYZ", (x, y, z), strict=True) if letter != axis)
+            default_radius, default_height = (0.5, 1.0) if kind == "Capsule" else (1.0, 2.0)
+            radius = number(prim, "radius", default_radius) * across
+            height = number(prim, "height", default_height) * along
+            return (Capsule(radius, height) if kind == "Capsule" else Cylinder(radius, height)), turn
+
+
+def _axis(prim: Any, draft: Draft) -> tuple[str, Pose]:
+    axis = str(draft.get(prim, "axis") or "Z")
+    axis = axis if axis in words.AXES else "Z"
+    turn = _TURNS.get(axis)
+    return axis, Pose() if turn is None else Pose(quat=turn)
+
+
+def _plane(prim: Any, scale: Vec3, draft: Draft) -> tuple[Geometry, Pose]:
+    """A plane with half extents along the x and y of its turned frame; colliders are infinite whatever they say."""
+    axis, turn = _axis(prim, draft)
+    x, y, z = map(abs, scale)
+    width, length = draft.number(prim, "width", 2.0), draft.number(prim, "length", 2.0)
+    first, second = {"Z": (x, y), "X": (z, y), "Y": (x, z)}[axis]
+    return Plane((width / 2 * first, length / 2 * second)), turn
+
+
+# ---- meshes --------------------------------------------------------------------------------------------------------------------
+
+
+def _read_mesh(prim: Any, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | None, Id | None]:
+    """The points of a mesh prim in metres with the mesh's id. Equal meshes at equal scale share one; polygons become fans."""
+    import numpy as np
+
+    points, counts, indices = (prim.GetAttribute(name).Get() for name in ("points", "faceVertexCounts", "faceVertexIndices"))
+    if points is None or counts is None or indices is None:
+        return _refused(prim, "has no points or no faces", draft)
+    vertices = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+    sizes, corners = np.asarray(counts, dtype=np.int64), np.asarray(indices, dtype=np.int64)
+    if sizes.size and (sizes.min() < 0 or sizes.sum() != corners.size):
+        return _refused(prim, "says another number of corners than it has", draft)
+    if corners.size and (corners.min() < 0 or corners.max() >= len(vertices)):
+        return _refused(prim, "has a face with a point that does not exist", draft)
+    if not np.isfinite(vertices).all():
+        return _refused(prim, "has points that are not finite", draft)
+    faces = triangles(sizes, corners)
+    if prim.GetAttribute("points").GetNumTimeSamples() == 0:
+        draft.take(prim, "points")
+    if (sizes == 3).all():
+        draft.take(prim, "faceVertexCounts", "faceVertexIndices")
+    key = _shared_mesh(prim, vertices, faces, scale, draft)
+    return vertices * np.asarray(scale), key
+
+
+def _refused(prim: Any, why: str, draft: Draft) -> tuple[None, None]:
+    said = f"mesh '{prim.GetPath()}' {why}; it is kept as written"
+    draft.report.error(codes.ASSET_UNREADABLE, said, draft.origin, element=str(prim.GetPath()))
+    return None, None
+
+
+def triangles(sizes: NDArray[Any], corners: NDArray[Any]) -> NDArray[Any]:
+    """Polygons as fans of triangles, n x 3."""
+    import numpy as np
+
+    if (sizes == 3).all():
+        return corners.reshape(-1, 3)
+    fans = np.maximum(sizes - 2, 0)
+    starts = np.repeat(np.cumsum(sizes) - sizes, fans)
+    step = np.arange(int(fans.sum())) - np.repeat(np.cumsum(fans) - fans, fans)
+    return corners[np.stack([starts, starts + step + 1, starts + step + 2], axis=1)] if len(step) else corners[:0].reshape(0, 3)
+
+
+def _shared_mesh(prim: Any, vertices: NDArray[Any], faces: NDArray[Any], scale: Vec3, draft: Draft) -> Id:
+    content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + repr(scale).encode()).hexdigest()
+    known = draft.meshes.get(content)
+    if known is not None:
+        return known
+    key = draft.own(prim, "mesh", str(prim.GetName()))
+    draft.meshes[content] = key
+    draft.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), tuple(faces.ravel().tolist()))
+    return key
+
+
+# ---- looks and purpose -----------------------------------------------------------------------------------------------------------
+
+
+def _role(prim: Any, draft: Draft) -> Role:
+    """Without a collider a shape is for looking; a collider that is only a guide or a proxy is for colliding alone."""
+    collides = has_api(prim, COLLISION) and prim.GetAttribute("physics:collisionEnabled").Get() is not False
+    if not collides:
+        return Role.VISUAL
+    draft.take(prim, f"@{COLLISION}")
+    if prim.GetAttribute("physics:collisionEnabled").HasAuthoredValue():
+        draft.get(prim, "physics:collisionEnabled")
+    purpose = UsdGeom.Imageable(prim).ComputePurpose()
+    if purpose == UsdGeom.Tokens.guide:
+        draft.get(prim, "purpose")
+    return Role.COLLISION if purpose in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy) else Role.BOTH
+
+
+def _colour(prim: Any, draft: Draft) -> Rgba | None:
+    """One colour for all of the shape; colours per point or face stay extras."""
+    colour, opacity = prim.GetAttribute("primvars:displayColor"), prim.GetAttribute("primvars:displayOpacity")
+    shown = colour.Get() if colour and colour.HasAuthoredValue() else None
+    if shown is None or len(shown) != 1 or colour.GetNumTimeSamples():
+        return None
+    alpha = opacity.Get() if opacity and opacity.HasAuthoredValue() else None
+    if alpha is not None and len(alpha) == 1:
+        draft.take(prim, "primvars:displayOpacity")
+    draft.take(prim, "primvars:displayColor")
+    r, g, b = (single(float(value)) for value in shown[0])
+    return (r, g, b, single(float(alpha[0])) if alpha is not None and len(alpha) == 1 else 1.0)

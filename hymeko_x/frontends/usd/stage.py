@@ -1,0 +1,205 @@
+"""A composed stage from bytes: the file and every layer that it refers to, laid out in a private temporary folder.
+
+USD opens layers by path only, and crate files only from a disk. So the bytes that the source's ``files`` hand out are
+written below one temporary folder, in which no reference leads anywhere else; it is gone when the reading is done.
+"""
+
+from __future__ import annotations
+
+import os
+import posixpath
+import tempfile
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin, refuse
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.source import Source
+
+MOST_PRIMS = 2_000_000
+MOST_LAYERS = 10_000
+MOST_NESTED_INSTANCES = 32
+_UP = 16
+"""How many folders a reference may lead upwards from the file."""
+_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """An open stage in its own units; ``world`` turns its world into metres with z up; ``folder`` is where its layers lie."""
+
+    stage: Any
+    world: Any
+    kilograms: float
+    metres: float
+    folder: str
+    layer: Any
+
+
+@contextmanager
+def open_scene(source: Source, report: Report) -> Iterator[Scene]:
+    """The composed stage of a source, with every instance expanded; everything is gone after the block.
+
+    Raises: Refusal with HX001 (USD cannot read it), HX007 (too large).
+    """
+    with tempfile.TemporaryDirectory(prefix="hymeko-usd-", ignore_cleanup_errors=True) as folder:
+        base = os.path.join(folder, *["d"] * _UP)
+        os.makedirs(base)
+        main = os.path.join(base, f"stage{_suffix(source)}")
+        Path(main).write_bytes(source.data)
+        layers = _gather(main, base, source, report)
+        stage = _composed(main, source)
+        _expand_instances(stage, source)
+        _say_composition_errors(stage, source, report)
+        metres, up = UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage)
+        turn = Gf.Rotation(Gf.Vec3d(1, 0, 0), 90.0 if up == UsdGeom.Tokens.y else 0.0)
+        world = Gf.Matrix4d().SetScale(metres) * Gf.Matrix4d().SetRotate(turn)
+        flat = stage.GetRootLayer() if _is_plain(stage) else stage.Flatten(False)
+        try:
+            yield Scene(stage, world, UsdPhysics.GetStageKilogramsPerUnit(stage), metres, base, flat)
+        finally:
+            del stage, layers, flat
+
+
+def _suffix(source: Source) -> str:
+    """The suffix by which USD chooses its parser: by content where the name does not say."""
+    suffix = posixpath.splitext(source.name.lower())[1]
+    if source.data.startswith(b"PK\x03\x04"):
+        return ".usdz"
+    if source.data.startswith(b"PXR-USDC"):
+        return ".usdc"
+    return suffix if suffix in (".usda", ".usdc", ".usdz") else ".usda"
+
+
+def _composed(main: str, source: Source) -> Any:
+    try:
+        return Usd.Stage.Open(main, Usd.Stage.LoadAll)
+    except Tf.ErrorException as error:
+        raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, os.path.dirname(main))}", Origin(source.name)) from error
+
+
+def _words(error: Exception, folder: str) -> str:
+    """The first sentence of what USD says, without its own source files and our temporary folder."""
+    text = str(error)
+    said = text.rsplit(" : ", 1)[-1].split(" matching ")[0] if " : " in text else text
+    return " ".join(said.replace(folder + "/", "").strip("' \n\t").split())[:300] or "no reason is given"
+
+
+# ---- layers ------------------------------------------------------------------------------------------------------------------
+
+
+def _gather(main: str, base: str, source: Source, report: Report) -> list[Any]:
+    """Every layer that can be reached, written where the reference expects it; what cannot be found is said and stays out."""
+    waiting, kept, seen = [main], [], {main}
+    while waiting:
+        layer = _layer(waiting.pop(), base, source, report)
+        if layer is None:
+            continue
+        kept.append(layer)
+        if len(kept) > MOST_LAYERS:
+            raise refuse(codes.TOO_LARGE, f"it is made of more than {MOST_LAYERS} layers", Origin(source.name))
+        for uri in sorted(layer.GetCompositionAssetDependencies()):
+            found = _fetch(uri, layer.realPath, base, source, report)
+            layer.UpdateCompositionAssetDependency(uri, found or "")
+            if found and found not in seen:
+                seen.add(found)
+                waiting.append(found)
+    return kept
+
+
+def _layer(path: str, base: str, source: Source, report: Report) -> Any | None:
+    try:
+        return Sdf.Layer.FindOrOpen(path)
+    except Tf.ErrorException as error:
+        if os.path.dirname(path) == base and os.path.basename(path).startswith("stage."):
+            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, base)}", Origin(source.name)) from error
+        said = f"layer '{os.path.relpath(path, base)}' cannot be read: {_words(error, base)}; it is left out"
+        report.error(codes.CANNOT_READ, said, Origin(source.name))
+        return None
+
+
+def _fetch(uri: str, layer: str, base: str, source: Source, report: Report) -> str | None:
+    """The path in the temporary folder of the file that a layer refers to; None when there is none."""
+    if not uri:
+        return None
+    folder = posixpath.dirname(os.path.relpath(layer, base).replace(os.sep, "/"))
+    for way in dict.fromkeys((uri if _is_absolute(uri) else posixpath.normpath(posixpath.join(folder, uri)), uri)):
+        found = source.files.find(way)
+        if found is None:
+            continue
+        target = _target(way, found, base)
+        try:
+            data = source.files.read(found)
+        except OSError:
+            continue
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        Path(target).write_bytes(data)
+        return target
+    report.warn(codes.ASSET_NOT_FOUND, f"the layer '{uri}' was not found; what it says is missing", Origin(source.name))
+    return None
+
+
+def _target(way: str, found: str, base: str) -> str:
+    """Where a file is laid: at its place relative to the main file where it has one, else in a folder for such files."""
+    place = os.path.normpath(os.path.join(base, way))
+    root = os.path.join(base, *[".."] * _UP)
+    is_inside = not _is_absolute(way) and place.startswith(os.path.normpath(root) + os.sep)
+    if is_inside and posixpath.splitext(way)[1].lower() in _SUFFIXES and not os.path.basename(place).startswith("stage."):
+        return place
+    return os.path.join(base, "elsewhere", found.replace(os.sep, "/").strip("/").replace("/", "__").replace(":", "_"))
+
+
+def _is_absolute(uri: str) -> bool:
+    return uri.startswith(("/", "\\")) or "://" in uri or (len(uri) > 1 and uri[1] == ":")
+
+
+_ARCS = ("references", "payload", "inheritPaths", "specializes", "variantSetNames")
+
+
+def _is_plain(stage: Any) -> bool:
+    """Whether the root layer says everything by itself, so that composing it changes nothing."""
+    root = stage.GetRootLayer()
+    if {*stage.GetUsedLayers()} - {root, stage.GetSessionLayer()} or root.subLayerPaths or root.relocates:
+        return False
+    stack = list(root.rootPrims)
+    while stack:
+        spec = stack.pop()
+        if any(spec.HasInfo(arc) for arc in _ARCS) or spec.instanceable:
+            return False
+        stack.extend(spec.nameChildren)
+    return True
+
+
+# ---- composition ---------------------------------------------------------------------------------------------------------------
+
+
+def _expand_instances(stage: Any, source: Source) -> None:
+    """Turn every instance into prims of its own, level by level, so that each can be read at its place."""
+    with Usd.EditContext(stage, stage.GetSessionLayer()):
+        for _ in range(MOST_NESTED_INSTANCES):
+            instances = []
+            for count, prim in enumerate(stage.Traverse()):
+                if count >= MOST_PRIMS:
+                    raise refuse(codes.TOO_LARGE, f"it has more than {MOST_PRIMS} prims", Origin(source.name))
+                if prim.IsInstance():
+                    instances.append(prim)
+            if not instances:
+                return
+            with Sdf.ChangeBlock():
+                for prim in instances:
+                    Sdf.CreatePrimInLayer(stage.GetSessionLayer(), prim.GetPath()).SetInfo("instanceable", False)
+    raise refuse(codes.TOO_LARGE, f"instances are nested deeper than {MOST_NESTED_INSTANCES} levels", Origin(source.name))
+
+
+def _say_composition_errors(stage: Any, source: Source, report: Report) -> None:
+    for error in stage.GetCompositionErrors()[:20]:
+        report.error(codes.UNDEFINED_REFERENCE, f"composition: {' '.join(str(error).split())[:300]}", Origin(source.name))

@@ -1,0 +1,183 @@
+"""From an undirected graph of joints to trees and loops, the same way every time.
+
+Joints that UsdPhysics excludes from the articulation, and in stage order every further one that closes a cycle, become
+loops. What is left is directed away from the world, from articulation roots, or from bodies that no joint has as body1.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats import usd as words
+from hymeko_x.frontends.usd.joints import DISTANCE
+from hymeko_x.frontends.usd.parallel import merge_parallel
+from hymeko_x.ir.graph import Arc, Edge, Hypergraph
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
+from hymeko_x.ir.parts import Dof, DofKind, Joint, Loop, World
+from hymeko_x.ir.values import IDENTITY, compose, inverse, numbers_text, rotation_angle, scaled
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.joints import End, ReadJoint
+    from hymeko_x.ir.mechanism import RobotArc
+    from hymeko_x.ir.parts import Parameters
+
+_NEAR = 1e-7
+FREE_SUFFIX = "_free"
+
+
+def build_trees(joints: list[ReadJoint], roots: Iterable[Id], held: Iterable[Id], draft: Draft) -> list[ReadJoint]:
+    """Add every joint as an edge of a tree or as a loop, and a free joint above each body that is left without one.
+
+    Returns the joints as they are in the result. ``roots`` are the bodies that bear an articulation root, ``held`` those
+    whose simulation is switched off: they stand still.
+    """
+    joints = merge_parallel(joints, draft)
+    tree, loops = _split(joints)
+    above = _directed(tree, [*roots], draft)
+    if any(joint.ends[side].body == WORLD for joint in joints for side in (0, 1)):
+        draft.vertices.setdefault(WORLD, World())
+    for joint in joints:
+        if joint.id in loops:
+            _add_loop(joint, draft)
+        else:
+            _add_joint(joint, joint.id in above, draft)
+    _hang_free_bodies({end.body for joint in tree for end in [_child(joint, above)]}, set(held), draft)
+    return joints
+
+
+def note_poses(draft: Draft) -> None:
+    """Keep where a body's prim stands where that is not where the joints above it put it: only their frames count for the robot."""
+    mechanism = Mechanism("", Hypergraph(draft.vertices, draft.edges))
+    prims = {key: draft.scene.stage.GetPrimAtPath(path) for path, key in draft.bodies.items()}
+    poses = {WORLD: IDENTITY}
+    for body in mechanism.depth_first():
+        stands = draft.places.of(prims[body]).pose
+        view = mechanism.parent_joint.get(body)
+        if view is None:
+            poses[body] = stands
+            continue
+        poses[body] = compose(poses.get(view.parent, IDENTITY), compose(view.parent_pose, inverse(view.child_pose)))
+        is_near = math.dist(poses[body].xyz, stands.xyz) < _NEAR and rotation_angle(poses[body].quat, stands.quat) < _NEAR
+        if not is_near:
+            draft.note(body, words.POSE, numbers_text((*stands.xyz, *stands.quat)))
+
+
+def _split(joints: list[ReadJoint]) -> tuple[list[ReadJoint], set[Id]]:
+    """The joints of the spanning trees, and those that close cycles. Joins components in stage order."""
+    leader: dict[Id, Id] = {}
+    tree, loops = [], set()
+    for joint in joints:
+        first, second = (_leader(end.body, leader) for end in joint.ends)
+        if joint.is_excluded or not joint.is_enabled or joint.prim.GetTypeName() == DISTANCE or first == second:
+            loops.add(joint.id)
+            continue
+        leader[second] = first
+        tree.append(joint)
+    return tree, loops
+
+
+def _leader(body: Id, leader: dict[Id, Id]) -> Id:
+    """The representative of a body's component; the way there is halved on each visit."""
+    while leader.setdefault(body, body) != body:
+        leader[body] = leader[leader[body]]
+        body = leader[body]
+    return body
+
+
+def _directed(tree: list[ReadJoint], roots: list[Id], draft: Draft) -> set[Id]:
+    """The joints whose parent is their body1. Breadth first from each component's root."""
+    ends: dict[Id, list[tuple[ReadJoint, int]]] = {}
+    for joint in tree:
+        for side in (0, 1):
+            ends.setdefault(joint.ends[side].body, []).append((joint, side))
+    below = {joint.ends[1].body for joint in tree}
+    first = [WORLD, *roots, *(body for body in draft.bodies.values() if body not in below), *draft.bodies.values()]
+    turned: set[Id] = set()
+    seen: set[Id] = set()
+    for root in first:
+        if root in seen or root not in ends:
+            continue
+        seen.add(root)
+        waiting = deque([root])
+        while waiting:
+            for joint, side in ends[waiting.popleft()]:
+                other = joint.ends[1 - side].body
+                if other not in seen:
+                    seen.add(other)
+                    waiting.append(other)
+                    turned.update([joint.id] if side == 1 else [])
+    return turned
+
+
+def _child(joint: ReadJoint, turned: set[Id]) -> End:
+    return joint.ends[0] if joint.id in turned else joint.ends[1]
+
+
+# ---- edges -------------------------------------------------------------------------------------------------------------------
+
+
+def _add_joint(joint: ReadJoint, is_turned: bool, draft: Draft) -> None:
+    """A turned joint moves the other way: its dofs stand in reverse order with opposite axes, so that coordinates keep their sign."""
+    parent, child = (joint.ends[1], joint.ends[0]) if is_turned else joint.ends
+    dofs = joint.dofs
+    if is_turned:
+        dofs = tuple(_opposite(dof) for dof in reversed(dofs))
+        draft.note(joint.id, words.REVERSED, "true")
+    draft.edges[joint.id] = joint_edge(Joint(dofs), parent.body, child.body, parent.pose, child.pose)
+
+
+def _opposite(dof: Dof) -> Dof:
+    return dof if dof.kind in (DofKind.BALL, DofKind.FREE) else replace(dof, axis=_negated(dof))
+
+
+def _negated(dof: Dof) -> tuple[float, float, float]:
+    x, y, z = scaled(dof.axis, -1.0)
+    return (x + 0.0, y + 0.0, z + 0.0)
+
+
+def _add_loop(joint: ReadJoint, draft: Draft) -> None:
+    """A closure under the joint's name: weld, connect, distance, or a joint of its dofs."""
+    kind, dofs, parameters = _loop_kind(joint, draft)
+    key = draft.names.take("loop", joint.id.name)
+    arcs: tuple[RobotArc, ...] = tuple(Arc(end.body, 0, end.pose) for end in joint.ends)
+    draft.edges[key] = Edge(Loop(kind, dofs, joint.is_enabled, parameters), arcs)
+    draft.origins[key] = draft.origin
+    draft.notations[key] = {**draft.notations.pop(joint.id, {}), words.TYPE: str(joint.prim.GetTypeName())}
+    draft.elements[str(joint.prim.GetPath())] = [key]
+    draft.take(joint.prim, "physics:jointEnabled")
+    draft.take(joint.prim, "physics:excludeFromArticulation")
+    if not joint.is_excluded:
+        draft.note(key, "usd.articulated", "true")
+
+
+def _loop_kind(joint: ReadJoint, draft: Draft) -> tuple[str, tuple[Dof, ...], Parameters]:
+    if joint.prim.GetTypeName() == DISTANCE:
+        found: list[tuple[str, float | str | tuple[float, ...]]] = []
+        for name in ("minDistance", "maxDistance"):
+            value = draft.number(joint.prim, f"physics:{name}", -1.0)
+            if value >= 0.0:
+                found.append((name, value * draft.scene.metres))
+        return "distance", (), tuple(found)
+    if not joint.dofs:
+        return "weld", (), ()
+    if len(joint.dofs) == 1 and joint.dofs[0].kind is DofKind.BALL:
+        return "connect", (), ()
+    return "joint", joint.dofs, ()
+
+
+def _hang_free_bodies(hung: set[Id], held: set[Id], draft: Draft) -> None:
+    """In UsdPhysics a body without a joint above it falls: a free joint says so and where it starts."""
+    for path, body in draft.bodies.items():
+        if body in hung:
+            continue
+        prim = draft.scene.stage.GetPrimAtPath(path)
+        key = draft.own(prim, "joint", body.name + FREE_SUFFIX)
+        dofs = () if body in held else (Dof(DofKind.FREE),)
+        draft.vertices.setdefault(WORLD, World())
+        draft.edges[key] = joint_edge(Joint(dofs), WORLD, body, draft.places.of(prim).pose)
