@@ -47,7 +47,8 @@ ROBOTS = {
     "meshes out of order": f"""<asset><mesh name="z" vertex="{CUBE}"/><mesh name="a" vertex="{CUBE}" scale="1 2 3"/></asset>
         <worldbody><geom type="mesh" mesh="a"/><geom type="mesh" mesh="z"/><geom type="box" mesh="z"/></worldbody>""",
     "meshes in order": f"""<asset><mesh name="a" vertex="{CUBE}" inertia="exact"/><mesh name="b" vertex="{CUBE}"/>
-        <mesh name="c" vertex="{CUBE}" scale="1 2 3"/></asset><worldbody><geom type="mesh" mesh="c"/><geom type="mesh" mesh="a"/></worldbody>""",
+        <mesh name="c" vertex="{CUBE}" scale="1 2 3"/></asset>
+        <worldbody><geom type="mesh" mesh="c"/><geom type="mesh" mesh="a"/></worldbody>""",
     "a height field": """<asset><hfield name="h" nrow="2" ncol="2" size="1 1 1 1" elevation="0 1 2 3"/></asset>
         <worldbody><geom type="hfield" hfield="h"/></worldbody>""",
     "materials": """<asset><texture name="t" type="2d" builtin="checker" width="8" height="8" rgb1="1 0 0" rgb2="0 1 0"/>

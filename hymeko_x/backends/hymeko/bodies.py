@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.hymeko.parts import Context, extra_fields, pose_value, short_uri, word_fields, written_field
+from hymeko_x.backends.hymeko.parts import Context, element_extras, pose_value, short_uri, word_fields, written_field
 from hymeko_x.formats.hymeko import SHAPE_WORDS
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, Names, file_stem
@@ -46,6 +46,8 @@ def _inertial_items(inertial: parts.Inertial) -> list[Item]:
 
 def _axes(frame: Pose) -> Value:
     """A rotation: roll-pitch-yaw, a quaternion, or another notation with its kind before it."""
+    if frame.written is not None and frame.written.kind == "fromto":
+        return frame.quat  # two points say more than a rotation
     rotation = pose_value(frame)
     if len(rotation) == 2:
         return rotation[1]
@@ -66,7 +68,7 @@ def _shape(context: Context, view: ShapeView, names: Names) -> Item:
     notations = context.mechanism.notations.get(view.id)
     if notations:
         items.append(written_field(notations))
-    items.extend(extra_fields(context.mechanism.extras.get(view.id, ())))
+    items.extend(element_extras(context.mechanism.extras.get(view.id, ())))
     if len(items) == 1 and isinstance(items[0], Field) and items[0].name == "mesh":
         return Field(word, items[0].value)
     return Node(word, tuple(items))

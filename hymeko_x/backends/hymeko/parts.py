@@ -54,7 +54,7 @@ class Context:
         items.extend(self.class_items(key))
         if notations:
             items.append(written_field(notations))
-        items.extend(extra_fields(self.mechanism.extras.get(key, ())))
+        items.extend(element_extras(self.mechanism.extras.get(key, ())))
         stereotypes = (Stereotype(Ref((kind,))),) if kind else ()
         name = key.name if key == WORLD else name_of(key.name)
         return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
@@ -186,6 +186,31 @@ def _uri_fields(context: Context, items: list[Item], kind: str) -> list[Item]:
 def short_uri(context: Context, uri: str) -> str:
     """A file's uri behind the common prefix, where it has it."""
     return f"~/{uri.removeprefix(context.files)}" if context.files and uri.startswith(context.files) else uri
+
+
+def element_extras(extras: Iterable[Extra]) -> list[Item]:
+    """What formats said of one element; attributes that follow each other share a field: ``mjcf ["@condim" "1" "@group" "2"]``."""
+    found: list[Item] = []
+    run: list[Extra] = []
+    for extra in extras:
+        if run and not (_is_attribute(extra) and extra.format == run[0].format):
+            found.extend(_attribute_fields(run))
+            run = []
+        if _is_attribute(extra):
+            run.append(extra)
+        else:
+            found.extend(extra_fields([extra]))
+    return [*found, *_attribute_fields(run)]
+
+
+def _is_attribute(extra: Extra) -> bool:
+    return extra.format in _FOREIGN and extra.path.startswith("@") and not extra.index
+
+
+def _attribute_fields(run: list[Extra]) -> list[Item]:
+    if len(run) < 2:
+        return extra_fields(run)
+    return [Field(run[0].format, tuple(text for extra in run for text in (extra.path, extra.text)))]
 
 
 def extra_fields(extras: Iterable[Extra], *, at_root: bool = False) -> list[Item]:

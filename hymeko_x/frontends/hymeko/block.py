@@ -181,7 +181,7 @@ class Block:
         if isinstance(item.name, QuotedName) and self.free is not None:
             return
         if item.name in FOREIGN or item.name == "extra":
-            self.extras.append(read_extra(item, self.context))
+            self.extras += read_extras(item, self.context)
         elif item.name == "class":
             self.classes = read_classes(item, self.context)
         elif item.name == "written":
@@ -278,6 +278,17 @@ class Block:
             name = item.name if not isinstance(item, ArcItem) else item.role or item.ref.dotted
             self.context.report.warn(codes.UNKNOWN_TYPE, f"{element} has no '{name}'; it is kept as it is", origin, element=element)
             self.extras.append(Extra("hymeko", "", print_item(item)))
+
+
+def read_extras(item: Field, context: Context) -> list[Extra]:
+    """What one field keeps: :func:`read_extra`, or several attributes, ``mjcf ["@condim" "1" "@group" "2"]``."""
+    values = cast("tuple[Value, ...]", item.value) if is_list(item.value) else ()
+    if item.name == "extra" or len(values) < 4 or len(values) % 2:
+        return [read_extra(item, context)]
+    texts = [context.text(value, item) for value in values]
+    if not all(path.startswith("@") for path in texts[::2]):
+        return [read_extra(item, context)]
+    return [Extra(item.name, path, text) for path, text in zip(texts[::2], texts[1::2], strict=True)]
 
 
 def read_extra(item: Field, context: Context) -> Extra:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import posixpath
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_codec import MATERIAL, MESH
+from hymeko_x.formats.mjcf_places import MATERIAL, MESH
 from hymeko_x.formats.mjcf_words import joined
 from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
 from hymeko_x.ir.parts import Material, Mesh, Texture

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_codec import INERTIAL, POSE, BadAttribute
+from hymeko_x.formats.mjcf_codec import POSE, BadAttribute
+from hymeko_x.formats.mjcf_places import INERTIAL
 from hymeko_x.formats.mjcf_words import kind_of
 from hymeko_x.frontends.mjcf.geoms import read_geom
 from hymeko_x.frontends.mjcf.joints import read_joints

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.mjcf_classes import merge
-from hymeko_x.formats.mjcf_codec import FITTED_GEOM, GEOM, GRID, Place
+from hymeko_x.formats.mjcf_places import FITTED_GEOM, GEOM, GRID, Place
 from hymeko_x.formats.mjcf_words import PLACES
 from hymeko_x.frontends.mjcf.spot import Spot, placed
 from hymeko_x.ir.mechanism import shape_edge

@@ -48,6 +48,7 @@ def _included(include: Element, source: Source, report: Report, seen: dict[str, 
         raise refuse(codes.MISSING_ATTRIBUTE, "<include> needs a file", include.origin)
     if include.children:
         raise refuse(codes.UNKNOWN_WORD, "<include> has no children", include.origin)
+    uri = uri.replace("\\", "/")
     path = source.files.find(uri) or source.files.find(posixpath.join(posixpath.dirname(include.file), uri))
     if path is None:
         raise refuse(codes.CANNOT_READ, f"the included file '{uri}' was not found", include.origin)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_codec import JOINT
+from hymeko_x.formats.mjcf_joints import JOINT
 from hymeko_x.ir.mechanism import WORLD, Id, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Dof, DofKind, Joint, Limits
 from hymeko_x.ir.values import Z, apply, rotate

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_codec import CAMERA, LIGHT, SITE, parameter_value
+from hymeko_x.formats.mjcf_codec import parameter_value
+from hymeko_x.formats.mjcf_places import CAMERA, LIGHT, SITE
 from hymeko_x.formats.mjcf_words import PLAIN_ATTRIBUTES
 from hymeko_x.frontends.mjcf.spot import Spot, placed
 from hymeko_x.ir.mechanism import mount_edge

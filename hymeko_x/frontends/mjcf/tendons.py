@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_codec import TENDON, BadAttribute, numbers_of
+from hymeko_x.formats.mjcf_codec import BadAttribute, numbers_of
+from hymeko_x.formats.mjcf_joints import TENDON
 from hymeko_x.formats.mjcf_tree import COMMENT
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import UNLIMITED, Limits, Tendon

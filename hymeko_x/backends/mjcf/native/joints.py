@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.native.spot import Op, Spot
-from hymeko_x.formats.mjcf_codec import ANCHOR, AXIS, JOINT
+from hymeko_x.formats.mjcf_joints import ANCHOR, AXIS, JOINT
 from hymeko_x.ir.parts import DofKind
 from hymeko_x.ir.values import IDENTITY, Written, apply, inverse, rotate
 

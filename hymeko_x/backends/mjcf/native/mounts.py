@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x.backends.mjcf.native.parameters import parameter_attributes
 from hymeko_x.backends.mjcf.native.spot import Op, Spot
-from hymeko_x.formats.mjcf_codec import CAMERA, LIGHT, SITE, seen_from
+from hymeko_x.formats.mjcf_places import CAMERA, LIGHT, SITE, seen_from
 from hymeko_x.ir.mechanism import pose_weight
 from hymeko_x.ir.parts import Camera, Frame, Light, Mount
 

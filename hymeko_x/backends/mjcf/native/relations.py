@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.native.parameters import parameter_attributes
 from hymeko_x.backends.mjcf.native.sheet import write_section
-from hymeko_x.formats.mjcf_codec import TENDON, numbers_of
+from hymeko_x.formats.mjcf_codec import numbers_of
+from hymeko_x.formats.mjcf_joints import TENDON
 from hymeko_x.formats.mjcf_words import shifted
 from hymeko_x.ir.mechanism import WORLD, numbers_weight, pose_weight
 from hymeko_x.ir.parts import Contact, Coupling, DofKind, Joint, Loop, Tendon

@@ -9,7 +9,8 @@ from xml.parsers.expat import ExpatError
 from hymeko_x.backends.mjcf.text import Text
 from hymeko_x.formats import mjcf_words as words
 from hymeko_x.formats.mjcf_classes import Classes, merge
-from hymeko_x.formats.mjcf_codec import BadAttribute, same_value
+from hymeko_x.formats.mjcf_codec import BadAttribute
+from hymeko_x.formats.mjcf_places import same_value
 from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.ir.mechanism import ROOT, file_stem
 from hymeko_x.ir.parts import Joint, Mesh, Shape, Texture
