@@ -146,6 +146,11 @@ def attributes_text(attributes: dict[str, str]) -> str:
     return "".join([f' {name}="{escaped(value)}"' for name, value in attributes.items()])
 
 
+def is_name(text: str) -> bool:
+    """Whether a text can be the name of an element."""
+    return re.fullmatch(_NAME, text) is not None
+
+
 def escaped(text: str) -> str:
     """A text for an attribute or an element; every character that XML can hold reads back as it was, others are U+FFFD."""
     return _SPECIAL.sub(_escape, text) if _SPECIAL.search(text) else text

@@ -232,3 +232,10 @@ def test_the_author_of_version_1_1_may_write_quaternions() -> None:
     newer, older = (load(robot(body, f' name="r" version="{version}"')).joints[J].parent_pose for version in ("1.1", "1.0"))
     assert newer.quat == pytest.approx((math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)))
     assert older == Pose((0.0, 0.0, 1.0))
+
+
+def test_a_parameter_whose_name_is_no_word_of_xml_is_left_out() -> None:
+    mechanism = load(robot(TWO_LINKS + joint(LIMIT) + TRANSMISSION))
+    part = Actuator("transmission", (("a b", 1.0), ("c", 2.0)))
+    text = dump(mechanism.with_graph(mechanism.graph.replace(vertices={Id("actuator", "m"): part})))
+    assert '<actuator name="m">\n      <c>2</c>\n      <mechanicalReduction>' in text

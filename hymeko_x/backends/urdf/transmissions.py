@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml_print import Tag, escaped
+from hymeko_x.formats.xml_print import Tag, escaped, is_name
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, Drive
 from hymeko_x.ir.values import number_text, numbers_text
@@ -45,6 +45,8 @@ def _add_end(tag: Tag, name: str, arc: RobotArc, parameters: Parameters) -> None
     if arc.role:
         end.children.append(_element("role", arc.role))
     for key, value in parameters:
+        if not is_name(key):  # from another format, where any word will do; the ledger lists it
+            continue
         text = value if isinstance(value, str) else numbers_text(value) if isinstance(value, tuple) else number_text(value)
         end.children.append(_element(key, text))
 
