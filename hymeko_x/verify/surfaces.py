@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from hymeko_x.verify.model import Array, Index
 
 
+EMPTY = "holds no triangles"
+
+
 class Meshes:
     """Reads mesh files, each one once; without ``read`` none at all."""
 
@@ -26,7 +29,7 @@ class Meshes:
         if not self._wanted:
             return "meshes were not to be compared"
         if isinstance(mesh, Surface):
-            return mesh
+            return mesh if len(mesh.faces) else f"a mesh in the file {EMPTY}"
         if mesh is None or mesh.path is None:
             return f"the mesh '{mesh.uri if mesh else ''}' was not found"
         if mesh.path not in self._read:
@@ -44,7 +47,7 @@ def _load(path: Path) -> Surface | str:
     except (ValueError, KeyError, IndexError, TypeError, AttributeError, OSError, ImportError) as error:
         return f"the mesh '{path.name}' cannot be read: {error}"
     if len(whole.faces) == 0:
-        return f"the mesh '{path.name}' holds no triangles"
+        return f"the mesh '{path.name}' {EMPTY}"
     return Surface(np.asarray(whole.vertices, dtype=float), np.asarray(whole.faces, dtype=np.intp))
 
 

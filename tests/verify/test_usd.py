@@ -139,3 +139,18 @@ def test_structure_finds_the_change_in_a_renamed_robot(written: Write) -> None:
     verdict = verify(written("mjcf", RIG_MJCF), written("mjcf", renamed), structure=True)
     assert verdict.verdict == "different"
     assert any(check.quantity == POSITION and "body 'rod'" in check.at for check in verdict.failed)
+
+
+def test_several_joints_between_two_bodies_are_the_joints_of_one_body(written: Write) -> None:
+    """One joint prim per dof, in the order of the file, each with its own frames at the same pose of rest."""
+    outer = '<body name="a"><freejoint/><geom size="0.1" group="3"/>BODY</body>'
+    text = f'<mujoco><compiler angle="radian"/><worldbody>{outer}</worldbody></mujoco>'
+    hinges = '<joint name="x" axis="1 0 0" pos="0 0 0.02"/><joint name="y" axis="0 1 0" pos="0 0.1 0"/><joint name="z" axis="0 0 1"/>'
+    inner = (
+        f'<body name="b" pos="0.1 0.2 0.3" euler="0.1 0.2 0.3">{hinges}<inertial pos="0 0 0.1" mass="1" diaginertia="0.1 0.2 0.2"/></body>'
+    )
+    model = model_of(written("mjcf", text.replace("BODY", inner)))
+    verdict = verify(model, written("usd", usd_of(model)), samples=20)
+    assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
+    other = model_of(written("mjcf", text.replace("BODY", inner.replace('pos="0 0.1 0"', 'pos="0.01 0.1 0"'))))
+    assert POSITION in {check.quantity for check in verify(model, written("usd", usd_of(other)), samples=20).failed}

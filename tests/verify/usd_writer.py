@@ -26,12 +26,15 @@ def usd_of(model: KinematicModel, *, metres: float = 1.0, kilograms: float = 1.0
     UsdPhysics.SetStageKilogramsPerUnit(stage, kilograms)
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
     stage.SetDefaultPrim(UsdGeom.Xform.Define(stage, "/robot").GetPrim())
-    poses = prepare(model).poses(np.array([[dof.ref for dof in model.dofs]]))[0]
+    rest = np.zeros((1, model.width))
+    for dof, column in zip(model.dofs, model.columns, strict=True):
+        rest[0, column + dof.kind.width - 1 if dof.kind.scalar else column + dof.kind.width - 4] = dof.ref if dof.kind.scalar else 1.0
+    poses = prepare(model).poses(rest)[0]
     for index, body in enumerate(model.bodies[1:], start=1):
         write_body(stage, body, poses[index], metres, kilograms)
     for body in model.bodies[1:]:
         if body.parent != WORLD:
-            write_joint(stage, model, body, metres)
+            write_joints(stage, model, body, metres)
     for coupling in model.couplings:
         follower, (leader, (slope,)) = model.dofs[coupling.follower], coupling.leaders[0]
         prim = stage.GetPrimAtPath(f"/robot/joints/{follower.name}")
@@ -73,9 +76,14 @@ def write_shape(stage: Usd.Stage, path: str, shape: Shape, metres: float) -> Non
         prim.CreatePurposeAttr(UsdGeom.Tokens.guide)
 
 
-def write_joint(stage: Usd.Stage, model: KinematicModel, body: Body, metres: float) -> None:
-    path = f"/robot/joints/{body.joint.name}"
-    dof = body.joint.dofs[0] if body.joint.dofs else None
+def write_joints(stage: Usd.Stage, model: KinematicModel, body: Body, metres: float) -> None:
+    """One prim per dof; a fixed joint is one without."""
+    for dof in body.joint.dofs or (None,):
+        write_joint(stage, model, body, dof, metres)
+
+
+def write_joint(stage: Usd.Stage, model: KinematicModel, body: Body, dof: Dof | None, metres: float) -> None:
+    path = f"/robot/joints/{dof.name if dof else body.joint.name}"
     prim = (KINDS[dof.kind] if dof else UsdPhysics.FixedJoint).Define(stage, path)
     prim.CreateBody0Rel().SetTargets([f"/robot/{model.bodies[body.parent].name}"])
     prim.CreateBody1Rel().SetTargets([f"/robot/{body.name}"])

@@ -6,6 +6,7 @@ and points, because one file on one side may be several on the other.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ import numpy as np
 
 from hymeko_x.verify.checks.pair import Pair, counted, worst
 from hymeko_x.verify.model import WORLD, Array, Feature, Index, Role, Shape
-from hymeko_x.verify.surfaces import Meshes, measures
+from hymeko_x.verify.surfaces import EMPTY, Meshes, measures
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -214,6 +215,8 @@ def _box_distance(sizes: tuple[Array, Array], relative: Array) -> float:
 def _mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes) -> tuple[float, str, str]:
     """How differently two bodies' meshes look, relative to their extent; where it shows most; or why nobody can say."""
     ours, theirs = _together(left, meshes), _together(right, meshes)
+    if isinstance(theirs, str) and theirs.endswith(EMPTY) and not isinstance(ours, str):
+        return math.inf, "nothing is left", ""
     for side in (ours, theirs):
         if isinstance(side, str):
             return 0.0, "", side

@@ -148,6 +148,10 @@ def _spanning_tree(bodies: Sequence[str], edges: Sequence[JointEdge]) -> tuple[l
             body = stack.pop()
             for edge in below.get(body, ()):
                 other = edge.child if edge.parent == body else edge.parent
+                if other in above and above[other].stacks(edge) and id(edge) not in used:
+                    used.add(id(edge))
+                    above[other] = above[other].with_more(edge)
+                    continue
                 if other in seen or other not in known:
                     continue
                 seen.add(other)

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _AXES = {UsdPhysics.Axis.X: 0, UsdPhysics.Axis.Y: 1, UsdPhysics.Axis.Z: 2}
 _DOF = UsdPhysics.JointDOF
+_SAME_REST = 1e-5  # m and as a matrix entry; frames are stored as floats
 _D6 = (
     (_DOF.TransX, Kind.SLIDE, 0),
     (_DOF.TransY, Kind.SLIDE, 1),
@@ -33,7 +34,8 @@ _D6 = (
 class JointEdge:
     """One joint: bodies by path ("" is the world), the joint's frame on each, and dofs in that frame.
 
-    ``closes`` marks a joint that the file leaves out of the articulation; ``words`` what a loop needs to know of its kind.
+    ``more`` are joints that add their mobility to it. ``closes`` marks a joint that the file leaves out of the articulation;
+    ``words`` what a loop needs to know of its kind.
     """
 
     path: str
@@ -45,6 +47,21 @@ class JointEdge:
     dofs: tuple[Dof, ...]
     closes: bool
     words: str
+    more: tuple[JointEdge, ...] = ()
+
+    def stacks(self, other: JointEdge) -> bool:
+        """Whether another joint adds its mobility to this one: between the same bodies, in the same pose at rest.
+
+        UsdPhysics has no joint with several free axes in a given order; this is how mujoco-usd-converter and Newton write one.
+        """
+        if (self.parent, self.child) != (other.parent, other.child) or not (self.dofs and other.dofs) or other.closes:
+            return False
+        rest = self.above @ np.linalg.inv(self.below), other.above @ np.linalg.inv(other.below)
+        return bool(np.abs(rest[0] - rest[1]).max() < _SAME_REST)
+
+    def with_more(self, other: JointEdge) -> JointEdge:
+        """The same joint with the dofs of another one behind its own."""
+        return replace(self, more=(*self.more, other))
 
     def turned(self) -> JointEdge:
         """The same joint seen from the other body: motion and axes change sense."""
@@ -53,7 +70,10 @@ class JointEdge:
 
     def joint(self) -> Joint:
         """The joint in the terms of the body below."""
-        return between_frames(self.name, self.above, self.dofs, self.below)
+        own = between_frames(self.name, self.above, self.dofs, self.below)
+        others = [between_frames(edge.name, edge.above, edge.dofs, edge.below) for edge in self.more]
+        name = self.name if not others else None
+        return replace(own, name=name, dofs=(*own.dofs, *(dof for joint in others for dof in joint.dofs)))
 
 
 def _reversed(dof: Dof) -> Dof:
@@ -148,7 +168,7 @@ def read_loop(edge: JointEdge, body_a: int, body_b: int) -> Loop:
 
 def read_couplings(scene: Scene, model: KinematicModel, tree: Mapping[str, JointEdge]) -> KinematicModel:
     """The model with what MjcEqualityJointAPI, else NewtonMimicAPI, says about joints that follow others."""
-    paths = {edge.path: edge for edge in tree.values()}
+    paths = {edge.path: edge for first in tree.values() for edge in (first, *first.more)}
     dofs = {dof.name: index for index, dof in enumerate(model.dofs) if dof.name is not None}
     found = [coupling for path in paths if (coupling := _coupling(scene, path, paths, dofs)) is not None]
     return replace(model, couplings=tuple(found))
