@@ -34,6 +34,8 @@ _FLAT = 1e-7
 _THICKNESS = 1e-4
 """The part of its largest extent that a flat collision mesh gets as its thickness."""
 _FEWEST_POINTS = 4
+_GROUP = re.compile(rb"^[og][ \t].*$", re.MULTILINE)
+_FACE = re.compile(rb"^f[ \t]", re.MULTILINE)
 _SHELL = Extra(NAME, "@inertia", "shell")
 
 
@@ -261,11 +263,18 @@ def _refusal(part: Part, suffix: str, data: bytes, *, solid: bool) -> str | None
         return f"is flat, and a hull needs a volume: it gets a thickness of {_THICKNESS:g} of its size"
     if len(part.points) < _FEWEST_POINTS:
         return f"has {len(part.points)} points, and MuJoCo needs {_FEWEST_POINTS}: it gets a second side"
+    if suffix == ".obj" and (objects := _objects_in(data)) > 1:
+        return f"has {objects} objects, and MuJoCo keeps the first of them"
     if suffix == ".stl" and not stl_is_exact(data):
         return "is STL as text or with a wrong length; MuJoCo reads only exact binary STL"
     if suffix == ".stl" and len(part.faces) > MOST_STL_FACES:
         return f"has {len(part.faces)} triangles, and MuJoCo reads STL only up to {MOST_STL_FACES}"
     return None
+
+
+def _objects_in(obj: bytes) -> int:
+    """How many objects or groups of an OBJ file have faces."""
+    return sum(_FACE.search(group) is not None for group in _GROUP.split(obj))
 
 
 def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part, stem: str, *, solid: bool, stl: bool = False) -> None:

@@ -310,3 +310,20 @@ def test_a_shelf_never_gives_one_place_to_two_files() -> None:
     assert shelf.copy_as("meshes/a.stl", "one")
     assert not shelf.copy_as("meshes/A.stl", "two")
     assert shelf.place("meshes", "a", ".stl", b"three") == "meshes/a_2.stl"
+
+
+def _tetrahedron(name: bytes, x: int, first: int) -> bytes:
+    points = b"".join(b"v %d %d %d\n" % (x + a, b, c) for a, b, c in ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    faces = b"".join(b"f %d %d %d\n" % (first + a, first + b, first + c) for a, b, c in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)))
+    return b"o " + name + b"\n" + points + faces
+
+
+def test_an_obj_of_several_objects_becomes_one_because_mujoco_keeps_only_the_first() -> None:
+    two = _tetrahedron(b"left", 0, 1) + _tetrahedron(b"right", 5, 5)
+    robot = with_meshes(Mesh("two.obj"))
+    _, _, copies, said = packed(robot, {"two.obj": two})
+    assert copies == {}
+    assert [line for line in said if "has 2 objects, and MuJoCo keeps the first of them" in line]
+    assert len(compiles(robot, {"two.obj": two}).mesh_vert) == 8
+    one = _tetrahedron(b"left", 0, 1)
+    assert packed(with_meshes(Mesh("one.obj")), {"one.obj": one})[2] == {"meshes/one.obj": "one.obj"}
