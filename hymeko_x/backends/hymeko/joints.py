@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
 _BODIES = TARGETS["joint"]
-_SHORT_AXES = {direction: (name, "") for name, direction in AXES.items() if len(name) == 1}
-_SHORT_AXES |= {(-x + 0.0, -y + 0.0, -z + 0.0): (name, "-") for (x, y, z), (name, _) in list(_SHORT_AXES.items())}
+_SHORT_AXES = {str(direction): (name, "") for name, direction in AXES.items() if len(name) == 1}
+_SHORT_AXES |= {str((-x + 0.0, -y + 0.0, -z + 0.0)): (name, "-") for name, (x, y, z) in AXES.items() if len(name) == 1}
 _MOVE_NAMES = {kinds[0]: name for name, kinds in MOVES.items() if kinds}
 
 
@@ -95,7 +95,7 @@ def _dof_items(dof: parts.Dof) -> list[Item]:
 def _axis(dof: parts.Dof) -> list[Item]:
     if dof.written is not None and dof.written.kind == "axis":
         return [Field("axis", dof.written.numbers)]
-    if dof.axis == default_axis(dof.kind):
+    if str(dof.axis) == str(default_axis(dof.kind)):  # as texts, because -0 is equal to 0 and still another number
         return []
-    short = _SHORT_AXES.get(dof.axis)
+    short = _SHORT_AXES.get(str(dof.axis))
     return [Field("axis", Ref((short[0],), short[1]) if short else dof.axis)]
