@@ -153,7 +153,7 @@ def rpy_from_quat(quat: Quat) -> Vec3:
     r = matrix_from_quat(quat)
     flat = math.hypot(r[0][0], r[1][0])
     pitch = math.atan2(-r[2][0], flat)
-    yaw = math.atan2(r[1][0], r[0][0]) if flat > 1e-12 else 0.0
+    yaw = math.atan2(r[1][0], r[0][0]) if flat > 1e-15 else 0.0
     turn = quat_product(quat_about(Y, pitch), quat_about(Z, 0.0))
     turn = quat_product(quat_about(Z, yaw), turn)
     rest = quat_product(quat_inverse(turn), quat)  # what is left is a rotation about x, even where pitch is near +-pi/2
