@@ -97,6 +97,16 @@ def attribute_name(kind: str, key: str) -> str:
     return f"{PREFIX}{kind}:" + ":".join(f"i{step}" if step.isdigit() else step for step in key.split(":"))
 
 
+def text_without_nul(text: str) -> str:
+    """A text as USD can hold it, which ends a text at a NUL: U+2400 escapes itself and stands before U+2401 for a NUL."""
+    return text.replace("\u2400", "\u2400\u2400").replace("\0", "\u2400\u2401")
+
+
+def text_with_nul(text: str) -> str:
+    """The text that :func:`text_without_nul` was given."""
+    return "\u2400".join(part.replace("\u2400\u2401", "\0") for part in text.split("\u2400\u2400"))
+
+
 def key_of(name: str) -> str:
     """The key behind the kind in an attribute's name."""
     return ":".join(step[1:] if step[:1] == "i" and step[1:].isdigit() else step for step in name.split(":"))

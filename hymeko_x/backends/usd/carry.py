@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Sdf
 
+from hymeko_x.backends.usd.shapes import is_drawable
 from hymeko_x.backends.usd.sheet import T, put, put_value
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -61,7 +62,7 @@ def _carry(sheet: Sheet, spec: Any, key: Id) -> None:
     put_value(spec, words.attribute_name(key.kind, "id"), key.name)
     if key in graph.vertices:
         part = graph.vertices[key]
-        pairs = _mesh_pairs(part) if isinstance(part, Mesh) else words.flat(part)
+        pairs = _mesh_pairs(part, key in sheet.homes) if isinstance(part, Mesh) else words.flat(part)
     else:
         edge = graph.edges[key]
         pairs = words.flat(edge.data) | {"arcs:count": len(edge.arcs)}
@@ -71,11 +72,13 @@ def _carry(sheet: Sheet, spec: Any, key: Id) -> None:
         put_value(spec, words.attribute_name(key.kind, name), value)
 
 
-def _mesh_pairs(mesh: Mesh) -> dict[str, Value]:
+def _mesh_pairs(mesh: Mesh, has_prim: bool) -> dict[str, Value]:
     """The points of a mesh are the prim's own, unless single precision would change them; those of a file are not said."""
     pairs = words.flat(replace(mesh, vertices=(), faces=()))
-    if mesh.uri is not None or not mesh.vertices:
+    if mesh.uri is not None:
         return pairs
+    if not has_prim or not is_drawable(mesh):
+        return words.flat(mesh)
     points = np.asarray(mesh.vertices, dtype=np.float64)
     with np.errstate(over="ignore"):
         if not np.array_equal(points.astype(np.float32).astype(np.float64), points):

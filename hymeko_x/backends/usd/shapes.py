@@ -97,7 +97,7 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
     mesh = sheet.mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
     if view.mesh is None or not isinstance(mesh, Mesh):
         return None
-    if users[view.mesh] == 1 or not mesh.vertices:
+    if users[view.mesh] == 1 or not is_drawable(mesh):
         _carry_mesh(sheet, spec, view.mesh)
         _write_points(spec, mesh)
     else:
@@ -107,7 +107,7 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
         spec.typeName = "Mesh"
         spec.referenceList.prependedItems = [Sdf.Reference(primPath=shared[view.mesh])]
     sheet.made[spec.path].append("subdivisionScheme")
-    return None if mesh.scale == (1.0, 1.0, 1.0) or not mesh.vertices else mesh.scale
+    return None if mesh.scale == (1.0, 1.0, 1.0) or not is_drawable(mesh) else mesh.scale
 
 
 def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
@@ -128,11 +128,23 @@ def _write_prototype(sheet: Sheet, key: Id, mesh: Mesh) -> Any:
     return spec.path
 
 
+def is_drawable(mesh: Mesh) -> bool:
+    """Whether a mesh has points, all of them finite in single precision, and triangles between them."""
+    import numpy as np
+
+    if not mesh.vertices or len(mesh.vertices) % 3 or len(mesh.faces) % 3:
+        return False
+    points, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64)
+    if np.abs(points).max() > 3e38 or not np.isfinite(points).all():
+        return False
+    return not faces.size or bool(faces.min() >= 0 and faces.max() < len(points) // 3)
+
+
 def _write_points(spec: Any, mesh: Mesh) -> None:
     """Points in single precision, triangles, and no subdivision. Nothing for a mesh whose file was not there."""
     import numpy as np
 
-    if not mesh.vertices:
+    if not is_drawable(mesh):
         return
     points = np.asarray(mesh.vertices, dtype=np.float32).reshape(-1, 3)
     faces = np.asarray(mesh.faces, dtype=np.int32)

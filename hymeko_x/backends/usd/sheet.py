@@ -160,9 +160,9 @@ def put_value(spec: Any, name: str, value: Value) -> None:
     elif isinstance(value, float):
         put(spec, name, T.Double, value)
     elif isinstance(value, str):
-        put(spec, name, T.String, value)
+        put(spec, name, T.String, words.text_without_nul(value))
     elif value and all(isinstance(item, str) for item in value):
-        put(spec, name, T.StringArray, Vt.StringArray(list(value)))
+        put(spec, name, T.StringArray, Vt.StringArray([words.text_without_nul(str(item)) for item in value]))
     elif value and all(type(item) is int for item in value):
         put(spec, name, T.Int64Array, Vt.Int64Array(list(value)))
     else:

@@ -93,9 +93,12 @@ def _groups(prim: Any) -> dict[str, dict[str, Value]]:
 
 
 def _plain(value: Any) -> Value:
-    if isinstance(value, bool | int | float | str):
+    if isinstance(value, str):
+        return words.text_with_nul(value)
+    if isinstance(value, bool | int | float):
         return value
-    return tuple(value) if value is not None else ()
+    items = tuple(value) if value is not None else ()
+    return tuple(words.text_with_nul(item) if isinstance(item, str) else item for item in items)
 
 
 def _forget(keys: list[Id], draft: Draft) -> None:
@@ -150,7 +153,8 @@ def _with_geometry(mesh: Mesh, pairs: dict[str, Value], path: str, draft: Draft)
     is_missing = mesh.uri is not None and draft.source.files.find(mesh.uri) is None
     if native is None or not (pairs.get("native") or is_missing):
         return mesh
-    return replace(mesh, vertices=mesh.vertices or native.vertices, faces=mesh.faces or native.faces)
+    uri = None if is_missing else mesh.uri
+    return replace(mesh, uri=uri, vertices=mesh.vertices or native.vertices, faces=mesh.faces or native.faces)
 
 
 # ---- side tables -------------------------------------------------------------------------------------------------------------

@@ -71,7 +71,7 @@ class Draft:
     def _name(self, prim: Any, kind: str, fallback: str | None) -> str:
         carried = prim.GetAttribute(f"{words.PREFIX}{kind}:id")
         if carried and isinstance(carried.Get(), str):
-            return str(carried.Get())
+            return words.text_with_nul(carried.Get())
         if fallback is not None:
             return fallback
         shown = prim.GetMetadata("displayName")

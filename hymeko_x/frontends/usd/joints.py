@@ -80,7 +80,7 @@ def read_joint(prim: Any, draft: Draft) -> ReadJoint | None:
 def _take_schemas(prim: Any, draft: Draft) -> None:
     """A schema of which every value is typed needs no extra."""
     taken = draft.taken.get(str(prim.GetPath()), set())
-    left = {str(name).split(":")[0] for name in prim.GetAuthoredPropertyNames() if name not in taken}
+    left = {str(name).split(":")[0] for name in prim.GetAuthoredPropertyNames() if name not in taken and "mimic" not in name}
     draft.take(prim, *(f"@{schema}" for prefix, schema in (("mjc", "MjcJointAPI"), ("newton", "NewtonJointAPI")) if prefix not in left))
 
 

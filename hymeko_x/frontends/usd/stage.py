@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 MOST_PRIMS = 2_000_000
 MOST_LAYERS = 10_000
 MOST_NESTED_INSTANCES = 32
-_UP = 16
+_UP = 8
 """How many folders a reference may lead upwards from the file."""
 _SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
