@@ -88,12 +88,17 @@ PARAMETERS = st.lists(
 TENSORS = st.tuples(*[SMALL] * 6)
 
 
+def _is_no_segment(pose: Pose) -> bool:
+    """Whether a pose is not given by two points, which say more than a rotation."""
+    return pose.written is None or pose.written.kind != "fromto"
+
+
 @st.composite
 def _inertials(draw: st.DrawFn) -> parts.Inertial:
     mass, com, tensor = draw(maybe(LENGTHS)), draw(VECTORS), draw(maybe(TENSORS))
     if tensor is None or draw(st.booleans()):
         return parts.Inertial(mass, com, tensor)
-    frame = draw(POSES.map(lambda p: Pose((0.0, 0.0, 0.0), p.quat, p.written)))
+    frame = draw(POSES.filter(_is_no_segment).map(lambda p: Pose((0.0, 0.0, 0.0), p.quat, p.written)))
     return parts.Inertial(mass, com, rotate_tensor(frame.quat, tensor), parts.InertialWritten(frame, tensor))
 
 

@@ -177,6 +177,23 @@ def test_the_humanoid_has_31_dofs_and_the_mass_height_and_symmetry_of_a_person(t
             np.testing.assert_allclose(data.xpos[number] * [1, -1, 1], twin, atol=1e-12, err_msg=name)
 
 
+def test_the_limbs_of_the_humanoid_have_the_inertia_of_a_capsule() -> None:
+    """Against the integral over a solid capsule, slice by slice along its axis."""
+    robot = load(CORPUS / "robots" / "humanoid.hymeko")
+    for key, body in robot.vertices(parts.Body):
+        capsules = [view.shape.geometry for view in robot.shapes.get(key, ()) if isinstance(view.shape.geometry, parts.Capsule)]
+        if not capsules:
+            continue
+        assert body.inertial is not None
+        r, half = capsules[0].radius, capsules[0].length / 2
+        edges = np.linspace(-half - r, half + r, 200_001)
+        z = (edges[:-1] + edges[1:]) / 2
+        square = r**2 - np.maximum(np.abs(z) - half, 0.0) ** 2
+        weight = square * body.inertial.mass / square.sum()
+        across, along = float((weight * (square / 4 + z**2)).sum()), float((weight * square / 2).sum())
+        np.testing.assert_allclose(body.inertial.tensor, (across, across, along, 0.0, 0.0, 0.0), rtol=1e-6, err_msg=key.name)
+
+
 def test_the_humanoid_falls_on_a_floor_without_trouble(tmp_path: Path) -> None:
     robot = load(CORPUS / "robots" / "humanoid.hymeko")
     hx.dump(robot, tmp_path / "robot.xml")

@@ -131,6 +131,15 @@ def test_templates_that_double_forty_times_are_stopped(body: str, monkeypatch: p
     assert "error[HX007]: the templates make more than 2000 items" in said
 
 
+def test_templates_stop_at_the_bound_and_not_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each instance takes three: the element, and its template with one field."""
+    text = "arm : robot {{ part() : link {{ mass 1 }} all : assembly {{ {} }} }}"
+    monkeypatch.setattr(expand, "MAX_ITEMS", 30)
+    assert len(read_text(text.format(" ".join(f"p{number} : part {{}}" for number in range(10)))).graph.vertices) == 10
+    said = refusal_of(text.format(" ".join(f"p{number} : part {{}}" for number in range(11))))
+    assert "error[HX007]: the templates make more than 30 items" in said
+
+
 def test_texts_that_double_forty_times_are_stopped() -> None:
     line = 't{this}(x) : t{before}(x="${{x}}${{x}}") {{}}'
     body = 't0(x) : link { visual "${x}" }\n' + _doubling(line, 40, 'all : t40(x="ab") {}')

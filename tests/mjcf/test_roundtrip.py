@@ -8,7 +8,9 @@ import mujoco
 import pytest
 from mjmodels import compiled, differences, read, read_text, through_hymeko, write
 
+from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.ir.diff import diff
+from hymeko_x.ir.parts import Body
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -138,3 +140,33 @@ def test_real_models_are_the_same_bit_for_bit(robot: Path) -> None:
     back = through_hymeko(mechanism)
     assert list(diff(mechanism, back)) == []
     assert write(back) == write(mechanism)
+
+
+# ---- files that are large or deep ---------------------------------------------------------------------------------------------
+
+
+def test_ten_thousand_nested_bodies_are_read_and_written() -> None:
+    count = 10_000
+    bodies = '<body pos="0 0 1"><joint/><geom size=".1"/>' * count + "</body>" * count
+    robot = read_text(f"<mujoco><worldbody>{bodies}</worldbody></mujoco>")
+    assert len(robot.joints) == count
+    assert write(robot).count("<body ") == count
+
+
+def test_included_files_are_read_in_place_and_only_once(tmp_path: Path) -> None:
+    (tmp_path / "part.xml").write_text('<mujocoinclude><geom name="g" size=".1"/></mujocoinclude>')
+    main = tmp_path / "main.xml"
+    main.write_text('<mujoco><worldbody><body name="b"><include file="part.xml"/></body></worldbody></mujoco>')
+    assert differences(mujoco.MjModel.from_xml_path(str(main)), compiled(write(read(main)))) == []
+    main.write_text('<mujoco><worldbody><include file="part.xml"/>\n<include file="part.xml"/></worldbody></mujoco>')
+    with pytest.raises(Refusal, match=r"main.xml:2: error\[HX047\]: the file 'part.xml' is included twice; the first time in main.xml:1"):
+        read(main)
+
+
+def test_replicate_is_expanded_by_mujoco_with_a_note() -> None:
+    text = '<mujoco><worldbody><replicate count="3" offset="1 0 0"><body name="b"><geom size=".1"/></body></replicate></worldbody></mujoco>'
+    report = Report()
+    robot = read_text(text, report)
+    assert [key.name for key, _ in robot.vertices(Body)] == ["b0", "b1", "b2"]
+    assert [said.message for said in report] == ["<replicate> was expanded by MuJoCo; lines after it are those of the expanded file"]
+    assert differences(compiled(text), compiled(write(robot))) == []
