@@ -1,6 +1,6 @@
 """A chain of 100,000 links through URDF -> HyMeKo -> URDF: the time per link must not grow with the length.
 
-    python benchmarks/chain.py [LINKS]
+python benchmarks/chain.py [LINKS]
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Loading URDF: `hymeko_x.load` against `yourdfpy.URDF.load` without meshes, on all development URDFs.
 
-    python benchmarks/load.py
+python benchmarks/load.py
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Reading HyMeKo: our parser against lark with the plain grammar, on the printed texts of all development URDFs.
 
-    python benchmarks/parse.py
+python benchmarks/parse.py
 """
 
 from __future__ import annotations
