@@ -12,7 +12,6 @@ from hymeko_x import codes
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal
 
-
 # The same examples in every run, so that a change is judged by what it changed; `HYPOTHESIS_PROFILE=search` looks for new ones.
 settings.register_profile("same", derandomize=True, database=None)
 settings.register_profile("search", derandomize=False)
