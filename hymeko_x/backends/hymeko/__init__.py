@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
-from hymeko_x.backends.hymeko.parts import Context, extra_fields, name_of, part_items, sound_comment, typed, written_field
+from hymeko_x.backends.hymeko.parts import Context, extra_fields, name_of, part_items, sound_comment, written_field
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -128,7 +128,7 @@ def _element(context: Context, key: Id) -> Item:
     items = part_items(context, key, edge.data, edge.arcs)
     if isinstance(edge.data, parts.Loop):
         items.extend(dof_node(dof) for dof in edge.data.dofs)
-    return context.node(key, items, typed(key.kind), edge=True)
+    return context.node(key, items, key.kind, edge=True)
 
 
 def _vertex(context: Context, key: Id, part: parts.VertexPart) -> Item:
@@ -137,4 +137,4 @@ def _vertex(context: Context, key: Id, part: parts.VertexPart) -> Item:
         return node if node.items or key.name not in AXES else context.node(key, [], "link")
     if isinstance(part, parts.Datum) and not part.parameters and not context.is_marked(key):
         return Field(name_of(key.name))
-    return context.node(key, part_items(context, key, part, ()), typed(key.kind))
+    return context.node(key, part_items(context, key, part, ()), key.kind)

@@ -92,11 +92,6 @@ def name_of(name: str) -> str:
     return QuotedName(name) if name in RESERVED else name
 
 
-def typed(kind: str) -> str:
-    """The type's name for a kind."""
-    return kind
-
-
 def pose_value(pose: Pose) -> tuple[Value, ...]:
     """``[x y z]`` for a translation, else ``[[x y z] rotation]``, roll-pitch-yaw if written so, else a quaternion.
 
