@@ -64,23 +64,27 @@ def dump(
     base: Base = None,
     actuators: Actuators = None,
     assets: Assets = None,
+    pure: bool = False,
 ) -> Report:
     """Write a robot with its meshes to a file; return what there is to say. The format is taken from the suffix unless given.
 
     Relative meshes are looked for beside the file that the robot was read from. ``assets``: copy meshes beside the
-    output, or refer to them where they are (None = what is usual for the format).
+    output, or refer to them where they are (None = what is usual for the format). ``pure`` leaves out what the format
+    cannot say itself, which it carries otherwise.
 
     Raises: Refusal when it cannot be written; then nothing was changed.
     """
     report = Report()
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
     files = _files_of(robot, packages)
-    package = pipeline.write(robot, target, Options(base=base, actuators=actuators), files, report, _place(path, assets))
-    disk.write_package(package, os.fspath(path), files)
+    result = pipeline.convert(robot, target, Options(base=base, actuators=actuators), files, report, _place(path, assets), pure=pure)
+    disk.write_package(result.package, os.fspath(path), files)
     return report
 
 
-def dumps(robot: Mechanism, format: str, *, base: Base = None, actuators: Actuators = None, report: Report | None = None) -> str:
+def dumps(
+    robot: Mechanism, format: str, *, base: Base = None, actuators: Actuators = None, pure: bool = False, report: Report | None = None
+) -> str:
     """A robot as text; meshes are referred to from the working folder, and nothing is written.
 
     Raises: Refusal when the format cannot be written.
@@ -88,7 +92,8 @@ def dumps(robot: Mechanism, format: str, *, base: Base = None, actuators: Actuat
     said = Report() if report is None else report
     options = Options(base=base, actuators=actuators)
     place = pipeline.Place(assets="reference")
-    return pipeline.write(robot, formats.by_name(format), options, _files_of(robot, None), said, place).main.decode()
+    result = pipeline.convert(robot, formats.by_name(format), options, _files_of(robot, None), said, place, pure=pure)
+    return result.package.main.decode()
 
 
 def convert(
@@ -103,8 +108,11 @@ def convert(
     base: Base = None,
     actuators: Actuators = None,
     assets: Assets = None,
+    pure: bool = False,
 ) -> pipeline.Result:
     """Convert a file with its meshes; return the mechanism, what was written, what there is to say and what got lost.
+
+    The output carries what its format cannot say itself, unless it is to be ``pure``.
 
     Raises: Refusal when the input cannot be read or the output not written; then nothing was changed.
     """
@@ -114,7 +122,7 @@ def convert(
     robot = pipeline.read(given, _input_format(given, from_format), report)
     form = formats.by_name(to_format) if to_format else formats.of_output(os.fspath(target))
     options = Options(base=base, actuators=actuators)
-    result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets))
+    result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets), pure=pure)
     disk.write_package(result.package, os.fspath(target), given.files)
     return result
 

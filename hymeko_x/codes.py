@@ -171,6 +171,21 @@ INERTIA_REPAIRED = Code(
     "an inertia was changed",
     "The target's engine refuses the inertia of a moving body: it has no mass, is not positive definite, or breaks the triangle inequality of principal moments.",
 )
+RESIDUE_SUPERSEDED = Code(
+    "HX105",
+    "what was carried no longer applies",
+    "The file carries what its format cannot say, each entry bound to what the file said when it was written. Somebody has changed that since, and the change wins.",
+)
+RESIDUE_FOLLOWED = Code(
+    "HX106",
+    "a renamed element was recognised",
+    "The file carries something for an element that is not there any more, and exactly one new element says the same: it was taken for the old one.",
+)
+RESIDUE_UNREADABLE = Code(
+    "HX107",
+    "what is carried cannot be read",
+    "The file carries what its format cannot say, but the text is damaged or of a newer version. The file is read as if it carried nothing.",
+)
 NOT_SAID = Code("HX104", "the target has no word for this", "The target cannot say this, and nothing comes near.")
 
 # ---- HX2xx: assets ---------------------------------------------------------------------------------------------------

@@ -9,18 +9,24 @@ from typing import TYPE_CHECKING, Literal, Protocol
 
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
-from hymeko_x.diagnostics import Refusal, Report, refuse
+from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
+from hymeko_x.formats.carrier import taken_off
 from hymeko_x.ir.diff import Difference, Tolerance, diff
 from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Mesh, Texture
+from hymeko_x.ir.residue.align import bridge_between
+from hymeko_x.ir.residue.bridge import cross, other_words
+from hymeko_x.ir.residue.delta import residue_of
+from hymeko_x.ir.residue.merge import restore
+from hymeko_x.language.residue import BadResidue, parse_residue, print_residue
 from hymeko_x.source import Package, Source
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Origin
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.ir.residue import Bridge
     from hymeko_x.source import Files
 
 LEDGER_TOLERANCE = Tolerance(absolute=1e-12, relative=1e-12)
@@ -43,6 +49,14 @@ class Writer(Protocol):
 
     def __call__(self, mechanism: Mechanism, report: Report) -> Package:
         """The files that describe the mechanism, which must be legal for the format."""
+        ...
+
+
+class Carrier(Protocol):
+    """What every backend has whose format cannot say everything."""
+
+    def __call__(self, package: Package, text: str) -> Package:
+        """The package with a residue where other readers pass over it."""
         ...
 
 
@@ -72,7 +86,12 @@ class Loss:
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""
         what = f"{self.element} {self.field}".rstrip()
-        return f"{place}loss: {what} {self.fate}: {_shown(self.before)} -> {_shown(self.after)}"
+        return f"{place}loss: {what} {self.fate}: {self.change}"
+
+    @property
+    def change(self) -> str:
+        """Before and after in one short line."""
+        return f"{_shown(self.before)} -> {_shown(self.after)}"
 
     def as_json(self) -> dict[str, str | int | None]:
         """The keys of the `--report` contract."""
@@ -110,7 +129,20 @@ def read(source: Source, format: Format, report: Report) -> Mechanism:
 
     Raises: Refusal when the input cannot be read at all.
     """
-    return reader(format)(source, report)
+    return restored(reader(format)(source, report), Origin(source.name), report)
+
+
+def restored(image: Mechanism, origin: Origin, report: Report) -> Mechanism:
+    """The mechanism that a file describes together with what it carries of the one that it was made from."""
+    image, text = taken_off(image)
+    if not text:
+        return image
+    try:
+        residue = parse_residue(text)
+    except (BadResidue, Refusal) as error:
+        report.warn(codes.RESIDUE_UNREADABLE, f"what the file carries cannot be read, and is left out: {error}", origin)
+        return image
+    return restore(image, residue, report)
 
 
 def write(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Package:
@@ -121,15 +153,28 @@ def write(mechanism: Mechanism, format: Format, options: Options, files: Files, 
     return _written(mechanism, format, options, files, report, place)[0]
 
 
-def convert(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
-    """Write a mechanism, read the result back if the format has a reader, and measure what got lost.
+def convert(
+    mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE, *, pure: bool = False
+) -> Result:
+    """Write a mechanism, read the result back if the format has a reader, measure what got lost, and let the file carry that.
+
+    ``pure`` leaves out what the format cannot say itself.
 
     Raises: Refusal when the format cannot be written; HX901 when our own reader refuses what we wrote.
     """
     package, packed = _written(mechanism, format, options, files, report, place)
     if format.frontend is None:
         return Result(mechanism, package, report, None)
-    return Result(mechanism, package, report, ledger(with_references_of(packed, mechanism), package, format, files))
+    image = read_back(package, format, files)
+    bridge = bridge_between(image, mechanism)
+    losses = ledger(with_references_of(packed, mechanism), image, bridge, format)
+    carry = None if pure else carrier_of(format)
+    if carry is None:
+        return Result(mechanism, package, report, losses)
+    residue = residue_of(mechanism, image, bridge)
+    if not residue.is_empty:
+        package = carry(package, print_residue(residue))
+    return Result(mechanism, package, report, tuple(replace(loss, fate="carried") for loss in losses))
 
 
 def write_unmeasured(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
@@ -161,14 +206,21 @@ def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report
     return weigh(mechanism, writer(formats.MJCF)(mechanism, Report()).main, files, report)
 
 
-def ledger(mechanism: Mechanism, package: Package, format: Format, files: Files) -> tuple[Loss, ...]:
-    """Everything in which the written package, read by its format's own frontend, differs from the mechanism."""
+def read_back(package: Package, format: Format, files: Files) -> Mechanism:
+    """What the format's own frontend sees in a package that was just written.
+
+    Raises: Refusal HX901 when it sees nothing.
+    """
     result = Source(f"<written {format.name}>", package.main, PackageFiles(package, files))
     try:
-        back = reader(format)(result, Report())
+        return reader(format)(result, Report())
     except Refusal as error:
         raise refuse(codes.BUG, f"what was written as {format.name} cannot be read back: {error}") from error
-    found = diff(mechanism, back, LEDGER_TOLERANCE)
+
+
+def ledger(mechanism: Mechanism, image: Mechanism, bridge: Bridge, format: Format) -> tuple[Loss, ...]:
+    """Everything in which what was written and read back differs from the mechanism; what it only says in other words, once."""
+    found = (*other_words(bridge), *diff(mechanism, cross(image, bridge), LEDGER_TOLERANCE))
     return tuple(_loss(difference, mechanism) for difference in found if not _is_dress(difference, format))
 
 
@@ -215,6 +267,12 @@ def writer(format: Format) -> Writer:
         writable = ", ".join(row.name for row in formats.FORMATS if row.backend)
         raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be written, only read", hint=f"writable: {writable}")
     found: Writer = import_module(format.backend).write
+    return found
+
+
+def carrier_of(format: Format) -> Carrier | None:
+    """How the format's files carry a residue; None for a format that says everything itself."""
+    found: Carrier | None = getattr(import_module(format.backend), "carry_residue", None) if format.backend else None
     return found
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from hymeko_x import codes, disk, pipeline
 from hymeko_x.cli import exits
+from hymeko_x.cli.losses import lines
 from hymeko_x.cli.terminal import MOST_LINES, show
 from hymeko_x.diagnostics import Severity
 from hymeko_x.ir.legalize import Options
@@ -49,8 +50,8 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
     With ``measured`` the result is read back and its losses are listed.
     """
     options = Options(base=chosen.base, actuators=chosen.actuators)
-    make = pipeline.convert if measured else pipeline.write_unmeasured
-    result = make(given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
+    what = (given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
+    result = pipeline.convert(*what, pure=chosen.pure) if measured else pipeline.write_unmeasured(*what)
     beside = [*result.package.files, *result.package.copies]
     if output.path == "-" and beside:
         names = ", ".join(beside[:3]) + (f" and {len(beside) - 3} more" if len(beside) > 3 else "")
@@ -109,7 +110,10 @@ def is_reached(threshold: str | None, report: Report, losses: tuple[Loss, ...] |
 
 
 def _show_losses(losses: tuple[Loss, ...]) -> None:
-    for loss in losses[:MOST_LINES]:
-        print(loss, file=sys.stderr)
-    if len(losses) > MOST_LINES:
-        print(f"... and {len(losses) - MOST_LINES} more losses (--report FILE.json lists all)", file=sys.stderr)
+    groups = list(lines(losses))
+    for line in groups[:MOST_LINES]:
+        print(line, file=sys.stderr)
+    if len(groups) > MOST_LINES:
+        print(f"... and {len(groups) - MOST_LINES} more kinds of losses", file=sys.stderr)
+    if len(groups) < len(losses) or len(groups) > MOST_LINES:
+        print(f"{len(losses)} losses in all; --report FILE.json lists each", file=sys.stderr)

@@ -6,6 +6,8 @@ mesh and texture a relative path; nothing is decided here.
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import count
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.assets import write_assets
@@ -15,6 +17,8 @@ from hymeko_x.backends.mjcf.names import printed_names
 from hymeko_x.backends.mjcf.native import is_native, write_native
 from hymeko_x.backends.mjcf.relations import write_actuators, write_contacts, write_equalities
 from hymeko_x.backends.mjcf.text import Text
+from hymeko_x.formats import carrier
+from hymeko_x.formats.xml_print import escaped
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -35,3 +39,16 @@ def write(mechanism: Mechanism, report: Report) -> Package:
         section(text, mechanism, names)
     text.close()
     return Package(text.bytes())
+
+
+def carry_residue(package: Package, text: str) -> Package:
+    """The package with a residue in its file: the data of texts that mean nothing to MuJoCo."""
+    names = (f"{carrier.MJCF_NAME}{number or ''}" for number in count())
+    texts = [f'    <text name="{name}" data="{_in_attribute(part)}"/>\n' for name, part in zip(names, carrier.parts(text), strict=False)]
+    markup = f"  <custom>\n{''.join(texts)}  </custom>\n"
+    return replace(package, main=carrier.inserted(package.main, markup))
+
+
+def _in_attribute(text: str) -> str:
+    """Text as an attribute's value, line ends included."""
+    return escaped(text).replace("\r", "&#13;").replace("\n", "&#10;").replace("\t", "&#9;")

@@ -6,6 +6,7 @@ mechanism carries as extras stands again where it stood. docs/mapping/urdf.md sa
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.urdf.joints import joint_tag
@@ -15,6 +16,7 @@ from hymeko_x.backends.urdf.meshes import obj_text
 from hymeko_x.backends.urdf.order import order
 from hymeko_x.backends.urdf.sheet import Sheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
+from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml import COMMENT, FOLLOWING, PRECEDING
 from hymeko_x.formats.xml_print import Tag, escaped, foreign_text, put_back, render
@@ -40,6 +42,11 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     lines = ['<?xml version="1.0"?>', *_around(extras, PRECEDING, sheet), *render(root), *_around(extras, FOLLOWING, sheet), ""]
     meshes = {path: obj_text(mechanism.vertex(key, Mesh)) for key, path in sheet.mesh_files.items()}
     return Package("\n".join(lines).encode(), meshes)
+
+
+def carry_residue(package: Package, text: str) -> Package:
+    """The package with a residue in its file."""
+    return replace(package, main=carrier.inserted(package.main, carrier.xml_elements(text)))
 
 
 def _root_tag(mechanism: Mechanism) -> Tag:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
+from hymeko_x.formats import carrier
 from hymeko_x.formats.mjcf_classes import Classes
 from hymeko_x.formats.mjcf_tree import parse
 from hymeko_x.frontends.mjcf.actuators import read_actuators
@@ -26,6 +27,8 @@ from hymeko_x.frontends.mjcf.sensors import read_sensors
 from hymeko_x.frontends.mjcf.tendons import read_tendons
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats.mjcf_tree import Element
     from hymeko_x.ir.mechanism import Mechanism
@@ -39,6 +42,7 @@ def read(source: Source, report: Report) -> Mechanism:
     """
     root = parse(source, report)
     _check_root(root)
+    carried = list(_take_carried(root))
     root = expand_includes(root, source, report)
     root = expand_by_mujoco(root, source, report)
     check_words(root)
@@ -55,7 +59,19 @@ def read(source: Source, report: Report) -> Mechanism:
     read_actuators(root.take_children("actuator"), draft)
     read_sensors(root.take_children("sensor"), draft)
     draft.keep_rest(root)
-    return draft.mechanism(name)
+    return carrier.with_residue(draft.mechanism(name), carried)
+
+
+def _take_carried(root: Element) -> Iterator[str]:
+    """The texts that carry a residue, out of the sections that hold them."""
+    for section in root_sections(root, "custom"):
+        own = [text for text in section.children if text.tag == "text" and text.attributes.get("name", "").startswith(carrier.MJCF_NAME)]
+        if not own:
+            continue
+        yield from (text.attributes.get("data", "") for text in own)
+        section.children = [child for child in section.children if child not in own]
+        if not section.children:
+            root.children.remove(section)
 
 
 def root_sections(root: Element, tag: str) -> list[Element]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
+from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml import FOLLOWING, PRECEDING, Leftovers, outer_extra
 from hymeko_x.formats.xml_parse import parse
@@ -38,6 +39,7 @@ def read(source: Source, report: Report) -> Mechanism:
     _check_root(root)
     draft = Draft(report, Leftovers(root, document.data, words.FORMAT, report))
     name = _read_name(root, source, draft)
+    carried = [_whole_text(node) for node in root.children(carrier.XML_TAG)]
     _read_version(root, draft)
     for node in root.children("material"):
         read_robot_material(root, node, draft)
@@ -49,7 +51,13 @@ def read(source: Source, report: Report) -> Mechanism:
     finish_materials(draft)
     check_structure(root, draft)
     _check_templates(root, draft)
-    return draft.mechanism(name, _around(document))
+    return carrier.with_residue(draft.mechanism(name, _around(document)), carried)
+
+
+def _whole_text(node: Node) -> str:
+    """The text of an element with nothing else in it."""
+    node.attributes.clear()
+    return node.words()
 
 
 def _check_root(root: Node) -> None:

@@ -1,0 +1,172 @@
+"""The difference between a source and its native image, behind the bridge."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Body
+from hymeko_x.ir.residue import Addition, Change, Removal, Residue, Sides
+from hymeko_x.ir.residue.align import bridge_between
+from hymeko_x.ir.residue.bridge import cross
+from hymeko_x.ir.residue.order import by_kind, moves
+from hymeko_x.ir.residue.paths import differing, digest, identical
+from hymeko_x.ir.residue.prints import print_of, shape_group, weight_print
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.ir.residue import Bridge, Run
+
+_NAMED = frozenset({"body", "joint", "frame", "material", "actuator", "sensor", "camera", "light", "tendon"})
+"""Kinds of elements that people give names to."""
+
+
+def residue_of(source: Mechanism, image: Mechanism, bridge: Bridge | None = None) -> Residue:
+    """What restores the source from its image, whose bridge is found here unless it is known. Linear but for sorting."""
+    bridge = bridge_between(image, source) if bridge is None else bridge
+    crossed = cross(image, bridge)
+    changes = tuple(_changes(crossed, source))
+    additions = tuple(_additions(crossed, source))
+    removals = tuple(_removals(crossed, source))
+    found = Residue(
+        bridge,
+        changes,
+        additions,
+        removals,
+        sides_between(crossed, source),
+        tuple(_order(crossed, source)),
+        *_layout(crossed, source),
+    )
+    return replace(found, known=tuple(_known(image, found)))
+
+
+def _changes(image: Mechanism, source: Mechanism) -> Iterator[Change]:
+    if image.name != source.name:
+        yield Change(ROOT, ("name",), source.name, digest(image.name))
+    for key, part in source.graph.vertices.items():
+        if key in image.graph.vertices:
+            for path, value, guard in differing(image.graph.vertices[key], part):
+                yield Change(key, path, value, _with_reasons(image, key, path, value, guard))
+    for key, edge in source.graph.edges.items():
+        if key in image.graph.edges:
+            yield from (Change(key, *found) for found in differing(image.graph.edges[key], edge))
+
+
+def _with_reasons(image: Mechanism, key: Id, path: tuple[str | int, ...], value: object, guard: str) -> str:
+    """A mass that follows from shapes holds only as long as the shapes do."""
+    if path[0] != "inertial" or value is not None or not isinstance(image.graph.vertices[key], Body):
+        return guard
+    return weight_print(image, key)
+
+
+def _additions(image: Mechanism, source: Mechanism) -> Iterator[Addition]:
+    for key, part in source.graph.vertices.items():
+        if key not in image.graph.vertices:
+            yield Addition(key, part)
+    for key, edge in source.graph.edges.items():
+        if key not in image.graph.edges:
+            yield Addition(key, edge)
+
+
+def _removals(image: Mechanism, source: Mechanism) -> Iterator[Removal]:
+    for key in (*image.graph.vertices, *image.graph.edges):
+        if key not in source.graph.vertices and key not in source.graph.edges:
+            edge = image.graph.edges.get(key)
+            yield Removal(key, print_of(image, key), "" if edge is None else shape_group(edge))
+
+
+# ---- order -----------------------------------------------------------------------------------------------------------------
+
+
+def _order(image: Mechanism, source: Mechanism) -> Iterator[Run]:
+    """The moves that bring the elements of each kind into the source's order, what is added standing last."""
+    for mine, theirs in ((image.graph.vertices, source.graph.vertices), (image.graph.edges, source.graph.edges)):
+        have = by_kind([*(key for key in mine if key in theirs), *(key for key in theirs if key not in mine)])
+        for kind, want in by_kind(theirs).items():
+            yield from moves(have[kind], want)
+
+
+def _layout(image: Mechanism, source: Mechanism) -> tuple[tuple[Id, ...] | None, tuple[Id, ...]]:
+    """The source's layout and the elements without a place in it, if the image has another one."""
+    if image.layout == source.layout:
+        return None, ()
+    placed = set(source.layout)
+    there = (key for key in image.layout if key in source.graph.vertices or key in source.graph.edges)
+    return source.layout, tuple(key for key in there if key not in placed)
+
+
+# ---- side tables -------------------------------------------------------------------------------------------------------------
+
+
+def sides_between(image: Mechanism, source: Mechanism) -> Sides:
+    """What stands beside the graph."""
+    used = {name for table in source.notations.values() for name in table}
+    forgotten = {name for table in image.notations.values() for name in table} - used
+    extras = tuple(_extras(image, source))
+    return Sides(
+        tuple(_notations(image, source, forgotten)),
+        tuple(sorted(forgotten)),
+        tuple(_stereotypes(image, source)),
+        tuple((key, extra) for key, extra, new in extras if new),
+        tuple((key, digest(extra.format, extra.path, extra.text)) for key, extra, new in extras if not new),
+    )
+
+
+def _notations(image: Mechanism, source: Mechanism, forgotten: set[str]) -> Iterator[tuple[Id, str, str | None]]:
+    for key, table in source.notations.items():
+        mine = image.notations.get(key, {})
+        yield from ((key, name, text) for name, text in table.items() if mine.get(name) != text)
+    for key, table in image.notations.items():
+        theirs = source.notations.get(key, {})
+        yield from ((key, name, None) for name in table if name not in theirs and name not in forgotten)
+
+
+def _stereotypes(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, tuple[str, ...]]]:
+    for key in dict.fromkeys([*source.stereotypes, *image.stereotypes]):
+        if image.stereotypes.get(key, ()) != source.stereotypes.get(key, ()):
+            yield key, source.stereotypes.get(key, ())
+
+
+def _extras(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, Extra, bool]]:
+    """The extras to add (True) and to take away (False): those that differ, or all where the order would."""
+    for key in dict.fromkeys([*source.extras, *image.extras]):
+        mine, theirs = image.extras.get(key, ()), source.extras.get(key, ())
+        if identical(mine, theirs):
+            continue
+        kept = [extra for extra in mine if any(identical(extra, other) for other in theirs)] if len(mine) < 100 else []
+        if not identical(tuple(kept), theirs[: len(kept)]):
+            kept = []
+        rest = list(kept)
+        for extra in mine:
+            if rest and rest[0] is extra:
+                rest.pop(0)
+            else:
+                yield key, extra, False
+        yield from ((key, extra, True) for extra in theirs[len(kept) :])
+
+
+# ---- what an editor may rename -----------------------------------------------------------------------------------------------
+
+
+def _known(image: Mechanism, residue: Residue) -> Iterator[tuple[Id, str]]:
+    """The elements of the image with names of their own that the residue speaks of, with their digests."""
+    names = {new: old for old, new in residue.bridge.names}
+    spoken = dict.fromkeys(names.get(key, key) for key in _spoken_of(residue) if key.kind in _NAMED)
+    yield from ((key, print_of(image, key)) for key in spoken if key in image.graph.vertices or key in image.graph.edges)
+
+
+def _spoken_of(residue: Residue) -> Iterator[Id]:
+    bridge: Bridge = residue.bridge
+    yield from (change.element for change in residue.changes)
+    for addition in residue.additions:
+        if isinstance(addition.part, Edge):
+            yield from (arc.target for arc in addition.part.arcs)
+    for fold in bridge.folds:
+        yield from (*fold.chain, *fold.between)
+    yield from (key for key, _ in bridge.frames)
+    sides = residue.sides
+    yield from (entry[0] for table in (sides.notations, sides.stereotypes, sides.extras) for entry in table)

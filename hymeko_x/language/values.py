@@ -1,0 +1,180 @@
+"""Values of the IR as values of the language, and back: any part, pose, notation, id or number, without a word of its own.
+
+A part is a list of its class and of what is not a default (``[Limits lower -1 upper 1]``), an id a path of kind and name
+(``body.torso``), a rotation with its notation ``[rpy [0 0 1.57]]``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, is_dataclass
+from enum import Enum
+from functools import cache
+from types import MappingProxyType, UnionType
+from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hints
+
+from hymeko_x.ir import mechanism, parts, values
+from hymeko_x.ir.graph import Arc
+from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.residue.paths import attributes_of, identical
+from hymeko_x.ir.values import ZERO, Written
+from hymeko_x.ir.written import pose_as_written
+from hymeko_x.language.syntax import Ref, is_list
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.language.syntax import Value
+
+_CLASSES: Mapping[str, type] = MappingProxyType(
+    {kind.__name__: kind for module in (parts, values) for kind in vars(module).values() if isinstance(kind, type) and is_dataclass(kind)}
+    | {"Arc": Arc}
+)
+_WORDS: Mapping[str, object] = MappingProxyType(
+    {"none": None, "true": True, "false": False} | {word.value: word for kind in (parts.Role, parts.DofKind) for word in kind}
+)
+_INTEGERS = frozenset({(parts.Mesh, "faces"), (parts.Camera, "resolution")})
+
+
+def name_ref(name: str) -> Ref:
+    """A bare name."""
+    return Ref((name,))
+
+
+def id_ref(key: Id) -> Ref:
+    """An element by kind and name."""
+    return Ref((key.kind, key.name))
+
+
+# ---- writing -----------------------------------------------------------------------------------------------------------
+
+
+def encoded(value: object) -> Value:
+    """A value of the IR as the language says it. Depth is that of the parts."""
+    if isinstance(value, bool) or value is None:
+        return name_ref("none" if value is None else str(value).lower())
+    if isinstance(value, float | int):
+        return float(value)
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Enum):
+        return name_ref(str(value.value))
+    if isinstance(value, Id):
+        return id_ref(value)
+    if isinstance(value, Written):
+        return (name_ref("Written"), value.kind, value.numbers)
+    if isinstance(value, tuple):
+        return tuple(encoded(item) for item in value)
+    return (name_ref(type(value).__name__), *(word for name, inner in said(value) for word in (name_ref(name), inner)))
+
+
+def said(part: object) -> Iterator[tuple[str, Value]]:
+    """The fields of a part that are not their defaults."""
+    for item in attributes_of(part):
+        value = getattr(part, item.name)
+        if item.default is MISSING or not identical(value, item.default):
+            yield item.name, encoded(value)
+
+
+def encoded_turn(turn: tuple[values.Quat, Written | None]) -> Value:
+    """A rotation with its notation: the quaternion, or what was written where that means exactly this quaternion."""
+    quat, written = turn
+    if written is None:
+        return quat
+    if identical(pose_as_written(ZERO, written).quat, quat):
+        return (name_ref(written.kind), written.numbers)
+    return (name_ref(written.kind), written.numbers, quat)
+
+
+# ---- reading -----------------------------------------------------------------------------------------------------------
+
+
+def decoded(value: Value | None) -> Any:
+    """The value that :func:`encoded` was given.
+
+    Raises: ValueError, LookupError or TypeError for what it never writes.
+    """
+    if isinstance(value, Ref):
+        return Id(*map(str, value.path)) if len(value.path) == 2 else _WORDS[value.dotted]
+    if not is_list(value):
+        return value
+    assert isinstance(value, tuple)
+    head = value[0] if value else None
+    if isinstance(head, Ref) and head.path[0] == "Written":
+        return Written(str(value[1]), tuple(map(_number, _items(value[2]))))
+    if isinstance(head, Ref) and len(head.path) == 1 and head.path[0] in _CLASSES:
+        return _part(_CLASSES[head.path[0]], value[1:])
+    return tuple(decoded(item) for item in value)
+
+
+def _part(kind: type, words: tuple[Value, ...]) -> object:
+    names = [_name(word) for word in words[::2]]
+    made = {name: decoded(word) for name, word in zip(names, words[1::2], strict=True)}
+    for name in made:
+        if (kind, name) in _INTEGERS and made[name] is not None:
+            made[name] = tuple(map(int, made[name]))
+    part = kind(**made)
+    for name, value in made.items():
+        if not fits(value, hints_of(kind).get(name, Any)):
+            raise ValueError(f"{kind.__name__}.{name} cannot be {value!r}")
+    return part
+
+
+def decoded_turn(value: Value | None) -> tuple[values.Quat, Written | None]:
+    """The rotation that :func:`encoded_turn` was given.
+
+    Raises: ValueError, LookupError or TypeError for what it never writes.
+    """
+    items = _items(value)
+    if len(items) == 4:
+        return tuple(map(_number, items)), None  # type: ignore[return-value]
+    written = Written(_name(items[0]), tuple(map(_number, _items(items[1]))))
+    if len(items) == 3:
+        return decoded_turn(items[2])[0], written
+    return pose_as_written(ZERO, written).quat, written
+
+
+def _items(value: Value | None) -> tuple[Value, ...]:
+    if not is_list(value):
+        raise ValueError(f"{value!r} is no list")
+    return value  # type: ignore[return-value]
+
+
+def _number(value: Value) -> float:
+    if not isinstance(value, float):
+        raise ValueError(f"{value!r} is no number")
+    return value
+
+
+def _name(value: Value) -> str:
+    if not isinstance(value, Ref) or len(value.path) != 1:
+        raise ValueError(f"{value!r} is no name")
+    return str(value.path[0])
+
+
+# ---- types ---------------------------------------------------------------------------------------------------------------
+
+
+@cache
+def hints_of(kind: type) -> dict[str, Any]:
+    """The types of a part's fields."""
+    names = {**vars(mechanism), **vars(parts), **vars(values)}
+    return get_type_hints(kind, names) if kind is not Arc else {}
+
+
+def fits(value: object, hint: Any) -> bool:
+    """Whether a value is of a field's type."""
+    if hint is Any:
+        return True
+    if hint is float:
+        return isinstance(value, float | int) and not isinstance(value, bool)
+    origin = get_origin(hint)
+    if origin in (Union, UnionType):
+        return any(fits(value, choice) for choice in get_args(hint))
+    if origin is tuple:
+        kinds = get_args(hint)
+        if not isinstance(value, tuple):
+            return False
+        if kinds[-1:] == (Ellipsis,):
+            return all(fits(item, kinds[0]) for item in value)
+        return len(kinds) == len(value) and all(fits(item, kind) for item, kind in zip(value, kinds, strict=True))
+    return isinstance(value, hint)

@@ -1,0 +1,216 @@
+"""What an editor does to a file: edits of URDF and MJCF texts, drawn at random."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from hypothesis import strategies as st
+from lxml import etree
+
+Edit = Callable[[Any], str]
+"""Changes a tree in place and says what it did."""
+
+_VALUES = st.floats(0.001, 2.0).map(lambda value: round(value, 4))
+
+
+def applied(text: str, edits: list[Edit]) -> tuple[str, list[str]]:
+    """The text after the edits, and what they did."""
+    root = etree.fromstring(text.encode(), etree.XMLParser(strip_cdata=False, huge_tree=True))
+    done = [edit(root) for edit in edits]
+    return etree.tostring(root, encoding="unicode"), done
+
+
+def _pick(draw: st.DrawFn, items: list[Any]) -> Any:
+    return items[draw(st.integers(0, 1000)) % len(items)] if items else None
+
+
+# ---- URDF ------------------------------------------------------------------------------------------------------------------
+
+
+@st.composite
+def urdf_edits(draw: st.DrawFn) -> Edit:
+    """One edit of a URDF text."""
+    kind = draw(st.sampled_from(sorted(_URDF)))
+    value, place = draw(_VALUES), draw(st.integers(0, 1000))
+    return lambda root: f"{kind}: {_URDF[kind](root, value, place)}"
+
+
+def _chosen(items: list[Any], place: int) -> Any:
+    return items[place % len(items)] if items else None
+
+
+def _limit(root: Any, value: float, place: int) -> str:
+    limit = _chosen(root.findall("joint/limit"), place)
+    if limit is None:
+        return "nothing"
+    limit.set("upper", str(float(limit.get("lower", "0")) + value))
+    return str(limit.getparent().get("name"))
+
+
+def _mass(root: Any, value: float, place: int) -> str:
+    mass = _chosen([mass for mass in root.findall("link/inertial/mass") if float(mass.get("value")) > 1e-3], place)
+    if mass is None:
+        return "nothing"
+    mass.set("value", str(value))
+    return str(mass.getparent().getparent().get("name"))
+
+
+def _move(root: Any, value: float, place: int) -> str:
+    origin = _chosen(root.findall("link/collision/origin") + root.findall("link/visual/origin"), place)
+    if origin is None:
+        return "nothing"
+    x, y, z = (origin.get("xyz") or "0 0 0").split()
+    origin.set("xyz", f"{float(x) + value} {y} {z}")
+    return str(origin.getparent().getparent().get("name"))
+
+
+def _place(root: Any, value: float, place: int) -> str:
+    origin = _chosen(root.findall("joint/origin"), place)
+    if origin is None:
+        return "nothing"
+    x, y, z = (origin.get("xyz") or "0 0 0").split()
+    origin.set("xyz", f"{x} {float(y) + value} {z}")
+    return str(origin.getparent().get("name"))
+
+
+def _add(root: Any, value: float, place: int) -> str:
+    parent = _chosen(root.findall("link"), place).get("name")
+    name = f"tool{len(root)}"
+    link = etree.SubElement(root, "link", name=name)
+    inertial = etree.SubElement(link, "inertial")
+    etree.SubElement(inertial, "mass", value=str(value))
+    etree.SubElement(inertial, "inertia", ixx="0.01", ixy="0", ixz="0", iyy="0.01", iyz="0", izz="0.01")
+    for tag in ("visual", "collision"):
+        etree.SubElement(etree.SubElement(etree.SubElement(link, tag), "geometry"), "box", size=f"0.1 0.2 {value}")
+    joint = etree.SubElement(root, "joint", name=f"{name}_mount", type="fixed")
+    etree.SubElement(joint, "origin", xyz=f"0 {value} 0")
+    etree.SubElement(joint, "parent", link=parent)
+    etree.SubElement(joint, "child", link=name)
+    return f"{name} on {parent}"
+
+
+def _remove(root: Any, value: float, place: int) -> str:
+    parents = {parent.get("link") for parent in root.findall("joint/parent")}
+    mimicked = {mimic.get("joint") for mimic in root.findall("joint/mimic")}
+    leaves = [joint for joint in root.findall("joint") if joint.find("child").get("link") not in parents and joint.get("name") not in mimicked]
+    joint = _chosen(leaves, place)
+    if joint is None:
+        return "nothing"
+    name = joint.find("child").get("link")
+    gone = [joint, *(link for link in root.findall("link") if link.get("name") == name)]
+    gone += [other for other in root.findall("transmission") if other.find("joint").get("name") == joint.get("name")]
+    for element in gone:
+        root.remove(element)
+    return str(name)
+
+
+def _rename_link(root: Any, value: float, place: int) -> str:
+    link = _chosen(root.findall("link"), place)
+    old, new = link.get("name"), f"new_{link.get('name')}"
+    link.set("name", new)
+    for end in (*root.findall("joint/parent"), *root.findall("joint/child")):
+        if end.get("link") == old:
+            end.set("link", new)
+    return f"{old} -> {new}"
+
+
+def _rename_joint(root: Any, value: float, place: int) -> str:
+    joint = _chosen(root.findall("joint"), place)
+    old, new = joint.get("name"), f"new_{joint.get('name')}"
+    joint.set("name", new)
+    for user in (*root.findall("joint/mimic"),):
+        if user.get("joint") == old:
+            user.set("joint", new)
+    for user in root.findall("transmission/joint"):
+        if user.get("name") == old:
+            user.set("name", new)
+    return f"{old} -> {new}"
+
+
+_URDF: dict[str, Callable[[Any, float, int], str]] = {
+    "limit": _limit,
+    "mass": _mass,
+    "move": _move,
+    "place": _place,
+    "add": _add,
+    "remove": _remove,
+    "rename link": _rename_link,
+    "rename joint": _rename_joint,
+}
+
+
+# ---- MJCF ------------------------------------------------------------------------------------------------------------------
+
+
+@st.composite
+def mjcf_edits(draw: st.DrawFn) -> Edit:
+    """One edit of an MJCF text."""
+    kind = draw(st.sampled_from(sorted(_MJCF)))
+    value, place = draw(_VALUES), draw(st.integers(0, 1000))
+    return lambda root: f"{kind}: {_MJCF[kind](root, value, place)}"
+
+
+def _range(root: Any, value: float, place: int) -> str:
+    joint = _chosen([joint for joint in root.findall(".//worldbody//joint") if joint.get("range")], place)
+    if joint is None:
+        return "nothing"
+    lower = joint.get("range").split()[0]
+    joint.set("range", f"{lower} {float(lower) + value}")
+    return str(joint.get("name"))
+
+
+def _shift(root: Any, value: float, place: int) -> str:
+    geom = _chosen(root.findall(".//worldbody//geom"), place)
+    if geom is None:
+        return "nothing"
+    x, y, z = (geom.get("pos") or "0 0 0").split()
+    geom.set("pos", f"{float(x) + value} {y} {z}")
+    return str(geom.get("name"))
+
+
+def _weigh(root: Any, value: float, place: int) -> str:
+    inertial = _chosen([inertial for inertial in root.findall(".//worldbody//inertial") if float(inertial.get("mass")) > 1e-3], place)
+    if inertial is None:
+        return "nothing"
+    inertial.set("mass", str(value))
+    return str(inertial.getparent().get("name"))
+
+
+def _add_body(root: Any, value: float, place: int) -> str:
+    parent = _chosen(root.findall(".//worldbody//body"), place)
+    body = etree.SubElement(parent, "body", name=f"tool{place}_{value}", pos=f"0 {value} 0")
+    etree.SubElement(body, "geom", type="sphere", size=str(value), mass="1")
+    return str(body.get("name"))
+
+
+def _remove_body(root: Any, value: float, place: int) -> str:
+    used = {user.get("joint") or user.get("joint1") for user in root.iter() if isinstance(user.tag, str)}
+    used |= {user.get("joint2") for user in root.iter() if isinstance(user.tag, str)}
+    leaves = [body for body in root.findall(".//worldbody//body") if body.find("body") is None]
+    body = _chosen([body for body in leaves if not any(joint.get("name") in used for joint in body.findall("joint"))], place)
+    if body is None or body.getparent().tag == "worldbody":
+        return "nothing"
+    body.getparent().remove(body)
+    return str(body.get("name"))
+
+
+def _rename_body(root: Any, value: float, place: int) -> str:
+    body = _chosen(root.findall(".//worldbody//body"), place)
+    old, new = body.get("name"), f"new_{body.get('name')}"
+    for user in root.iter():
+        for name in ("body", "body1", "body2"):
+            if user.get(name) == old:
+                user.set(name, new)
+    body.set("name", new)
+    return f"{old} -> {new}"
+
+
+_MJCF: dict[str, Callable[[Any, float, int], str]] = {
+    "range": _range,
+    "shift": _shift,
+    "weigh": _weigh,
+    "add": _add_body,
+    "remove": _remove_body,
+    "rename body": _rename_body,
+}
