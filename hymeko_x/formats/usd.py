@@ -29,8 +29,14 @@ TYPE = "usd.type"
 """The notation of a joint that keeps the type of its prim where the dofs alone would make it another one."""
 REVERSED = "usd.reversed"
 """The notation of a joint whose parent in the tree is its ``body1``."""
+EQUALITY = "usd.equality"
+"""The notation of a coupling that MuJoCo's schema says alone, without Newton's."""
+HELD = "usd.held"
+"""The notation of a joint that stands for no prim: its body is fixed because its simulation is switched off."""
 POSE = "usd.pose"
 """The notation of a body that keeps where its prim stands (x y z qw qx qy qz) where its joints put it elsewhere."""
+GROUND = ("usd.body0", "usd.body1")
+"""The notations of a joint that keep the group that stood for the world on either side."""
 ROOT_PRIM = "usd.root"
 """The notation of the mechanism that keeps the path of the prim that stands for the robot."""
 
@@ -45,6 +51,9 @@ D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 """The axes of a generic joint in the order in which they move: what comes first is nearer to the parent."""
 
 Value = bool | int | float | str | tuple[float, ...] | tuple[int, ...] | tuple[str, ...]
+
+LOCKED = (1.0, -1.0)
+"""The bounds by which the writer locks an axis of a generic joint."""
 
 
 class D6Axis(NamedTuple):

@@ -17,7 +17,7 @@ from hymeko_x.ir.legalize_couplings import make_couplings_scalar
 from hymeko_x.ir.legalize_inertia import give_moving_bodies_mass, make_tensors_physical
 from hymeko_x.ir.legalize_joints import expand_screws, lower_inner_free_joints, name_dofs, split_overfull_joints
 from hymeko_x.ir.legalize_limits import make_limits_intervals
-from hymeko_x.ir.legalize_loops import anchor_closures, open_second_parents
+from hymeko_x.ir.legalize_loops import anchor_closures, close_by_points, open_second_parents
 from hymeko_x.ir.legalize_names import make_names_usable, name_assets_once
 from hymeko_x.ir.legalize_native import drop_shapes_of_mujoco
 from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
@@ -55,6 +55,7 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             make_names_usable,
             name_assets_once,
             open_second_parents,
+            close_by_points,
             anchor_closures,
             put_world_link_into_world,
             choose_base,

@@ -155,8 +155,10 @@ def _add_chain(view: JointView, chains: _Chains) -> int:
 
 
 def _joint_name(view: JointView, step: _Step, last: bool, chains: _Chains) -> Id:
-    """The dof's own name if it has one; the last nameless one keeps the joint's, the others are numbered."""
-    if last and step.dof.name in (None, view.id.name):
+    """The dof's own name if it has one; the last nameless one keeps the joint's unless a dof has it, the others are numbered."""
+    name = view.id.name
+    is_nameless_last = last and step.dof.name is None and all(dof.name != name for dof in view.joint.dofs)
+    if is_nameless_last or (step.dof.name == name and view.id not in chains.edges):
         return view.id
     return chains.names.take("joint", step.dof.name or f"{view.id.name}_{step.number + 1}")
 

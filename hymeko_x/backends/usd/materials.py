@@ -19,7 +19,7 @@ def write_materials(sheet: Sheet) -> None:
     """Every material; one whose shader network was kept as it is gets that network back instead."""
     images = _images(sheet)
     for key, material in sheet.mechanism.vertices(Material):
-        spec = sheet.place(key, sheet.scope("materials"), "Material", material.name)
+        spec = sheet.place(key, "materials", "Material", material.name)
         has_own = any(extra.format == FORMAT and extra.path for extra in sheet.mechanism.extras.get(key, ()))
         if not has_own:
             _write_surface(sheet, spec, material, images.get(key))

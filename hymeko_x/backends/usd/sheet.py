@@ -24,7 +24,8 @@ class Sheet:
     """The layer, and where each element's prim is: ``homes`` by id, ``dofs`` the prim of each dof of a joint.
 
     ``carried`` holds by prim the elements that it carries, by their kinds; ``made`` what we added to a prim that no element
-    says, which the reader overlooks; ``restored`` what extras say about it.
+    says, which the reader overlooks; ``restored`` what extras say about it. ``skins`` is the shape of each body whose own prim
+    is its geometry, ``scales`` the scale of such a prim.
     """
 
     mechanism: Mechanism
@@ -35,6 +36,8 @@ class Sheet:
     carried: dict[Any, dict[str, Id]] = field(default_factory=dict)
     made: dict[Any, list[str]] = field(default_factory=dict)
     restored: dict[Any, set[str]] = field(default_factory=dict)
+    skins: dict[Id, Id] = field(default_factory=dict)
+    scales: dict[Id, Vec3] = field(default_factory=dict)
 
     # ---- prims -----------------------------------------------------------------------------------------------------------
 
@@ -69,20 +72,32 @@ class Sheet:
             return None
         path = Sdf.Path(noted)
         spec = self.layer.GetPrimAtPath(path)
-        is_free = not spec or ((spec.specifier == Sdf.SpecifierOver or path not in self.made) and path not in self.homes.values())
+        is_free = not spec or ((spec.specifier == Sdf.SpecifierOver or path not in self.made) and path not in self.carried)
         return path if path.IsAbsoluteRootOrPrimPath() and is_free else None
 
     def place(self, key: Id, parent: Any, kind: str, name: str | None = None, *, below: bool = False) -> Any:
-        """A new prim for an element: at its old path if it has one (for ``below`` only under the parent), else below the parent."""
+        """A new prim for an element: at its old path if it has one (for ``below`` only under the parent), else below the parent.
+
+        ``parent`` is a path, or the name of one of our own groups, which is there only when something is in it.
+        """
         noted = self.noted_path(key)
         if noted is not None and below and not (noted != parent and noted.HasPrefix(parent)):
             noted = None
-        path = noted or self.free_path(parent, name or key.name)
+        path = noted or self.free_path(self.scope(parent) if isinstance(parent, str) else parent, name or key.name)
         spec = self.define(path, kind, name or key.name)
         self.homes[key] = path
         self.made.setdefault(path, []).extend(["displayName"] if spec.HasInfo("displayName") else [])
         self.carried.setdefault(path, {})[key.kind] = key
         return spec
+
+    def move(self, spec: Any, pose: Pose, scale: Vec3 | None = None, *, on: Id) -> None:
+        """Put a prim at a pose in a body's rigid frame, whatever scale the body's prim has."""
+        transform(spec, pose, scale, within=self.scales.get(on))
+
+    def shrunk(self, body: Id, point: Vec3) -> Vec3:
+        """A point of a body in m, in the scaled space of its prim."""
+        scale = self.scales.get(body)
+        return point if scale is None else (point[0] / scale[0], point[1] / scale[1], point[2] / scale[2])
 
     def scope(self, name: str) -> Any:
         """The path of one of our own groups below the robot's prim."""
@@ -129,9 +144,15 @@ def apply(spec: Any, *schemas: str) -> None:
     spec.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=wanted))
 
 
-def transform(spec: Any, pose: Pose, scale: Vec3 | None = None, *, reset: bool = False) -> None:
-    """Author a pose in m (and a scale) as translate, orient and scale ops in double precision."""
+def transform(spec: Any, pose: Pose, scale: Vec3 | None = None, *, reset: bool = False, within: Vec3 | None = None) -> None:
+    """Author a pose in m (and a scale) as translate, orient and scale ops in double precision.
+
+    ``within`` is the scale of the prim above, which is undone.
+    """
     order = [RESET] if reset else []
+    if within is not None:
+        put(spec, "xformOp:scale:within", T.Double3, Gf.Vec3d(*(1.0 / value for value in within)))
+        order.append("xformOp:scale:within")
     put(spec, "xformOp:translate", T.Double3, Gf.Vec3d(*pose.xyz))
     put(spec, "xformOp:orient", T.Quatd, quatd(pose.quat))
     order += ["xformOp:translate", "xformOp:orient"]

@@ -109,10 +109,12 @@ def _articulation_roots(prims: list[Any], joints: list[ReadJoint], draft: Draft)
 
 
 def _held(draft: Draft) -> list[Id]:
-    """The bodies whose simulation is switched off: they are geometry that stands still."""
-    stage = draft.scene.stage
+    """The bodies whose simulation is switched off, and those that only a user moves: by themselves they stand still."""
+    prims = ((draft.scene.stage.GetPrimAtPath(path), body) for path, body in draft.bodies.items())
     return [
-        body for path, body in draft.bodies.items() if stage.GetPrimAtPath(path).GetAttribute("physics:rigidBodyEnabled").Get() is False
+        body
+        for prim, body in prims
+        if prim.GetAttribute("physics:rigidBodyEnabled").Get() is False or prim.GetAttribute("physics:kinematicEnabled").Get() is True
     ]
 
 

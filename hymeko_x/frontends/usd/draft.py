@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -101,8 +102,11 @@ class Draft:
         return _rounded(value, str(attribute.GetTypeName()))
 
     def number(self, prim: Any, name: str, default: float) -> float:
-        """An authored number, or the default."""
+        """An authored number, or the default (not a number for none). One that says nothing, which is not written, stays an extra."""
         value = self.get(prim, name)
+        is_nothing = value == 0.0 or (isinstance(value, float) and math.isinf(value))
+        if is_nothing and (value == default or math.isnan(default)):
+            self.taken.get(str(prim.GetPath()), set()).discard(name)
         return float(value) if isinstance(value, int | float) else default
 
 

@@ -41,8 +41,10 @@ def check_motion(pair: Pair) -> Iterator[Check]:
     yield _body_check(pair, "forward kinematics, position", "m", far, metres)
     yield _body_check(pair, "forward kinematics, rotation", "rad", turned, radians)
     if loops or findings:
+        anchors = max((float(np.abs(pose[:3, 3]).max()) for loop, _, _ in loops for pose in (loop.pose_a, loop.pose_b)), default=0.0)
+        gaps = pair.allowed(POSITION * max(1.0, reach), depth * max(1e-3, reach, anchors))
         yield counted("loops", findings)
-        yield worst("loop closure, position", "m", gap.values, 2 * metres, lambda k: _loop_label(pair, loops[k][0]))
+        yield worst("loop closure, position", "m", gap.values, 2 * gaps, lambda k: _loop_label(pair, loops[k][0]))
         yield worst("loop closure, rotation", "rad", skew.values, 2 * radians, lambda k: _loop_label(pair, loops[k][0]))
 
 
