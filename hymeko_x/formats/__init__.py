@@ -30,7 +30,7 @@ class Format:
 
 HYMEKO = Format("hymeko", "HyMeKo hypergraph text", (".hymeko", ".himeko"), "hymeko_x.frontends.hymeko", "hymeko_x.backends.hymeko")
 URDF = Format("urdf", "Unified Robot Description Format (ROS)", (".urdf",), "hymeko_x.frontends.urdf", "hymeko_x.backends.urdf", ("robot",))
-XACRO = Format("xacro", "XML macros for URDF (ROS)", (".xacro",), "hymeko_x.frontends.xacro", None, has_arguments=True)
+XACRO = Format("xacro", "XML macros for URDF (ROS)", (".xacro",), "hymeko_x.frontends.xacro", "hymeko_x.backends.xacro", has_arguments=True)
 MJCF = Format("mjcf", "MuJoCo XML", (".mjcf", ".xml"), "hymeko_x.frontends.mjcf", "hymeko_x.backends.mjcf", ("mujoco", "mujocoinclude"))
 _USD_MAGIC = (b"#usda", b"PXR-USDC")
 USD = Format(

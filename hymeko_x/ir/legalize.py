@@ -46,6 +46,20 @@ Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]
 
 _USD: tuple[Rule, ...] = (make_names_usable, hold_or_free_open_bases, expand_screws)
 
+_URDF: tuple[Rule, ...] = (
+    make_names_usable,
+    drop_shapes_of_mujoco,
+    expand_screws,
+    chain_dofs,
+    hold_or_free_open_bases,
+    make_world_a_link,
+    join_roots,
+    split_shared_shapes,
+    prefer_own_colours,
+    approximate_shapes,
+    make_names_usable,  # once more, for what the rules have added
+)
+
 RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
     {
         "usd": _USD,
@@ -74,19 +88,8 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             choose_actuators,
             make_names_usable,  # once more, for what the rules have added
         ),
-        "urdf": (
-            make_names_usable,
-            drop_shapes_of_mujoco,
-            expand_screws,
-            chain_dofs,
-            hold_or_free_open_bases,
-            make_world_a_link,
-            join_roots,
-            split_shared_shapes,
-            prefer_own_colours,
-            approximate_shapes,
-            make_names_usable,  # once more, for what the rules have added
-        ),
+        "urdf": _URDF,
+        "xacro": _URDF,
     }
 )
 """The rules of each target, in order. A target that is not here takes every mechanism as it is."""
