@@ -24,6 +24,10 @@ if TYPE_CHECKING:
 _SINGLE = frozenset(("float", "float2", "float3", "float4", "point3f", "vector3f", "normal3f", "color3f", "color4f", "quatf", "half"))
 
 
+ORIGINAL_NAME = "cyberwave:name"
+"""Where cyberwave-robot-format keeps what a prim could not be called."""
+
+
 @dataclass(slots=True)
 class Draft:
     """Vertices, edges and side tables so far.
@@ -75,6 +79,10 @@ class Draft:
             return words.text_with_nul(carried.Get())
         if fallback is not None:
             return fallback
+        own = prim.GetAttribute(ORIGINAL_NAME)
+        if own and isinstance(own.Get(), str) and own.Get():
+            self.take(prim, ORIGINAL_NAME)
+            return str(own.Get())
         shown = prim.GetMetadata("displayName")
         return shown if isinstance(shown, str) and shown else str(prim.GetName())
 

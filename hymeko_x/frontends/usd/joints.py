@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
+from hymeko_x.frontends.usd.dialects import with_dialect
 from hymeko_x.frontends.usd.draft import has_api
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
@@ -230,7 +231,7 @@ def _behaving(prim: Any, dof: Dof, draft: Draft) -> Dof:
     mjc = {name: draft.number(prim, f"mjc:{name}", math.nan) for name in _MJC}
     newton = {name: draft.number(prim, f"newton:{name}", math.nan) for name in _NEWTON}
     speed = newton["velocityLimit"] * angle
-    return replace(
+    found = replace(
         dof,
         armature=_first(mjc["armature"] * inertia, newton["armature"] * inertia),
         damping=_first(mjc["damping"] * inertia, newton["damping"] * inertia * degree),
@@ -240,6 +241,7 @@ def _behaving(prim: Any, dof: Dof, draft: Draft) -> Dof:
         spring_ref=_first(mjc["springref"] * angle),
         limits=replace(dof.limits, velocity=speed if math.isfinite(speed) else None, effort=_effort(prim, effort, draft)),
     )
+    return with_dialect(prim, found, draft)
 
 
 def _effort(prim: Any, unit: float, draft: Draft) -> float | None:
