@@ -47,17 +47,29 @@ def write_worldbody(sheet: Sheet) -> None:
 def _push(stack: list[Op | None], ops: list[Op]) -> None:
     """Put the content of a body on the stack; frames are opened and closed where they change."""
     wrapped: list[Op | None] = []
-    opened: tuple[Around, ...] = ()
+    opened: Around | None = None
     named: set[str] = set()
     for op in ops:
-        while opened != op.frames[: len(opened)]:
-            wrapped.append(None)
-            opened = opened[:-1]
-        wrapped += [_frame_op(around, named) for around in op.frames[len(opened) :]]
-        opened = op.frames
+        closed, entered = _way(opened, op.around)
+        wrapped += [None] * closed
+        wrapped += [_frame_op(around, named) for around in entered]
+        opened = op.around
         wrapped.append(op)
-    wrapped += [None] * len(opened)
+    wrapped += [None] * (opened.depth if opened else 0)
     stack.extend(reversed(wrapped))
+
+
+def _way(start: Around | None, end: Around | None) -> tuple[int, list[Around]]:
+    """How many frames are left on the way from one frame to another, and which ones are entered, from the outermost."""
+    closed = 0
+    entered: list[Around] = []
+    while start is not end:
+        if start is not None and (end is None or start.depth >= end.depth):
+            start, closed = start.outer, closed + 1
+        elif end is not None:
+            entered.append(end)
+            end = end.outer
+    return closed, entered[::-1]
 
 
 def _frame_op(around: Around, named: set[str]) -> Op:
@@ -113,4 +125,4 @@ def _body_op(sheet: Sheet, spot: Spot, view: JointView | None, body: Id | None =
         **said,
     }
     inner = spot_of(sheet, key, childclass or spot.childclass_in(around))
-    return Op("body", "body", attributes, tuple(sheet.inside(key)), around.chain if around else (), inner)
+    return Op("body", "body", attributes, tuple(sheet.inside(key)), around, inner)

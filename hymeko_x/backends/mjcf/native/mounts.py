@@ -63,4 +63,4 @@ def _op(sheet: Sheet, spot: Spot, key: Id, tag: str, groups: tuple[Group, ...], 
         **parameter_attributes(parameters, base),
         **said,
     }
-    return Op("leaf", tag, attributes, tuple(sheet.inside(key)), around.chain if around else ())
+    return Op("leaf", tag, attributes, tuple(sheet.inside(key)), around)
