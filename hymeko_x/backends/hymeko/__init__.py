@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
-from hymeko_x.backends.hymeko.parts import Context, extra_fields, name_of, part_items, sound_comment, written_field
+from hymeko_x.backends.hymeko.foreign import foreign_items, sound_comment, standing_items
+from hymeko_x.backends.hymeko.parts import Context, name_of, part_items, written_items
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -74,8 +75,9 @@ def _settings(context: Context, plain: bool) -> list[Item]:
         items.append(Field("files", context.files))
     notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key != "hymeko.root"}
     if notations:
-        items.append(written_field(notations))
-    items.extend(extra_fields(extra for extra in context.mechanism.extras.get(ROOT, ()) if extra.path and not _is_outer(extra)))
+        items.extend(written_items(notations, flags=False))
+    about = [extra for extra in context.mechanism.extras.get(ROOT, ()) if extra.path and not _is_outer(extra)]
+    items.extend(foreign_items(about, at_root=True))
     return items
 
 
@@ -86,12 +88,14 @@ def _elements(context: Context) -> list[Item]:
     place = 0
     queue = list(reversed(standing))
     for key in _order(context):
+        here = []
         while queue and queue[-1].index <= place:
-            items.extend(extra_fields([queue.pop()], at_root=True))
+            here.append(queue.pop())
             place += 1
+        items.extend(standing_items(here))
         items.append(_element(context, key))
         place += 1
-    items.extend(extra_fields(reversed(queue), at_root=True))
+    items.extend(standing_items(queue[::-1]))
     return items
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.hymeko.parts import Context, element_extras, pose_value, short_uri, word_fields, written_field
+from hymeko_x.backends.hymeko.foreign import foreign_items
+from hymeko_x.backends.hymeko.parts import Context, pose_value, short_uri, word_fields, written_items
 from hymeko_x.formats.hymeko import SHAPE_WORDS
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, Names, file_stem
@@ -67,8 +68,8 @@ def _shape(context: Context, view: ShapeView, names: Names) -> Item:
     items.extend(context.class_items(view.id))
     notations = context.mechanism.notations.get(view.id)
     if notations:
-        items.append(written_field(notations))
-    items.extend(element_extras(context.mechanism.extras.get(view.id, ())))
+        items.extend(written_items(notations))
+    items.extend(foreign_items(context.mechanism.extras.get(view.id, ())))
     if len(items) == 1 and isinstance(items[0], Field) and items[0].name == "mesh":
         return Field(word, items[0].value)
     return Node(word, tuple(items))

@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, cast
 
-from hymeko_x.formats.hymeko import LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, TARGETS, Word
+from hymeko_x.backends.hymeko.foreign import foreign_items
+from hymeko_x.formats.hymeko import LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, SHORT_TYPES, TARGETS, Word
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
-from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, Ref, Stereotype, Value
+from hymeko_x.language.markup import value_of_text
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from hymeko_x.ir.mechanism import Extra, Mechanism, RobotArc
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
+_WORD = re.compile(r"[^\W\d]\w*")
+_NO_WORDS = frozenset({"inf", "nan", "rel", "seq", "concurrent", "use", "import", "as"})
 _ALL_KINDS = tuple(KINDS.values())
 _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
 _FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
 _SETTINGS = (
-    _FOREIGN | {"hymeko", "extra", "class", "written", "kind", "moves", "scope", "limit", "limits", "range"} | {w.word for w in LIMIT_WORDS}
+    _FOREIGN | {"hymeko", "extra", "unnamed", "class", "written", "kind", "moves", "scope", "limit", "limits", "range"} | {w.word for w in LIMIT_WORDS}
 )
 
 
@@ -53,9 +58,10 @@ class Context:
         notations = self.mechanism.notations.get(key)
         items.extend(self.class_items(key))
         if notations:
-            items.append(written_field(notations))
-        items.extend(element_extras(self.mechanism.extras.get(key, ())))
-        stereotypes = (Stereotype(Ref((kind,))),) if kind else ()
+            items.extend(written_items(notations, flags=key.kind not in NAMED_AFTER_ID))
+        items.extend(foreign_items(self.mechanism.extras.get(key, ())))
+        path, items = typed(kind, items)
+        stereotypes = (Stereotype(Ref(path)),) if kind else ()
         name = key.name if key == WORLD else name_of(key.name)
         return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
 
@@ -64,7 +70,7 @@ class Context:
         classes = self.mechanism.stereotypes.get(key)
         if not classes or self.mechanism.notation(ROOT, "mjcf") is None:
             return []
-        return [Field("class", classes[0] if len(classes) == 1 else classes)]
+        return [Field("class", value_of(classes[0]) if len(classes) == 1 else classes)]
 
     def ref(self, target: Id, kinds: tuple[str, ...], direction: str = "") -> Ref:
         """A reference: by name alone where the name means the target, else with its kind before it."""
@@ -137,9 +143,24 @@ def value_of(value: object) -> Value:
     if isinstance(value, int):
         return float(value)
     if isinstance(value, tuple):
-        return tuple(map(value_of, value))
+        return tuple(value if isinstance(value, str) else value_of(value) for value in value)
+    if isinstance(value, str) and _WORD.fullmatch(value) and value not in _NO_WORDS:
+        return Ref((value,))
     assert isinstance(value, float | str), value
     return value
+
+
+def typed(kind: str, items: list[Item]) -> tuple[tuple[str, ...], list[Item]]:
+    """The type that says an element's kind and its ``type``, and the fields without that: ``sensor.imu``, ``weld``."""
+    found = next((item for item in items if isinstance(item, Field) and item.name == "type" and not isinstance(item.name, QuotedName)), None)
+    part = PARTS[kind].part if kind in PARTS else None
+    value = found.value if found is not None else _defaults(part).get("kind") if part is not None else None
+    word = value.path[0] if isinstance(value, Ref) else value
+    if isinstance(word, str) and (kind, word) in SHORT_TYPES:
+        return (SHORT_TYPES[kind, word],), [item for item in items if item is not found]
+    if found is not None and isinstance(value, Ref):
+        return (kind, value.path[0]), [item for item in items if item is not found]
+    return (kind,), items
 
 
 def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePart, arcs: tuple[RobotArc, ...]) -> list[Item]:
@@ -183,56 +204,8 @@ def short_uri(context: Context, uri: str) -> str:
     return f"~/{uri.removeprefix(context.files)}" if context.files and uri.startswith(context.files) else uri
 
 
-def element_extras(extras: Iterable[Extra]) -> list[Item]:
-    """What formats said of one element; attributes that follow each other share a field: ``mjcf ["@condim" "1" "@group" "2"]``."""
-    found: list[Item] = []
-    run: list[Extra] = []
-    for extra in extras:
-        if run and not (_is_attribute(extra) and extra.format == run[0].format):
-            found.extend(_attribute_fields(run))
-            run = []
-        if _is_attribute(extra):
-            run.append(extra)
-        else:
-            found.extend(extra_fields([extra]))
-    return [*found, *_attribute_fields(run)]
-
-
-def _is_attribute(extra: Extra) -> bool:
-    return extra.format in _FOREIGN and extra.path.startswith("@") and not extra.index
-
-
-def _attribute_fields(run: list[Extra]) -> list[Item]:
-    if len(run) < 2:
-        return extra_fields(run)
-    return [Field(run[0].format, tuple(text for extra in run for text in (extra.path, extra.text)))]
-
-
-def extra_fields(extras: Iterable[Extra], *, at_root: bool = False) -> list[Item]:
-    """What formats said verbatim, one field each; the place is written where it is not the first."""
-    found: list[Item] = []
-    for extra in extras:
-        if extra.format == "comment" and at_root and not extra.path and sound_comment(extra.text):
-            found.append(Comment(extra.text))
-            continue
-        named = extra.format in _FOREIGN
-        values: list[Value] = [] if named else [extra.format]
-        place = 0 if at_root else extra.index
-        if extra.path or place or not named:
-            values.append(extra.path)
-        if place:
-            values.append(float(place))
-        values.append(extra.text)
-        name = extra.format if named else "extra"
-        found.append(Field(name, values[0] if len(values) == 1 else tuple(values)))
-    return found
-
-
-def sound_comment(text: str) -> bool:
-    """Whether a comment reads back as it is."""
-    return text == text.strip() and "\0" not in text and ("*/" not in text or "\n" not in text) and "\r" not in text
-
-
-def written_field(notations: Mapping[str, str]) -> Field:
-    """``written ["key" "text" ...]``."""
-    return Field("written", tuple(text for pair in notations.items() for text in pair))
+def written_items(notations: Mapping[str, str], *, flags: bool = True) -> list[Item]:
+    """``written { key text .. }``, and the flag ``unnamed`` for what its author gave no name."""
+    unnamed = flags and notations.get("unnamed") == "yes"
+    said = [Field(key, value_of_text(text)) for key, text in notations.items() if not (unnamed and key == "unnamed")]
+    return [*([Field("unnamed")] if unnamed else []), *([Node("written", tuple(said))] if said else [])]

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, TypeGuard, cast
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.formats.hymeko import ALIASES, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
-from hymeko_x.frontends.hymeko.block import Block, Context, read_extra, read_units, read_written
+from hymeko_x.frontends.hymeko.block import Block, Context, is_written, read_units, read_written, read_written_block
 from hymeko_x.frontends.hymeko.bodies import build_uri, read_body
 from hymeko_x.frontends.hymeko.build import Build
+from hymeko_x.frontends.hymeko.foreign import is_foreign, read_extra, read_foreign
 from hymeko_x.frontends.hymeko.infer import infer_kinds
 from hymeko_x.frontends.hymeko.joints import read_dofs, read_joint, read_limits, unit_axis
 from hymeko_x.ir import parts
@@ -62,7 +63,7 @@ def read(source: Source, report: Report) -> Mechanism:
 def build(expanded: Expanded, file: str, report: Report) -> Mechanism:
     """The mechanism of an expanded text."""
     build = Build(_context(expanded, file, report))
-    elements = [item for item in expanded.items if isinstance(item, Element) and not _is_units(item.node)]
+    elements = [item for item in expanded.items if isinstance(item, Element) and not _is_about_the_whole(item.node)]
     kinds = infer_kinds(expanded, elements)
     _read_settings(build, expanded)
     declared = _declare(build, expanded, kinds)
@@ -93,7 +94,7 @@ def _read_settings(build: Build, expanded: Expanded) -> None:
     place = 0
     for item in expanded.items:
         if isinstance(item, Element):
-            place += not _is_units(item.node)
+            place += _read_block(build, item.node, place)
         elif isinstance(item.item, Field):
             place += _read_setting(build, item.item, place)
         else:
@@ -103,6 +104,25 @@ def _read_settings(build: Build, expanded: Expanded) -> None:
         _keep(build, Extra("comment", "preceding", comment.text, number))
     for number, comment in enumerate(expanded.following):
         _keep(build, Extra("comment", "following", comment.text, number))
+
+
+def _is_about_the_whole(node: Node) -> bool:
+    return _is_units(node) or is_written(node) or (is_foreign(node) and not node.stereotypes)
+
+
+def _read_block(build: Build, node: Node, place: int) -> int:
+    """A block in the root: returns how many places it takes, which for that of a format are the elements in it."""
+    if _is_units(node):
+        return 0
+    if not _is_about_the_whole(node):
+        return 1
+    if is_written(node):
+        build.notations.setdefault(ROOT, {}).update(read_written_block(node, build.context))
+        return 0
+    found = read_foreign(node, build.context, at_root=True, place=place)
+    for extra in found:
+        _keep(build, extra)
+    return sum(not extra.path for extra in found)
 
 
 def _keep(build: Build, extra: Extra) -> None:
@@ -169,7 +189,7 @@ def _declare(build: Build, expanded: Expanded, kinds: list[str]) -> list[tuple[I
             if isinstance(element.item, Field) and not _is_setting(element.item):
                 _read_loose(build, element.item)
             continue
-        if _is_units(element.node):
+        if _is_about_the_whole(element.node):
             continue
         kind = next(remaining)
         if kind == "axis":
@@ -227,8 +247,10 @@ def _read_part(build: Build, key: Id, element: Element) -> None:
     block = Block(_renamed(element.node.items, key.kind), build.context, open=words.open)
     block.take("kind")
     values = block.take_words(words.words)
-    if key.kind in NAMED_AFTER_ID and block.take("unnamed") is None:
-        values.setdefault("name", key.name)
+    if key.kind in NAMED_AFTER_ID:
+        if not block.unnamed:
+            values.setdefault("name", key.name)
+        block.unnamed = False
     if isinstance(uri := values.get("uri"), str):
         values["uri"] = build_uri(build, uri)
     if key.kind == "tendon":
