@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x.backends.hymeko.attached import attached_arcs
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.foreign import foreign_items, sound_comment, standing_items
@@ -36,7 +37,9 @@ def document(mechanism: Mechanism) -> Document:
     """The syntax tree of a mechanism."""
     plain = _is_plain(mechanism)
     inline = inline_assets(mechanism)
-    context = Context(mechanism, files_prefix(mechanism), inline, given_names(mechanism, inline), mimic_arcs(mechanism))
+    context = Context(
+        mechanism, files_prefix(mechanism), inline, given_names(mechanism, inline), mimic_arcs(mechanism), attached_arcs(mechanism)
+    )
     items = [*_settings(context, plain), *_elements(context)]
     root = mechanism.notation(ROOT, "hymeko.root")
     name = root if root is not None else mechanism.name
@@ -94,7 +97,7 @@ def _elements(context: Context) -> list[Item]:
             place += 1
         items.extend(standing_items(here))
         items.append(_element(context, key))
-        place += 1
+        place += 2 if key in context.attached else 1
     items.extend(standing_items(queue[::-1]))
     return items
 
@@ -112,7 +115,7 @@ def _order(context: Context) -> list[Id]:
 
 
 def _stands_alone(context: Context, key: Id) -> bool:
-    if key in context.inline or key.kind in _INLINE_EDGES or key in context.mimics:
+    if key in context.inline or key.kind in _INLINE_EDGES or key in context.mimics or key in context.attached_edges:
         return False
     if key != WORLD:
         return True

@@ -7,7 +7,8 @@ from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, cast
 
 from hymeko_x.backends.hymeko.foreign import foreign_items
-from hymeko_x.formats.hymeko import LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, SHORT_TYPES, TARGETS, Word
+from hymeko_x.formats.attached import TEXTURE, attached_key
+from hymeko_x.formats.hymeko import ATTACHED, LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, SHORT_TYPES, TARGETS, Word
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
@@ -34,7 +35,8 @@ class Context:
     """What the printers need to know: the mechanism, the files' common prefix, and what is said in place.
 
     ``inline``: meshes and colours that are defined where a shape uses them, with the shape that uses them first;
-    ``given_names``: those among them that say their id; ``mimics``: couplings that are said in the joint that follows.
+    ``given_names``: those among them that say their id; ``mimics``: couplings that are said in the joint that follows;
+    ``attached``: the arcs of mounts, drives and the like that are said in the block of the vertex that they put to use.
     """
 
     mechanism: Mechanism
@@ -42,10 +44,14 @@ class Context:
     inline: Mapping[Id, Id]
     given_names: frozenset[Id]
     mimics: Mapping[Id, tuple[RobotArc, ...]]
+    attached: Mapping[Id, tuple[RobotArc, ...]]
     names: dict[str, list[str]] = field(default_factory=dict)
+
+    attached_edges: set[Id] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         graph = self.mechanism.graph
+        self.attached_edges.update(key for vertex in self.attached if (key := attached_key(vertex)) is not None)
         for key in (*graph.vertices, *graph.edges):
             self.names.setdefault(key.name, []).append(key.kind)
 
@@ -166,7 +172,7 @@ def typed(kind: str, items: list[Item]) -> tuple[tuple[str, ...], list[Item]]:
 def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePart, arcs: tuple[RobotArc, ...]) -> list[Item]:
     """The block of an element that its words describe completely."""
     words = PARTS[key.kind]
-    items: list[Item] = [context.arc(key.kind, arc) for arc in arcs]
+    items: list[Item] = [context.arc(key.kind, arc) for arc in arcs] or _attached_items(context, key)
     said = word_fields(part, words.words)
     if key.kind in NAMED_AFTER_ID:
         said = _named(said, key)
@@ -180,6 +186,14 @@ def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePar
             for name, value in part.parameters  # type: ignore[union-attr]
         )
     return items
+
+
+def _attached_items(context: Context, key: Id) -> list[Item]:
+    """The arcs of the edge that puts a vertex to use, and the texture of a material."""
+    arcs = context.attached.get(key, ())
+    if key.kind == "material":
+        return [Field(TEXTURE, context.ref(arc.target, ("texture",))) for arc in arcs]
+    return [context.arc(ATTACHED[key.kind], arc) for arc in arcs]
 
 
 def _named(items: list[Item], key: Id) -> list[Item]:

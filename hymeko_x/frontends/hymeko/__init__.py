@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, TypeGuard, cast
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, refuse
-from hymeko_x.formats.hymeko import ALIASES, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
+from hymeko_x.formats.attached import TEXTURE, attached_edge, attached_key
+from hymeko_x.formats.hymeko import ALIASES, ATTACHED, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
 from hymeko_x.frontends.hymeko.block import Block, Context, is_written, read_units, read_written, read_written_block
 from hymeko_x.frontends.hymeko.bodies import build_uri, read_body
 from hymeko_x.frontends.hymeko.build import Build
@@ -19,19 +20,19 @@ from hymeko_x.frontends.hymeko.foreign import is_foreign, read_extra, read_forei
 from hymeko_x.frontends.hymeko.infer import infer_kinds
 from hymeko_x.frontends.hymeko.joints import read_dofs, read_joint, read_limits, unit_axis
 from hymeko_x.ir import parts
+from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
 from hymeko_x.language.excerpts import with_excerpt
 from hymeko_x.language.expand import Element, Expanded, expand
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
-from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, QuotedName
+from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, QuotedName, Ref
 
 if TYPE_CHECKING:
     from collections.abc import Container
 
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.graph import Arc
-    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc
     from hymeko_x.language.syntax import Item
     from hymeko_x.source import Source
 
@@ -65,7 +66,7 @@ def build(expanded: Expanded, file: str, report: Report) -> Mechanism:
     build = Build(_context(expanded, file, report))
     elements = [item for item in expanded.items if isinstance(item, Element) and not _is_about_the_whole(item.node)]
     kinds = infer_kinds(expanded, elements)
-    _read_settings(build, expanded)
+    _read_settings(build, expanded, kinds)
     declared = _declare(build, expanded, kinds)
     for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _WITH_SHAPES):
         _read_element(build, key, element)
@@ -89,12 +90,15 @@ def _is_units(node: Node) -> bool:
     return node.name == "units" and not isinstance(node.name, QuotedName) and not node.edge and not node.stereotypes
 
 
-def _read_settings(build: Build, expanded: Expanded) -> None:
+def _read_settings(build: Build, expanded: Expanded, kinds: list[str]) -> None:
     """Fields that stand in the root itself: the prefix of files, and what a format said about the whole mechanism."""
     place = 0
+    remaining = iter(kinds)
     for item in expanded.items:
-        if isinstance(item, Element):
+        if isinstance(item, Element) and _is_about_the_whole(item.node):
             place += _read_block(build, item.node, place)
+        elif isinstance(item, Element):
+            place += 1 + _has_attached(next(remaining), item.node)
         elif isinstance(item.item, Field):
             place += _read_setting(build, item.item, place)
         else:
@@ -114,8 +118,6 @@ def _read_block(build: Build, node: Node, place: int) -> int:
     """A block in the root: returns how many places it takes, which for that of a format are the elements in it."""
     if _is_units(node):
         return 0
-    if not _is_about_the_whole(node):
-        return 1
     if is_written(node):
         build.notations.setdefault(ROOT, {}).update(read_written_block(node, build.context))
         return 0
@@ -201,7 +203,24 @@ def _declare(build: Build, expanded: Expanded, kinds: list[str]) -> list[tuple[I
             declared.append((WORLD, element))
             continue
         declared.append((build.declare(kind, element), element))
+        _declare_attached(build, declared[-1][0], element)
     return declared
+
+
+def _declare_attached(build: Build, key: Id, element: Element) -> None:
+    """The edge that the arcs in a vertex's block stand for takes the place behind it."""
+    edge = attached_key(key)
+    if edge is not None and _has_attached(key.kind, element.node):
+        build.layout.append(build.reserve(*edge, element.node))
+
+
+def _has_attached(kind: str, node: Node) -> bool:
+    """Whether a vertex's block says the edge that puts it to use."""
+    return kind in ATTACHED and any(isinstance(item, ArcItem) or _is_texture(kind, item) for item in node.items)
+
+
+def _is_texture(kind: str, item: Item) -> bool:
+    return kind == "material" and _is_field(item, (TEXTURE,))
 
 
 def _direction(build: Build, element: Element) -> tuple[float, float, float]:
@@ -244,6 +263,7 @@ def _without(element: Element, name: str) -> Element:
 def _read_part(build: Build, key: Id, element: Element) -> None:
     """A vertex or edge that its words describe completely (formats/hymeko.py)."""
     words = PARTS[key.kind]
+    arcs = _attached_arcs(build, key, element)
     block = Block(_renamed(element.node.items, key.kind), build.context, open=words.open)
     block.take("kind")
     values = block.take_words(words.words)
@@ -270,11 +290,32 @@ def _read_part(build: Build, key: Id, element: Element) -> None:
         build.add_edge(key, part, arcs)
     else:
         build.vertices[key] = part
+        edge = attached_key(key)
+        if arcs and edge is not None:
+            build.edges[edge] = attached_edge(key, arcs)
+            block.arcs = []
+            block.take(TEXTURE)
     block.rest(str(key))
     build.keep(key, block)
 
 
-def _arc(build: Build, key: Id, item: object, element: Element) -> Arc[Id, parts.Weight]:
+def _attached_arcs(build: Build, key: Id, element: Element) -> tuple[RobotArc, ...]:
+    """The arcs in a vertex's block, of the edge that puts it to use."""
+    edge = attached_key(key)
+    if edge is None:
+        return ()
+    found: list[RobotArc] = []
+    for item in element.node.items:
+        if isinstance(item, ArcItem):
+            found.append(build.arc(edge.kind, item, element.scope))
+        elif _is_texture(key.kind, item) and isinstance(item, Field):
+            if not isinstance(item.value, Ref):
+                raise build.context.refuse(item, "'texture' takes a reference: texture=grid")
+            found.append(Arc(build.target(item.value, element.scope, ("texture",), item), 1))
+    return tuple(found)
+
+
+def _arc(build: Build, key: Id, item: object, element: Element) -> RobotArc:
     return build.arc(key.kind, cast("ArcItem", item), element.scope)
 
 
