@@ -203,7 +203,7 @@ def _parts_of(node: Node) -> tuple[str | None, tuple[Item, ...]]:
     """The beginning of the element's tag, and what stands in the element."""
     if node.parameters is None:
         said = [(item.name, item.value) for item in node.items if isinstance(item, Field)]
-        children = tuple(item for item in node.items if not isinstance(item, Field))
+        children: tuple[Item, ...] = tuple(item for item in node.items if not isinstance(item, Field))
     else:
         said = [(parameter.name, parameter.default) for parameter in node.parameters]
         children = node.items

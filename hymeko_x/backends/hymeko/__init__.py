@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x.backends.hymeko.angles import shortest
 from hymeko_x.backends.hymeko.attached import attached_arcs
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
-from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.foreign import foreign_items, sound_comment, standing_items
+from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.parts import Context, name_of, part_items, written_items
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
@@ -38,7 +39,13 @@ def document(mechanism: Mechanism) -> Document:
     plain = _is_plain(mechanism)
     inline = inline_assets(mechanism)
     context = Context(
-        mechanism, files_prefix(mechanism), inline, given_names(mechanism, inline), mimic_arcs(mechanism), attached_arcs(mechanism)
+        mechanism,
+        files_prefix(mechanism),
+        inline,
+        given_names(mechanism, inline),
+        mimic_arcs(mechanism),
+        attached_arcs(mechanism),
+        shortest(mechanism),
     )
     items = [*_settings(context, plain), *_elements(context)]
     root = mechanism.notation(ROOT, "hymeko.root")
@@ -72,7 +79,7 @@ def _is_plain(mechanism: Mechanism) -> bool:
 def _settings(context: Context, plain: bool) -> list[Item]:
     """What stands at the head of the root: units, the prefix of files, notations of the whole."""
     items: list[Item] = []
-    if not plain:
+    if not plain and not context.angles.degrees:
         items.append(Node("units", (Field("angle"), Field("rad"))))
     if context.files:
         items.append(Field("files", context.files))
@@ -134,7 +141,7 @@ def _element(context: Context, key: Id) -> Item:
         return context.node(key, items, kind, edge=True)
     items = part_items(context, key, edge.data, edge.arcs)
     if isinstance(edge.data, parts.Loop):
-        items.extend(dof_node(dof) for dof in edge.data.dofs)
+        items.extend(dof_node(dof, context.angles) for dof in edge.data.dofs)
     return context.node(key, items, key.kind, edge=True)
 
 

@@ -18,6 +18,7 @@ from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from hymeko_x.backends.hymeko.angles import Angles
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
 _WORD = re.compile(r"[^\W\d]\w*")
@@ -25,9 +26,8 @@ _NO_WORDS = frozenset({"inf", "nan", "rel", "seq", "concurrent", "use", "import"
 _ALL_KINDS = tuple(KINDS.values())
 _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
 _FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
-_SETTINGS = (
-    _FOREIGN | {"hymeko", "extra", "unnamed", "class", "written", "kind", "moves", "scope", "limit", "limits", "range"} | {w.word for w in LIMIT_WORDS}
-)
+_FLAGS = frozenset({"unnamed", "kind", "moves", "scope"})
+_SETTINGS = _FOREIGN | _FLAGS | {"hymeko", "extra", "class", "written", "limit", "limits", "range"} | {word.word for word in LIMIT_WORDS}
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,8 @@ class Context:
 
     ``inline``: meshes and colours that are defined where a shape uses them, with the shape that uses them first;
     ``given_names``: those among them that say their id; ``mimics``: couplings that are said in the joint that follows;
-    ``attached``: the arcs of mounts, drives and the like that are said in the block of the vertex that they put to use.
+    ``attached``: the arcs of mounts, drives and the like that are said in the block of the vertex that they put to use;
+    ``angles``: the unit of plain angles.
     """
 
     mechanism: Mechanism
@@ -45,6 +46,7 @@ class Context:
     given_names: frozenset[Id]
     mimics: Mapping[Id, tuple[RobotArc, ...]]
     attached: Mapping[Id, tuple[RobotArc, ...]]
+    angles: Angles
     names: dict[str, list[str]] = field(default_factory=dict)
 
     attached_edges: set[Id] = field(default_factory=set)
@@ -91,7 +93,7 @@ class Context:
         """An arc of an edge of this kind."""
         weight = None
         if isinstance(arc.weight, Pose):
-            weight = pose_value(arc.weight)
+            weight = pose_value(arc.weight, self.angles)
         elif arc.weight is not None:
             weight = cast("tuple[Value, ...]", arc.weight)
         elif kind in POSED_EDGES:
@@ -104,38 +106,45 @@ def name_of(name: str) -> str:
     return QuotedName(name) if name in RESERVED else name
 
 
-def pose_value(pose: Pose) -> tuple[Value, ...]:
+def pose_value(pose: Pose, angles: Angles) -> tuple[Value, ...]:
     """``[x y z]`` for a translation, else ``[[x y z] rotation]``, roll-pitch-yaw if written so, else a quaternion.
 
     Other notations say their kind: ``[[x y z] "zaxis" [0 1 0]]``, and ``["fromto" [two points]]``.
     """
     if pose.written is not None:
+        rotation = angles.rotation(pose.written)
         if pose.written.kind in ("rpy", "quat"):
-            return (pose.xyz, pose.written.numbers)
+            return (pose.xyz, rotation)
         if pose.written.kind == "fromto":
-            return ("fromto", pose.written.numbers)
-        return (pose.xyz, pose.written.kind, pose.written.numbers)
+            return ("fromto", rotation)
+        return (pose.xyz, pose.written.kind, rotation)
     if pose.quat == NO_ROTATION:
         return pose.xyz
     return (pose.xyz, pose.quat)
 
 
-def word_fields(part: object, words: Iterable[Word]) -> list[Item]:
-    """A field for every attribute that differs from its default."""
+def word_fields(part: object, words: Iterable[Word], angles: Angles, motion: str = "") -> list[Item]:
+    """A field for every attribute that differs from its default; ``motion`` is what the dimension of that name stands for."""
     defaults = _defaults(type(part))
     found: list[Item] = []
     for word in words:
         value = getattr(part, word.attribute)
-        if value != defaults.get(word.attribute, MISSING):
-            found.append(Field(word.word, value_of(value)))
+        if value == defaults.get(word.attribute, MISSING):
+            continue
+        dimension = motion if word.dimension == "motion" else word.dimension
+        if word.form == "rgba" and value[3] == 1.0:
+            value = value[:3]
+        found.append(Field(word.word, angles.value(value) if dimension == "angle" else value_of(value)))
     return found
 
 
-def limit_items(limits: parts.Limits) -> list[Item]:
+def limit_items(limits: parts.Limits, angles: Angles, motion: str) -> list[Item]:
     """``limit [lower upper]`` where there are both, and a field for every other bound."""
     if limits.lower is None or limits.upper is None:
-        return word_fields(limits, LIMIT_WORDS)
-    return [Field("limit", (limits.lower, limits.upper)), *word_fields(limits, LIMIT_WORDS[2:])]
+        return word_fields(limits, LIMIT_WORDS, angles, motion)
+    span = (limits.lower, limits.upper)
+    said = angles.values(span) if motion == "angle" else span
+    return [Field("limit", said), *word_fields(limits, LIMIT_WORDS[2:], angles, motion)]
 
 
 def _defaults(part: type) -> dict[str, object]:
@@ -158,7 +167,9 @@ def value_of(value: object) -> Value:
 
 def typed(kind: str, items: list[Item]) -> tuple[tuple[str, ...], list[Item]]:
     """The type that says an element's kind and its ``type``, and the fields without that: ``sensor.imu``, ``weld``."""
-    found = next((item for item in items if isinstance(item, Field) and item.name == "type" and not isinstance(item.name, QuotedName)), None)
+    found = next(
+        (item for item in items if isinstance(item, Field) and item.name == "type" and not isinstance(item.name, QuotedName)), None
+    )
     part = PARTS[kind].part if kind in PARTS else None
     value = found.value if found is not None else _defaults(part).get("kind") if part is not None else None
     word = value.path[0] if isinstance(value, Ref) else value
@@ -173,12 +184,12 @@ def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePar
     """The block of an element that its words describe completely."""
     words = PARTS[key.kind]
     items: list[Item] = [context.arc(key.kind, arc) for arc in arcs] or _attached_items(context, key)
-    said = word_fields(part, words.words)
+    said = word_fields(part, words.words, context.angles)
     if key.kind in NAMED_AFTER_ID:
         said = _named(said, key)
     items.extend(_uri_fields(context, said, key.kind))
     if isinstance(part, parts.Tendon):
-        items.extend(limit_items(part.limits))
+        items.extend(limit_items(part.limits, context.angles, "length"))
     if words.open:
         taken = {word.word for word in words.words} | _SETTINGS
         items.extend(
@@ -201,16 +212,20 @@ def _named(items: list[Item], key: Id) -> list[Item]:
     names = [item for item in items if isinstance(item, Field) and item.name == "name"]
     if not names:
         return [Field("unnamed"), *items]
-    return [item for item in items if item is not names[0] or names[0].value != key.name]
+    return [item for item in items if item is not names[0] or names[0].value != value_of(key.name)]
 
 
 def _uri_fields(context: Context, items: list[Item], kind: str) -> list[Item]:
     if kind not in ("mesh", "texture"):
         return items
     return [
-        item._replace(value=short_uri(context, str(item.value))) if isinstance(item, Field) and item.name == "file" else item
+        item._replace(value=short_uri(context, _text_of(item.value))) if isinstance(item, Field) and item.name == "file" else item
         for item in items
     ]
+
+
+def _text_of(value: Value | None) -> str:
+    return value.path[0] if isinstance(value, Ref) else str(value)
 
 
 def short_uri(context: Context, uri: str) -> str:
