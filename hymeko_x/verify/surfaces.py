@@ -44,7 +44,7 @@ def _load(path: Path) -> Surface | str:
     try:
         loaded = trimesh.load_scene(str(path), process=False)
         whole = loaded.to_mesh()
-    except (ValueError, KeyError, IndexError, TypeError, AttributeError, OSError, ImportError) as error:
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, OSError, ImportError, NotImplementedError) as error:
         return f"the mesh '{path.name}' cannot be read: {error}"
     if len(whole.faces) == 0:
         return f"the mesh '{path.name}' {EMPTY}"

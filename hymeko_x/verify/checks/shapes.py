@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hymeko_x.verify.checks.pair import Pair, counted, worst
+from hymeko_x.verify.checks.stand_ins import stands_for
 from hymeko_x.verify.model import WORLD, Array, Feature, Index, Role, Shape
 from hymeko_x.verify.surfaces import EMPTY, Meshes, measures
 
@@ -92,7 +93,7 @@ def _compare_body(pair: Pair, i: int, j: int, roles: tuple[Role, Role], meshes: 
     What collides is often drawn as well, and formats differ in whether they say so: a shape of both roles may be missing
     among the visual ones of the other robot.
     """
-    ours, theirs = _in_common_words(pair, pair.a.bodies[i].shapes, pair.b.bodies[j].shapes)
+    ours, theirs = _in_common_words(pair, pair.a.bodies[i].shapes, pair.b.bodies[j].shapes, meshes)
     best: _Result | None = None
     for left in _readings(ours, roles):
         for right in _readings(theirs, roles):
@@ -105,19 +106,31 @@ def _compare_body(pair: Pair, i: int, j: int, roles: tuple[Role, Role], meshes: 
     return best
 
 
-def _in_common_words(pair: Pair, ours: Sequence[Shape], theirs: Sequence[Shape]) -> tuple[Sequence[Shape], Sequence[Shape]]:
+def _in_common_words(pair: Pair, ours: Sequence[Shape], theirs: Sequence[Shape], meshes: Meshes) -> tuple[Sequence[Shape], Sequence[Shape]]:
     """Against URDF a capsule is a cylinder with two spheres; what URDF cannot say at all is left out with what stands for it."""
     if (pair.a.format == "urdf") == (pair.b.format == "urdf"):
         return ours, theirs
     rich, poor = (theirs, ours) if pair.a.format == "urdf" else (ours, theirs)
     unsaid = [shape for shape in rich if shape.kind in _NOT_IN_URDF]
-    names = {shape.name for shape in unsaid if shape.name is not None}
-    for shape in unsaid:
-        pair.notes.append(f"shapes: URDF has no {shape.kind}; {_label(shape)} was not compared")
+    poor = _without_stand_ins(pair, unsaid, poor, meshes)
     capsules = not any(shape.kind == "capsule" for shape in poor)
     rich = [part for shape in rich if shape.kind not in _NOT_IN_URDF for part in (_split_capsule(shape) if capsules else [shape])]
-    poor = [shape for shape in poor if shape.name not in names]
     return (poor, rich) if pair.a.format == "urdf" else (rich, poor)
+
+
+def _without_stand_ins(pair: Pair, unsaid: Sequence[Shape], poor: Sequence[Shape], meshes: Meshes) -> list[Shape]:
+    """The shapes of the poorer format but those that stand for one that it has no word for, one for each role of it."""
+    waiting = list(poor)
+    for shape in unsaid:
+        stands = []
+        for role in (Role.VISUAL, Role.COLLISION):
+            if shape.role in (role, Role.BOTH):
+                stands += [other for other in waiting if other.role is role and stands_for(other, shape, meshes)][:1]
+        waiting = [other for other in waiting if other not in stands]
+        kind = stands[0].kind if stands else ""
+        words = f"a {kind} stands for {_label(shape)}" if stands else f"{_label(shape)} was not compared"
+        pair.notes.append(f"shapes: URDF has no {shape.kind}; {words}")
+    return waiting
 
 
 def _split_capsule(shape: Shape) -> list[Shape]:
@@ -157,7 +170,7 @@ def _fit(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes) -> _Resu
 
 
 def _label(shape: Shape) -> str:
-    return f"{shape.kind} '{shape.name}'" if shape.name else f"a {shape.kind}"
+    return f"{shape.kind} '{shape.name}'" if shape.name else f"{'an' if shape.kind[0] in 'aeiouh' else 'a'} {shape.kind}"
 
 
 # ---- primitives ------------------------------------------------------------------------------------------------------

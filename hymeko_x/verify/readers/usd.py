@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.readers import Places
 
-SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES})
+SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
 SINGLE = 1.2e-7
 """The relative precision of what UsdPhysics stores."""
 
