@@ -40,6 +40,9 @@ GROUND = ("usd.body0", "usd.body1")
 ROOT_PRIM = "usd.root"
 """The notation of the mechanism that keeps the path of the prim that stands for the robot."""
 
+WITHIN = "xformOp:scale:within"
+"""The operation that undoes the scale of the body above."""
+
 PREFIX = "hymeko:"
 DIGEST = "hymeko:digest"
 SCOPE = "hymeko"

@@ -23,6 +23,7 @@ from hymeko_x.ir.legalize_native import drop_shapes_of_mujoco
 from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.ir.legalize_urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
 from hymeko_x.ir.legalize_urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
+from hymeko_x.ir.legalize_usd import choose_layout
 from hymeko_x.ir.mechanism import ROOT
 
 if TYPE_CHECKING:
@@ -35,16 +36,19 @@ class Options:
     """What the user chose for the output.
 
     ``base``: what becomes of an open base (None = the target's own default). ``actuators``: which kind to give every
-    driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows.
+    driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows. ``layout`` and
+    ``nested``: how a stage of USD is laid out (None = as it was, else one file with flat bodies).
     """
 
     base: Literal["fixed", "free"] | None = None
     actuators: Literal["none", "motor", "position", "velocity"] | None = None
+    layout: Literal["single", "layered"] | None = None
+    nested: bool | None = None
 
 
 Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]
 
-_USD: tuple[Rule, ...] = (make_names_usable, hold_or_free_open_bases, expand_screws)
+_USD: tuple[Rule, ...] = (make_names_usable, hold_or_free_open_bases, expand_screws, choose_layout)
 
 _URDF: tuple[Rule, ...] = (
     make_names_usable,

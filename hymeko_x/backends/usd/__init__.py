@@ -13,11 +13,13 @@ from hymeko_x.backends.usd.bodies import write_bodies, write_mounts
 from hymeko_x.backends.usd.carry import carry_elements
 from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
+from hymeko_x.backends.usd.layers import split
 from hymeko_x.backends.usd.materials import write_materials
 from hymeko_x.backends.usd.relations import write_drives, write_mimics
 from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
 from hymeko_x.formats import usd as words
+from hymeko_x.ir.legalize_usd import LAYOUT
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 
@@ -30,7 +32,16 @@ _ARTICULATION = "PhysicsArticulationRootAPI"
 
 def write(mechanism: Mechanism, report: Report) -> Package:
     """The mechanism as USD text. Textures are not part of it: `assets.pack` returns them."""
-    return Package(write_layer(mechanism, report).ExportToString().encode())
+    texts = {name: layer.ExportToString().encode() for name, layer in write_layers(mechanism, report, ".usda").items()}
+    return Package(texts.pop(""), texts)
+
+
+def write_layers(mechanism: Mechanism, report: Report, suffix: str) -> dict[str, Any]:
+    """The layers of the stage by file name, the one to open under an empty name."""
+    layer = write_layer(mechanism, report)
+    if mechanism.notation(ROOT, LAYOUT) != "layered":
+        return {"": layer}
+    return split(layer, f"{valid_name(mechanism.name)}_payload", suffix)
 
 
 def write_layer(mechanism: Mechanism, report: Report) -> Any:

@@ -132,7 +132,7 @@ def native_pairs(sheet: Sheet, spec: Any) -> Iterator[tuple[str, bytes]]:
     """Every property of a prim that is not ours, as the reader will see it through references within the layer."""
     yield "@type", str(spec.typeName).encode()
     schemas = spec.GetInfo("apiSchemas").GetAppliedItems() if spec.HasInfo("apiSchemas") else []
-    yield "@apiSchemas", " ".join(schemas).encode()
+    yield "@apiSchemas", " ".join(sorted(schemas)).encode()
     said: dict[str, Any] = {}
     for reference in spec.referenceList.prependedItems:
         said |= {item.name: item for item in sheet.layer.GetPrimAtPath(reference.primPath).properties}

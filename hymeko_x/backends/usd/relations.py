@@ -75,6 +75,7 @@ def write_mimics(sheet: Sheet) -> None:
             _write_mimic(here[0], there[0].path, here[2], weight, coupling.active)
             _write_powers(here[0], weight, 2)
         else:
+            apply(here[0], "MjcEqualityJointAPI")
             point(here[0], "mjc:target", there[0].path)
             _write_powers(here[0], weight, 0)
         if "coupling" not in sheet.carried[here[0].path]:
@@ -93,7 +94,8 @@ def _write_mimic(spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is
 
 
 def _write_powers(spec: Any, weight: tuple[float, ...], first: int) -> None:
-    """The coefficients of MuJoCo's schema from this power on."""
-    for power, value in enumerate(weight[first:], start=first):
+    """The coefficients of MuJoCo's schema from this power on; the default is 1 for the first power, else 0."""
+    said = [(power, value) for power, value in enumerate(weight) if power >= first and value != (1.0 if power == 1 else 0.0)]
+    for power, value in said:
         apply(spec, "MjcEqualityJointAPI")
         put(spec, f"mjc:coef{power}", T.Double, value)

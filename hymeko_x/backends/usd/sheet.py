@@ -84,6 +84,10 @@ class Sheet:
         if noted is not None and below and not (noted != parent and noted.HasPrefix(parent)):
             noted = None
         path = noted or self.free_path(self.scope(parent) if isinstance(parent, str) else parent, name or key.name)
+        return self.put_prim(key, path, kind, name)
+
+    def put_prim(self, key: Id, path: Any, kind: str, name: str | None = None) -> Any:
+        """A new prim at this path for an element."""
         spec = self.define(path, kind, name or key.name)
         self.homes[key] = path
         self.made.setdefault(path, []).extend(["displayName"] if spec.HasInfo("displayName") else [])
@@ -151,8 +155,8 @@ def transform(spec: Any, pose: Pose, scale: Vec3 | None = None, *, reset: bool =
     """
     order = [RESET] if reset else []
     if within is not None:
-        put(spec, "xformOp:scale:within", T.Double3, Gf.Vec3d(*(1.0 / value for value in within)))
-        order.append("xformOp:scale:within")
+        put(spec, words.WITHIN, T.Double3, Gf.Vec3d(*(1.0 / value for value in within)))
+        order.append(words.WITHIN)
     put(spec, "xformOp:translate", T.Double3, Gf.Vec3d(*pose.xyz))
     put(spec, "xformOp:orient", T.Quatd, quatd(pose.quat))
     order += ["xformOp:translate", "xformOp:orient"]

@@ -34,7 +34,7 @@ def native_pairs(prim: Any) -> Iterator[tuple[str, bytes]]:
     """Every property of a prim that is not ours, with its value as bytes, its type and its API schemas."""
     yield "@type", str(prim.GetTypeName()).encode()
     listed = prim.GetMetadata("apiSchemas")
-    yield "@apiSchemas", " ".join(listed.GetAppliedItems() if listed is not None else []).encode()
+    yield "@apiSchemas", " ".join(sorted(listed.GetAppliedItems() if listed is not None else [])).encode()
     for item in prim.GetAuthoredProperties():
         name = str(item.GetName())
         if name.startswith(words.PREFIX):

@@ -165,4 +165,5 @@ def _mount(prim: Any, key: Id, draft: Draft) -> None:
         draft.vertices.setdefault(WORLD, World())
     pose = draft.places.seen_from(prim, body).pose
     draft.edges[draft.own(prim, "mount", key.name)] = mount_edge(owner, key, pose)
-    draft.take(prim, *(name for name in prim.GetAuthoredPropertyNames() if name.startswith("xformOp") and "scale" not in name))
+    ops = [name for name in prim.GetAuthoredPropertyNames() if name.startswith("xformOp")]
+    draft.take(prim, *(name for name in ops if "scale" not in name or name == words.WITHIN))
