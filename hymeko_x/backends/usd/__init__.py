@@ -15,6 +15,7 @@ from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
 from hymeko_x.backends.usd.layers import split
 from hymeko_x.backends.usd.materials import write_materials
+from hymeko_x.backends.usd.prims import author
 from hymeko_x.backends.usd.relations import write_drives, write_mimics
 from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
@@ -52,8 +53,9 @@ def write_layer(mechanism: Mechanism, report: Report) -> Any:
         _write_stage(sheet)
         for section in (write_materials, write_bodies, write_shapes, write_mounts, write_joints, write_loops, write_drives, write_mimics):
             section(sheet)
-        restore_extras(sheet, report)
         _write_articulations(sheet)
+        author(sheet.prims.values(), layer)
+        restore_extras(sheet, report)
         carry_elements(sheet)
     return layer
 
@@ -72,10 +74,10 @@ def _write_stage(sheet: Sheet) -> None:
     stage.SetInfo("kilogramsPerUnit", 1.0)
     stage.SetInfo("upAxis", UsdGeom.Tokens.z)
     sheet.layer.defaultPrim = sheet.root.name
-    spec = sheet.define(sheet.root, "Xform", sheet.mechanism.name)
+    prim = sheet.define(sheet.root, "Xform", sheet.mechanism.name)
     sheet.made[sheet.root] = []
     if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is None:
-        spec.SetInfo("kind", Kind.Tokens.component)
+        prim.info["kind"] = Kind.Tokens.component
     sheet.made[sheet.root] += ["kind", "displayName", "@type"]
 
 
@@ -87,5 +89,5 @@ def _write_articulations(sheet: Sheet) -> None:
     if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is not None or not sheet.dofs:
         return
     for path in [sheet.root] if len(roots) == 1 else [sheet.homes[root] for root in roots if sheet.mechanism.children.get(root)]:
-        apply(sheet.layer.GetPrimAtPath(path), _ARTICULATION)
+        apply(sheet.prims[path], _ARTICULATION)
         sheet.made[path].append(f"@{_ARTICULATION}")

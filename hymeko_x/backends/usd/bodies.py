@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Vt
 
+from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.shapes import gprim_of, skin_pose
-from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
+from hymeko_x.backends.usd.sheet import apply, put, quatf, transform
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.xml import read_numbers
 from hymeko_x.ir.legalize_usd import NESTED
@@ -40,7 +41,7 @@ def write_bodies(sheet: Sheet) -> None:
         _write_body(sheet, spec, key)
     for key, _ in sheet.mechanism.vertices(Body):
         path = sheet.homes[key]
-        spec = sheet.layer.GetPrimAtPath(path)
+        spec = sheet.prims[path]
         pose = _noted_pose(sheet.mechanism, key) or poses.get(key, IDENTITY)
         above = _parent_body(sheet.mechanism, key) if is_nested else None
         if above is not None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pxr import Sdf, Tf
 
 from hymeko_x import codes
-from hymeko_x.backends.usd.sheet import apply
+from hymeko_x.backends.usd.prims import set_schemas
 from hymeko_x.formats.usd import FORMAT
 from hymeko_x.ir.mechanism import ROOT, Extra
 
@@ -99,7 +99,8 @@ def _merge(sheet: Sheet, spec: Any, path: Any) -> None:
         restored.add("@type")
     if spec.HasInfo("apiSchemas"):
         schemas = spec.GetInfo("apiSchemas").GetAppliedItems()
-        apply(there, *schemas)
+        present = list(there.GetInfo("apiSchemas").GetAppliedItems()) if there.HasInfo("apiSchemas") else []
+        set_schemas(there, [*present, *(schema for schema in schemas if schema not in present)])
         restored.update(f"@{schema}" for schema in schemas)
     for name in spec.ListInfoKeys():
         if name not in ("specifier", "typeName", "apiSchemas"):

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf
 
-from hymeko_x.backends.usd.sheet import T, apply, point, put, quatf
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.sheet import apply, point, put, quatf
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop, Mount
@@ -63,7 +64,7 @@ def write_joint(sheet: Sheet, view: JointView) -> None:
         spec = sheet.place(view.id, "joints", _type_of(sheet, view.id, dofs))
         write_frames(sheet, spec, view.id, ends, dofs)
         for number, dof in zip(numbers, dofs, strict=True):
-            sheet.dofs[view.id, number] = (spec.path, axis_name(dof) if spec.typeName == GENERIC else "")
+            sheet.dofs[view.id, number] = (spec.path, axis_name(dof) if spec.kind == GENERIC else "")
         return
     _write_parallel(sheet, view, ends, dofs, list(numbers))
 
@@ -98,10 +99,10 @@ def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: 
     noted = (sheet.mechanism.notation(view.id, words.PATH) or "").split()
     for place, (number, dof) in enumerate(zip(numbers, dofs, strict=True)):
         name = dof.name or f"{view.id.name}_{place + 1}"
-        is_free = len(noted) == len(dofs) and Sdf.Path.IsValidPathString(noted[place]) and not sheet.layer.GetPrimAtPath(noted[place])
+        is_free = len(noted) == len(dofs) and Sdf.Path.IsValidPathString(noted[place]) and Sdf.Path(noted[place]) not in sheet.prims
         path = Sdf.Path(noted[place]) if is_free else sheet.free_path(sheet.scope("joints"), name)
         spec = sheet.define(path, _TYPES.get(dof.kind, GENERIC), name)
-        sheet.made.setdefault(path, []).extend(["displayName"] if spec.HasInfo("displayName") else [])
+        sheet.made.setdefault(path, []).extend(["displayName"] if "displayName" in spec.info else [])
         write_frames(sheet, spec, view.id, ends, (dof,))
         sheet.dofs[view.id, number] = (path, "")
         if place == 0:
@@ -116,14 +117,14 @@ def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: 
 
 def write_frames(sheet: Sheet, spec: Any, key: Id, ends: tuple[End, End], dofs: tuple[Dof, ...]) -> None:
     """Bodies, local frames, axis and limits. An axis that is none of x, y, z turns both frames so that it is their x."""
-    turn, token = _turn(dofs[0]) if len(dofs) == 1 and spec.typeName not in (GENERIC, _TYPES[DofKind.BALL]) else (IDENTITY.quat, "X")
+    turn, token = _turn(dofs[0]) if len(dofs) == 1 and spec.kind not in (GENERIC, _TYPES[DofKind.BALL]) else (IDENTITY.quat, "X")
     anchor = dofs[0].anchor if len(dofs) == 1 else (0.0, 0.0, 0.0)
     for side, (body, pose) in enumerate(ends):
         _write_end(sheet, spec, side, body, key)
         frame = compose(pose, Pose(anchor, turn)) if any(anchor) or turn != IDENTITY.quat else pose
         put(spec, f"physics:localPos{side}", T.Point3f, Gf.Vec3f(*sheet.shrunk(body, frame.xyz)))
         put(spec, f"physics:localRot{side}", T.Quatf, quatf(frame.quat))
-    if spec.typeName == GENERIC:
+    if spec.kind == GENERIC:
         _write_generic(spec, dofs)
     elif len(dofs) == 1 and dofs[0].kind in (DofKind.HINGE, DofKind.SLIDE):
         put(spec, "physics:axis", T.Token, token)
@@ -137,7 +138,7 @@ def _write_end(sheet: Sheet, spec: Any, side: int, body: Id, key: Id) -> None:
     if body != WORLD and body in sheet.homes:
         point(spec, f"physics:body{side}", sheet.homes[body])
     noted = sheet.mechanism.notation(key, words.GROUND[side]) if body == WORLD else None
-    if noted is not None and Sdf.Path.IsValidPathString(noted) and sheet.layer.GetPrimAtPath(noted):
+    if noted is not None and Sdf.Path.IsValidPathString(noted) and Sdf.Path(noted) in sheet.prims:
         point(spec, f"physics:body{side}", Sdf.Path(noted))
 
 

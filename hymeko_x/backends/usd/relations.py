@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.backends.usd.sheet import T, apply, point, put
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.sheet import apply, point, put
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.parts import Actuator, Coupling, DofKind, Drive, Joint
 
@@ -57,7 +58,7 @@ def dof_of(sheet: Sheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
     place = sheet.dofs.get((arc.target, number)) if number is not None else None
     if place is None or number is None or edge.data.dofs[number].kind not in (DofKind.HINGE, DofKind.SLIDE):
         return None
-    return sheet.layer.GetPrimAtPath(place[0]), place[1], edge.data.dofs[number]
+    return sheet.prims[place[0]], place[1], edge.data.dofs[number]
 
 
 def write_mimics(sheet: Sheet) -> None:
@@ -69,7 +70,7 @@ def write_mimics(sheet: Sheet) -> None:
             continue
         here, there = dof_of(sheet, follower), dof_of(sheet, leaders[0])
         weight = leaders[0].weight if isinstance(leaders[0].weight, tuple) else (0.0, 1.0)
-        if here is None or there is None or len(weight) > 5 or here[0].relationships.get("newton:mimicJoint"):
+        if here is None or there is None or len(weight) > 5 or "newton:mimicJoint" in here[0].targets:
             continue
         if sheet.mechanism.notation(key, words.EQUALITY) is None:
             _write_mimic(here[0], there[0].path, here[2], weight, coupling.active)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Vt
 
-from hymeko_x.backends.usd.sheet import T, apply, point, put
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.sheet import apply, point, put
 from hymeko_x.formats import usd as words
 from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.ir.mechanism import WORLD
@@ -47,7 +48,7 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
     prim = gprim_of(sheet.mechanism, view)
     is_body = sheet.skins.get(view.body) == view.id
     if is_body:
-        spec = sheet.layer.GetPrimAtPath(body)
+        spec = sheet.prims[body]
         sheet.homes[view.id] = body
         sheet.carried[body]["shape"] = view.id
     else:
@@ -57,7 +58,7 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
     scale = _write_mesh_shape(sheet, spec, view, users, shared) if isinstance(view.shape.geometry, MeshShape) else None
     if not is_body:
         sheet.move(spec, skin_pose(view, prim), scale if prim is None else _unless_one(prim.scale), on=view.body)
-    if spec.typeName == "Xform":
+    if spec.kind == "Xform":
         sheet.made[spec.path].append("@spec")
     if view.shape.role is not Role.VISUAL:
         apply(spec, "PhysicsCollisionAPI")
@@ -80,7 +81,7 @@ def gprim_of(mechanism: Mechanism, view: ShapeView) -> gprims.Gprim | None:
 
 def _write_primitive(sheet: Sheet, spec: Any, prim: gprims.Gprim) -> None:
     """Type, sizes, axis and the box around it."""
-    spec.typeName = prim.kind
+    spec.kind = prim.kind
     for (name, _), value in zip(gprims.SIZES[prim.kind], prim.sizes, strict=True):
         put(spec, name, T.Double, value)
     if prim.is_axial:
@@ -105,8 +106,8 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
         if view.mesh not in shared:
             shared[view.mesh] = _write_prototype(sheet, view.mesh, mesh)
             _carry_mesh(sheet, spec, view.mesh)
-        spec.typeName = "Mesh"
-        spec.referenceList.prependedItems = [Sdf.Reference(primPath=shared[view.mesh])]
+        spec.kind = "Mesh"
+        spec.reference = shared[view.mesh]
     sheet.made[spec.path].append("subdivisionScheme")
     return None if mesh.scale == (1.0, 1.0, 1.0) or not is_drawable(mesh) else mesh.scale
 
@@ -120,7 +121,7 @@ def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
 def _write_prototype(sheet: Sheet, key: Id, mesh: Mesh) -> Any:
     """A mesh that is shown several times: a class, which is seen only through references to it."""
     scope = sheet.root.AppendChild("meshes")
-    if not sheet.layer.GetPrimAtPath(scope):
+    if scope not in sheet.prims:
         group = sheet.define(scope, "Scope")
         group.specifier = Sdf.SpecifierClass
         put(group, f"{words.PREFIX}scope", T.Bool, True)
@@ -149,7 +150,7 @@ def _write_points(spec: Any, mesh: Mesh) -> None:
         return
     points = np.asarray(mesh.vertices, dtype=np.float32).reshape(-1, 3)
     faces = np.asarray(mesh.faces, dtype=np.int32)
-    spec.typeName = "Mesh"
+    spec.kind = "Mesh"
     put(spec, "points", T.Point3fArray, Vt.Vec3fArray.FromNumpy(points))
     put(spec, "faceVertexCounts", T.IntArray, Vt.IntArray.FromNumpy(np.full(len(faces) // 3, 3, dtype=np.int32)))
     put(spec, "faceVertexIndices", T.IntArray, Vt.IntArray.FromNumpy(faces))

@@ -74,9 +74,10 @@ class Draft:
         return key
 
     def _name(self, prim: Any, kind: str, fallback: str | None) -> str:
-        carried = prim.GetAttribute(f"{words.PREFIX}{kind}:id")
-        if carried and isinstance(carried.Get(), str):
-            return words.text_with_nul(carried.Get())
+        carried = prim.GetAttribute(words.PREFIX + kind)
+        name = words.id_in(carried.Get()) if carried else None
+        if name is not None:
+            return name
         if fallback is not None:
             return fallback
         own = prim.GetAttribute(ORIGINAL_NAME)
