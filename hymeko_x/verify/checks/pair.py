@@ -12,6 +12,7 @@ from hymeko_x.verify.dh import zero_poses
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.sampling import bounds, draw, follow
 from hymeko_x.verify.spatial import quat_from_rotation
+from hymeko_x.verify.surfaces import Meshes
 from hymeko_x.verify.verdict import Check
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ MASS_MATRIX = 1e-8
 class Pair:
     """Two robots, their match, the same configurations (n, width) in the coordinates of each, and notes for the verdict.
 
-    ``meshes`` says whether mesh files are to be read and compared.
+    ``meshes`` reads the mesh files that are compared, each once.
 
     ``shifts`` holds for each pair of dofs by how much the second's coordinate is larger for the same pose.
     """
@@ -39,7 +40,7 @@ class Pair:
     q_a: Array
     q_b: Array
     shifts: tuple[float, ...]
-    meshes: bool = True
+    meshes: Meshes = field(default_factory=Meshes)
     notes: list[str] = field(default_factory=list)
 
     @cached_property
@@ -73,7 +74,7 @@ class Pair:
         return ("in the zero pose", "at all lower limits", "at all upper limits")[row] if row < 3 else f"at sample {row - 2}"
 
 
-def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, seed: int, *, meshes: bool = True) -> Pair:
+def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, seed: int, *, meshes: Meshes | None = None) -> Pair:
     """Configurations drawn in the first robot's limits and said in the coordinates of both."""
     rng = np.random.default_rng(seed)
     q_a = draw(a, samples, rng)
@@ -84,7 +85,7 @@ def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, 
         q_b[:, b.columns[e] : b.columns[e] + width] = q_a[:, a.columns[d] : a.columns[d] + width] + shift
     follow(b, q_b)
     _turn_alike(a, b, matched.turned, q_a, q_b, rng)
-    return Pair(a, b, matched, q_a, q_b, shifts, meshes, list(matched.notes))
+    return Pair(a, b, matched, q_a, q_b, shifts, Meshes() if meshes is None else meshes, list(matched.notes))
 
 
 def worst(quantity: str, unit: str, differences: Array, allowed: Array | float, label: Callable[[int], str]) -> Check:
