@@ -11,7 +11,7 @@ from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put, quatf
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
-from hymeko_x.ir.parts import Dof, DofKind, Loop, Mount
+from hymeko_x.ir.parts import Dof, DofKind, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, scaled, unit_quat
 
 if TYPE_CHECKING:
@@ -247,13 +247,7 @@ def _loop_type(sheet: Sheet, key: Id, loop: Loop) -> str:
 
 def _frames(sheet: Sheet) -> dict[Id, End]:
     """The body and pose of each thing that is mounted somewhere."""
-    found: dict[Id, End] = {}
-    for _, _, arcs in sheet.mechanism.edges(Mount):
-        body = next((arc for arc in arcs if arc.sign > 0), None)
-        thing = next((arc for arc in arcs if arc.sign < 0), None)
-        if body is not None and thing is not None:
-            found[thing.target] = (body.target, pose_weight(body))
-    return found
+    return {view.thing: (view.body, view.pose) for views in sheet.mechanism.mounts.values() for view in views}
 
 
 def _closure_end(arc: RobotArc, frames: dict[Id, End]) -> End:
