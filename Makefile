@@ -36,7 +36,7 @@ pytest: $(STAMP)
 	$(BIN)/python -m pytest -W error -n $(JOBS) tests
 
 bench: $(STAMP)
-	@for name in parse load chain; do $(BIN)/python benchmarks/$$name.py || failed=1; done; exit $${failed:-0}
+	@for name in parse load load_mjcf chain; do $(BIN)/python benchmarks/$$name.py || failed=1; done; exit $${failed:-0}
 
 clean:
 	rm -rf .venv build dist demo .mypy_cache .pytest_cache .ruff_cache

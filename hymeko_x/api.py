@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     Base = Literal["fixed", "free"] | None
     Assets = Literal["copy", "reference"] | None
     Actuators = Literal["none", "motor", "position", "velocity"] | None
+    Layout = Literal["single", "layered"] | None
 
 
 def load(
@@ -32,17 +33,18 @@ def load(
     packages: Mapping[str, Place] | None = None,
     arguments: Mapping[str, str] | None = None,
     environment: Mapping[str, str] | None = None,
+    variants: Mapping[str, str] | None = None,
     report: Report | None = None,
 ) -> Mechanism:
     """The robot in a file. The format is taken from suffix and content unless it is given.
 
     ``packages`` says where `package://NAME` is, ``arguments`` and ``environment`` what $(arg NAME) and $(env NAME) are in
-    a xacro file. What there is to say goes into ``report``.
+    a xacro file, ``variants`` which variant of a variant set of USD to read. What there is to say goes into ``report``.
 
     Raises: Refusal when the file cannot be read.
     """
     source = disk.open_source(os.fspath(path), packages=_folders(packages))
-    source = replace(source, arguments=dict(arguments or {}), environment=dict(environment or {}))
+    source = replace(source, arguments=dict(arguments or {}), environment=dict(environment or {}), variants=dict(variants or {}))
     return pipeline.read(source, _input_format(source, format), Report() if report is None else report)
 
 
@@ -63,34 +65,44 @@ def dump(
     packages: Mapping[str, Place] | None = None,
     base: Base = None,
     actuators: Actuators = None,
+    layout: Layout = None,
+    nested: bool | None = None,
     assets: Assets = None,
     pure: bool = False,
 ) -> Report:
     """Write a robot with its meshes to a file; return what there is to say. The format is taken from the suffix unless given.
 
     Relative meshes are looked for beside the file that the robot was read from. ``assets``: copy meshes beside the
-    output, or refer to them where they are (None = what is usual for the format). ``pure`` leaves out what the format
-    cannot say itself, which it carries otherwise.
+    output, or refer to them where they are (None = what is usual for the format). ``layout`` and ``nested`` say how a stage of
+    USD is laid out. ``pure`` leaves out what the format cannot say itself, which it carries otherwise.
 
     Raises: Refusal when it cannot be written; then nothing was changed.
     """
     report = Report()
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
     files = _files_of(robot, packages)
-    result = pipeline.convert(robot, target, Options(base=base, actuators=actuators), files, report, _place(path, assets), pure=pure)
+    options = Options(base, actuators, layout, nested)
+    result = pipeline.convert(robot, target, options, files, report, _place(path, assets), pure=pure)
     disk.write_package(result.package, os.fspath(path), files)
     return report
 
 
 def dumps(
-    robot: Mechanism, format: str, *, base: Base = None, actuators: Actuators = None, pure: bool = False, report: Report | None = None
+    robot: Mechanism,
+    format: str,
+    *,
+    base: Base = None,
+    actuators: Actuators = None,
+    nested: bool | None = None,
+    pure: bool = False,
+    report: Report | None = None,
 ) -> str:
     """A robot as text; meshes are referred to from the working folder, and nothing is written.
 
     Raises: Refusal when the format cannot be written.
     """
     said = Report() if report is None else report
-    options = Options(base=base, actuators=actuators)
+    options = Options(base, actuators, nested=nested)
     place = pipeline.Place(assets="reference")
     result = pipeline.convert(robot, formats.by_name(format), options, _files_of(robot, None), said, place, pure=pure)
     return result.package.main.decode()
@@ -105,8 +117,11 @@ def convert(
     packages: Mapping[str, Place] | None = None,
     arguments: Mapping[str, str] | None = None,
     environment: Mapping[str, str] | None = None,
+    variants: Mapping[str, str] | None = None,
     base: Base = None,
     actuators: Actuators = None,
+    layout: Layout = None,
+    nested: bool | None = None,
     assets: Assets = None,
     pure: bool = False,
 ) -> pipeline.Result:
@@ -118,10 +133,10 @@ def convert(
     """
     report = Report()
     given = disk.open_source(os.fspath(source), packages=_folders(packages))
-    given = replace(given, arguments=dict(arguments or {}), environment=dict(environment or {}))
+    given = replace(given, arguments=dict(arguments or {}), environment=dict(environment or {}), variants=dict(variants or {}))
     robot = pipeline.read(given, _input_format(given, from_format), report)
     form = formats.by_name(to_format) if to_format else formats.of_output(os.fspath(target))
-    options = Options(base=base, actuators=actuators)
+    options = Options(base, actuators, layout, nested)
     result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets), pure=pure)
     disk.write_package(result.package, os.fspath(target), given.files)
     return result

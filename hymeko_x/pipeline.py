@@ -203,7 +203,8 @@ def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report
         return mechanism
     from hymeko_x.frontends.mjcf.weigh import weigh
 
-    return weigh(mechanism, writer(formats.MJCF)(mechanism, Report()).main, files, report)
+    native = legalize(mechanism, formats.MJCF.name, Options(), Report())
+    return weigh(mechanism, writer(formats.MJCF)(native, Report()).main, files, report)
 
 
 def read_back(package: Package, format: Format, files: Files) -> Mechanism:

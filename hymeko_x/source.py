@@ -45,7 +45,8 @@ class Source:
     """One input: its name as the user typed it (used in messages), its bytes, and the files around it.
 
     ``arguments`` are the user's values for a format that takes some (xacro's NAME:=VALUE), ``environment`` the
-    variables that the user passes on to it (xacro's `$(env NAME)`); the program's own environment stays closed.
+    variables that the user passes on to it (xacro's `$(env NAME)`); the program's own environment stays closed. ``variants``
+    are the choices for a format that leaves some open (USD's variant sets).
     """
 
     name: str
@@ -53,6 +54,7 @@ class Source:
     files: Files = field(default_factory=NoFiles)
     arguments: Mapping[str, str] = field(default_factory=dict)
     environment: Mapping[str, str] = field(default_factory=dict)
+    variants: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)

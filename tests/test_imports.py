@@ -41,6 +41,11 @@ HOMES = {
     "lark": ("language/",),
     "xacro": ("frontends/xacro",),
     "rich": ("cli/",),
+    "fsspec": ("corpus/",),
+    "matplotlib": ("corpus/",),
+    "pebble": ("corpus/",),
+    "polars": ("corpus/",),
+    "ray": ("corpus/",),
 }
 """Heavy libraries and the only places that may import them."""
 

@@ -27,7 +27,7 @@ VERBS = {
     "info": ("hymeko_x.cli.info", "what is in a file"),
     "formats": ("hymeko_x.cli.formats", "the formats that can be read and written"),
     "explain": ("hymeko_x.cli.explain", "what a code such as HX044 means"),
-    "corpus": ("hymeko_x.cli.corpus", "real robots from published packages: fetch, list"),
+    "corpus": ("hymeko_x.cli.corpus", "real robots from published packages: fetch, list, run, stats"),
 }
 """Verb -> module with ``arguments(parser)`` and ``run(arguments) -> exit code``, and what it does in a few words."""
 

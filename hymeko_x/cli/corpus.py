@@ -1,17 +1,18 @@
-"""`hymeko-x corpus fetch|list`: real robots from published packages."""
+"""`hymeko-x corpus fetch|list|run|stats`: real robots from published packages, and what becomes of them in every format."""
 
 from __future__ import annotations
 
 import os
 import sys
 from contextlib import contextmanager
+from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.cli import exits
+from hymeko_x.cli import corpus_run, corpus_stats, exits
 from hymeko_x.cli.terminal import show
 from hymeko_x.corpus import cache, catalog
-from hymeko_x.diagnostics import Refusal
+from hymeko_x.diagnostics import Refusal, refuse
 
 if TYPE_CHECKING:
     import argparse
@@ -21,20 +22,36 @@ if TYPE_CHECKING:
     from hymeko_x.corpus.catalog import WheelPackage
 
 
+EXTRA = ("fsspec", "matplotlib", "pebble", "polars")
+"""The libraries that only batch runs need."""
+
+
 def arguments(parser: argparse.ArgumentParser) -> None:
     """The verb's own words."""
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION")
     fetch = actions.add_parser("fetch", help="download and unpack packages; print their folders")
     fetch.add_argument("names", nargs="*", metavar="NAME", help="packages of the catalogue (default: all of them)")
     actions.add_parser("list", help="the packages of the catalogue, and which are here")
+    corpus_run.arguments(actions.add_parser("run", help="every robot through every format, measured"))
+    corpus_stats.arguments(actions.add_parser("stats", help="tables and figures of a run"))
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Fetch packages, or list them."""
+    """Fetch packages, list them, run them through the formats, or count what came out."""
+    if chosen.action in ("run", "stats"):
+        needs_extra()
+        return corpus_run.run(chosen) if chosen.action == "run" else corpus_stats.run(chosen)
     root = cache.cache_root(os.environ)
     if chosen.action == "list":
         return _list(root)
     return _fetch(catalog.select(tuple(chosen.names)), root)
+
+
+def needs_extra() -> None:
+    """Raises: Refusal HX301 when the libraries of the extra `corpus` are not installed."""
+    missing = [name for name in EXTRA if find_spec(name) is None]
+    if missing:
+        raise refuse(codes.ENGINE_MISSING, f"{', '.join(missing)} is not installed", hint="pip install 'hymeko-x[corpus]'")
 
 
 def _list(root: Path) -> int:

@@ -35,6 +35,8 @@ def input_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--package", action="append", default=[], type=_package, metavar="NAME=DIR", help=where)
     parser.add_argument("--confine", type=_folder, metavar="DIR", help="read no file outside this folder")
     parser.add_argument("--arg", action="append", default=[], type=_argument, metavar="NAME:=VALUE", help="an argument of a xacro file")
+    picked = "which variant of a USD file's variant set to read, wherever it has that set (repeatable)"
+    parser.add_argument("--variant", action="append", default=[], type=_variant, metavar="SET=NAME", help=picked)
     passed = "an environment variable that a xacro file may see (repeatable)"
     parser.add_argument("--env", action="append", default=[], type=_variable, metavar="NAME[=VALUE]", help=passed)
 
@@ -49,7 +51,9 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report) -> Input:
     if (chosen.arg or chosen.env) and not format.has_arguments:
         option = "--arg" if chosen.arg else "--env"
         raise UsageError(f"{option} is for formats that take arguments, and {source.name} is {format.name}")
-    source = replace(source, arguments=dict(chosen.arg), environment=dict(chosen.env))
+    if chosen.variant and not format.has_variants:
+        raise UsageError(f"--variant is for formats that have variants, and {source.name} is {format.name}")
+    source = replace(source, variants=dict(chosen.variant), arguments=dict(chosen.arg), environment=dict(chosen.env))
     return Input(pipeline.read(source, format, report), format, source)
 
 
@@ -80,6 +84,13 @@ def _argument(text: str) -> tuple[str, str]:
     if not (name and sign):
         raise argparse.ArgumentTypeError(f"expected NAME:=VALUE, found '{text}'")
     return name, value
+
+
+def _variant(text: str) -> tuple[str, str]:
+    name, equals, variant = text.partition("=")
+    if not (name and equals):
+        raise argparse.ArgumentTypeError(f"expected SET=NAME, found '{text}'")
+    return name, variant
 
 
 def _variable(text: str) -> tuple[str, str]:

@@ -39,6 +39,9 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the source leaves open")
     parser.add_argument("--actuators", choices=("none", "motor", "position", "velocity"), help="the actuators to write")
     parser.add_argument("--assets", choices=("copy", "reference"), help="put meshes beside the output, or refer to them where they are")
+    layouts = "USD: one file, or an interface with files for geometry, materials and physics behind it"
+    parser.add_argument("--layout", choices=("single", "layered"), help=layouts)
+    parser.add_argument("--nested", action="store_true", default=None, help="USD: put each body inside of its parent")
     parser.add_argument("--pure", action="store_true", help="write no residue of what the format cannot say itself")
     parser.add_argument("--report", metavar="FILE.json", help="write diagnostics and losses to a file")
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
@@ -49,7 +52,7 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
 
     With ``measured`` the result is read back and its losses are listed.
     """
-    options = Options(base=chosen.base, actuators=chosen.actuators)
+    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested)
     what = (given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
     result = pipeline.convert(*what, pure=chosen.pure) if measured else pipeline.write_unmeasured(*what)
     beside = [*result.package.files, *result.package.copies]

@@ -1,4 +1,4 @@
-"""The catalogue of real robots in published packages: which wheels carry them, and which files the tests read.
+"""The catalogue of real robots in published packages: which wheels carry them, and which files the tests and the batch runs read.
 
 The words are in `corpus/catalog.toml`; the wheel of hymeko-x carries a copy beside this file.
 """
@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -33,7 +33,10 @@ LICENCE_WORDS = ("licen", "copying", "copyright", "notice", "authors", "metadata
 
 @dataclass(frozen=True, slots=True)
 class WheelPackage:
-    """One published wheel that carries robots. ``only`` are path prefixes inside it; empty means everything."""
+    """One published wheel that carries robots. ``only`` are path prefixes inside it; empty means everything.
+
+    ``files`` are the development files by format, ``robots`` the others; ``arguments`` are xacro's, by path.
+    """
 
     name: str
     version: str
@@ -44,6 +47,12 @@ class WheelPackage:
     sha256: str
     only: tuple[str, ...]
     files: Mapping[str, tuple[str, ...]]
+    robots: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    arguments: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+
+    def listed(self) -> tuple[tuple[str, str], ...]:
+        """Every robot of the package as (format, path), development files first."""
+        return tuple((format, path) for lists in (self.files, self.robots) for format, paths in lists.items() for path in paths)
 
     @property
     def folder(self) -> str:
@@ -87,8 +96,8 @@ def parse(text: str) -> tuple[WheelPackage, ...]:
 
 
 def _package(row: Mapping[str, Any]) -> WheelPackage:
-    lists = {"only": tuple(row.get("only", ())), "files": {name: tuple(paths) for name, paths in row.get("files", {}).items()}}
-    return WheelPackage(**{**row, **lists})
+    lists = {key: {name: tuple(paths) for name, paths in row.get(key, {}).items()} for key in ("files", "robots")}
+    return WheelPackage(**{**row, "only": tuple(row.get("only", ())), **lists})
 
 
 def catalogue_path() -> Path:

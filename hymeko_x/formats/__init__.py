@@ -15,7 +15,7 @@ class Format:
     """One format: its word on the command line, title, file suffixes, and the modules that read and write it (None = not at all).
 
     ``roots`` are the XML root elements, and ``magic`` the first bytes, by which its content is recognised;
-    ``has_arguments`` whether the user can set values in it (xacro).
+    ``has_arguments`` whether the user can set values in it (xacro), ``has_variants`` whether it leaves choices open (USD).
     """
 
     name: str
@@ -26,18 +26,26 @@ class Format:
     roots: tuple[str, ...] = ()
     magic: tuple[bytes, ...] = ()
     has_arguments: bool = False
+    has_variants: bool = False
 
 
 HYMEKO = Format("hymeko", "HyMeKo hypergraph text", (".hymeko", ".himeko"), "hymeko_x.frontends.hymeko", "hymeko_x.backends.hymeko")
 URDF = Format("urdf", "Unified Robot Description Format (ROS)", (".urdf",), "hymeko_x.frontends.urdf", "hymeko_x.backends.urdf", ("robot",))
-XACRO = Format("xacro", "XML macros for URDF (ROS)", (".xacro",), "hymeko_x.frontends.xacro", None, has_arguments=True)
+XACRO = Format("xacro", "XML macros for URDF (ROS)", (".xacro",), "hymeko_x.frontends.xacro", "hymeko_x.backends.xacro", has_arguments=True)
 MJCF = Format("mjcf", "MuJoCo XML", (".mjcf", ".xml"), "hymeko_x.frontends.mjcf", "hymeko_x.backends.mjcf", ("mujoco", "mujocoinclude"))
 _USD_MAGIC = (b"#usda", b"PXR-USDC")
+_READS_USD = "hymeko_x.frontends.usd"
 USD = Format(
-    "usd", "Universal Scene Description, text", (".usda", ".usd"), "hymeko_x.frontends.usd", "hymeko_x.backends.usd", magic=_USD_MAGIC
+    "usd",
+    "Universal Scene Description, text",
+    (".usda", ".usd"),
+    _READS_USD,
+    "hymeko_x.backends.usd",
+    magic=_USD_MAGIC,
+    has_variants=True,
 )
-USDC = Format("usdc", "Universal Scene Description, binary", (".usdc",), "hymeko_x.frontends.usd", "hymeko_x.backends.usd.crate")
-USDZ = Format("usdz", "Universal Scene Description, package", (".usdz",), "hymeko_x.frontends.usd", "hymeko_x.backends.usd.bundle")
+USDC = Format("usdc", "Universal Scene Description, binary", (".usdc",), _READS_USD, "hymeko_x.backends.usd.crate", has_variants=True)
+USDZ = Format("usdz", "Universal Scene Description, package", (".usdz",), _READS_USD, "hymeko_x.backends.usd.bundle", has_variants=True)
 
 FORMATS = (HYMEKO, URDF, XACRO, MJCF, USD, USDC, USDZ)
 """Every format that can be read or written. Where two claim a suffix, the content decides, and then the first one."""

@@ -53,9 +53,10 @@ def taken_off(mechanism: Mechanism) -> tuple[Mechanism, str]:
     return replace(mechanism, extras={**mechanism.extras, ROOT: rest}), text
 
 
-def xml_elements(text: str) -> str:
-    """The elements that carry a residue in URDF."""
-    return "".join(f'  <{XML_TAG} xmlns:hymeko="{XML_NAMESPACE}">{_readable(part)}</{XML_TAG}>\n' for part in parts(text))
+def xml_elements(text: str, *, readable: bool = True) -> str:
+    """The elements that carry a residue in URDF; ``readable`` allows CDATA, which xacro would not unescape."""
+    texts = [_readable(part) if readable else escape(part) for part in parts(text)]
+    return "".join(f'  <{XML_TAG} xmlns:hymeko="{XML_NAMESPACE}">{part}</{XML_TAG}>\n' for part in texts)
 
 
 def _readable(part: str) -> str:

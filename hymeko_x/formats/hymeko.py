@@ -98,6 +98,32 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
 )
 """The parts that are said by fields alone; bodies, shapes and joints have readers and writers of their own."""
 
+ATTACHED: Mapping[str, str] = MappingProxyType(
+    {
+        "frame": "mount",
+        "camera": "mount",
+        "light": "mount",
+        "actuator": "drive",
+        "sensor": "sense",
+        "pose": "stance",
+        "material": "layer",
+    }
+)
+"""Vertices whose block may hold the arcs of the one edge that puts them to use: ``tip : frame { [0 0 1] + arm }``."""
+
+SHORT_TYPES: Mapping[tuple[str, str], str] = MappingProxyType(
+    {
+        ("actuator", "motor"): "motor",
+        ("actuator", "position"): "servo",
+        ("port", "ground"): "ground",
+        ("loop", "connect"): "connect",
+        ("loop", "weld"): "weld",
+        ("contact", "exclude"): "exclude",
+        ("contact", "pair"): "pair",
+    }
+)
+"""Types of the standard vocabulary that say an element's kind and its ``type`` in one word."""
+
 NAMED_AFTER_ID = frozenset({"material"})
 """Parts whose ``name`` is that of the element unless something else is said: another name, or ``unnamed``."""
 

@@ -95,9 +95,8 @@ def _read_place(said: Mapping[str, str], settings: Settings) -> Place:
 
 
 def _sizes_along(word: str, size: list[float], half: float) -> list[float]:
-    if word in ("capsule", "cylinder"):
-        return [*size[:1], half]
-    return [*size[:1], size[1] if len(size) > 1 else size[0], half] if size else []
+    """The sizes of a geom between two points: boxes and ellipsoids are square across, whatever else is written."""
+    return [*size[:1], half] if word in ("capsule", "cylinder") or not size else [size[0], size[0], half]
 
 
 def _geometry(word: str, size: list[float], length: float | None) -> Geometry:
@@ -122,7 +121,7 @@ def _write_place(value: Place, settings: Settings) -> dict[str, str]:
     pose = value.pose
     if pose.written is not None and pose.written.kind == "fromto":
         along = {"capsule": 1, "cylinder": 1, "box": 2, "ellipsoid": 2}.get(word or "")
-        if along is not None and size[along] == length_of(pose.written) / 2.0:
+        if along is not None and size[along] == length_of(pose.written) / 2.0 and size[0] == size[along - 1]:
             size = size[:along]
         else:
             pose = Pose(pose.xyz, pose.quat)
@@ -155,8 +154,7 @@ def _seen_place(said: Mapping[str, str], settings: Settings) -> Any:
     word = said.get("type", "sphere")
     size = [*(read_numbers(said.get("size", "")) or ()), 0.0, 0.0, 0.0][:3]
     if "fromto" in said:
-        size[1 if word in ("capsule", "cylinder") else 2] = 0.0
-        size[1] = size[1] or (size[0] if word in ("box", "ellipsoid") else 0.0)
+        size[1:] = (size[0], 0.0) if word in ("box", "ellipsoid") else (0.0, size[2])
     return word, size, seen_pose(said, settings)
 
 

@@ -11,6 +11,7 @@ import functools
 import hashlib
 import json
 import math
+import re
 import struct
 from enum import Enum
 from types import MappingProxyType
@@ -29,22 +30,34 @@ TYPE = "usd.type"
 """The notation of a joint that keeps the type of its prim where the dofs alone would make it another one."""
 REVERSED = "usd.reversed"
 """The notation of a joint whose parent in the tree is its ``body1``."""
+EQUALITY = "usd.equality"
+"""The notation of a coupling that MuJoCo's schema says alone, without Newton's."""
+HELD = "usd.held"
+"""The notation of a joint that stands for no prim: its body is fixed because its simulation is switched off."""
 POSE = "usd.pose"
 """The notation of a body that keeps where its prim stands (x y z qw qx qy qz) where its joints put it elsewhere."""
+GROUND = ("usd.body0", "usd.body1")
+"""The notations of a joint that keep the group that stood for the world on either side."""
 ROOT_PRIM = "usd.root"
 """The notation of the mechanism that keeps the path of the prim that stands for the robot."""
+
+WITHIN = "xformOp:scale:within"
+"""The operation that undoes the scale of the body above."""
 
 PREFIX = "hymeko:"
 DIGEST = "hymeko:digest"
 SCOPE = "hymeko"
 """The prim below the robot's that holds what USD has no prim for."""
-VERSION = 1
+VERSION = 2
 
 AXES: Mapping[str, values.Vec3] = MappingProxyType({"X": values.X, "Y": values.Y, "Z": values.Z})
 D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 """The axes of a generic joint in the order in which they move: what comes first is nearer to the parent."""
 
 Value = bool | int | float | str | tuple[float, ...] | tuple[int, ...] | tuple[str, ...]
+
+LOCKED = (1.0, -1.0)
+"""The bounds by which the writer locks an axis of a generic joint."""
 
 
 class D6Axis(NamedTuple):
@@ -89,27 +102,45 @@ def digest(pairs: Iterable[tuple[str, bytes]]) -> str:
     return found.hexdigest()[:16]
 
 
-# ---- names of attributes -------------------------------------------------------------------------------------------------
+def value_bytes(value: object) -> bytes:
+    """A value of an attribute as bytes: vectors, matrices and arrays by their memory, everything else by its text."""
+    if value is None or isinstance(value, str | float | int):
+        return repr(value).encode()
+    try:
+        return memoryview(value).tobytes()  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return repr(value).encode()
 
 
-def attribute_name(kind: str, key: str) -> str:
-    """The attribute that carries a value of an element of this kind; a number in the key becomes a word, as USD wants it."""
-    return f"{PREFIX}{kind}:" + ":".join(f"i{step}" if step.isdigit() else step for step in key.split(":"))
+# ---- carried texts ---------------------------------------------------------------------------------------------------------
 
 
-def text_without_nul(text: str) -> str:
-    """A text as USD can hold it, which ends a text at a NUL: U+2400 escapes itself and stands before U+2401 for a NUL."""
-    return text.replace("\u2400", "\u2400\u2400").replace("\0", "\u2400\u2401")
+_LONG = 64
+_ID = re.compile(r'{"id":("(?:[^"\\]|\\["\\/bfnrt]|\\u[0-9a-f]{4})*")')
 
 
-def text_with_nul(text: str) -> str:
-    """The text that :func:`text_without_nul` was given."""
-    return "\u2400".join(part.replace("\u2400\u2401", "\0") for part in text.split("\u2400\u2400"))
+def is_long(value: tuple[object, ...]) -> bool:
+    """Whether a tuple of numbers is an array of its own rather than part of a text."""
+    return len(value) > _LONG and not any(isinstance(item, str) for item in value)
 
 
-def key_of(name: str) -> str:
-    """The key behind the kind in an attribute's name."""
-    return ":".join(step[1:] if step[:1] == "i" and step[1:].isdigit() else step for step in name.split(":"))
+def text_of(pairs: Mapping[str, Value]) -> str:
+    """Flat pairs as one line of JSON in ASCII, which says every double and every letter exactly."""
+    return json.dumps(pairs, separators=(",", ":"))
+
+
+def pairs_of(text: str) -> dict[str, Value]:
+    """The pairs that :func:`text_of` was given. Raises: ValueError."""
+    found = json.loads(text)
+    if not isinstance(found, dict):
+        raise ValueError("no pairs of names and values")
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in found.items()}
+
+
+def id_in(text: object) -> str | None:
+    """The id that such a text begins with; None where it does not."""
+    found = _ID.match(text) if isinstance(text, str) else None
+    return str(json.loads(found.group(1))) if found else None
 
 
 # ---- parts as flat values ----------------------------------------------------------------------------------------------------

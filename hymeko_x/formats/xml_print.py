@@ -18,7 +18,7 @@ from hymeko_x.formats.xml import COMMENT
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from hymeko_x.ir.mechanism import Extra
+    from hymeko_x.ir.mechanism import Extra, Id
 
 _INDENT = "  "
 _NAME = r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?"
@@ -31,11 +31,12 @@ _ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;"
 
 @dataclass(slots=True)
 class Tag:
-    """An XML element to be: name, attributes in order, and children that are tags or ready text."""
+    """An XML element to be: name, attributes in order, and children that are tags or ready text; whose it is, if known."""
 
     name: str
     attributes: dict[str, str] = field(default_factory=dict)
     children: list[Tag | str] = field(default_factory=list)
+    owner: Id | None = None
 
     def add(self, name: str, /, **attributes: str) -> Tag:
         """A new child with these attributes."""

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from enum import Enum
 from typing import TYPE_CHECKING
+from xml.etree.ElementTree import ParseError, canonicalize
 
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
 from hymeko_x.ir.values import Pose, number_text, rotation_angle
@@ -128,15 +129,33 @@ def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance:
 
 
 def _extras(key: Id, a: tuple[Extra, ...], b: tuple[Extra, ...]) -> Iterator[Difference]:
-    """Extras have no identity beyond format, path and text: they are compared as multisets."""
+    """Extras have no identity beyond format, path and text: they are compared as multisets. How XML is laid out does not count."""
     rest = list(b)
+    left: list[Extra] = []
     for extra in a:
         if extra in rest:
             rest.remove(extra)
         else:
+            left.append(extra)
+    essences = [_essence(extra) for extra in rest]
+    for extra in left:
+        if (essence := _essence(extra)) in essences:
+            place = essences.index(essence)
+            del essences[place], rest[place]
+        else:
             yield Difference(key, f"{extra.format} {extra.path or 'content'}", extra.text, None)
     for extra in rest:
         yield Difference(key, f"{extra.format} {extra.path or 'content'}", None, extra.text)
+
+
+def _essence(extra: Extra) -> Extra:
+    """An extra that is an XML element without its comments, the blanks between its elements and the order of its attributes."""
+    if not extra.text.startswith("<"):
+        return extra
+    try:
+        return replace(extra, text=canonicalize(extra.text, strip_text=True))
+    except ParseError:
+        return extra
 
 
 def _union(a: Iterable[Id], b: Iterable[Id]) -> list[Id]:

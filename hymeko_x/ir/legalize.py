@@ -17,12 +17,13 @@ from hymeko_x.ir.legalize_couplings import make_couplings_scalar
 from hymeko_x.ir.legalize_inertia import give_moving_bodies_mass, make_tensors_physical
 from hymeko_x.ir.legalize_joints import expand_screws, lower_inner_free_joints, name_dofs, split_overfull_joints
 from hymeko_x.ir.legalize_limits import make_limits_intervals
-from hymeko_x.ir.legalize_loops import anchor_closures, open_second_parents
+from hymeko_x.ir.legalize_loops import anchor_closures, close_by_points, open_second_parents
 from hymeko_x.ir.legalize_names import make_names_usable, name_assets_once
-from hymeko_x.ir.legalize_native import drop_shapes_of_mujoco
+from hymeko_x.ir.legalize_native import drop_shapes_of_mujoco, drop_stale_keyframes
 from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.ir.legalize_urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
 from hymeko_x.ir.legalize_urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
+from hymeko_x.ir.legalize_usd import choose_layout
 from hymeko_x.ir.mechanism import ROOT
 
 if TYPE_CHECKING:
@@ -35,16 +36,33 @@ class Options:
     """What the user chose for the output.
 
     ``base``: what becomes of an open base (None = the target's own default). ``actuators``: which kind to give every
-    driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows.
+    driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows. ``layout`` and
+    ``nested``: how a stage of USD is laid out (None = as it was, else one file with flat bodies).
     """
 
     base: Literal["fixed", "free"] | None = None
     actuators: Literal["none", "motor", "position", "velocity"] | None = None
+    layout: Literal["single", "layered"] | None = None
+    nested: bool | None = None
 
 
 Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]
 
-_USD: tuple[Rule, ...] = (make_names_usable, hold_or_free_open_bases, expand_screws)
+_USD: tuple[Rule, ...] = (make_names_usable, hold_or_free_open_bases, expand_screws, choose_layout)
+
+_URDF: tuple[Rule, ...] = (
+    make_names_usable,
+    drop_shapes_of_mujoco,
+    expand_screws,
+    chain_dofs,
+    hold_or_free_open_bases,
+    make_world_a_link,
+    join_roots,
+    split_shared_shapes,
+    prefer_own_colours,
+    approximate_shapes,
+    make_names_usable,  # once more, for what the rules have added
+)
 
 RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
     {
@@ -55,6 +73,7 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             make_names_usable,
             name_assets_once,
             open_second_parents,
+            close_by_points,
             anchor_closures,
             put_world_link_into_world,
             choose_base,
@@ -73,31 +92,22 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             choose_actuators,
             make_names_usable,  # once more, for what the rules have added
         ),
-        "urdf": (
-            make_names_usable,
-            drop_shapes_of_mujoco,
-            expand_screws,
-            chain_dofs,
-            hold_or_free_open_bases,
-            make_world_a_link,
-            join_roots,
-            split_shared_shapes,
-            prefer_own_colours,
-            approximate_shapes,
-            make_names_usable,  # once more, for what the rules have added
-        ),
+        "urdf": _URDF,
+        "xacro": _URDF,
     }
 )
 """The rules of each target, in order. A target that is not here takes every mechanism as it is."""
+
+NATIVE: tuple[Rule, ...] = (name_shapes_once, drop_stale_keyframes)
+"""The rules of MJCF for what came from there."""
 
 
 def legalize(mechanism: Mechanism, target: str, options: Options, report: Report) -> Mechanism:
     """The mechanism rewritten so that the target's backend can print all of it. Idempotent.
 
-    What came from the target itself, directly or through HyMeKo text, is legal already.
+    What came from MJCF, directly, through HyMeKo text or carried by another file, is legal there but for what was edited since.
     """
-    if target == "mjcf" and mechanism.notation(ROOT, target) is not None:
-        return mechanism
-    for rule in RULES.get(target, ()):
+    rules = NATIVE if target == "mjcf" and mechanism.notation(ROOT, target) is not None else RULES.get(target, ())
+    for rule in rules:
         mechanism = rule(mechanism, options, report)
     return mechanism

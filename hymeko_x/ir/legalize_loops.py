@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id, JointView, Mechanism, mount_edge, pose_weight
-from hymeko_x.ir.parts import Body, DofKind, Frame, Loop
+from hymeko_x.ir.parts import Body, DofKind, Frame, Joint, Loop
 from hymeko_x.ir.rename import names_in_use
 from hymeko_x.ir.values import IDENTITY, Pose, add, compose, scaled
 
@@ -30,13 +31,31 @@ def open_second_parents(mechanism: Mechanism, options: Options, report: Report) 
     names = names_in_use(mechanism)
     edges: dict[Id, RobotEdge] = {}
     for view in extra:
-        closures = _closures(view)
+        closures = _closures(view, Loop())
         words = "it is written as a closure of the loop" if closures else "a loop cannot be closed by such a joint, which is left out"
         say = report.note if closures else report.warn
         code = codes.REWRITTEN if closures else codes.NOT_SAID
         say(code, f"{view.id} holds {view.child}, which has another parent; {words}", mechanism.origin(view.id), element=str(view.id))
         edges |= {names.take("loop", view.id.name): closure for closure in closures}
     return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=[view.id for view in extra]))
+
+
+def close_by_points(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """A loop that a joint closes becomes welds and points that stay together: a hinge is two points on its axis."""
+    del options
+    joints = [(key, loop, arcs) for key, loop, arcs in mechanism.edges(Loop) if loop.kind == "joint" and len(arcs) == 2]
+    names = names_in_use(mechanism)
+    edges: dict[Id, RobotEdge] = {}
+    for key, loop, (first, second) in joints:
+        view = JointView(key, Joint(loop.dofs), first.target, second.target, pose_weight(first), pose_weight(second))
+        closures = _closures(view, loop)
+        if not closures:
+            said = f"{key} has dofs for which there is no closure; it is left out"
+            report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
+        for number, closure in enumerate(closures):
+            edges[key if number == 0 else names.take("loop", key.name)] = closure
+    gone = [key for key, _, _ in joints if key not in edges]
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=gone)) if joints else mechanism
 
 
 def anchor_closures(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
@@ -86,20 +105,20 @@ def _closing_cycles(mechanism: Mechanism) -> list[JointView]:
     return found
 
 
-def _closures(view: JointView) -> list[RobotEdge]:
+def _closures(view: JointView, like: Loop) -> list[RobotEdge]:
     """A fixed joint is a weld, a ball one point that stays together, a hinge two points on its axis; else nothing."""
     kinds = [dof.kind for dof in view.joint.dofs]
     if not kinds:
-        return [_closure("weld", view, IDENTITY)]
+        return [_closure(replace(like, kind="weld", dofs=()), view, IDENTITY)]
     if len(kinds) > 1 or kinds[0] not in (DofKind.BALL, DofKind.HINGE):
         return []
     dof = view.joint.dofs[0]
     points = [dof.anchor]
     if kinds[0] is DofKind.HINGE:
         points.append(add(dof.anchor, scaled(dof.axis, _APART)))
-    return [_closure("connect", view, Pose(point)) for point in points]
+    return [_closure(replace(like, kind="connect", dofs=()), view, Pose(point)) for point in points]
 
 
-def _closure(kind: str, view: JointView, offset: Pose) -> RobotEdge:
+def _closure(loop: Loop, view: JointView, offset: Pose) -> RobotEdge:
     ends = ((view.parent, view.parent_pose), (view.child, view.child_pose))
-    return Edge(Loop(kind), tuple(Arc(body, 0, compose(pose, offset)) for body, pose in ends))
+    return Edge(loop, tuple(Arc(body, 0, compose(pose, offset)) for body, pose in ends))

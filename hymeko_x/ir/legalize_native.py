@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import NoShape
+from hymeko_x.ir.parts import Actuator, DofKind, NoShape
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.legalize import Options
-    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.mechanism import Extra, Mechanism
 
 
 def drop_shapes_of_mujoco(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
@@ -24,3 +29,41 @@ def drop_shapes_of_mujoco(mechanism: Mechanism, options: Options, report: Report
         said = f"{key} has a geometry that only MuJoCo knows; it is left out"
         report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+
+
+_COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})
+"""How many numbers place a dof, and how many say how fast it moves; one of each for all others."""
+_KEY = re.compile(r"<key\b[^>]*?/>|<key\b.*?</key>", re.DOTALL)
+_NUMBERS = re.compile(r'\b(qpos|qvel|ctrl)="([^"]*)"')
+
+
+def drop_stale_keyframes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """Keyframes that go along verbatim fit as long as nobody adds or removes a joint or an actuator; MuJoCo refuses others."""
+    del options
+    own = mechanism.extras.get(ROOT, ())
+    if any("<flex" in extra.text or "<composite" in extra.text for extra in own) or not any(_is_keyframes(extra) for extra in own):
+        return mechanism  # soft bodies have coordinates of their own, which are not counted here
+    kinds = [dof.kind for view in mechanism.joints.values() for dof in view.joint.dofs]
+    counts = {
+        "qpos": sum(_COORDINATES.get(kind, (1, 1))[0] for kind in kinds),
+        "qvel": sum(_COORDINATES.get(kind, (1, 1))[1] for kind in kinds),
+        "ctrl": sum(1 for _ in mechanism.vertices(Actuator)),
+    }
+    kept = tuple(_with_fitting_keys(extra, counts, report) if _is_keyframes(extra) else extra for extra in own)
+    return mechanism if kept == own else replace(mechanism, extras={**mechanism.extras, ROOT: kept})
+
+
+def _is_keyframes(extra: Extra) -> bool:
+    return extra.format == "mjcf" and extra.text.startswith("<keyframe")
+
+
+def _with_fitting_keys(extra: Extra, counts: dict[str, int], report: Report) -> Extra:
+    def fitting(found: re.Match[str]) -> str:
+        for name, numbers in _NUMBERS.findall(found[0]):
+            if len(numbers.split()) != counts[name]:
+                said = f"a keyframe has {len(numbers.split())} numbers in {name}, and the robot has {counts[name]}; it is left out"
+                report.warn(codes.NOT_SAID, said)
+                return ""
+        return found[0]
+
+    return replace(extra, text=_KEY.sub(fitting, extra.text))

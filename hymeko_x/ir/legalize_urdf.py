@@ -14,7 +14,7 @@ from hymeko_x.ir.legalize_joints import dof_number
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Coupling, Dof, DofKind, Drive, Joint, Sense, Tendon
 from hymeko_x.ir.rename import names_in_use, rename
-from hymeko_x.ir.values import IDENTITY, ZERO, Pose, X, Y, Z, compose, inverse, plane_axes, quat_about, scaled
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, X, Y, Z, add, compose, inverse, plane_axes, quat_about, scaled
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,10 +50,15 @@ def _stands_for_world(root: Id, mechanism: Mechanism) -> bool:
 
 
 def make_world_a_link(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
-    """The world, if anything hangs on it, is a link called ``world`` without mass: URDF's usual way to fix a base."""
+    """The world, if anything hangs on it, is a link called ``world`` without mass: URDF's usual way to fix a base.
+
+    So is the world of a mechanism without bodies: URDF wants a link.
+    """
     del options, report
-    if not any(arc.target == WORLD for edge in mechanism.graph.edges.values() for arc in edge.arcs):
-        return mechanism.with_graph(mechanism.graph.replace(without=[WORLD])) if WORLD in mechanism.graph.vertices else mechanism
+    there, alone = WORLD in mechanism.graph.vertices, not any(True for _ in mechanism.vertices(Body))
+    used = any(arc.target == WORLD for edge in mechanism.graph.edges.values() for arc in edge.arcs)
+    if not used and not (there and alone):
+        return mechanism.with_graph(mechanism.graph.replace(without=[WORLD])) if there else mechanism
     link = names_in_use(mechanism).take("body", WORLD.name)
     mechanism = rename(mechanism, {WORLD: link})
     return mechanism.with_graph(mechanism.graph.replace(vertices={link: Body()}))
@@ -155,8 +160,10 @@ def _add_chain(view: JointView, chains: _Chains) -> int:
 
 
 def _joint_name(view: JointView, step: _Step, last: bool, chains: _Chains) -> Id:
-    """The dof's own name if it has one; the last nameless one keeps the joint's, the others are numbered."""
-    if last and step.dof.name in (None, view.id.name):
+    """The dof's own name if it has one; the last nameless one keeps the joint's unless a dof has it, the others are numbered."""
+    name = view.id.name
+    is_nameless_last = last and step.dof.name is None and all(dof.name != name for dof in view.joint.dofs)
+    if is_nameless_last or (step.dof.name == name and view.id not in chains.edges):
         return view.id
     return chains.names.take("joint", step.dof.name or f"{view.id.name}_{step.number + 1}")
 
@@ -172,7 +179,7 @@ def _steps(view: JointView) -> tuple[list[_Step], Pose]:
         for single in _singles(dof):
             at = compose(frame, Pose(dof.anchor))
             steps.append(_Step(compose(at, _moved_by(single, -dof.ref)), replace(single, anchor=ZERO, ref=0.0), number))
-            frame = Pose(scaled(dof.anchor, -1.0)) if any(dof.anchor) else IDENTITY
+            frame = Pose(add(ZERO, scaled(dof.anchor, -1.0)))  # a sum has no negative zeros
     if not steps:
         return [], compose(frame, inverse(view.child_pose))
     return steps, compose(frame, inverse(view.child_pose))

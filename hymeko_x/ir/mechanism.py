@@ -194,6 +194,17 @@ class Mechanism:
             found.setdefault(body.target, []).append(view)
         return {key: tuple(views) for key, views in found.items()}
 
+    @cached_property
+    def mounts(self) -> Mapping[Id, tuple[MountView, ...]]:
+        """For each body (and the world) the frames, cameras, lights and sensors on it, in order."""
+        found: dict[Id, list[MountView]] = {}
+        for key, _, arcs in self.edges(parts.Mount):
+            body = next((arc for arc in arcs if arc.sign > 0), None)
+            thing = next((arc for arc in arcs if arc.sign < 0), None)
+            if body is not None and thing is not None:
+                found.setdefault(body.target, []).append(MountView(key, thing.target, body.target, pose_weight(body)))
+        return {key: tuple(views) for key, views in found.items()}
+
     def vertex(self, key: Id, part: type[P]) -> P:
         """The part of a vertex, which must be of this kind.
 
@@ -242,6 +253,15 @@ class ShapeView(NamedTuple):
     pose: Pose
     mesh: Id | None
     material: Id | None
+
+
+class MountView(NamedTuple):
+    """A frame, camera, light or sensor with the body that it sits on, and its pose there."""
+
+    id: Id
+    thing: Id
+    body: Id
+    pose: Pose
 
 
 # ---- making edges --------------------------------------------------------------------------------------------------------

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
+from bisect import bisect_left
 from typing import TYPE_CHECKING
 
+from hymeko_x.language.machine import GAP_DEPTH
 from hymeko_x.language.syntax import Comment, Document, Item, Node
 
 if TYPE_CHECKING:
@@ -20,19 +22,18 @@ TOKENS = re.compile(
 _COMMENT = re.compile(r"#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/")
 
 
+_Place = tuple[int, int]
+_END = (1 << 60, 0)
+
+
 def weave_comments(document: Document, text: str, gaps: list[Gap], lines: Lines) -> Document:
     """The document with the comments in the gaps of its outermost levels among its items and those of its nodes."""
-    outer: list[Item] = []
-    inner: list[Comment] = []
+    levels: list[list[Comment]] = [[] for _ in range(GAP_DEPTH + 1)]
     for depth, comment in _comments(text, gaps, lines):
-        if depth == 0:
-            outer.append(comment)
-        else:
-            inner.append(comment)
-    if not outer and not inner:
+        levels[depth].append(comment)
+    if not any(levels):
         return document
-    items = [_with_inner(item, inner, document.items[number + 1 :]) for number, item in enumerate(document.items)]
-    return document._replace(items=tuple(_merged(items, outer)))
+    return document._replace(items=_woven(document.items, levels, 0, (0, 0), _END))
 
 
 def comment_text(token: str) -> str:
@@ -43,22 +44,30 @@ def comment_text(token: str) -> str:
 
 
 def _comments(text: str, gaps: list[Gap], lines: Lines) -> Iterator[tuple[int, Comment]]:
-    """Every comment outside all blocks (0) or directly in an outermost block (1)."""
+    """Every comment outside all blocks (0), directly in an outermost block (1), or in one of its nodes (2)."""
     for start, end, depth in gaps:
         for match in _COMMENT.finditer(text, start, end):
             yield depth, Comment(comment_text(match[0]), *lines.place(match.start()))
 
 
-def _with_inner(item: Item, comments: list[Comment], following: tuple[Item, ...]) -> Item:
-    """A node with the comments of its own block."""
-    if not isinstance(item, Node):
-        return item
-    end = min((place for place in map(_place, following) if place), default=(1 << 60, 0))
-    own: list[Item] = [comment for comment in comments if _place(item) < _place(comment) < end]
-    return item._replace(items=tuple(_merged(list(item.items), own))) if own else item
+def _woven(items: tuple[Item, ...], levels: list[list[Comment]], depth: int, start: _Place, end: _Place) -> tuple[Item, ...]:
+    """The items of one block with the comments between two places; nodes with those of their own blocks."""
+    found: list[Item] = []
+    ends = [*(_place(item) or end for item in items[1:]), end]
+    for item, behind in zip(items, ends, strict=False):
+        place = _place(item)
+        if isinstance(item, Node) and place and any(_between(level, place, behind) for level in levels[depth + 1 :]):
+            item = item._replace(items=_woven(item.items, levels, depth + 1, place, behind))
+        found.append(item)
+    return tuple(_merged(found, list(_between(levels[depth], start, end))))
 
 
-def _merged(items: list[Item], comments: list[Item]) -> list[Item]:
+def _between(comments: list[Comment], start: _Place, end: _Place) -> list[Comment]:
+    """The comments between two places; they are in order."""
+    return comments[bisect_left(comments, start, key=_place) : bisect_left(comments, end, key=_place)]
+
+
+def _merged(items: list[Item], comments: list[Comment]) -> list[Item]:
     """Both in the order of their places; items without a place stay behind their predecessor."""
     merged: list[Item] = []
     rest = list(reversed(comments))

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 MAX_DEPTH = 200
 """Brackets inside brackets; far more than any robot has, and less than what the stages behind can nest."""
 
+GAP_DEPTH = 2
+"""What is skipped is told outside of all brackets, and inside this many."""
+
 _DEPTH = {"{": 1, "[": 1, "(": 1, "}": -1, "]": -1, ")": -1}
 
 
@@ -119,7 +122,7 @@ class Machine:
                 word = match[kind]
                 before, position = position, match.end()
                 start = position - len(word)
-                if start - before > 1 and depth <= 1:
+                if start - before > 1 and depth <= GAP_DEPTH:
                     gaps.append((before, start, depth))
                 if word in _DEPTH:
                     depth += _DEPTH[word]

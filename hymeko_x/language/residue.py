@@ -10,7 +10,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.mechanism import KINDS, Extra, Id
+from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id
 from hymeko_x.ir.parts import EdgePart, Weight
 from hymeko_x.ir.residue import Addition, Bridge, Change, Fold, Join, Removal, Residue, Run, Sides
 from hymeko_x.ir.residue.paths import TURN
@@ -133,7 +133,7 @@ class _Sections:
                 yield Removal(Id(str(item.name), key), mark, "" if group == _NO_GROUP else group)
 
     def bridge(self) -> Bridge:
-        names = [(Id(item.name, old), Id(item.name, new)) for item in self.fields("names") for old, new in _pairs(_refs(item.value))]
+        names = [_renamed(item.name, old, new) for item in self.fields("names") for old, new in _pairs(_refs(item.value))]
         frames = [(Id("body", item.name), _pose(decoded(item.value))) for item in self.fields("frames")]
         joins = [Join(Id("shape", item.name), Id("shape", _refs((item.value,))[0])) for item in self.fields("joins")]
         return Bridge(tuple(names), tuple(map(_folded, self.nodes("folds"))), tuple(joins), tuple(frames))
@@ -197,8 +197,13 @@ def _pairs(items: list[T]) -> Iterator[tuple[T, T]]:
 def _names(names: Iterable[tuple[Id, Id]]) -> list[Item]:
     kinds: dict[str, list[Value]] = defaultdict(list)
     for old, new in names:
-        kinds[old.kind] += [name_ref(old.name), name_ref(new.name)]
+        kinds[new.kind] += [name_ref(old.name), name_ref(new.name)]
     return [Field(kind, tuple(pairs)) for kind, pairs in kinds.items()]
+
+
+def _renamed(kind: str, old: str, new: str) -> tuple[Id, Id]:
+    """What was renamed is of the same kind, but for a body that stands for the world."""
+    return Id("body" if kind == WORLD.kind else kind, old), Id(kind, new)
 
 
 def _fold(fold: Fold) -> Node:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.verify.model import KinematicModel
+    from hymeko_x.verify.surfaces import Meshes
     from hymeko_x.verify.verdict import Verdict
 
     Packages = Mapping[str, str | PathLike[str]]
@@ -33,7 +34,7 @@ def verify(
     samples: int = 100,
     seed: int = 0,
     structure: bool = False,
-    meshes: bool = True,
+    meshes: bool | Meshes = True,
     packages: Packages | None = None,
     search_path: tuple[Path, ...] = (),
     arguments: Mapping[str, str] | None = None,
@@ -42,8 +43,9 @@ def verify(
 
     They are compared at the zero pose, at their limits and at ``samples`` random configurations drawn with ``seed``. Bodies
     are matched by name, or with ``structure`` by the shape of the tree. Without ``meshes`` no mesh file is read, which is what
-    takes most of the time. ``packages`` says where ``package://NAME`` is, ``search_path`` in
-    which folders packages stand, ``arguments`` the values of a xacro file's arguments.
+    takes most of the time; one reader of meshes in several verdicts reads each file once. ``packages`` says where
+    ``package://NAME`` is, ``search_path`` in which folders packages stand, ``arguments`` the values of a xacro file's
+    arguments.
 
     Raises: Refusal HX001, HX003 or HX301 when a file is not there, its format unknown or its engine not installed. A file
     that its engine refuses makes the verdict "not comparable".

@@ -15,6 +15,7 @@ from hymeko_x.verify.checks.pair import Pair, counted, pair_up
 from hymeko_x.verify.checks.parts import check_parts
 from hymeko_x.verify.checks.shapes import check_shapes
 from hymeko_x.verify.match import BASE, BODIES, JOINTS, match
+from hymeko_x.verify.surfaces import Meshes
 from hymeko_x.verify.verdict import Check, Verdict
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ _OPINION = 2  # configurations at which Pinocchio is asked about the batched kin
 
 
 def compare(
-    a: KinematicModel, b: KinematicModel, *, samples: int = 100, seed: int = 0, structure: bool = False, meshes: bool = True
+    a: KinematicModel, b: KinematicModel, *, samples: int = 100, seed: int = 0, structure: bool = False, meshes: bool | Meshes = True
 ) -> Verdict:
     """Whether two models are the same robot, at ``samples`` configurations drawn with ``seed`` in the first one's limits."""
     engines = a.engine, b.engine
@@ -32,7 +33,8 @@ def compare(
         reason = _unusable(model)
         if reason:
             return Verdict(engines, reason=reason)
-    pair = pair_up(a, b, match(a, b, structure=structure), samples, seed, meshes=meshes)
+    shelf = Meshes(read=meshes) if isinstance(meshes, bool) else meshes
+    pair = pair_up(a, b, match(a, b, structure=structure), samples, seed, meshes=shelf)
     for model, q in ((a, pair.q_a), (b, pair.q_b)):
         apart = disagreement(model, q[-_OPINION:])
         if apart:

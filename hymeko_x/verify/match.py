@@ -7,21 +7,18 @@ a ball is three hinges elsewhere, and three hinges on one body are a chain elsew
 
 from __future__ import annotations
 
-import re
-from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from hymeko_x.verify.model import WORLD, Body, Kind, KinematicModel
+from hymeko_x.verify.bodies import only_carries, pair_by_name, pair_by_structure, plain
+from hymeko_x.verify.model import WORLD, Kind, KinematicModel
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 BODIES, JOINTS, BASE = "bodies", "joints", "base"
 
-_SAME_PLACE = 1e-5  # of a body that must have been renamed, because it is where the other was and weighs as much
+_TURNING = (Kind.HINGE, Kind.BALL, Kind.SCREW, Kind.FREE)
 _SAME_MOTION = {Kind.SCREW: Kind.HINGE}  # a screw's angle is the coordinate of the hinge that stands for it
 
 
@@ -35,10 +32,15 @@ class Finding:
 
 @dataclass(frozen=True, slots=True)
 class Turned:
-    """A body whose rotation is one quaternion on one side and several coordinates on the other."""
+    """A body whose rotation is one quaternion on one side and three hinges on the other.
+
+    ``top_a`` and ``top_b`` are the matched bodies above; the dofs are the last ones in between that turn.
+    """
 
     body_a: int
     body_b: int
+    top_a: int
+    top_b: int
     dofs_a: tuple[int, ...]
     dofs_b: tuple[int, ...]
 
@@ -77,7 +79,7 @@ class Path:
 
 def match(a: KinematicModel, b: KinematicModel, *, structure: bool = False) -> Match:
     """The counterparts of two robots' bodies and coordinates."""
-    pairs = _by_structure(a, b) if structure else _by_name(a, b)
+    pairs = pair_by_structure(a, b) if structure else pair_by_name(a, b)
     found = Match()
     found.bodies = [(i, pairs[i]) for i in range(len(a.bodies)) if i in pairs]
     back = {j: i for i, j in found.bodies}
@@ -90,132 +92,6 @@ def match(a: KinematicModel, b: KinematicModel, *, structure: bool = False) -> M
         )
     _find_lone_dofs(found, a, b)
     return found
-
-
-# ---- bodies by name --------------------------------------------------------------------------------------------------
-
-
-def plain(name: str) -> str:
-    """A name as USD would have to spell it."""
-    spelled = re.sub(r"\W", "_", name)
-    return f"_{spelled}" if spelled[:1].isdigit() else spelled
-
-
-def _by_name(a: KinematicModel, b: KinematicModel) -> dict[int, int]:
-    pairs = {WORLD: WORLD}
-    taken = {WORLD}
-    for i, body in enumerate(a.bodies[1:], start=1):
-        j = b.index.get(body.name) if body.name is not None else None
-        if j is not None and j not in taken:  # the world is taken: a link may only be called so
-            pairs[i] = j
-            taken.add(j)
-    if "usd" in (a.format, b.format):
-        _pair_spelled(a, b, pairs, taken)
-    _pair_by_place(a, b, pairs, taken)
-    return pairs
-
-
-def _pair_spelled(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], taken: set[int]) -> None:
-    """Names that USD cannot spell, compared as it spells them, where that leaves no doubt."""
-    ours = _spelled(a, pairs.keys())
-    theirs = _spelled(b, taken)
-    for spelling in ours.keys() & theirs.keys():
-        pairs[ours[spelling]] = theirs[spelling]
-        taken.add(theirs[spelling])
-
-
-def _spelled(model: KinematicModel, taken: Iterable[int]) -> dict[str, int]:
-    used = set(taken)
-    names = [(plain(body.name), i) for i, body in enumerate(model.bodies) if body.name is not None and i not in used]
-    counts = Counter(name for name, _ in names)
-    return {name: i for name, i in names if counts[name] == 1}
-
-
-def _pair_by_place(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], taken: set[int]) -> None:
-    """Unmatched bodies below matched ones, by the names of their joints, else as the only ones of their kind there."""
-    for i in range(1, len(a.bodies)):
-        parent = a.bodies[i].parent
-        if i in pairs or parent not in pairs:
-            continue
-        free = [j for j in b.children[pairs[parent]] if j not in taken]
-        rivals = [k for k in a.children[parent] if k not in pairs]
-        j = _counterpart(a, b, i, free, rivals)
-        if j is not None:
-            pairs[i] = j
-            taken.add(j)
-
-
-def _counterpart(a: KinematicModel, b: KinematicModel, i: int, free: Sequence[int], rivals: Sequence[int]) -> int | None:
-    """The one of ``free`` that body i must be: of the same joint, else alike among as many rivals as candidates."""
-    names = _joint_names(a.bodies[i])
-    if names:
-        named = [j for j in free if _joint_names(b.bodies[j]) == names]
-        if len(named) == 1:
-            return named[0]
-    unnamed = a.bodies[i].name is None
-    alike = [
-        j
-        for j in free
-        if _kinds(a.bodies[i]) == _kinds(b.bodies[j])
-        and (unnamed or b.bodies[j].name is None or (len(rivals) == len(free) and _distance(a.bodies[i], b.bodies[j]) < _SAME_PLACE))
-    ]
-    return min(alike, key=lambda j: _distance(a.bodies[i], b.bodies[j]), default=None)
-
-
-def _joint_names(body: Body) -> tuple[str, ...]:
-    return tuple(dof.name for dof in body.joint.dofs if dof.name is not None)
-
-
-def _kinds(body: Body) -> tuple[Kind, ...]:
-    return tuple(dof.kind for dof in body.joint.dofs)
-
-
-def _distance(a: Body, b: Body) -> float:
-    """How far apart two bodies' places and masses are; only its order matters."""
-    return float(np.abs(a.joint.placement - b.joint.placement).sum()) + abs(a.mass - b.mass)
-
-
-# ---- bodies by structure ---------------------------------------------------------------------------------------------
-
-
-def _by_structure(a: KinematicModel, b: KinematicModel) -> dict[int, int]:
-    """Rooted tree isomorphism: subtrees of one colour are paired below paired parents, the nearest ones first."""
-    colours: dict[tuple[object, ...], int] = {}
-    colour_a, colour_b = _colours(a, colours), _colours(b, colours)
-    pairs = {WORLD: WORLD}
-    stack = [(WORLD, WORLD)]
-    while stack:
-        i, j = stack.pop()
-        for k, m in _pair_children(a, b, a.children[i], b.children[j], colour_a, colour_b):
-            pairs[k] = m
-            stack.append((k, m))
-    return pairs
-
-
-def _colours(model: KinematicModel, known: dict[tuple[object, ...], int]) -> list[int]:
-    """A number per body that is equal exactly for subtrees of the same joints and branches, from the leaves up."""
-    colours = [0] * len(model.bodies)
-    for i in range(len(model.bodies) - 1, -1, -1):
-        below = tuple(sorted(colours[k] for k in model.children[i]))
-        key = (tuple(kind.value for kind in _kinds(model.bodies[i])), below)
-        colours[i] = known.setdefault(key, len(known))
-    return colours
-
-
-def _pair_children(
-    a: KinematicModel, b: KinematicModel, ours: Sequence[int], theirs: Sequence[int], colour_a: list[int], colour_b: list[int]
-) -> Iterable[tuple[int, int]]:
-    from scipy.optimize import linear_sum_assignment
-
-    groups: dict[int, tuple[list[int], list[int]]] = {}
-    for i in ours:
-        groups.setdefault(colour_a[i], ([], []))[0].append(i)
-    for j in theirs:
-        groups.setdefault(colour_b[j], ([], []))[1].append(j)
-    for left, right in groups.values():
-        cost = np.array([[_distance(a.bodies[i], b.bodies[j]) for j in right] for i in left]).reshape(len(left), len(right))
-        rows, columns = linear_sum_assignment(cost)
-        yield from ((left[r], right[c]) for r, c in zip(rows, columns, strict=True))
 
 
 # ---- what has no partner ---------------------------------------------------------------------------------------------
@@ -237,17 +113,11 @@ def _find_lone(found: Match, a: KinematicModel, b: KinematicModel, pairs: dict[i
     found.lone_a = [i for i in range(1, len(a.bodies)) if i not in pairs]
     found.lone_b = [j for j in range(1, len(b.bodies)) if j not in back]
     for model, lone, words in ((a, found.lone_a, "is missing"), (b, found.lone_b, "is new")):
-        carriers = [i for i in lone if _only_carries(model, i)]
+        carriers = [i for i in lone if only_carries(model, i)]
         if carriers:
             found.notes.append(f"bodies that only carry dofs: {_listed([model.body_label(i) for i in carriers])} ({words})")
         for i in set(lone) - set(carriers):
             found.find(BODIES, f"{model.body_label(i)} {words}{_whereabouts(model, i)}")
-
-
-def _only_carries(model: KinematicModel, i: int) -> bool:
-    """A body between two joints that has neither mass nor shape, and moves."""
-    body = model.bodies[i]
-    return body.mass == 0.0 and not body.shapes and bool(body.joint.dofs) and len(model.children[i]) == 1
 
 
 def _whereabouts(model: KinematicModel, i: int) -> str:
@@ -298,16 +168,37 @@ def _match_joint(
     if base[0] and base[1] and (base[0] != base[1] or base == ("open", "open")):
         _match_base(found, a, b, path_a, path_b, (base[0], base[1]))
         return
-    kinds_a, kinds_b = ([model.dofs[d].kind for d in path.dofs] for model, path in ((a, path_a), (b, path_b)))
-    if kinds_a == kinds_b:
-        found.dofs += zip(path_a.dofs, path_b.dofs, strict=True)
-    elif "urdf" in (a.format, b.format) and _turns(kinds_a) and _turns(kinds_b) and Kind.BALL in (*kinds_a, *kinds_b):
-        found.turned.append(Turned(i, j, path_a.dofs, path_b.dofs))
-        return
+    aligned = _aligned(*([model.dofs[d].kind for d in path.dofs] for model, path in ((a, path_a), (b, path_b))))
+    if aligned is None or (any(len(left) != len(right) for left, right in aligned) and "urdf" not in (a.format, b.format)):
+        pairs = _pairs_by_dof_name(a, b, path_a.dofs, path_b.dofs)
     else:
-        found.dofs += _pairs_by_dof_name(a, b, path_a.dofs, path_b.dofs)
-    if names:
-        _compare_joint_names(found, a, b, path_a, path_b)
+        runs = [([path_a.dofs[k] for k in left], [path_b.dofs[k] for k in right]) for left, right in aligned]
+        pairs = [(left[0], right[0]) for left, right in runs if len(left) == len(right)]
+        turned = [(left, right) for left, right in runs if len(left) != len(right)]
+        found.turned += (Turned(i, j, path_a.top, path_b.top, tuple(left), tuple(right)) for left, right in turned)
+    found.dofs += pairs
+    if names and aligned is not None:
+        _compare_joint_names(found, a, b, path_a, path_b, pairs)
+
+
+def _aligned(ours: Sequence[Kind], theirs: Sequence[Kind]) -> list[tuple[range, range]] | None:
+    """Which dofs are which: runs of one and one of the same kind, or of a ball and three hinges, which then are the last to turn.
+
+    None where the dofs do not move alike.
+    """
+    runs: list[tuple[range, range]] = []
+    i = j = 0
+    while i < len(ours) and j < len(theirs):
+        wide_i, wide_j = 1, 1
+        if ours[i] is not theirs[j]:
+            wide_i, wide_j = (1, 3) if ours[i] is Kind.BALL else (3, 1)
+            pieces = ours[i : i + wide_i], theirs[j : j + wide_j]
+            turning = any(kind in _TURNING for kind in (*ours[i + wide_i :], *theirs[j + wide_j :]))
+            if turning or sorted(map(list, pieces), key=len) != [[Kind.BALL], [Kind.HINGE] * 3]:
+                return None
+        runs.append((range(i, i + wide_i), range(j, j + wide_j)))
+        i, j = i + wide_i, j + wide_j
+    return runs if i == len(ours) and j == len(theirs) else None
 
 
 def _base_kind(model: KinematicModel, path: Path) -> str | None:
@@ -334,11 +225,6 @@ def _match_base(found: Match, a: KinematicModel, b: KinematicModel, path_a: Path
         )
 
 
-def _turns(kinds: Sequence[Kind]) -> bool:
-    """Whether these dofs can take every orientation and do nothing else."""
-    return list(kinds) in ([Kind.BALL], [Kind.HINGE] * 3)
-
-
 def _pairs_by_dof_name(a: KinematicModel, b: KinematicModel, ours: Sequence[int], theirs: Sequence[int]) -> list[tuple[int, int]]:
     named = {b.dofs[d].name: d for d in theirs if b.dofs[d].name is not None}
     pairs = [(d, named[a.dofs[d].name]) for d in ours if a.dofs[d].name in named]
@@ -349,16 +235,16 @@ def _motion(kind: Kind) -> Kind:
     return _SAME_MOTION.get(kind, kind)
 
 
-def _compare_joint_names(found: Match, a: KinematicModel, b: KinematicModel, path_a: Path, path_b: Path) -> None:
+def _compare_joint_names(
+    found: Match, a: KinematicModel, b: KinematicModel, path_a: Path, path_b: Path, pairs: Sequence[tuple[int, int]]
+) -> None:
     spelled = "usd" in (a.format, b.format)
     if not path_a.dofs and not path_b.dofs and len(path_a.bodies) == len(path_b.bodies) == 1:
         ours, theirs = a.bodies[path_a.bodies[0]].joint.name, b.bodies[path_b.bodies[0]].joint.name
         if ours is not None and theirs is not None and not _same_name(ours, theirs, spelled=spelled):
             found.find(JOINTS, f"joint '{ours}' is called '{theirs}'")
         return
-    if len(path_a.dofs) != len(path_b.dofs):
-        return
-    for d, e in zip(path_a.dofs, path_b.dofs, strict=True):
+    for d, e in pairs:
         ours, theirs = a.dofs[d].name, b.dofs[e].name
         if ours is None or a.dofs[d].kind is Kind.FREE or (theirs is None and _named_as_one(b, e)):
             continue

@@ -76,6 +76,8 @@ class Feature(Enum):
     FIXED_JOINT_NAMES = "names of fixed joints"
     ACTUATORS = "actuators"
     TENDONS = "tendons"
+    LOOPS = "loops"
+    CURVES = "couplings that are no straight line of one leader"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -197,6 +199,11 @@ class Coupling:
     leaders: tuple[tuple[int, tuple[float, ...]], ...] = ()
     name: str | None = None
 
+    @property
+    def straight(self) -> bool:
+        """Whether it is a constant plus a multiple of at most one leader."""
+        return len(self.leaders) < 2 and not any(any(coefficients[1:]) for _, coefficients in self.leaders)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Loop:
@@ -229,7 +236,8 @@ class KinematicModel:
     """One robot as one engine sees it. ``bodies[0]`` is the world; a parent always comes before its children.
 
     ``precision`` is the relative accuracy of its numbers (double or float32); ``trusted`` is False when the reader is
-    this project's own; ``notes`` are findings of the reader that the verdict repeats.
+    this project's own; ``notes`` are findings of the reader that the verdict repeats. ``mute`` holds what a format that can
+    say something of its dofs cannot say of those of one kind.
     """
 
     name: str
@@ -241,9 +249,14 @@ class KinematicModel:
     actuators: tuple[Part, ...] = ()
     tendons: tuple[Part, ...] = ()
     says: frozenset[Feature] = frozenset(Feature)
+    mute: frozenset[tuple[Feature, Kind]] = frozenset()
     precision: float = 1e-15
     trusted: bool = True
     notes: tuple[str, ...] = ()
+
+    def can_say(self, feature: Feature, kind: Kind) -> bool:
+        """Whether the format and its reader can say this of a dof of this kind."""
+        return feature in self.says and (feature, kind) not in self.mute
 
     @cached_property
     def dofs(self) -> tuple[Dof, ...]:

@@ -44,17 +44,25 @@ def _load(path: Path) -> Surface | str:
     try:
         loaded = trimesh.load_scene(str(path), process=False)
         whole = loaded.to_mesh()
-    except (ValueError, KeyError, IndexError, TypeError, AttributeError, OSError, ImportError) as error:
+    except (ValueError, KeyError, IndexError, TypeError, AttributeError, OSError, ImportError, NotImplementedError) as error:
         return f"the mesh '{path.name}' cannot be read: {error}"
     if len(whole.faces) == 0:
         return f"the mesh '{path.name}' {EMPTY}"
     return Surface(np.asarray(whole.vertices, dtype=float), np.asarray(whole.faces, dtype=np.intp))
 
 
+def used(vertices: Array, faces: Index) -> Array:
+    """The points that are corners of triangles, in their order."""
+    mask = np.zeros(len(vertices), dtype=bool)
+    mask[faces.ravel()] = True
+    points: Array = vertices[mask]
+    return points
+
+
 def measures(vertices: Array, faces: Index) -> tuple[Array, float, float]:
     """Bounding box (2, 3) in m, area in m^2, and signed volume in m^3 of triangles."""
     corners = vertices[faces]
     cross = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    used = vertices[np.unique(faces)]
+    points = used(vertices, faces)
     volume = float(np.einsum("ij,ij->i", corners[:, 0], cross).sum() / 6.0)
-    return np.stack([used.min(axis=0), used.max(axis=0)]), float(np.linalg.norm(cross, axis=1).sum() / 2.0), volume
+    return np.stack([points.min(axis=0), points.max(axis=0)]), float(np.linalg.norm(cross, axis=1).sum() / 2.0), volume

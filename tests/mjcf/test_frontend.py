@@ -9,7 +9,7 @@ from mjmodels import read_text
 
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.ir.mechanism import WORLD, Id
-from hymeko_x.ir.parts import Body, Capsule, DofKind, Loop, MeshShape, Plane, Role
+from hymeko_x.ir.parts import Body, Box, Capsule, DofKind, Ellipsoid, Geometry, Loop, MeshShape, Plane, Role, Shape
 
 
 def in_world(content: str, head: str = "") -> str:
@@ -86,6 +86,12 @@ def test_an_own_orientation_replaces_that_of_the_class_whatever_its_kind() -> No
 def test_every_notation_of_an_orientation(head: str, said: str, quat: tuple[float, ...]) -> None:
     robot = read_text(in_world(f'<body name="b" {said}/>', head))
     assert robot.parent_joint[Id("body", "b")].parent_pose.quat == pytest.approx(quat, abs=1e-7)
+
+
+@pytest.mark.parametrize(("word", "whole"), [("box", Box((0.08, 0.08, 2.0))), ("ellipsoid", Ellipsoid((0.04, 0.04, 1.0)))])
+def test_between_two_points_boxes_and_ellipsoids_are_square_across(word: str, whole: Geometry) -> None:
+    robot = read_text(in_world(f'<geom type="{word}" size=".04 .025 .3" fromto="0 0 0 0 0 2"/>'))
+    assert [shape.geometry for _, shape, _ in robot.edges(Shape)] == [whole]
 
 
 def test_fromto_is_midway_and_its_z_axis_leads_from_the_second_point_to_the_first() -> None:

@@ -93,7 +93,9 @@ def _add(root: Any, value: float, place: int) -> str:
 def _remove(root: Any, value: float, place: int) -> str:
     parents = {parent.get("link") for parent in root.findall("joint/parent")}
     mimicked = {mimic.get("joint") for mimic in root.findall("joint/mimic")}
-    leaves = [joint for joint in root.findall("joint") if joint.find("child").get("link") not in parents and joint.get("name") not in mimicked]
+    leaves = [
+        joint for joint in root.findall("joint") if joint.find("child").get("link") not in parents and joint.get("name") not in mimicked
+    ]
     joint = _chosen(leaves, place)
     if joint is None:
         return "nothing"
@@ -179,7 +181,7 @@ def _weigh(root: Any, value: float, place: int) -> str:
 
 def _add_body(root: Any, value: float, place: int) -> str:
     parent = _chosen(root.findall(".//worldbody//body"), place)
-    body = etree.SubElement(parent, "body", name=f"tool{place}_{value}", pos=f"0 {value} 0")
+    body = etree.SubElement(parent, "body", name=f"tool{len(list(root.iter()))}", pos=f"0 {value} 0")
     etree.SubElement(body, "geom", type="sphere", size=str(value), mass="1")
     return str(body.get("name"))
 

@@ -71,13 +71,25 @@ MJCF = """<mujoco model="walker">
 </mujoco>
 """
 
+PLAIN_MJCF = (
+    MJCF.replace('<joint name="left_hip_x" axis="1 0 0" range="-25 5" pos="0 0 0.02"/>', "")
+    .replace('type="ellipsoid" size="0.05 0.05 0.15"', 'type="box" size="0.05 0.05 0.15"')
+    .replace(' ref="10"', "")
+    .replace('<joint name="left_hip_z" axis="0 0 1" range="-60 35" stiffness="2"/>', "")
+    .replace(' range="-160 -2" pos="0 0 0.02"', ' range="-160 -2"')
+    .replace(' qpos="0 0 1.2 1 0 0 0 0 0.1 0 -0.2 0 0.3"', ' qpos="0 0 1.2 1 0 0 0 0 -0.2 0 0.3"')
+)
+"""The same with one dof per joint, at the origin of its body: what a URDF says with as many links and joints."""
+
 URDF = """<?xml version="1.0"?>
 <!-- made by hand -->
 <robot name="arm" xmlns:drake="http://drake.mit.edu">
   <material name="steel"><color rgba="0.7 0.70 0.7 1.0"/></material>
-  <link name="base"><visual name="plate"><geometry><box size="0.20 0.2 0.05"/></geometry><material name="steel"/></visual></link>
+  <link name="base"><visual name="plate">
+    <geometry><box size="0.20 0.2 0.05"/></geometry><material name="steel"/></visual></link>
   <link name="upper">
-    <inertial><origin xyz="0 0 0.150" rpy="0 0.1 0"/><mass value="1.50"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.011" iyz="0" izz="0.002"/></inertial>
+    <inertial><origin xyz="0 0 0.150" rpy="0 0.1 0"/><mass value="1.50"/>
+      <inertia ixx="0.01" ixy="0" ixz="0" iyy="0.011" iyz="0" izz="0.002"/></inertial>
     <visual><origin xyz="0 0 0.15" rpy="0.1 0.20 0.3"/><geometry><cylinder radius="0.04" length="0.3"/></geometry></visual>
     <collision><origin xyz="0 0 0.15"/><geometry><cylinder radius="0.05" length="0.32"/></geometry></collision>
     <drake:capsule/>
@@ -91,7 +103,8 @@ URDF = """<?xml version="1.0"?>
   </joint>
   <joint name="elbow" type="continuous"><origin xyz="0 0 0.3"/><parent link="upper"/><child link="lower"/><axis xyz="0 1 0"/></joint>
   <joint name="grip" type="prismatic">
-    <origin xyz="0 0 0.2"/><parent link="lower"/><child link="finger"/><axis xyz="1 0 0"/><limit lower="0" upper="0.05" effort="5" velocity="0.1"/>
+    <origin xyz="0 0 0.2"/><parent link="lower"/><child link="finger"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="0.05" effort="5" velocity="0.1"/>
     <mimic joint="shoulder" multiplier="0.02" offset="0.01"/>
   </joint>
   <transmission name="shoulder_trans"><type>transmission_interface/SimpleTransmission</type>

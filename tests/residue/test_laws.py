@@ -13,7 +13,7 @@ from tests.residue.exactness import unequal
 from tests.strategies import mechanisms
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(mechanisms(), mechanisms())
 def test_any_mechanism_is_restored_from_any_image(source: Mechanism, image: Mechanism) -> None:
     report = Report()
@@ -22,13 +22,13 @@ def test_any_mechanism_is_restored_from_any_image(source: Mechanism, image: Mech
     assert list(report) == []
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(mechanisms())
 def test_what_is_the_same_leaves_no_residue(source: Mechanism) -> None:
     assert residue_of(source, source).is_empty
 
 
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(mechanisms(), mechanisms())
 def test_the_text_is_a_fixed_point(source: Mechanism, image: Mechanism) -> None:
     text = print_residue(residue_of(source, image))

@@ -135,6 +135,10 @@ def test_a_world_on_which_nothing_hangs_is_left_out() -> None:
     assert list(legal(mechanism).graph.vertices) == [A]
 
 
+def test_a_world_without_bodies_is_a_link() -> None:
+    assert legal(Mechanism("m", Hypergraph({WORLD: World()}))).graph.vertices == {Id("body", "world"): Body()}
+
+
 def test_several_roots_are_fixed_to_one() -> None:
     report = Report()
     after = legalize(Mechanism("r", Hypergraph({A: Body(), B: Body()}, {})), "urdf", Options(), report)

@@ -7,9 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x.backends.hymeko.angles import shortest
+from hymeko_x.backends.hymeko.attached import attached_arcs
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
+from hymeko_x.backends.hymeko.foreign import foreign_items, sound_comment, standing_items
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
-from hymeko_x.backends.hymeko.parts import Context, extra_fields, name_of, part_items, sound_comment, written_field
+from hymeko_x.backends.hymeko.parts import Context, name_of, part_items, written_items
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -35,7 +38,15 @@ def document(mechanism: Mechanism) -> Document:
     """The syntax tree of a mechanism."""
     plain = _is_plain(mechanism)
     inline = inline_assets(mechanism)
-    context = Context(mechanism, files_prefix(mechanism), inline, given_names(mechanism, inline), mimic_arcs(mechanism))
+    context = Context(
+        mechanism,
+        files_prefix(mechanism),
+        inline,
+        given_names(mechanism, inline),
+        mimic_arcs(mechanism),
+        attached_arcs(mechanism),
+        shortest(mechanism),
+    )
     items = [*_settings(context, plain), *_elements(context)]
     root = mechanism.notation(ROOT, "hymeko.root")
     name = root if root is not None else mechanism.name
@@ -68,14 +79,15 @@ def _is_plain(mechanism: Mechanism) -> bool:
 def _settings(context: Context, plain: bool) -> list[Item]:
     """What stands at the head of the root: units, the prefix of files, notations of the whole."""
     items: list[Item] = []
-    if not plain:
+    if not plain and not context.angles.degrees:
         items.append(Node("units", (Field("angle"), Field("rad"))))
     if context.files:
         items.append(Field("files", context.files))
     notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key != "hymeko.root"}
     if notations:
-        items.append(written_field(notations))
-    items.extend(extra_fields(extra for extra in context.mechanism.extras.get(ROOT, ()) if extra.path and not _is_outer(extra)))
+        items.extend(written_items(notations, flags=False))
+    about = [extra for extra in context.mechanism.extras.get(ROOT, ()) if extra.path and not _is_outer(extra)]
+    items.extend(foreign_items(about, at_root=True))
     return items
 
 
@@ -86,12 +98,14 @@ def _elements(context: Context) -> list[Item]:
     place = 0
     queue = list(reversed(standing))
     for key in _order(context):
+        here = []
         while queue and queue[-1].index <= place:
-            items.extend(extra_fields([queue.pop()], at_root=True))
+            here.append(queue.pop())
             place += 1
+        items.extend(standing_items(here))
         items.append(_element(context, key))
-        place += 1
-    items.extend(extra_fields(reversed(queue), at_root=True))
+        place += 2 if key in context.attached else 1
+    items.extend(standing_items(queue[::-1]))
     return items
 
 
@@ -108,7 +122,7 @@ def _order(context: Context) -> list[Id]:
 
 
 def _stands_alone(context: Context, key: Id) -> bool:
-    if key in context.inline or key.kind in _INLINE_EDGES or key in context.mimics:
+    if key in context.inline or key.kind in _INLINE_EDGES or key in context.mimics or key in context.attached_edges:
         return False
     if key != WORLD:
         return True
@@ -127,7 +141,7 @@ def _element(context: Context, key: Id) -> Item:
         return context.node(key, items, kind, edge=True)
     items = part_items(context, key, edge.data, edge.arcs)
     if isinstance(edge.data, parts.Loop):
-        items.extend(dof_node(dof) for dof in edge.data.dofs)
+        items.extend(dof_node(dof, context.angles) for dof in edge.data.dofs)
     return context.node(key, items, key.kind, edge=True)
 
 

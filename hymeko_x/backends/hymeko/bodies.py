@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.hymeko.parts import Context, element_extras, pose_value, short_uri, word_fields, written_field
+from hymeko_x.backends.hymeko.foreign import foreign_items
+from hymeko_x.backends.hymeko.parts import Context, pose_value, short_uri, word_fields, written_items
 from hymeko_x.formats.hymeko import SHAPE_WORDS
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, Names, file_stem
 from hymeko_x.ir.values import IDENTITY, ZERO
+from hymeko_x.ir.written import length_of
 from hymeko_x.language.syntax import Field, Item, Node, Value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from hymeko_x.backends.hymeko.angles import Angles
     from hymeko_x.ir.mechanism import Mechanism, ShapeView
     from hymeko_x.ir.values import Pose
 
@@ -22,14 +25,14 @@ _PLACES = {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts
 
 def body_items(context: Context, key: Id, part: parts.Body | parts.World) -> list[Item]:
     """The block of a body or of the world: inertial, then shapes in order."""
-    items = _inertial_items(part.inertial) if isinstance(part, parts.Body) and part.inertial is not None else []
+    items = _inertial_items(part.inertial, context.angles) if isinstance(part, parts.Body) and part.inertial is not None else []
     names = Names()
     for view in context.mechanism.shapes.get(key, ()):
         items.append(_shape(context, view, names))
     return items
 
 
-def _inertial_items(inertial: parts.Inertial) -> list[Item]:
+def _inertial_items(inertial: parts.Inertial, angles: Angles) -> list[Item]:
     items: list[Item] = []
     if inertial.mass is not None:
         items.append(Field("mass", inertial.mass))
@@ -38,17 +41,17 @@ def _inertial_items(inertial: parts.Inertial) -> list[Item]:
     tensor = inertial.tensor
     if tensor is not None:
         if inertial.written is not None:
-            items.append(Field("axes", _axes(inertial.written.frame)))
+            items.append(Field("axes", _axes(inertial.written.frame, angles)))
             tensor = inertial.written.tensor
         items.append(Field("inertia", tensor[:3] if tensor[3:] == ZERO else tensor))
     return items or [Node("inertial")]
 
 
-def _axes(frame: Pose) -> Value:
+def _axes(frame: Pose, angles: Angles) -> Value:
     """A rotation: roll-pitch-yaw, a quaternion, or another notation with its kind before it."""
     if frame.written is not None and frame.written.kind == "fromto":
         return frame.quat  # two points say more than a rotation
-    rotation = pose_value(frame)
+    rotation = pose_value(frame, angles)
     if len(rotation) == 2:
         return rotation[1]
     return rotation[1:] if isinstance(rotation[1], str) else (0.0, 0.0, 0.0)
@@ -67,8 +70,8 @@ def _shape(context: Context, view: ShapeView, names: Names) -> Item:
     items.extend(context.class_items(view.id))
     notations = context.mechanism.notations.get(view.id)
     if notations:
-        items.append(written_field(notations))
-    items.extend(element_extras(context.mechanism.extras.get(view.id, ())))
+        items.extend(written_items(notations))
+    items.extend(foreign_items(context.mechanism.extras.get(view.id, ())))
     if len(items) == 1 and isinstance(items[0], Field) and items[0].name == "mesh":
         return Field(word, items[0].value)
     return Node(word, tuple(items))
@@ -77,11 +80,25 @@ def _shape(context: Context, view: ShapeView, names: Names) -> Item:
 def _shape_items(context: Context, view: ShapeView) -> list[Item]:
     items = _geometry(context, view)
     if view.pose != IDENTITY or view.pose.written is not None:
-        items.append(Field("at", pose_value(view.pose)))
+        items.append(_place(view.pose, context.angles))
     if view.material is not None:
         items.append(_material(context, view.material))
-    items.extend(word_fields(view.shape, SHAPE_WORDS))
+    items.extend(word_fields(view.shape, SHAPE_WORDS, context.angles))
     return items
+
+
+def _place(pose: Pose, angles: Angles) -> Field:
+    """``at`` with the pose, or ``fromto`` with two points."""
+    if pose.written is not None and pose.written.kind == "fromto":
+        return Field("fromto", pose.written.numbers)
+    return Field("at", pose_value(pose, angles))
+
+
+def _round(word: str, radius: float, length: float, pose: Pose) -> Field:
+    """A cylinder or capsule: its length is not said where the two points that it lies between tell it."""
+    written = pose.written
+    told = written is not None and written.kind == "fromto" and str(length_of(written)) == str(length)
+    return Field(word, radius if told else (radius, length))
 
 
 def _geometry(context: Context, view: ShapeView) -> list[Item]:
@@ -91,9 +108,9 @@ def _geometry(context: Context, view: ShapeView) -> list[Item]:
         case parts.Sphere(radius):
             return [Field("sphere", radius)]
         case parts.Cylinder(radius, length):
-            return [Field("cylinder", (radius, length))]
+            return [_round("cylinder", radius, length, view.pose)]
         case parts.Capsule(radius, length):
-            return [Field("capsule", (radius, length))]
+            return [_round("capsule", radius, length, view.pose)]
         case parts.Ellipsoid(radii):
             return [Field("ellipsoid", radii)]
         case parts.Plane(half_size):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x.backends.hymeko.angles import TURNING
 from hymeko_x.backends.hymeko.parts import Context, limit_items, pose_value, word_fields
 from hymeko_x.formats.hymeko import (
     AXES,
@@ -23,6 +24,7 @@ from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Ref
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from hymeko_x.backends.hymeko.angles import Angles
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
 _BODIES = TARGETS["joint"]
@@ -40,16 +42,16 @@ def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
     dofs = view.joint.dofs
     kind = JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
     if kind == "compound":
-        items.extend(dof_node(dof) for dof in dofs)
+        items.extend(dof_node(dof, context.angles) for dof in dofs)
     else:
-        items.extend(item for dof in dofs for item in _dof_items(dof))
+        items.extend(item for dof in dofs for item in _dof_items(dof, context.angles))
     items.extend(_mimic(context, arc) for arc in context.mimics.get(Id("coupling", key.name), ()))
     return kind, items
 
 
 def _end(context: Context, body: Id, direction: str, pose: Pose, role: str) -> ArcItem:
     said = pose != IDENTITY or pose.written is not None
-    return ArcItem(context.ref(body, _BODIES, direction), role, pose_value(pose) if said else None)
+    return ArcItem(context.ref(body, _BODIES, direction), role, pose_value(pose, context.angles) if said else None)
 
 
 def _mimic(context: Context, arc: RobotArc) -> ArcItem:
@@ -76,19 +78,20 @@ def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
 # ---- dofs ----------------------------------------------------------------------------------------------------------------
 
 
-def dof_node(dof: parts.Dof) -> Node:
+def dof_node(dof: parts.Dof, angles: Angles) -> Node:
     """The block of one of several dofs."""
-    return Node("dof", (Field("moves", _MOVE_NAMES[dof.kind]), *_dof_items(dof)))
+    return Node("dof", (Field("moves", Ref((_MOVE_NAMES[dof.kind],))), *_dof_items(dof, angles)))
 
 
-def _dof_items(dof: parts.Dof) -> list[Item]:
+def _dof_items(dof: parts.Dof, angles: Angles) -> list[Item]:
     items = _axis(dof)
-    items.extend(limit_items(dof.limits))
-    items.extend(word_fields(dof, DOF_WORDS))
+    motion = "angle" if dof.kind in TURNING else "length"
+    items.extend(limit_items(dof.limits, angles, motion))
+    items.extend(word_fields(dof, DOF_WORDS, angles, motion))
     if dof.safety is not None:
-        items.append(Node("safety", tuple(word_fields(dof.safety, SAFETY_WORDS))))
+        items.append(Node("safety", tuple(word_fields(dof.safety, SAFETY_WORDS, angles, motion))))
     if dof.calibration is not None:
-        items.append(Node("calibration", tuple(word_fields(dof.calibration, CALIBRATION_WORDS))))
+        items.append(Node("calibration", tuple(word_fields(dof.calibration, CALIBRATION_WORDS, angles, motion))))
     return items
 
 

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, cast
 
-from hymeko_x.formats.hymeko import LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, TARGETS, Word
+from hymeko_x.backends.hymeko.foreign import foreign_items
+from hymeko_x.formats.attached import TEXTURE, attached_key
+from hymeko_x.formats.hymeko import ATTACHED, LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, SHORT_TYPES, TARGETS, Word
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
-from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, Ref, Stereotype, Value
+from hymeko_x.language.markup import value_of_text
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from hymeko_x.ir.mechanism import Extra, Mechanism, RobotArc
+    from hymeko_x.backends.hymeko.angles import Angles
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
+_WORD = re.compile(r"[^\W\d]\w*")
+_NO_WORDS = frozenset({"inf", "nan", "rel", "seq", "concurrent", "use", "import", "as"})
 _ALL_KINDS = tuple(KINDS.values())
 _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
 _FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
-_SETTINGS = (
-    _FOREIGN | {"hymeko", "extra", "class", "written", "kind", "moves", "scope", "limit", "limits", "range"} | {w.word for w in LIMIT_WORDS}
-)
+_FLAGS = frozenset({"unnamed", "kind", "moves", "scope"})
+_SETTINGS = _FOREIGN | _FLAGS | {"hymeko", "extra", "class", "written", "limit", "limits", "range"} | {word.word for word in LIMIT_WORDS}
 
 
 @dataclass(frozen=True)
@@ -29,7 +35,9 @@ class Context:
     """What the printers need to know: the mechanism, the files' common prefix, and what is said in place.
 
     ``inline``: meshes and colours that are defined where a shape uses them, with the shape that uses them first;
-    ``given_names``: those among them that say their id; ``mimics``: couplings that are said in the joint that follows.
+    ``given_names``: those among them that say their id; ``mimics``: couplings that are said in the joint that follows;
+    ``attached``: the arcs of mounts, drives and the like that are said in the block of the vertex that they put to use;
+    ``angles``: the unit of plain angles.
     """
 
     mechanism: Mechanism
@@ -37,10 +45,15 @@ class Context:
     inline: Mapping[Id, Id]
     given_names: frozenset[Id]
     mimics: Mapping[Id, tuple[RobotArc, ...]]
+    attached: Mapping[Id, tuple[RobotArc, ...]]
+    angles: Angles
     names: dict[str, list[str]] = field(default_factory=dict)
+
+    attached_edges: set[Id] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         graph = self.mechanism.graph
+        self.attached_edges.update(key for vertex in self.attached if (key := attached_key(vertex)) is not None)
         for key in (*graph.vertices, *graph.edges):
             self.names.setdefault(key.name, []).append(key.kind)
 
@@ -53,9 +66,10 @@ class Context:
         notations = self.mechanism.notations.get(key)
         items.extend(self.class_items(key))
         if notations:
-            items.append(written_field(notations))
-        items.extend(element_extras(self.mechanism.extras.get(key, ())))
-        stereotypes = (Stereotype(Ref((kind,))),) if kind else ()
+            items.extend(written_items(notations, flags=key.kind not in NAMED_AFTER_ID))
+        items.extend(foreign_items(self.mechanism.extras.get(key, ())))
+        path, items = typed(kind, items)
+        stereotypes = (Stereotype(Ref(path)),) if kind else ()
         name = key.name if key == WORLD else name_of(key.name)
         return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
 
@@ -64,7 +78,7 @@ class Context:
         classes = self.mechanism.stereotypes.get(key)
         if not classes or self.mechanism.notation(ROOT, "mjcf") is None:
             return []
-        return [Field("class", classes[0] if len(classes) == 1 else classes)]
+        return [Field("class", value_of(classes[0]) if len(classes) == 1 else classes)]
 
     def ref(self, target: Id, kinds: tuple[str, ...], direction: str = "") -> Ref:
         """A reference: by name alone where the name means the target, else with its kind before it."""
@@ -79,7 +93,7 @@ class Context:
         """An arc of an edge of this kind."""
         weight = None
         if isinstance(arc.weight, Pose):
-            weight = pose_value(arc.weight)
+            weight = pose_value(arc.weight, self.angles)
         elif arc.weight is not None:
             weight = cast("tuple[Value, ...]", arc.weight)
         elif kind in POSED_EDGES:
@@ -92,38 +106,45 @@ def name_of(name: str) -> str:
     return QuotedName(name) if name in RESERVED else name
 
 
-def pose_value(pose: Pose) -> tuple[Value, ...]:
+def pose_value(pose: Pose, angles: Angles) -> tuple[Value, ...]:
     """``[x y z]`` for a translation, else ``[[x y z] rotation]``, roll-pitch-yaw if written so, else a quaternion.
 
     Other notations say their kind: ``[[x y z] "zaxis" [0 1 0]]``, and ``["fromto" [two points]]``.
     """
     if pose.written is not None:
+        rotation = angles.rotation(pose.written)
         if pose.written.kind in ("rpy", "quat"):
-            return (pose.xyz, pose.written.numbers)
+            return (pose.xyz, rotation)
         if pose.written.kind == "fromto":
-            return ("fromto", pose.written.numbers)
-        return (pose.xyz, pose.written.kind, pose.written.numbers)
+            return ("fromto", rotation)
+        return (pose.xyz, pose.written.kind, rotation)
     if pose.quat == NO_ROTATION:
         return pose.xyz
     return (pose.xyz, pose.quat)
 
 
-def word_fields(part: object, words: Iterable[Word]) -> list[Item]:
-    """A field for every attribute that differs from its default."""
+def word_fields(part: object, words: Iterable[Word], angles: Angles, motion: str = "") -> list[Item]:
+    """A field for every attribute that differs from its default; ``motion`` is what the dimension of that name stands for."""
     defaults = _defaults(type(part))
     found: list[Item] = []
     for word in words:
         value = getattr(part, word.attribute)
-        if value != defaults.get(word.attribute, MISSING):
-            found.append(Field(word.word, value_of(value)))
+        if value == defaults.get(word.attribute, MISSING):
+            continue
+        dimension = motion if word.dimension == "motion" else word.dimension
+        if word.form == "rgba" and value[3] == 1.0:
+            value = value[:3]
+        found.append(Field(word.word, angles.value(value) if dimension == "angle" else value_of(value)))
     return found
 
 
-def limit_items(limits: parts.Limits) -> list[Item]:
+def limit_items(limits: parts.Limits, angles: Angles, motion: str) -> list[Item]:
     """``limit [lower upper]`` where there are both, and a field for every other bound."""
     if limits.lower is None or limits.upper is None:
-        return word_fields(limits, LIMIT_WORDS)
-    return [Field("limit", (limits.lower, limits.upper)), *word_fields(limits, LIMIT_WORDS[2:])]
+        return word_fields(limits, LIMIT_WORDS, angles, motion)
+    span = (limits.lower, limits.upper)
+    said = angles.values(span) if motion == "angle" else span
+    return [Field("limit", said), *word_fields(limits, LIMIT_WORDS[2:], angles, motion)]
 
 
 def _defaults(part: type) -> dict[str, object]:
@@ -137,21 +158,38 @@ def value_of(value: object) -> Value:
     if isinstance(value, int):
         return float(value)
     if isinstance(value, tuple):
-        return tuple(map(value_of, value))
+        return tuple(value if isinstance(value, str) else value_of(value) for value in value)
+    if isinstance(value, str) and _WORD.fullmatch(value) and value not in _NO_WORDS:
+        return Ref((value,))
     assert isinstance(value, float | str), value
     return value
+
+
+def typed(kind: str, items: list[Item]) -> tuple[tuple[str, ...], list[Item]]:
+    """The type that says an element's kind and its ``type``, and the fields without that: ``sensor.imu``, ``weld``."""
+    found = next(
+        (item for item in items if isinstance(item, Field) and item.name == "type" and not isinstance(item.name, QuotedName)), None
+    )
+    part = PARTS[kind].part if kind in PARTS else None
+    value = found.value if found is not None else _defaults(part).get("kind") if part is not None else None
+    word = value.path[0] if isinstance(value, Ref) else value
+    if isinstance(word, str) and (kind, word) in SHORT_TYPES:
+        return (SHORT_TYPES[kind, word],), [item for item in items if item is not found]
+    if found is not None and isinstance(value, Ref):
+        return (kind, value.path[0]), [item for item in items if item is not found]
+    return (kind,), items
 
 
 def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePart, arcs: tuple[RobotArc, ...]) -> list[Item]:
     """The block of an element that its words describe completely."""
     words = PARTS[key.kind]
-    items: list[Item] = [context.arc(key.kind, arc) for arc in arcs]
-    said = word_fields(part, words.words)
+    items: list[Item] = [context.arc(key.kind, arc) for arc in arcs] or _attached_items(context, key)
+    said = word_fields(part, words.words, context.angles)
     if key.kind in NAMED_AFTER_ID:
         said = _named(said, key)
     items.extend(_uri_fields(context, said, key.kind))
     if isinstance(part, parts.Tendon):
-        items.extend(limit_items(part.limits))
+        items.extend(limit_items(part.limits, context.angles, "length"))
     if words.open:
         taken = {word.word for word in words.words} | _SETTINGS
         items.extend(
@@ -161,21 +199,33 @@ def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePar
     return items
 
 
+def _attached_items(context: Context, key: Id) -> list[Item]:
+    """The arcs of the edge that puts a vertex to use, and the texture of a material."""
+    arcs = context.attached.get(key, ())
+    if key.kind == "material":
+        return [Field(TEXTURE, context.ref(arc.target, ("texture",))) for arc in arcs]
+    return [context.arc(ATTACHED[key.kind], arc) for arc in arcs]
+
+
 def _named(items: list[Item], key: Id) -> list[Item]:
     """The fields with ``unnamed`` where there is no name, and without the name that the id tells."""
     names = [item for item in items if isinstance(item, Field) and item.name == "name"]
     if not names:
         return [Field("unnamed"), *items]
-    return [item for item in items if item is not names[0] or names[0].value != key.name]
+    return [item for item in items if item is not names[0] or names[0].value != value_of(key.name)]
 
 
 def _uri_fields(context: Context, items: list[Item], kind: str) -> list[Item]:
     if kind not in ("mesh", "texture"):
         return items
     return [
-        item._replace(value=short_uri(context, str(item.value))) if isinstance(item, Field) and item.name == "file" else item
+        item._replace(value=short_uri(context, _text_of(item.value))) if isinstance(item, Field) and item.name == "file" else item
         for item in items
     ]
+
+
+def _text_of(value: Value | None) -> str:
+    return value.path[0] if isinstance(value, Ref) else str(value)
 
 
 def short_uri(context: Context, uri: str) -> str:
@@ -183,56 +233,8 @@ def short_uri(context: Context, uri: str) -> str:
     return f"~/{uri.removeprefix(context.files)}" if context.files and uri.startswith(context.files) else uri
 
 
-def element_extras(extras: Iterable[Extra]) -> list[Item]:
-    """What formats said of one element; attributes that follow each other share a field: ``mjcf ["@condim" "1" "@group" "2"]``."""
-    found: list[Item] = []
-    run: list[Extra] = []
-    for extra in extras:
-        if run and not (_is_attribute(extra) and extra.format == run[0].format):
-            found.extend(_attribute_fields(run))
-            run = []
-        if _is_attribute(extra):
-            run.append(extra)
-        else:
-            found.extend(extra_fields([extra]))
-    return [*found, *_attribute_fields(run)]
-
-
-def _is_attribute(extra: Extra) -> bool:
-    return extra.format in _FOREIGN and extra.path.startswith("@") and not extra.index
-
-
-def _attribute_fields(run: list[Extra]) -> list[Item]:
-    if len(run) < 2:
-        return extra_fields(run)
-    return [Field(run[0].format, tuple(text for extra in run for text in (extra.path, extra.text)))]
-
-
-def extra_fields(extras: Iterable[Extra], *, at_root: bool = False) -> list[Item]:
-    """What formats said verbatim, one field each; the place is written where it is not the first."""
-    found: list[Item] = []
-    for extra in extras:
-        if extra.format == "comment" and at_root and not extra.path and sound_comment(extra.text):
-            found.append(Comment(extra.text))
-            continue
-        named = extra.format in _FOREIGN
-        values: list[Value] = [] if named else [extra.format]
-        place = 0 if at_root else extra.index
-        if extra.path or place or not named:
-            values.append(extra.path)
-        if place:
-            values.append(float(place))
-        values.append(extra.text)
-        name = extra.format if named else "extra"
-        found.append(Field(name, values[0] if len(values) == 1 else tuple(values)))
-    return found
-
-
-def sound_comment(text: str) -> bool:
-    """Whether a comment reads back as it is."""
-    return text == text.strip() and "\0" not in text and ("*/" not in text or "\n" not in text) and "\r" not in text
-
-
-def written_field(notations: Mapping[str, str]) -> Field:
-    """``written ["key" "text" ...]``."""
-    return Field("written", tuple(text for pair in notations.items() for text in pair))
+def written_items(notations: Mapping[str, str], *, flags: bool = True) -> list[Item]:
+    """``written { key text .. }``, and the flag ``unnamed`` for what its author gave no name."""
+    unnamed = flags and notations.get("unnamed") == "yes"
+    said = [Field(key, value_of_text(text)) for key, text in notations.items() if not (unnamed and key == "unnamed")]
+    return [*([Field("unnamed")] if unnamed else []), *([Node("written", tuple(said))] if said else [])]

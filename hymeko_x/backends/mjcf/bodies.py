@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.mjcf.geoms import write_geom
 from hymeko_x.backends.mjcf.text import Attributes, Text, number, numbers, pose_attributes
 from hymeko_x.formats.mjcf import DOFS, LIGHTS
-from hymeko_x.ir.mechanism import WORLD, pose_weight
-from hymeko_x.ir.parts import Body, Camera, DofKind, Frame, Light, Mount
+from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.parts import Body, Camera, DofKind, Frame, Light
 from hymeko_x.ir.values import IDENTITY, ZERO, apply, compose, inverse, rotate, unit
 
 if TYPE_CHECKING:
@@ -20,27 +20,24 @@ if TYPE_CHECKING:
 
 _DOWN: Vec3 = (0.0, 0.0, -1.0)
 
-Mounts = dict["Id", list[tuple["Id", "Pose"]]]
-
 
 def write_worldbody(text: Text, mechanism: Mechanism, names: Printed) -> None:
     """The world's own geoms, then every tree, depth first and without recursion."""
-    mounts = _mounts(mechanism)
     text.section("worldbody")
-    _write_content(text, mechanism, WORLD, mounts, names)
+    _write_content(text, mechanism, WORLD, names)
     stack: list[Id | None] = list(reversed(mechanism.roots))
     while stack:
         body = stack.pop()
         if body is None:
             text.close()
             continue
-        write_body(text, mechanism, body, mounts, names)
+        write_body(text, mechanism, body, names)
         stack.append(None)
         stack.extend(joint.child for joint in reversed(mechanism.children.get(body, ())))
     text.close()
 
 
-def write_body(text: Text, mechanism: Mechanism, key: Id, mounts: Mounts, names: Printed) -> None:
+def write_body(text: Text, mechanism: Mechanism, key: Id, names: Printed) -> None:
     """Opens a body and writes all of it but the bodies inside it.
 
     The body frame at the reference configuration is P C^-1 in the parent; axes and anchors are seen in that frame.
@@ -53,7 +50,7 @@ def write_body(text: Text, mechanism: Mechanism, key: Id, mounts: Mounts, names:
         text.leaf("inertial", _inertial_attributes(inertial))
     for dof in view.joint.dofs if view else ():
         write_joint(text, view, dof)  # type: ignore[arg-type]
-    _write_content(text, mechanism, key, mounts, names)
+    _write_content(text, mechanism, key, names)
 
 
 def write_joint(text: Text, view: JointView, dof: Dof) -> None:
@@ -109,11 +106,11 @@ def _inertial_attributes(inertial: Inertial) -> Attributes:
     }
 
 
-def _write_content(text: Text, mechanism: Mechanism, body: Id, mounts: Mounts, names: Printed) -> None:
+def _write_content(text: Text, mechanism: Mechanism, body: Id, names: Printed) -> None:
     """The geoms, sites, cameras and lights of a body or of the world."""
     for shape in mechanism.shapes.get(body, ()):
         write_geom(text, shape, names)
-    for key, pose in mounts.get(body, ()):
+    for _, key, _, pose in mechanism.mounts.get(body, ()):
         match mechanism.graph.vertices.get(key):
             case Frame(size=size):
                 text.leaf("site", {"name": names.of(key), **pose_attributes(pose), "size": numbers(*size) if size else None})
@@ -142,14 +139,3 @@ def _light_attributes(light: Light, pose: Pose) -> Attributes:
         "dir": None if direction == _DOWN else numbers(*direction),
         "diffuse": None if light.diffuse is None else numbers(*light.diffuse),
     }
-
-
-def _mounts(mechanism: Mechanism) -> Mounts:
-    """For each body what is mounted on it, with its pose there."""
-    found: Mounts = {}
-    for _, _, arcs in mechanism.edges(Mount):
-        body = next((arc for arc in arcs if arc.sign > 0), None)
-        thing = next((arc for arc in arcs if arc.sign < 0), None)
-        if body is not None and thing is not None:
-            found.setdefault(body.target, []).append((thing.target, pose_weight(body)))
-    return found

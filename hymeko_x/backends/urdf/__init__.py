@@ -7,7 +7,7 @@ mechanism carries as extras stands again where it stood. docs/mapping/urdf.md sa
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.backends.urdf.joints import joint_tag
 from hymeko_x.backends.urdf.links import link_tag
@@ -29,19 +29,37 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
 
 
+class Draft(NamedTuple):
+    """A URDF file before it is text: the root element, ready lines before and after it, and mesh files beside it."""
+
+    root: Tag
+    before: list[str]
+    after: list[str]
+    meshes: dict[str, bytes]
+
+
 def write(mechanism: Mechanism, report: Report) -> Package:
     """The URDF file of a mechanism. Meshes are referred to by their uris as they are.
 
     Raises: Refusal with HX104 for a joint or a shape that URDF cannot say; legalising beforehand rewrites those.
     """
     del report  # printing takes no decisions, so there is nothing to say
+    made = draft(mechanism)
+    lines = ['<?xml version="1.0"?>', *made.before, *render(made.root), *made.after, ""]
+    return Package("\n".join(lines).encode(), made.meshes)
+
+
+def draft(mechanism: Mechanism) -> Draft:
+    """The elements of the URDF file of a mechanism. Each at top level knows whose it is.
+
+    Raises: Refusal with HX104 as :func:`write`.
+    """
     root = _root_tag(mechanism)
     sheet = Sheet(mechanism, _declared(root))
     extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.FORMAT, COMMENT)]
     root.children += _merged(_typed(sheet), extras, sheet)
-    lines = ['<?xml version="1.0"?>', *_around(extras, PRECEDING, sheet), *render(root), *_around(extras, FOLLOWING, sheet), ""]
     meshes = {path: obj_text(mechanism.vertex(key, Mesh)) for key, path in sheet.mesh_files.items()}
-    return Package("\n".join(lines).encode(), meshes)
+    return Draft(root, _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)
 
 
 def carry_residue(package: Package, text: str) -> Package:
@@ -69,6 +87,7 @@ def _typed(sheet: Sheet) -> list[Tag]:
 
 def _tag(key: Id, sheet: Sheet) -> Tag:
     tag = _WRITERS[key.kind](key, sheet)
+    tag.owner = key
     sheet.put_back(tag, key)
     return tag
 

@@ -13,11 +13,14 @@ from hymeko_x.backends.usd.bodies import write_bodies, write_mounts
 from hymeko_x.backends.usd.carry import carry_elements
 from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
+from hymeko_x.backends.usd.layers import split
 from hymeko_x.backends.usd.materials import write_materials
+from hymeko_x.backends.usd.prims import author
 from hymeko_x.backends.usd.relations import write_drives, write_mimics
 from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
 from hymeko_x.formats import usd as words
+from hymeko_x.ir.legalize_usd import LAYOUT
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 
@@ -30,7 +33,16 @@ _ARTICULATION = "PhysicsArticulationRootAPI"
 
 def write(mechanism: Mechanism, report: Report) -> Package:
     """The mechanism as USD text. Textures are not part of it: `assets.pack` returns them."""
-    return Package(write_layer(mechanism, report).ExportToString().encode())
+    texts = {name: layer.ExportToString().encode() for name, layer in write_layers(mechanism, report, ".usda").items()}
+    return Package(texts.pop(""), texts)
+
+
+def write_layers(mechanism: Mechanism, report: Report, suffix: str) -> dict[str, Any]:
+    """The layers of the stage by file name, the one to open under an empty name."""
+    layer = write_layer(mechanism, report)
+    if mechanism.notation(ROOT, LAYOUT) != "layered":
+        return {"": layer}
+    return split(layer, f"{valid_name(mechanism.name)}_payload", suffix)
 
 
 def write_layer(mechanism: Mechanism, report: Report) -> Any:
@@ -41,8 +53,9 @@ def write_layer(mechanism: Mechanism, report: Report) -> Any:
         _write_stage(sheet)
         for section in (write_materials, write_bodies, write_shapes, write_mounts, write_joints, write_loops, write_drives, write_mimics):
             section(sheet)
-        restore_extras(sheet, report)
         _write_articulations(sheet)
+        author(sheet.prims.values(), layer)
+        restore_extras(sheet, report)
         carry_elements(sheet)
     return layer
 
@@ -61,10 +74,10 @@ def _write_stage(sheet: Sheet) -> None:
     stage.SetInfo("kilogramsPerUnit", 1.0)
     stage.SetInfo("upAxis", UsdGeom.Tokens.z)
     sheet.layer.defaultPrim = sheet.root.name
-    spec = sheet.define(sheet.root, "Xform", sheet.mechanism.name)
+    prim = sheet.define(sheet.root, "Xform", sheet.mechanism.name)
     sheet.made[sheet.root] = []
     if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is None:
-        spec.SetInfo("kind", Kind.Tokens.component)
+        prim.info["kind"] = Kind.Tokens.component
     sheet.made[sheet.root] += ["kind", "displayName", "@type"]
 
 
@@ -76,5 +89,5 @@ def _write_articulations(sheet: Sheet) -> None:
     if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is not None or not sheet.dofs:
         return
     for path in [sheet.root] if len(roots) == 1 else [sheet.homes[root] for root in roots if sheet.mechanism.children.get(root)]:
-        apply(sheet.layer.GetPrimAtPath(path), _ARTICULATION)
+        apply(sheet.prims[path], _ARTICULATION)
         sheet.made[path].append(f"@{_ARTICULATION}")

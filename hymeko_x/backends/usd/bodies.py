@@ -7,12 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Vt
 
-from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.shapes import gprim_of, skin_pose
+from hymeko_x.backends.usd.sheet import apply, put, quatf, transform
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.xml import read_numbers
-from hymeko_x.ir.mechanism import WORLD, pose_weight
-from hymeko_x.ir.parts import Body, Camera, Frame, Mount
-from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, unit_quat
+from hymeko_x.ir.legalize_usd import NESTED
+from hymeko_x.ir.mechanism import ROOT, WORLD, pose_weight
+from hymeko_x.ir.parts import Body, Camera, Frame, Mesh, Mount
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle, unit_quat
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import Sheet
@@ -20,23 +23,75 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Quat, Tensor, Vec3
 
+_NEAR = 1e-9
+
 
 def write_bodies(sheet: Sheet) -> None:
-    """Every body, flat below the robot's prim or where it was before; one inside of another starts again from the world."""
+    """Every body: flat below the robot's prim, inside of its parent where that is wanted, or where it was before.
+
+    One inside of another for another reason starts again from the world.
+    """
     poses = world_poses(sheet.mechanism)
+    note_skins(sheet)
+    is_nested = sheet.mechanism.notation(ROOT, NESTED) == "true"
     placed: set[Any] = set()
-    for key, body in sheet.mechanism.vertices(Body):
-        spec = sheet.place(key, sheet.root, "Xform")
+    for key in _parents_first(sheet.mechanism) if is_nested else [key for key, _ in sheet.mechanism.vertices(Body)]:
+        spec = _place_nested(sheet, key) if is_nested else sheet.place(key, sheet.root, "Xform")
         placed.add(spec.path)
-        apply(spec, "PhysicsRigidBodyAPI")
-        if body.inertial is not None:
-            write_inertial(spec, body.inertial)
-            sheet.made[spec.path] += ["@PhysicsMassAPI", "physics:centerOfMass", "physics:diagonalInertia"]
+        _write_body(sheet, spec, key)
     for key, _ in sheet.mechanism.vertices(Body):
         path = sheet.homes[key]
-        is_inside = any(prefix in placed for prefix in path.GetParentPath().GetPrefixes())
+        spec = sheet.prims[path]
         pose = _noted_pose(sheet.mechanism, key) or poses.get(key, IDENTITY)
-        transform(sheet.layer.GetPrimAtPath(path), pose, reset=is_inside)
+        above = _parent_body(sheet.mechanism, key) if is_nested else None
+        if above is not None:
+            seen = compose(inverse(_noted_pose(sheet.mechanism, above) or poses.get(above, IDENTITY)), pose)
+            transform(spec, seen, sheet.scales.get(key), within=sheet.scales.get(above))
+            continue
+        is_inside = any(prefix in placed for prefix in path.GetParentPath().GetPrefixes())
+        transform(spec, pose, sheet.scales.get(key), reset=is_inside)
+
+
+def _write_body(sheet: Sheet, spec: Any, key: Id) -> None:
+    apply(spec, "PhysicsRigidBodyAPI")
+    inertial = sheet.mechanism.vertex(key, Body).inertial
+    if inertial is not None:
+        write_inertial(spec, inertial, sheet.shrunk(key, inertial.com))
+        sheet.made[spec.path] += ["@PhysicsMassAPI", "physics:centerOfMass", "physics:diagonalInertia"]
+
+
+def _parents_first(mechanism: Mechanism) -> list[Id]:
+    """Every body, those that hang on a cycle last."""
+    return list(dict.fromkeys((*mechanism.depth_first(), *(key for key, _ in mechanism.vertices(Body)))))
+
+
+def _parent_body(mechanism: Mechanism, body: Id) -> Id | None:
+    view = mechanism.parent_joint.get(body)
+    return None if view is None or view.parent == WORLD else view.parent
+
+
+def _place_nested(sheet: Sheet, key: Id) -> Any:
+    above = _parent_body(sheet.mechanism, key)
+    return sheet.put_prim(key, sheet.free_path(sheet.homes.get(above, sheet.root) if above is not None else sheet.root, key.name), "Xform")
+
+
+def note_skins(sheet: Sheet) -> None:
+    """The bodies whose own prim was a geometry, as their notations tell: it will be that again, with its scale."""
+    mechanism = sheet.mechanism
+    for key, _ in mechanism.vertices(Body):
+        path = mechanism.notation(key, words.PATH)
+        view = next((view for view in mechanism.shapes.get(key, ()) if path and mechanism.notation(view.id, words.PATH) == path), None)
+        if view is None:
+            continue
+        prim = gprim_of(mechanism, view)
+        pose = skin_pose(view, prim)
+        mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
+        scale = prim.scale if prim is not None else mesh.scale if isinstance(mesh, Mesh) else (1.0, 1.0, 1.0)
+        is_here = math.hypot(*pose.xyz) < _NEAR and rotation_angle(pose.quat, NO_ROTATION) < _NEAR
+        if is_here and all(scale):
+            sheet.skins[key] = view.id
+            if scale != (1.0, 1.0, 1.0):
+                sheet.scales[key] = scale
 
 
 def _noted_pose(mechanism: Mechanism, body: Id) -> Pose | None:
@@ -63,12 +118,12 @@ def world_poses(mechanism: Mechanism) -> dict[Id, Pose]:
 # ---- mass --------------------------------------------------------------------------------------------------------------------
 
 
-def write_inertial(spec: Any, inertial: Inertial) -> None:
-    """Mass, centre of mass, and the tensor both as principal moments and as Newton's six doubles."""
+def write_inertial(spec: Any, inertial: Inertial, com: Vec3) -> None:
+    """Mass, centre of mass (in the prim's space), and the tensor both as principal moments and as Newton's six doubles."""
     apply(spec, "PhysicsMassAPI")
     if inertial.mass is not None:
         put(spec, "physics:mass", T.Float, inertial.mass)
-    put(spec, "physics:centerOfMass", T.Point3f, Gf.Vec3f(*inertial.com))
+    put(spec, "physics:centerOfMass", T.Point3f, Gf.Vec3f(*com))
     if inertial.tensor is None:
         return
     moments, quat = principal(inertial)
@@ -122,7 +177,7 @@ def write_mounts(sheet: Sheet) -> None:
         spec = sheet.place(thing.target, home, "Xform" if isinstance(part, Frame) else "Camera", below=body.target != WORLD)
         sheet.carried[spec.path]["mount"] = key
         sheet.homes[key] = spec.path
-        transform(spec, pose_weight(body))
+        sheet.move(spec, pose_weight(body), on=body.target)
         if isinstance(part, Frame):
             apply(spec, "MjcSiteAPI", "NewtonSiteAPI")
             sheet.made[spec.path] += ["@MjcSiteAPI", "@NewtonSiteAPI", "@type"]

@@ -1,4 +1,4 @@
-"""USD out as a zip package that holds the stage as a crate file.
+"""USD out as a zip package that holds the stage as a crate file, or as several.
 
 Images stay beside the package: they are copied as files, whose bytes a backend does not see.
 """
@@ -18,13 +18,18 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
 
+_MAIN = "stage.usdc"
+
 
 def write(mechanism: Mechanism, report: Report) -> Package:
-    """The mechanism as a package, which passes through a temporary file like a crate."""
+    """The mechanism as a package, which passes through a temporary file like a crate. Its first file is the one to open."""
     crate = write_crate(mechanism, report)
     with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
-        inner, outer = Path(folder) / "stage.usdc", Path(folder) / "stage.usdz"
-        inner.write_bytes(crate.main)
+        outer = Path(folder) / "stage.usdz"
         with Sdf.ZipFileWriter.CreateNew(str(outer)) as package:
-            package.AddFile(str(inner), inner.name)
-        return Package(outer.read_bytes(), crate.files, crate.copies)
+            for name, data in ((_MAIN, crate.main), *crate.files.items()):
+                inner = Path(folder) / "in" / name
+                inner.parent.mkdir(parents=True, exist_ok=True)
+                inner.write_bytes(data)
+                package.AddFile(str(inner), name)
+        return Package(outer.read_bytes())

@@ -9,10 +9,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pxr import Sdf
+from pxr import Sdf, Vt
 
+from hymeko_x.backends.usd.prims import T, add_attribute, authored_pairs, drafted_pairs
 from hymeko_x.backends.usd.shapes import is_drawable
-from hymeko_x.backends.usd.sheet import T, put, put_value
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.parts import Mesh
@@ -31,27 +31,48 @@ def carry_elements(sheet: Sheet) -> None:
     graph = sheet.mechanism.graph
     carried = {key for found in sheet.carried.values() for key in found.values()}
     for path, found in sheet.carried.items():
+        spec = sheet.layer.GetPrimAtPath(path)
         for key in found.values():
-            _carry(sheet, sheet.layer.GetPrimAtPath(path), key)
+            _carry(sheet, spec, key)
     alone = [key for key in (*graph.vertices, *graph.edges) if key not in carried and key != WORLD]
-    for number, key in enumerate(alone):
-        spec = sheet.define(_scope(sheet).AppendChild(f"e{number}"), "")
-        put(spec, f"{words.PREFIX}alone", T.Bool, True)
-        _carry(sheet, spec, key)
+    if alone:
+        _carry_alone(sheet, alone)
     _carry_mechanism(sheet)
     for path, made in sheet.made.items():
         spec = sheet.layer.GetPrimAtPath(path)
-        own = tuple(dict.fromkeys(name for name in made if name not in sheet.restored.get(path, ())))
+        own = [name for name in dict.fromkeys(made) if name not in sheet.restored.get(path, ())]
         if own:
-            put_value(spec, f"{words.PREFIX}made", own)
-        put(spec, words.DIGEST, T.String, words.digest(native_pairs(sheet, spec)))
+            add_attribute(spec, f"{words.PREFIX}made", T.StringArray, Vt.StringArray(own))
+        add_attribute(spec, words.DIGEST, T.String, words.digest(_native_pairs(sheet, path, spec)))
 
 
-def _scope(sheet: Sheet) -> Any:
+def _native_pairs(sheet: Sheet, path: Any, spec: Any) -> Iterator[tuple[str, bytes]]:
+    """The native values of a prim: as drafted, unless extras have changed it since."""
+    prim = sheet.prims.get(path)
+    if prim is not None and path not in sheet.restored:
+        return drafted_pairs(prim, sheet.prims)
+    return (pair for pair in authored_pairs(spec, sheet.layer) if not pair[0].startswith(words.PREFIX))
+
+
+def _carry_alone(sheet: Sheet, keys: list[Id]) -> None:
+    """Elements without a prim, each on one that stands for nothing else."""
     path = sheet.root.AppendChild(words.SCOPE)
-    if not sheet.layer.GetPrimAtPath(path):
-        put(sheet.define(path, "Scope"), f"{words.PREFIX}scope", T.Bool, True)
-    return path
+    group = sheet.layer.GetPrimAtPath(path)
+    if not group:
+        group = _new_prim(sheet.layer, path, "Scope")
+        add_attribute(group, f"{words.PREFIX}scope", T.Bool, True)
+    for number, key in enumerate(keys):
+        spec = _new_prim(sheet.layer, path.AppendChild(f"e{number}"), "")
+        add_attribute(spec, f"{words.PREFIX}alone", T.Bool, True)
+        _carry(sheet, spec, key)
+
+
+def _new_prim(layer: Any, path: Any, kind: str) -> Any:
+    spec = Sdf.CreatePrimInLayer(layer, path)
+    spec.specifier = Sdf.SpecifierDef
+    if kind:
+        spec.typeName = kind
+    return spec
 
 
 # ---- elements --------------------------------------------------------------------------------------------------------------------
@@ -59,7 +80,6 @@ def _scope(sheet: Sheet) -> Any:
 
 def _carry(sheet: Sheet, spec: Any, key: Id) -> None:
     graph = sheet.mechanism.graph
-    put_value(spec, words.attribute_name(key.kind, "id"), key.name)
     if key in graph.vertices:
         part = graph.vertices[key]
         pairs = _mesh_pairs(part, key in sheet.homes) if isinstance(part, Mesh) else words.flat(part)
@@ -68,8 +88,18 @@ def _carry(sheet: Sheet, spec: Any, key: Id) -> None:
         pairs = words.flat(edge.data) | {"arcs:count": len(edge.arcs)}
         for number, arc in enumerate(edge.arcs):
             pairs |= {f"arcs:{number}:{name}": value for name, value in _arc_pairs(arc)}
-    for name, value in {**pairs, **dict(_tables(sheet, key))}.items():
-        put_value(spec, words.attribute_name(key.kind, name), value)
+    _author(spec, key.kind, {"id": key.name, **pairs, **dict(_tables(sheet, key))})
+
+
+def _author(spec: Any, kind: str, pairs: dict[str, Value]) -> None:
+    """One text for all that an element says, beside which long arrays stand as such."""
+    long = {name: value for name, value in pairs.items() if isinstance(value, tuple) and words.is_long(value)}
+    said = {name: value for name, value in pairs.items() if name not in long}
+    add_attribute(spec, words.PREFIX + kind, T.String, words.text_of(said))
+    for name, value in long.items():
+        whole = all(type(item) is int for item in value)
+        array = Vt.Int64Array(list(value)) if whole else Vt.DoubleArray([float(item) for item in value])
+        add_attribute(spec, f"{words.PREFIX}{kind}:{name}", T.Int64Array if whole else T.DoubleArray, array)
 
 
 def _mesh_pairs(mesh: Mesh, has_prim: bool) -> dict[str, Value]:
@@ -113,43 +143,9 @@ def _tables(sheet: Sheet, key: Id) -> Iterator[tuple[str, Value]]:
 
 
 def _carry_mechanism(sheet: Sheet) -> None:
-    spec = sheet.layer.GetPrimAtPath(sheet.root)
-    prefix = f"{words.PREFIX}mechanism:"
-    put_value(spec, f"{prefix}version", words.VERSION)
-    put_value(spec, f"{prefix}id", sheet.mechanism.name)
-    for name, value in _tables(sheet, ROOT):
-        put_value(spec, prefix + name, value)
+    pairs: dict[str, Value] = {"version": words.VERSION, "id": sheet.mechanism.name, **dict(_tables(sheet, ROOT))}
     if sheet.mechanism.layout:
-        put_value(spec, f"{prefix}layout", tuple(text for key in sheet.mechanism.layout for text in key))
+        pairs["layout"] = tuple(text for key in sheet.mechanism.layout for text in key)
     if WORLD in sheet.mechanism.graph.vertices:
-        put(spec, f"{prefix}world", T.Bool, True)
-
-
-# ---- digests ---------------------------------------------------------------------------------------------------------------------
-
-
-def native_pairs(sheet: Sheet, spec: Any) -> Iterator[tuple[str, bytes]]:
-    """Every property of a prim that is not ours, as the reader will see it through references within the layer."""
-    yield "@type", str(spec.typeName).encode()
-    schemas = spec.GetInfo("apiSchemas").GetAppliedItems() if spec.HasInfo("apiSchemas") else []
-    yield "@apiSchemas", " ".join(schemas).encode()
-    said: dict[str, Any] = {}
-    for reference in spec.referenceList.prependedItems:
-        said |= {item.name: item for item in sheet.layer.GetPrimAtPath(reference.primPath).properties}
-    said |= {item.name: item for item in spec.properties}
-    for name, item in said.items():
-        if name.startswith(words.PREFIX):
-            continue
-        targets = getattr(item, "targetPathList", None)
-        yield name, " ".join(map(str, targets.GetAppliedItems())).encode() if targets is not None else value_bytes(item.default)
-
-
-def value_bytes(value: Any) -> bytes:
-    """A value as bytes: arrays by their memory, everything else by its text; a blocked value is none."""
-    if isinstance(value, Sdf.ValueBlock):
-        return b"None"
-    if hasattr(value, "__len__") and not isinstance(value, str) and len(value) > 16:
-        array = np.asarray(value)
-        if array.dtype != object:
-            return array.tobytes()
-    return repr(value).encode()
+        pairs["world"] = True
+    _author(sheet.layer.GetPrimAtPath(sheet.root), "mechanism", pairs)

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import tempfile
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from hymeko_x.backends.usd import write_layer
+from hymeko_x.backends.usd import write_layers
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -19,8 +19,13 @@ if TYPE_CHECKING:
 
 def write(mechanism: Mechanism, report: Report) -> Package:
     """The mechanism as a crate file. Textures are not part of it: `assets.pack` returns them."""
-    layer = write_layer(mechanism, report)
+    crates = {name: encoded(layer) for name, layer in write_layers(mechanism, report, ".usdc").items()}
+    return Package(crates.pop(""), crates)
+
+
+def encoded(layer: Any) -> bytes:
+    """A layer as the bytes of a crate file."""
     with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
         path = Path(folder) / "stage.usdc"
         layer.Export(str(path))
-        return Package(path.read_bytes())
+        return path.read_bytes()

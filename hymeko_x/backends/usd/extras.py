@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from pxr import Sdf, Tf
 
 from hymeko_x import codes
-from hymeko_x.backends.usd.sheet import apply
+from hymeko_x.backends.usd.prims import set_schemas
 from hymeko_x.formats.usd import FORMAT
 from hymeko_x.ir.mechanism import ROOT, Extra
 
@@ -93,17 +94,29 @@ def _merge(sheet: Sheet, spec: Any, path: Any) -> None:
         there.specifier = spec.specifier
     if spec.typeName and (there.typeName in ("", "Xform") or path not in sheet.made):
         there.typeName = spec.typeName
+    if not spec.typeName and spec.specifier != Sdf.SpecifierOver and path not in sheet.carried:
+        there.ClearInfo("typeName")
+        restored.add("@type")
     if spec.HasInfo("apiSchemas"):
         schemas = spec.GetInfo("apiSchemas").GetAppliedItems()
-        apply(there, *schemas)
+        present = list(there.GetInfo("apiSchemas").GetAppliedItems()) if there.HasInfo("apiSchemas") else []
+        set_schemas(there, [*present, *(schema for schema in schemas if schema not in present)])
         restored.update(f"@{schema}" for schema in schemas)
     for name in spec.ListInfoKeys():
         if name not in ("specifier", "typeName", "apiSchemas"):
             there.SetInfo(name, spec.GetInfo(name))
             restored.add(name)
     for item in spec.properties:
+        if item.name in there.properties and _says_nothing(item):
+            continue
         Sdf.CopySpec(spec.layer, item.path, sheet.layer, path.AppendProperty(item.name))
         restored.add(item.name)
+
+
+def _says_nothing(item: Any) -> bool:
+    """Whether a number is only what it would be anyway, so that a typed value beside it counts."""
+    value = getattr(item, "default", None)
+    return isinstance(value, float) and (value == 0.0 or math.isinf(value))
 
 
 def _new_prim(sheet: Sheet, path: Any) -> Any:

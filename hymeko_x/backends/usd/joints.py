@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from pxr import Gf
+from pxr import Gf, Sdf
 
-from hymeko_x.backends.usd.sheet import T, apply, point, put, quatf
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.sheet import apply, point, put, quatf
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
-from hymeko_x.ir.parts import Dof, DofKind, Loop, Mount
+from hymeko_x.ir.parts import Dof, DofKind, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, scaled, unit_quat
 
 if TYPE_CHECKING:
@@ -26,7 +27,8 @@ _TOKENS = {axis: token for token, axis in words.AXES.items()}
 def write_joints(sheet: Sheet) -> None:
     """Every joint of the tree. A base that floats needs no prim: its body is just where it is."""
     for view in sheet.mechanism.joints.values():
-        if view.parent == WORLD and _floats(view):
+        is_held = not view.joint.dofs and sheet.mechanism.notation(view.id, words.HELD) is not None
+        if view.parent == WORLD and (is_held or _floats(view)):
             _carry_on_body(sheet, view)
         else:
             write_joint(sheet, view)
@@ -59,10 +61,10 @@ def write_joint(sheet: Sheet, view: JointView) -> None:
         dofs = tuple(opposite(dof) for dof in reversed(dofs))
     numbers = range(len(dofs) - 1, -1, -1) if is_turned else range(len(dofs))
     if not dofs or len(dofs) == 1 or sheet.mechanism.notation(view.id, words.TYPE) == GENERIC:
-        spec = sheet.place(view.id, sheet.scope("joints"), _type_of(sheet, view.id, dofs))
-        write_frames(sheet, spec, ends, dofs)
+        spec = sheet.place(view.id, "joints", _type_of(sheet, view.id, dofs))
+        write_frames(sheet, spec, view.id, ends, dofs)
         for number, dof in zip(numbers, dofs, strict=True):
-            sheet.dofs[view.id, number] = (spec.path, axis_name(dof) if spec.typeName == GENERIC else "")
+            sheet.dofs[view.id, number] = (spec.path, axis_name(dof) if spec.kind == GENERIC else "")
         return
     _write_parallel(sheet, view, ends, dofs, list(numbers))
 
@@ -97,14 +99,11 @@ def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: 
     noted = (sheet.mechanism.notation(view.id, words.PATH) or "").split()
     for place, (number, dof) in enumerate(zip(numbers, dofs, strict=True)):
         name = dof.name or f"{view.id.name}_{place + 1}"
-        path = sheet.free_path(sheet.scope("joints"), name)
-        if len(noted) == len(dofs) and not sheet.layer.GetPrimAtPath(noted[place]):
-            from pxr import Sdf
-
-            path = Sdf.Path(noted[place])
+        is_free = len(noted) == len(dofs) and Sdf.Path.IsValidPathString(noted[place]) and Sdf.Path(noted[place]) not in sheet.prims
+        path = Sdf.Path(noted[place]) if is_free else sheet.free_path(sheet.scope("joints"), name)
         spec = sheet.define(path, _TYPES.get(dof.kind, GENERIC), name)
-        sheet.made.setdefault(path, []).extend(["displayName"] if spec.HasInfo("displayName") else [])
-        write_frames(sheet, spec, ends, (dof,))
+        sheet.made.setdefault(path, []).extend(["displayName"] if "displayName" in spec.info else [])
+        write_frames(sheet, spec, view.id, ends, (dof,))
         sheet.dofs[view.id, number] = (path, "")
         if place == 0:
             sheet.homes[view.id] = path
@@ -116,23 +115,31 @@ def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: 
 # ---- one prim ------------------------------------------------------------------------------------------------------------------
 
 
-def write_frames(sheet: Sheet, spec: Any, ends: tuple[End, End], dofs: tuple[Dof, ...]) -> None:
+def write_frames(sheet: Sheet, spec: Any, key: Id, ends: tuple[End, End], dofs: tuple[Dof, ...]) -> None:
     """Bodies, local frames, axis and limits. An axis that is none of x, y, z turns both frames so that it is their x."""
-    turn, token = _turn(dofs[0]) if len(dofs) == 1 and spec.typeName not in (GENERIC, _TYPES[DofKind.BALL]) else (IDENTITY.quat, "X")
+    turn, token = _turn(dofs[0]) if len(dofs) == 1 and spec.kind not in (GENERIC, _TYPES[DofKind.BALL]) else (IDENTITY.quat, "X")
     anchor = dofs[0].anchor if len(dofs) == 1 else (0.0, 0.0, 0.0)
     for side, (body, pose) in enumerate(ends):
-        if body != WORLD and body in sheet.homes:
-            point(spec, f"physics:body{side}", sheet.homes[body])
+        _write_end(sheet, spec, side, body, key)
         frame = compose(pose, Pose(anchor, turn)) if any(anchor) or turn != IDENTITY.quat else pose
-        put(spec, f"physics:localPos{side}", T.Point3f, Gf.Vec3f(*frame.xyz))
+        put(spec, f"physics:localPos{side}", T.Point3f, Gf.Vec3f(*sheet.shrunk(body, frame.xyz)))
         put(spec, f"physics:localRot{side}", T.Quatf, quatf(frame.quat))
-    if spec.typeName == GENERIC:
+    if spec.kind == GENERIC:
         _write_generic(spec, dofs)
     elif len(dofs) == 1 and dofs[0].kind in (DofKind.HINGE, DofKind.SLIDE):
         put(spec, "physics:axis", T.Token, token)
         _write_limits(spec, dofs[0])
     for dof in dofs[:1]:
         write_behaviour(spec, dof)
+
+
+def _write_end(sheet: Sheet, spec: Any, side: int, body: Id, key: Id) -> None:
+    """The body of one side; for the world none, or the group without a place of its own that stood for it."""
+    if body != WORLD and body in sheet.homes:
+        point(spec, f"physics:body{side}", sheet.homes[body])
+    noted = sheet.mechanism.notation(key, words.GROUND[side]) if body == WORLD else None
+    if noted is not None and Sdf.Path.IsValidPathString(noted) and Sdf.Path(noted) in sheet.prims:
+        point(spec, f"physics:body{side}", Sdf.Path(noted))
 
 
 def _turn(dof: Dof) -> tuple[Quat, str]:
@@ -170,7 +177,7 @@ def _write_generic(spec: Any, dofs: tuple[Dof, ...]) -> None:
         dof = said.get(name)
         if dof is None or dof.limits.lower is not None or dof.limits.upper is not None:
             apply(spec, f"PhysicsLimitAPI:{name}")
-        low, high = (1.0, -1.0) if dof is None else (dof.limits.lower, dof.limits.upper)
+        low, high = words.LOCKED if dof is None else (dof.limits.lower, dof.limits.upper)
         for end, value in (("low", low), ("high", high)):
             if value is not None:
                 put(spec, f"limit:{name}:physics:{end}", T.Float, value if dof is None else _coordinate(dof, value))
@@ -217,8 +224,8 @@ def write_loops(sheet: Sheet) -> None:
         ends = [_closure_end(arc, frames) for arc in arcs]
         if len(ends) != 2 or any(body != WORLD and body not in sheet.homes for body, _ in ends):
             continue
-        spec = sheet.place(key, sheet.scope("joints"), _loop_type(sheet, key, loop))
-        write_frames(sheet, spec, (ends[0], ends[1]), loop.dofs)
+        spec = sheet.place(key, "joints", _loop_type(sheet, key, loop))
+        write_frames(sheet, spec, key, (ends[0], ends[1]), loop.dofs)
         if sheet.mechanism.notation(key, "usd.articulated") is None:
             put(spec, "physics:excludeFromArticulation", T.Bool, True)
         if not loop.active:
@@ -240,13 +247,7 @@ def _loop_type(sheet: Sheet, key: Id, loop: Loop) -> str:
 
 def _frames(sheet: Sheet) -> dict[Id, End]:
     """The body and pose of each thing that is mounted somewhere."""
-    found: dict[Id, End] = {}
-    for _, _, arcs in sheet.mechanism.edges(Mount):
-        body = next((arc for arc in arcs if arc.sign > 0), None)
-        thing = next((arc for arc in arcs if arc.sign < 0), None)
-        if body is not None and thing is not None:
-            found[thing.target] = (body.target, pose_weight(body))
-    return found
+    return {view.thing: (view.body, view.pose) for views in sheet.mechanism.mounts.values() for view in views}
 
 
 def _closure_end(arc: RobotArc, frames: dict[Id, End]) -> End:

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf
 
-from hymeko_x.backends.usd.sheet import T, put
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.sheet import connect, put
 from hymeko_x.formats.usd import FORMAT
 from hymeko_x.ir.parts import Layer, Material, Texture
 
@@ -19,7 +20,7 @@ def write_materials(sheet: Sheet) -> None:
     """Every material; one whose shader network was kept as it is gets that network back instead."""
     images = _images(sheet)
     for key, material in sheet.mechanism.vertices(Material):
-        spec = sheet.place(key, sheet.scope("materials"), "Material", material.name)
+        spec = sheet.place(key, "materials", "Material", material.name)
         has_own = any(extra.format == FORMAT and extra.path for extra in sheet.mechanism.extras.get(key, ()))
         if not has_own:
             _write_surface(sheet, spec, material, images.get(key))
@@ -39,9 +40,8 @@ def _images(sheet: Sheet) -> dict[Id, tuple[Id, Texture]]:
 
 def _write_surface(sheet: Sheet, spec: Any, material: Material, image: tuple[Id, Texture] | None) -> None:
     shader = _shader(sheet, spec, "surface", "UsdPreviewSurface")
-    output = Sdf.AttributeSpec(shader, "outputs:surface", T.Token)
-    surface = Sdf.AttributeSpec(spec, "outputs:surface", T.Token)
-    surface.connectionPathList.explicitItems = [output.path]
+    put(shader, "outputs:surface", T.Token, None)
+    connect(spec, "outputs:surface", T.Token, shader, "outputs:surface")
     if material.rgba is not None and image is None:
         put(shader, "inputs:diffuseColor", T.Color3f, Gf.Vec3f(*material.rgba[:3]))
     if material.rgba is not None:
@@ -56,12 +56,12 @@ def _write_surface(sheet: Sheet, spec: Any, material: Material, image: tuple[Id,
 def _write_image(sheet: Sheet, spec: Any, shader: Any, texture: Texture) -> None:
     coordinates = _shader(sheet, spec, "coordinates", "UsdPrimvarReader_float2")
     put(coordinates, "inputs:varname", T.String, "st")
-    place = Sdf.AttributeSpec(coordinates, "outputs:result", T.Float2)
+    put(coordinates, "outputs:result", T.Float2, None)
     image = _shader(sheet, spec, "image", "UsdUVTexture")
     put(image, "inputs:file", T.Asset, Sdf.AssetPath(texture.uri or ""))
-    Sdf.AttributeSpec(image, "inputs:st", T.Float2).connectionPathList.explicitItems = [place.path]
-    colour = Sdf.AttributeSpec(image, "outputs:rgb", T.Float3)
-    Sdf.AttributeSpec(shader, "inputs:diffuseColor", T.Color3f).connectionPathList.explicitItems = [colour.path]
+    connect(image, "inputs:st", T.Float2, coordinates, "outputs:result")
+    put(image, "outputs:rgb", T.Float3, None)
+    connect(shader, "inputs:diffuseColor", T.Color3f, image, "outputs:rgb")
 
 
 def _shader(sheet: Sheet, spec: Any, name: str, kind: str) -> Any:

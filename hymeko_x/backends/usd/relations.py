@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.backends.usd.sheet import T, apply, point, put
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.sheet import apply, point, put
+from hymeko_x.formats import usd as words
 from hymeko_x.ir.parts import Actuator, Coupling, DofKind, Drive, Joint
 
 if TYPE_CHECKING:
@@ -56,11 +58,11 @@ def dof_of(sheet: Sheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
     place = sheet.dofs.get((arc.target, number)) if number is not None else None
     if place is None or number is None or edge.data.dofs[number].kind not in (DofKind.HINGE, DofKind.SLIDE):
         return None
-    return sheet.layer.GetPrimAtPath(place[0]), place[1], edge.data.dofs[number]
+    return sheet.prims[place[0]], place[1], edge.data.dofs[number]
 
 
 def write_mimics(sheet: Sheet) -> None:
-    """Each affine coupling with one leader as Newton's mimic; the constant of a hinge in degrees."""
+    """Each coupling with one leader as Newton's mimic; the constant of a hinge in degrees. MuJoCo's schema has powers up to four."""
     for key, coupling, arcs in sheet.mechanism.edges(Coupling):
         follower = next((arc for arc in arcs if arc.sign > 0), None)
         leaders = [arc for arc in arcs if arc.sign < 0]
@@ -68,9 +70,15 @@ def write_mimics(sheet: Sheet) -> None:
             continue
         here, there = dof_of(sheet, follower), dof_of(sheet, leaders[0])
         weight = leaders[0].weight if isinstance(leaders[0].weight, tuple) else (0.0, 1.0)
-        if here is None or there is None or len(weight) > 2 or here[0].relationships.get("newton:mimicJoint"):
+        if here is None or there is None or len(weight) > 5 or "newton:mimicJoint" in here[0].targets:
             continue
-        _write_mimic(here[0], there[0].path, here[2], weight, coupling.active)
+        if sheet.mechanism.notation(key, words.EQUALITY) is None:
+            _write_mimic(here[0], there[0].path, here[2], weight, coupling.active)
+            _write_powers(here[0], weight, 2)
+        else:
+            apply(here[0], "MjcEqualityJointAPI")
+            point(here[0], "mjc:target", there[0].path)
+            _write_powers(here[0], weight, 0)
         if "coupling" not in sheet.carried[here[0].path]:
             sheet.carried[here[0].path]["coupling"] = key
             sheet.homes[key] = here[0].path
@@ -84,3 +92,11 @@ def _write_mimic(spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is
     put(spec, "newton:mimicCoef1", T.Float, weight[1] if len(weight) > 1 else 0.0)
     if not is_active:
         put(spec, "newton:mimicEnabled", T.Bool, False)
+
+
+def _write_powers(spec: Any, weight: tuple[float, ...], first: int) -> None:
+    """The coefficients of MuJoCo's schema from this power on; the default is 1 for the first power, else 0."""
+    said = [(power, value) for power, value in enumerate(weight) if power >= first and value != (1.0 if power == 1 else 0.0)]
+    for power, value in said:
+        apply(spec, "MjcEqualityJointAPI")
+        put(spec, f"mjc:coef{power}", T.Double, value)

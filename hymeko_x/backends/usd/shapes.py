@@ -6,14 +6,17 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Vt
 
-from hymeko_x.backends.usd.sheet import T, apply, point, put, transform
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.sheet import apply, point, put
 from hymeko_x.formats import usd as words
+from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.ir.mechanism import WORLD
-from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, MeshShape, NoShape, Plane, Role, Sphere
+from hymeko_x.ir.parts import Mesh, MeshShape, Role
+from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_inverse
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import Sheet
-    from hymeko_x.ir.mechanism import Id, ShapeView
+    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.values import Vec3
 
 
@@ -29,13 +32,33 @@ def write_shapes(sheet: Sheet) -> None:
         write_shape(sheet, view, users, shared)
 
 
+def skin_pose(view: ShapeView, prim: gprims.Gprim | None) -> Pose:
+    """Where the prim of a shape is in its body: a primitive along another axis than z is turned back."""
+    turn = NO_ROTATION if prim is None else gprims.meaning(prim).turn
+    return view.pose if turn == NO_ROTATION else compose(view.pose, Pose(quat=quat_inverse(turn)))
+
+
+def _unless_one(scale: Vec3) -> Vec3 | None:
+    return None if scale == (1.0, 1.0, 1.0) else scale
+
+
 def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dict[Id, Any]) -> None:
     """One gprim with its pose, size, purpose, colour and material."""
     body = sheet.root if view.body == WORLD else sheet.homes[view.body]
-    spec = sheet.place(view.id, body, "Xform", view.shape.name or view.shape.role.value, below=view.body != WORLD)
-    scale = _write_geometry(sheet, spec, view, users, shared)
-    transform(spec, view.pose, scale)
-    if spec.typeName == "Xform":
+    prim = gprim_of(sheet.mechanism, view)
+    is_body = sheet.skins.get(view.body) == view.id
+    if is_body:
+        spec = sheet.prims[body]
+        sheet.homes[view.id] = body
+        sheet.carried[body]["shape"] = view.id
+    else:
+        spec = sheet.place(view.id, body, "Xform", view.shape.name or view.shape.role.value, below=view.body != WORLD)
+    if prim is not None:
+        _write_primitive(sheet, spec, prim)
+    scale = _write_mesh_shape(sheet, spec, view, users, shared) if isinstance(view.shape.geometry, MeshShape) else None
+    if not is_body:
+        sheet.move(spec, skin_pose(view, prim), scale if prim is None else _unless_one(prim.scale), on=view.body)
+    if spec.kind == "Xform":
         sheet.made[spec.path].append("@spec")
     if view.shape.role is not Role.VISUAL:
         apply(spec, "PhysicsCollisionAPI")
@@ -48,45 +71,24 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
     _write_looks(sheet, spec, view)
 
 
-def _write_geometry(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, int], shared: dict[Id, Any]) -> Vec3 | None:
-    """The type and sizes of the gprim; returns the scale that its transformation needs. Sizes in m."""
-    match view.shape.geometry:
-        case Box(size):
-            spec.typeName = "Cube"
-            put(spec, "size", T.Double, 1.0)
-            _extent(spec, (0.5, 0.5, 0.5))
-            return size
-        case Sphere(radius):
-            spec.typeName = "Sphere"
-            put(spec, "radius", T.Double, radius)
-            _extent(spec, (radius, radius, radius))
-        case Ellipsoid(radii):
-            spec.typeName = "Sphere"
-            put(spec, "radius", T.Double, 1.0)
-            _extent(spec, (1.0, 1.0, 1.0))
-            return radii
-        case Cylinder(radius, length) | Capsule(radius, length) as round_:
-            is_capsule = isinstance(round_, Capsule)
-            spec.typeName = "Capsule" if is_capsule else "Cylinder"
-            put(spec, "axis", T.Token, "Z")
-            put(spec, "radius", T.Double, radius)
-            put(spec, "height", T.Double, length)
-            _extent(spec, (radius, radius, length / 2 + (radius if is_capsule else 0.0)))
-        case Plane((x, y)):
-            spec.typeName = "Plane"
-            put(spec, "axis", T.Token, "Z")
-            put(spec, "width", T.Double, 2 * x)
-            put(spec, "length", T.Double, 2 * y)
-            _extent(spec, (x, y, 0.0))
-        case MeshShape():
-            return _write_mesh_shape(sheet, spec, view, users, shared)
-        case NoShape():
-            pass
-    return None
+def gprim_of(mechanism: Mechanism, view: ShapeView) -> gprims.Gprim | None:
+    """The primitive of a shape: as its author wrote it where that still means the same, else the plainest one."""
+    noted = gprims.parse(mechanism.notation(view.id, gprims.NOTATION))
+    if noted is not None and gprims.meaning(noted).geometry == view.shape.geometry:
+        return noted
+    return gprims.chosen(view.shape.geometry)
 
 
-def _extent(spec: Any, half: Vec3) -> None:
+def _write_primitive(sheet: Sheet, spec: Any, prim: gprims.Gprim) -> None:
+    """Type, sizes, axis and the box around it."""
+    spec.kind = prim.kind
+    for (name, _), value in zip(gprims.SIZES[prim.kind], prim.sizes, strict=True):
+        put(spec, name, T.Double, value)
+    if prim.is_axial:
+        put(spec, "axis", T.Token, prim.axis)
+    half = gprims.half_extent(prim)
     put(spec, "extent", T.Float3Array, Vt.Vec3fArray([Gf.Vec3f(*(-value for value in half)), Gf.Vec3f(*half)]))
+    sheet.made[spec.path].append("extent")
 
 
 # ---- meshes --------------------------------------------------------------------------------------------------------------------
@@ -104,8 +106,8 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
         if view.mesh not in shared:
             shared[view.mesh] = _write_prototype(sheet, view.mesh, mesh)
             _carry_mesh(sheet, spec, view.mesh)
-        spec.typeName = "Mesh"
-        spec.referenceList.prependedItems = [Sdf.Reference(primPath=shared[view.mesh])]
+        spec.kind = "Mesh"
+        spec.reference = shared[view.mesh]
     sheet.made[spec.path].append("subdivisionScheme")
     return None if mesh.scale == (1.0, 1.0, 1.0) or not is_drawable(mesh) else mesh.scale
 
@@ -119,7 +121,7 @@ def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
 def _write_prototype(sheet: Sheet, key: Id, mesh: Mesh) -> Any:
     """A mesh that is shown several times: a class, which is seen only through references to it."""
     scope = sheet.root.AppendChild("meshes")
-    if not sheet.layer.GetPrimAtPath(scope):
+    if scope not in sheet.prims:
         group = sheet.define(scope, "Scope")
         group.specifier = Sdf.SpecifierClass
         put(group, f"{words.PREFIX}scope", T.Bool, True)
@@ -148,7 +150,7 @@ def _write_points(spec: Any, mesh: Mesh) -> None:
         return
     points = np.asarray(mesh.vertices, dtype=np.float32).reshape(-1, 3)
     faces = np.asarray(mesh.faces, dtype=np.int32)
-    spec.typeName = "Mesh"
+    spec.kind = "Mesh"
     put(spec, "points", T.Point3fArray, Vt.Vec3fArray.FromNumpy(points))
     put(spec, "faceVertexCounts", T.IntArray, Vt.IntArray.FromNumpy(np.full(len(faces) // 3, 3, dtype=np.int32)))
     put(spec, "faceVertexIndices", T.IntArray, Vt.IntArray.FromNumpy(faces))

@@ -11,26 +11,28 @@ from typing import TYPE_CHECKING, TypeGuard, cast
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, refuse
-from hymeko_x.formats.hymeko import ALIASES, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
-from hymeko_x.frontends.hymeko.block import Block, Context, read_extra, read_units, read_written
+from hymeko_x.formats.attached import TEXTURE, attached_edge, attached_key
+from hymeko_x.formats.hymeko import ALIASES, ATTACHED, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
+from hymeko_x.frontends.hymeko.block import Block, Context, is_written, read_units, read_written, read_written_block
 from hymeko_x.frontends.hymeko.bodies import build_uri, read_body
 from hymeko_x.frontends.hymeko.build import Build
+from hymeko_x.frontends.hymeko.foreign import is_foreign, read_extra, read_foreign
 from hymeko_x.frontends.hymeko.infer import infer_kinds
 from hymeko_x.frontends.hymeko.joints import read_dofs, read_joint, read_limits, unit_axis
 from hymeko_x.ir import parts
+from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
 from hymeko_x.language.excerpts import with_excerpt
 from hymeko_x.language.expand import Element, Expanded, expand
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
-from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, QuotedName
+from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, QuotedName, Ref
 
 if TYPE_CHECKING:
     from collections.abc import Container
 
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.graph import Arc
-    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc
     from hymeko_x.language.syntax import Item
     from hymeko_x.source import Source
 
@@ -62,9 +64,9 @@ def read(source: Source, report: Report) -> Mechanism:
 def build(expanded: Expanded, file: str, report: Report) -> Mechanism:
     """The mechanism of an expanded text."""
     build = Build(_context(expanded, file, report))
-    elements = [item for item in expanded.items if isinstance(item, Element) and not _is_units(item.node)]
+    elements = [item for item in expanded.items if isinstance(item, Element) and not _is_about_the_whole(item.node)]
     kinds = infer_kinds(expanded, elements)
-    _read_settings(build, expanded)
+    _read_settings(build, expanded, kinds)
     declared = _declare(build, expanded, kinds)
     for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _WITH_SHAPES):
         _read_element(build, key, element)
@@ -88,12 +90,15 @@ def _is_units(node: Node) -> bool:
     return node.name == "units" and not isinstance(node.name, QuotedName) and not node.edge and not node.stereotypes
 
 
-def _read_settings(build: Build, expanded: Expanded) -> None:
+def _read_settings(build: Build, expanded: Expanded, kinds: list[str]) -> None:
     """Fields that stand in the root itself: the prefix of files, and what a format said about the whole mechanism."""
     place = 0
+    remaining = iter(kinds)
     for item in expanded.items:
-        if isinstance(item, Element):
-            place += not _is_units(item.node)
+        if isinstance(item, Element) and _is_about_the_whole(item.node):
+            place += _read_block(build, item.node, place)
+        elif isinstance(item, Element):
+            place += 1 + _has_attached(next(remaining), item.node)
         elif isinstance(item.item, Field):
             place += _read_setting(build, item.item, place)
         else:
@@ -103,6 +108,23 @@ def _read_settings(build: Build, expanded: Expanded) -> None:
         _keep(build, Extra("comment", "preceding", comment.text, number))
     for number, comment in enumerate(expanded.following):
         _keep(build, Extra("comment", "following", comment.text, number))
+
+
+def _is_about_the_whole(node: Node) -> bool:
+    return _is_units(node) or is_written(node) or (is_foreign(node) and not node.stereotypes)
+
+
+def _read_block(build: Build, node: Node, place: int) -> int:
+    """A block in the root: returns how many places it takes, which for that of a format are the elements in it."""
+    if _is_units(node):
+        return 0
+    if is_written(node):
+        build.notations.setdefault(ROOT, {}).update(read_written_block(node, build.context))
+        return 0
+    found = read_foreign(node, build.context, at_root=True, place=place)
+    for extra in found:
+        _keep(build, extra)
+    return sum(not extra.path for extra in found)
 
 
 def _keep(build: Build, extra: Extra) -> None:
@@ -169,7 +191,7 @@ def _declare(build: Build, expanded: Expanded, kinds: list[str]) -> list[tuple[I
             if isinstance(element.item, Field) and not _is_setting(element.item):
                 _read_loose(build, element.item)
             continue
-        if _is_units(element.node):
+        if _is_about_the_whole(element.node):
             continue
         kind = next(remaining)
         if kind == "axis":
@@ -181,7 +203,24 @@ def _declare(build: Build, expanded: Expanded, kinds: list[str]) -> list[tuple[I
             declared.append((WORLD, element))
             continue
         declared.append((build.declare(kind, element), element))
+        _declare_attached(build, declared[-1][0], element)
     return declared
+
+
+def _declare_attached(build: Build, key: Id, element: Element) -> None:
+    """The edge that the arcs in a vertex's block stand for takes the place behind it."""
+    edge = attached_key(key)
+    if edge is not None and _has_attached(key.kind, element.node):
+        build.layout.append(build.reserve(*edge, element.node))
+
+
+def _has_attached(kind: str, node: Node) -> bool:
+    """Whether a vertex's block says the edge that puts it to use."""
+    return kind in ATTACHED and any(isinstance(item, ArcItem) or _is_texture(kind, item) for item in node.items)
+
+
+def _is_texture(kind: str, item: Item) -> bool:
+    return kind == "material" and _is_field(item, (TEXTURE,))
 
 
 def _direction(build: Build, element: Element) -> tuple[float, float, float]:
@@ -224,11 +263,14 @@ def _without(element: Element, name: str) -> Element:
 def _read_part(build: Build, key: Id, element: Element) -> None:
     """A vertex or edge that its words describe completely (formats/hymeko.py)."""
     words = PARTS[key.kind]
+    arcs = _attached_arcs(build, key, element)
     block = Block(_renamed(element.node.items, key.kind), build.context, open=words.open)
     block.take("kind")
     values = block.take_words(words.words)
-    if key.kind in NAMED_AFTER_ID and block.take("unnamed") is None:
-        values.setdefault("name", key.name)
+    if key.kind in NAMED_AFTER_ID:
+        if not block.unnamed:
+            values.setdefault("name", key.name)
+        block.unnamed = False
     if isinstance(uri := values.get("uri"), str):
         values["uri"] = build_uri(build, uri)
     if key.kind == "tendon":
@@ -248,11 +290,32 @@ def _read_part(build: Build, key: Id, element: Element) -> None:
         build.add_edge(key, part, arcs)
     else:
         build.vertices[key] = part
+        edge = attached_key(key)
+        if arcs and edge is not None:
+            build.edges[edge] = attached_edge(key, arcs)
+            block.arcs = []
+            block.take(TEXTURE)
     block.rest(str(key))
     build.keep(key, block)
 
 
-def _arc(build: Build, key: Id, item: object, element: Element) -> Arc[Id, parts.Weight]:
+def _attached_arcs(build: Build, key: Id, element: Element) -> tuple[RobotArc, ...]:
+    """The arcs in a vertex's block, of the edge that puts it to use."""
+    edge = attached_key(key)
+    if edge is None:
+        return ()
+    found: list[RobotArc] = []
+    for item in element.node.items:
+        if isinstance(item, ArcItem):
+            found.append(build.arc(edge.kind, item, element.scope))
+        elif _is_texture(key.kind, item) and isinstance(item, Field):
+            if not isinstance(item.value, Ref):
+                raise build.context.refuse(item, "'texture' takes a reference: texture=grid")
+            found.append(Arc(build.target(item.value, element.scope, ("texture",), item), 1))
+    return tuple(found)
+
+
+def _arc(build: Build, key: Id, item: object, element: Element) -> RobotArc:
     return build.arc(key.kind, cast("ArcItem", item), element.scope)
 
 

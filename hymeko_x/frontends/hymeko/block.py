@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, cast
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.hymeko import FOREIGN
+from hymeko_x.frontends.hymeko.foreign import is_foreign, read_extras, read_foreign, read_text
 from hymeko_x.ir.mechanism import Extra
 from hymeko_x.ir.values import Pose, Vec3, Written, pose, pose_from_rpy
 from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
-from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, QuotedName, Ref, Value, is_list
+from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, Quantity, QuotedName, Ref, Value, is_list
 from hymeko_x.language.units import BASE_UNITS, unit_dimension, unit_factor
 
 if TYPE_CHECKING:
@@ -167,13 +168,26 @@ class Block:
         self.extras: list[Extra] = []
         self.written: dict[str, str] = {}
         self.classes: tuple[str, ...] = ()
+        self.unnamed = False
+        self._comments = 0
         for item in items:
             if isinstance(item, Field):
                 self._field(item)
             elif isinstance(item, Node):
-                self.nodes.append(item)
+                self._node(item)
             elif isinstance(item, ArcItem):
                 self.arcs.append(item)
+            elif isinstance(item, Comment):
+                self._comments += 1
+                self.extras.append(Extra("comment", "", item.text, self._comments - 1))
+
+    def _node(self, item: Node) -> None:
+        if is_foreign(item):
+            self.extras += read_foreign(item, self.context)
+        elif is_written(item):
+            self.written.update(read_written_block(item, self.context))
+        else:
+            self.nodes.append(item)
 
     def _field(self, item: Field) -> None:
         if self.free is not None:
@@ -186,6 +200,8 @@ class Block:
             self.classes = read_classes(item, self.context)
         elif item.name == "written":
             self.written.update(read_written(item, self.context))
+        elif item.name == "unnamed" and item.value is None:
+            self.unnamed = True
         elif item.name in self.fields and self.free is None:
             raise self.context.refuse(
                 item, f"'{item.name}' is given twice", hint=f"it is first given in line {self.fields[item.name].line}"
@@ -280,33 +296,6 @@ class Block:
             self.extras.append(Extra("hymeko", "", print_item(item)))
 
 
-def read_extras(item: Field, context: Context) -> list[Extra]:
-    """What one field keeps: :func:`read_extra`, or several attributes, ``mjcf ["@condim" "1" "@group" "2"]``."""
-    values = cast("tuple[Value, ...]", item.value) if is_list(item.value) else ()
-    if item.name == "extra" or len(values) < 4 or len(values) % 2:
-        return [read_extra(item, context)]
-    texts = [context.text(value, item) for value in values]
-    if not all(path.startswith("@") for path in texts[::2]):
-        return [read_extra(item, context)]
-    return [Extra(item.name, path, text) for path, text in zip(texts[::2], texts[1::2], strict=True)]
-
-
-def read_extra(item: Field, context: Context) -> Extra:
-    """``urdf "<x/>"``, ``urdf ["path" "text"]``, ``urdf ["path" 3 "text"]``, or ``extra ["format" "path" 3 "text"]``."""
-    value = item.value
-    parts = list(cast("tuple[Value, ...]", value)) if is_list(value) else [value]
-    name = item.name
-    if name == "extra" and parts:
-        name = context.text(parts.pop(0), item)
-    if len(parts) == 1:
-        return Extra(name, "", context.text(parts[0], item))
-    if len(parts) == 2:
-        return Extra(name, context.text(parts[0], item), context.text(parts[1], item))
-    if len(parts) == 3:
-        return Extra(name, context.text(parts[0], item), context.text(parts[2], item), int(context.number(parts[1], "", item)))
-    raise context.refuse(item, f"'{item.name}' takes a text, [path text] or [path place text]")
-
-
 def read_classes(item: Field, context: Context) -> tuple[str, ...]:
     """``class "a"`` or, of a joint with several dofs, ``class ["a" "" "b"]``."""
     values = cast("tuple[Value, ...]", item.value) if is_list(item.value) else (item.value,)
@@ -319,6 +308,16 @@ def read_written(item: Field, context: Context) -> dict[str, str]:
         raise context.refuse(item, "'written' takes a list of keys and texts")
     texts = [context.text(part, item) for part in cast("tuple[Value, ...]", item.value)]
     return dict(zip(texts[::2], texts[1::2], strict=True))
+
+
+def is_written(node: Node) -> bool:
+    """Whether it is the block ``written { .. }``."""
+    return node.name == "written" and not node.edge and not isinstance(node.name, QuotedName) and not node.stereotypes
+
+
+def read_written_block(node: Node, context: Context) -> dict[str, str]:
+    """``written { key text .. }``."""
+    return {str(item.name): read_text(item, context) for item in node.items if isinstance(item, Field)}
 
 
 def read_units(node: Node, context: Context) -> dict[str, float]:

@@ -10,9 +10,11 @@ from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, file_stem, shape_edge
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Tensor, Vec3, rotate_tensor
+from hymeko_x.ir.written import length_of
 from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_list
 
 if TYPE_CHECKING:
+    from hymeko_x.frontends.hymeko.block import Context
     from hymeko_x.frontends.hymeko.build import Build
     from hymeko_x.language.expand import Element, Scope
     from hymeko_x.language.syntax import Value
@@ -127,7 +129,7 @@ def _read_shape(build: Build, body: Id, item: object, place: Pose, scope: Scope)
     role = _ROLES[word]
     key = _shape_id(build, body, role, shape_id, item)
     pose = _shape_pose(block, place)
-    geometry, mesh = _geometry(build, block, key, scope)
+    geometry, mesh = _geometry(build, block, key, scope, pose)
     material = _material(build, block, key, scope)
     shape = parts.Shape(geometry, role, **block.take_words(SHAPE_WORDS))  # type: ignore[arg-type]
     build.edges[key] = shape_edge(shape, body, pose, mesh, material)
@@ -142,7 +144,9 @@ def _shape_id(build: Build, body: Id, role: parts.Role, given: str | None, item:
 
 
 def _shape_pose(block: Block, place: Pose) -> Pose:
-    at = block.take("at")
+    at, ends = block.take("at"), block.take("fromto")
+    if ends is not None:
+        return block.context.pose(("fromto", cast("Value", ends.value)), ends)
     if at is not None:
         return block.context.pose(at.value, at)
     own = _place(block)
@@ -151,7 +155,7 @@ def _shape_pose(block: Block, place: Pose) -> Pose:
     return Pose(own.xyz if own.xyz != ZERO else place.xyz, own.quat, own.written)
 
 
-def _geometry(build: Build, block: Block, key: Id, scope: Scope) -> tuple[parts.Geometry, Id | None]:
+def _geometry(build: Build, block: Block, key: Id, scope: Scope, pose: Pose) -> tuple[parts.Geometry, Id | None]:
     context = block.context
     if (item := block.take("mesh")) is not None:
         if isinstance(item.value, Ref):
@@ -166,13 +170,20 @@ def _geometry(build: Build, block: Block, key: Id, scope: Scope) -> tuple[parts.
     if (item := block.take("ellipsoid")) is not None:
         return parts.Ellipsoid(context.vec3(item.value, "length", item)), None
     if (item := block.take("cylinder")) is not None:
-        return parts.Cylinder(*context.numbers(item.value, "length", item, 2)), None
+        return parts.Cylinder(*_round(context, item, pose)), None
     if (item := block.take("capsule")) is not None:
-        return parts.Capsule(*context.numbers(item.value, "length", item, 2)), None
+        return parts.Capsule(*_round(context, item, pose)), None
     if (item := block.take("plane")) is not None:
         x, y = context.numbers(item.value, "length", item, 2)
         return parts.Plane((x, y)), None
     return _described_geometry(block, key)
+
+
+def _round(context: Context, item: Field, pose: Pose) -> tuple[float, ...]:
+    """Radius and length: ``[r l]``, or ``r`` alone where two points tell the length."""
+    if pose.written is not None and pose.written.kind == "fromto" and not is_list(item.value):
+        return (context.number(item.value, "length", item), length_of(pose.written))
+    return context.numbers(item.value, "length", item, 2)
 
 
 def _described_geometry(block: Block, key: Id) -> tuple[parts.Geometry, None]:

@@ -9,8 +9,9 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
-from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id, Mechanism, Names
+from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Extra, Id, Mechanism, Names
 from hymeko_x.ir.parts import EdgePart, VertexPart, Weight, World
+from hymeko_x.language.expand import standard_templates
 from hymeko_x.language.syntax import ArcItem, QuotedName, is_list
 
 if TYPE_CHECKING:
@@ -52,10 +53,9 @@ class Build:
         """
         key = self.reserve(kind, element.name, element.node)
         self.layout.append(key)
-        if element.types:
-            own = tuple(name for name in element.types if name != kind)
-            if own:
-                self.stereotypes[key] = own
+        own = tuple(name for name in element.types if name not in standard_templates())
+        if own and "mjcf" not in self.notations.get(ROOT, ()):  # whose classes are said apart
+            self.stereotypes[key] = own
         return key
 
     def reserve(self, kind: str, name: str, item: Item) -> Id:
@@ -88,8 +88,9 @@ class Build:
             self.extras[key] = (*self.extras.get(key, ()), *block.extras)
         if block.classes:
             self.stereotypes[key] = block.classes
-        if block.written:
-            self.notations[key] = {**self.notations.get(key, {}), **block.written}
+        written = {**({"unnamed": "yes"} if block.unnamed else {}), **block.written}
+        if written:
+            self.notations[key] = {**self.notations.get(key, {}), **written}
 
     # ---- references --------------------------------------------------------------------------------------------------------
 

@@ -54,13 +54,14 @@ def read_worldbody(sections: list[Element], draft: Draft) -> None:
 
 def _read_world(element: Element, draft: Draft) -> list[tuple[Element, Spot | None]]:
     childclass = element.attributes.get("childclass")
-    below = _read_content(element, Spot(WORLD, childclass=childclass), draft)
+    below = _read_content(element, Spot(WORLD, WORLD.name, childclass=childclass), draft)
     draft.keep(element, WORLD)
     return below
 
 
 def _read_body(element: Element, spot: Spot, draft: Draft) -> list[tuple[Element, Spot | None]]:
-    key = draft.own(element, "body", f"{spot.body.name}_body")
+    stem = element.attributes.get("name") or spot.stem
+    key = draft.own(element, "body", f"{spot.stem}_body")
     childclass = element.take("childclass")
     if childclass is not None:
         draft.note(key, "childclass", childclass)
@@ -70,7 +71,7 @@ def _read_body(element: Element, spot: Spot, draft: Draft) -> list[tuple[Element
     pose = placed(draft.values(element, (POSE,), {}, key, always=bool(spot.frame))["pose"], spot)
     draft.vertices[key] = Body(_read_inertial(element, key, draft))
     draft.show(key)
-    here = Spot(key, childclass=childclass or spot.childclass)
+    here = Spot(key, stem, childclass=childclass or spot.childclass)
     below = _read_content(element, here, draft, joined=(spot.body, pose))
     draft.keep(element, key)
     return below
@@ -136,4 +137,4 @@ def _read_frame(element: Element, spot: Spot, number: str, draft: Draft) -> Spot
         pose = POSE.read(element.attributes, draft.settings)
     except BadAttribute as error:
         raise draft.bad(element, error) from error
-    return Spot(spot.body, number, compose(spot.pose, pose), element.attributes.get("childclass", spot.childclass))
+    return Spot(spot.body, spot.stem, number, compose(spot.pose, pose), element.attributes.get("childclass", spot.childclass))

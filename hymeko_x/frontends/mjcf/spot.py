@@ -13,9 +13,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Spot:
-    """The body of an element, the <frame> around it (its number, empty for none) with its pose in the body, and the childclass."""
+    """The body of an element, the <frame> around it (its number, empty for none) with its pose in the body, and the childclass.
+
+    ``stem``: the nearest name above, after which nameless bodies are called; so their names do not grow with depth.
+    """
 
     body: Id
+    stem: str
     frame: str = ""
     pose: Pose = IDENTITY
     childclass: str | None = None

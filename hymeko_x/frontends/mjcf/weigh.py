@@ -66,6 +66,8 @@ def _compiled(mujoco: Any, text: bytes, assets: dict[str, bytes]) -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         spec = mujoco.MjSpec.from_string(text.decode(), assets=assets)
+        for key in spec.keys:
+            spec.delete(key)  # a pose weighs nothing, and may be of another number of joints
         spec.compiler.fusestatic = False
         spec.compiler.alignfree = False
         for joint in spec.joints:

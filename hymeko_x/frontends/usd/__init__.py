@@ -12,8 +12,10 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
+from hymeko_x.frontends.usd.bare_links import hang_bare_links, read_bare_links
 from hymeko_x.frontends.usd.bodies import BODY, read_body, read_mass
 from hymeko_x.frontends.usd.carried import put_carried
+from hymeko_x.frontends.usd.dialects import is_passive_drive, is_world, read_named_mimic
 from hymeko_x.frontends.usd.draft import Draft, api_schemas
 from hymeko_x.frontends.usd.joints import TYPES, ReadJoint, read_joint
 from hymeko_x.frontends.usd.leftovers import gather_leftovers
@@ -44,11 +46,12 @@ def read(source: Source, report: Report) -> Mechanism:
         for prim in prims:
             if BODY in api_schemas(prim):
                 read_body(prim, draft)
+        bare = read_bare_links(prims, draft)
         for prim in prims:
             if prim.GetTypeName() == "Material":
                 read_material(prim, draft)
         _read_shapes(prims, draft)
-        _read_joints(prims, draft)
+        _read_joints(prims, bare, draft)
         for prim in prims:
             if prim.GetTypeName() == "Camera":
                 read_camera(prim, draft)
@@ -87,14 +90,18 @@ def _read_shapes(prims: list[Any], draft: Draft) -> None:
         read_mass(draft.scene.stage.GetPrimAtPath(path), body, on.get(body, []), draft)
 
 
-def _read_joints(prims: list[Any], draft: Draft) -> None:
+def _read_joints(prims: list[Any], bare: list[Any], draft: Draft) -> None:
     joints = [joint for prim in prims if str(prim.GetTypeName()) in TYPES for joint in [read_joint(prim, draft)] if joint is not None]
+    joints = hang_bare_links(bare, joints, draft)
     joints = build_trees(joints, _articulation_roots(prims, joints, draft), _held(draft), draft)
     ends = {str(prim.GetPath()): end for joint in joints for prim, end in driven_ends(joint)}
+    named = {end.dof or end.joint.name: end for end in ends.values()}
     for joint in joints:
         for prim, end in driven_ends(joint):
-            read_drives(prim, end, draft)
+            if not is_passive_drive(prim):
+                read_drives(prim, end, draft)
             read_mimic(prim, end, ends, draft)
+            read_named_mimic(prim, end, named, draft)
 
 
 def _articulation_roots(prims: list[Any], joints: list[ReadJoint], draft: Draft) -> list[Id]:
@@ -109,11 +116,14 @@ def _articulation_roots(prims: list[Any], joints: list[ReadJoint], draft: Draft)
 
 
 def _held(draft: Draft) -> list[Id]:
-    """The bodies whose simulation is switched off: they are geometry that stands still."""
-    stage = draft.scene.stage
-    return [
-        body for path, body in draft.bodies.items() if stage.GetPrimAtPath(path).GetAttribute("physics:rigidBodyEnabled").Get() is False
-    ]
+    """The bodies whose simulation is switched off, that only a user moves, or that mean the world: by themselves they stand still."""
+    prims = {body: draft.scene.stage.GetPrimAtPath(path) for path, body in draft.bodies.items()}
+    return [body for body, prim in prims.items() if is_world(prim) or _stands_still(prim)]
+
+
+def _stands_still(prim: Any) -> bool:
+    is_off = prim.GetAttribute("physics:rigidBodyEnabled").Get() is False
+    return is_off or prim.GetAttribute("physics:kinematicEnabled").Get() is True
 
 
 def _native_meshes(draft: Draft) -> dict[str, Mesh]:

@@ -59,7 +59,7 @@ def read_mass(prim: Any, key: Id, shapes: list[tuple[Any, Shape, Pose, Any]], dr
     if not solids and stated == Inertial():
         return
     draft.vertices[key] = Body(_completed(stated, joined(solids)) if solids else stated)
-    draft.take(prim, f"@{MASS}")
+    draft.take(prim, f"@{MASS}", *(["physics:mass"] if solids else []))
 
 
 def _stated(prim: Any, draft: Draft) -> Inertial:

@@ -34,24 +34,13 @@ def native_pairs(prim: Any) -> Iterator[tuple[str, bytes]]:
     """Every property of a prim that is not ours, with its value as bytes, its type and its API schemas."""
     yield "@type", str(prim.GetTypeName()).encode()
     listed = prim.GetMetadata("apiSchemas")
-    yield "@apiSchemas", " ".join(listed.GetAppliedItems() if listed is not None else []).encode()
+    yield "@apiSchemas", " ".join(sorted(listed.GetAppliedItems() if listed is not None else [])).encode()
     for item in prim.GetAuthoredProperties():
         name = str(item.GetName())
         if name.startswith(words.PREFIX):
             continue
         targets = getattr(item, "GetTargets", None)
-        yield name, " ".join(map(str, targets())).encode() if targets else value_bytes(item.Get())
-
-
-def value_bytes(value: Any) -> bytes:
-    """A value as bytes: arrays by their memory, everything else by its text."""
-    import numpy as np
-
-    if hasattr(value, "__len__") and not isinstance(value, str) and len(value) > 16:
-        array = np.asarray(value)
-        if array.dtype != object:
-            return array.tobytes()
-    return repr(value).encode()
+        yield name, " ".join(map(str, targets())).encode() if targets else words.value_bytes(item.Get())
 
 
 def put_carried(draft: Draft) -> str | None:
@@ -63,7 +52,7 @@ def put_carried(draft: Draft) -> str | None:
     changed = {str(prim.GetPath()) for prim in prims if prim.HasAttribute(words.DIGEST) and not is_unchanged(prim)}
     edited = {key for path in changed for key in draft.elements.get(path, ())}
     for prim in prims:
-        groups = _groups(prim)
+        groups = _groups(prim, draft)
         path = str(prim.GetPath())
         if path in changed:
             continue
@@ -82,23 +71,27 @@ def put_carried(draft: Draft) -> str | None:
     return name
 
 
-def _groups(prim: Any) -> dict[str, dict[str, Value]]:
-    """The carried values of a prim by the kind of element that they belong to."""
+def _groups(prim: Any, draft: Draft) -> dict[str, dict[str, Value]]:
+    """The carried values of a prim by the kind of element that they belong to: a text each, and long arrays beside it."""
     groups: dict[str, dict[str, Value]] = {}
     for attribute in prim.GetAuthoredPropertiesInNamespace("hymeko"):
         _, kind, *rest = str(attribute.GetName()).split(":", 2)
+        if kind not in words.PART_OF and kind != "mechanism":
+            continue
+        value = attribute.Get()
         if rest:
-            groups.setdefault(kind, {})[words.key_of(rest[0])] = _plain(attribute.Get())
-    return {kind: pairs for kind, pairs in groups.items() if kind in words.PART_OF or kind == "mechanism"}
+            groups.setdefault(kind, {})[rest[0]] = tuple(value) if value is not None else ()
+            continue
+        try:
+            groups.setdefault(kind, {}).update(words.pairs_of(value))
+        except (ValueError, TypeError, RecursionError):
+            _say_unreadable(str(prim.GetPath()), Id(kind, ""), draft)
+    return groups
 
 
-def _plain(value: Any) -> Value:
-    if isinstance(value, str):
-        return words.text_with_nul(value)
-    if isinstance(value, bool | int | float):
-        return value
-    items = tuple(value) if value is not None else ()
-    return tuple(words.text_with_nul(item) if isinstance(item, str) else item for item in items)
+def _say_unreadable(path: str, key: Id, draft: Draft) -> None:
+    said = f"what '{path}' carries in hymeko: attributes cannot be read; it is left out"
+    draft.report.error(codes.BAD_VALUE, said, draft.origin, element=str(key))
 
 
 def _forget(keys: list[Id], draft: Draft) -> None:
@@ -113,8 +106,7 @@ def _put_element(path: str, kind: str, pairs: dict[str, Value], draft: Draft) ->
     try:
         part, arcs = _element(kind, pairs)
     except (ValueError, TypeError, KeyError, AttributeError):
-        said = f"what '{path}' carries in hymeko: attributes cannot be read; it is left out"
-        draft.report.error(codes.BAD_VALUE, said, draft.origin, element=str(key))
+        _say_unreadable(path, key, draft)
         return
     if isinstance(part, EdgePart):
         draft.edges[key] = Edge(part, arcs)
@@ -162,7 +154,7 @@ def _with_geometry(mesh: Mesh, pairs: dict[str, Value], path: str, draft: Draft)
 
 def _put_tables(key: Id, pairs: dict[str, Value], draft: Draft) -> None:
     extras = _texts(pairs.get("extras"))
-    found = [Extra(extras[at], extras[at + 1], extras[at + 2], int(extras[at + 3])) for at in range(0, len(extras) - 3, 4)]
+    found = [Extra(extras[at], extras[at + 1], extras[at + 2], _number(extras[at + 3])) for at in range(0, len(extras) - 3, 4)]
     if found:
         draft.extras.setdefault(key, []).extend(found)
     notations = _texts(pairs.get("notations"))
@@ -175,6 +167,10 @@ def _put_tables(key: Id, pairs: dict[str, Value], draft: Draft) -> None:
             draft.vertices.setdefault(WORLD, World())
     elif stereotypes := _texts(pairs.get("stereotypes")):
         draft.stereotypes[key] = tuple(stereotypes)
+
+
+def _number(text: str) -> int:
+    return int(text) if text.removeprefix("-").isdecimal() else 0
 
 
 def _texts(value: Value | None) -> list[str]:

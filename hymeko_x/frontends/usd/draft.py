@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
     from hymeko_x.source import Source
 
 _SINGLE = frozenset(("float", "float2", "float3", "float4", "point3f", "vector3f", "normal3f", "color3f", "color4f", "quatf", "half"))
+
+
+ORIGINAL_NAME = "cyberwave:name"
+"""Where cyberwave-robot-format keeps what a prim could not be called."""
 
 
 @dataclass(slots=True)
@@ -69,11 +74,16 @@ class Draft:
         return key
 
     def _name(self, prim: Any, kind: str, fallback: str | None) -> str:
-        carried = prim.GetAttribute(f"{words.PREFIX}{kind}:id")
-        if carried and isinstance(carried.Get(), str):
-            return words.text_with_nul(carried.Get())
+        carried = prim.GetAttribute(words.PREFIX + kind)
+        name = words.id_in(carried.Get()) if carried else None
+        if name is not None:
+            return name
         if fallback is not None:
             return fallback
+        own = prim.GetAttribute(ORIGINAL_NAME)
+        if own and isinstance(own.Get(), str) and own.Get():
+            self.take(prim, ORIGINAL_NAME)
+            return str(own.Get())
         shown = prim.GetMetadata("displayName")
         return shown if isinstance(shown, str) and shown else str(prim.GetName())
 
@@ -101,8 +111,11 @@ class Draft:
         return _rounded(value, str(attribute.GetTypeName()))
 
     def number(self, prim: Any, name: str, default: float) -> float:
-        """An authored number, or the default."""
+        """An authored number, or the default (not a number for none). One that says nothing, which is not written, stays an extra."""
         value = self.get(prim, name)
+        is_nothing = value == 0.0 or (isinstance(value, float) and math.isinf(value))
+        if is_nothing and (value == default or math.isnan(default)):
+            self.taken.get(str(prim.GetPath()), set()).discard(name)
         return float(value) if isinstance(value, int | float) else default
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
+from hymeko_x.frontends.usd.dialects import with_dialect
 from hymeko_x.frontends.usd.draft import has_api
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 GENERIC = "PhysicsJoint"
 DISTANCE = "PhysicsDistanceJoint"
 _MJC = ("armature", "damping", "frictionloss", "stiffness", "ref", "springref")
+_OF_COUPLINGS = ("newton:mimic", "mjc:coef", "mjc:target", "mjc:solimp", "mjc:solref")
 _NEWTON = ("armature", "damping", "friction", "velocityLimit")
 TYPES = (
     "PhysicsRevoluteJoint",
@@ -68,20 +70,26 @@ def read_joint(prim: Any, draft: Draft) -> ReadJoint | None:
     key = draft.own(prim, "joint")
     kind = str(prim.GetTypeName())
     dofs = _dofs(prim, kind, draft)
-    draft.take(prim, "@type", "physics:body0", "physics:body1", *(f"physics:local{what}{side}" for what in ("Pos", "Rot") for side in "01"))
+    draft.take(prim, "@type", *(f"physics:local{what}{side}" for what in ("Pos", "Rot") for side in "01"))
+    draft.take(prim, *(name for name in ("physics:body0", "physics:body1") if prim.GetRelationship(name).GetTargets()))
     _take_schemas(prim, draft)
     enabled = prim.GetAttribute("physics:jointEnabled").Get() is not False
     excluded = bool(prim.GetAttribute("physics:excludeFromArticulation").Get())
     if kind == GENERIC:
         draft.note(key, words.TYPE, kind)
+    for side, end in enumerate((first, second)):
+        _note_ground(prim, side, end, key, draft)
     return ReadJoint(prim, key, dofs, (first, second), enabled, excluded)
 
 
 def _take_schemas(prim: Any, draft: Draft) -> None:
-    """A schema of which every value is typed needs no extra."""
+    """A schema of which every value is typed needs no extra; one that says nothing does."""
     taken = draft.taken.get(str(prim.GetPath()), set())
-    left = {str(name).split(":")[0] for name in prim.GetAuthoredPropertyNames() if name not in taken and "mimic" not in name}
-    draft.take(prim, *(f"@{schema}" for prefix, schema in (("mjc", "MjcJointAPI"), ("newton", "NewtonJointAPI")) if prefix not in left))
+    own = [str(name) for name in prim.GetAuthoredPropertyNames() if not str(name).startswith(_OF_COUPLINGS)]
+    for prefix, schema in (("mjc:", "MjcJointAPI"), ("newton:", "NewtonJointAPI")):
+        said = [name for name in own if name.startswith(prefix)]
+        if said and taken.issuperset(said):
+            draft.take(prim, f"@{schema}")
 
 
 # ---- ends --------------------------------------------------------------------------------------------------------------------
@@ -108,6 +116,13 @@ def _end(prim: Any, side: int, draft: Draft) -> End | None:
     if body == target:
         return End(key, Pose(_stretched(position, draft.places.of(body).scale), local.quat))
     return End(key, compose(inverse(draft.places.of(body).pose), frame))
+
+
+def _note_ground(prim: Any, side: int, end: End, key: Id, draft: Draft) -> None:
+    """Keep which prim stood for the world, where it is a group above bodies, which will be written without a place of its own."""
+    targets = prim.GetRelationship(f"physics:body{side}").GetTargets() if end.body == WORLD else []
+    if targets and any(path.startswith(f"{targets[0]}/") for path in draft.bodies):
+        draft.note(key, words.GROUND[side], str(targets[0]))
 
 
 def _in_world(local: Pose, draft: Draft) -> Pose:
@@ -187,8 +202,15 @@ def _generic_dofs(prim: Any, draft: Draft) -> tuple[Dof, ...]:
         dofs.append(_behaving(prim, Dof(DofKind.BALL), draft))
     for name in words.D6_AXES:
         if name not in free:
-            draft.take(prim, f"@PhysicsLimitAPI:{name}", f"limit:{name}:physics:low", f"limit:{name}:physics:high")
+            _take_lock(prim, name, draft)
     return tuple(dofs)
+
+
+def _take_lock(prim: Any, name: str, draft: Draft) -> None:
+    """A locked axis; by how much its bounds are crossed only counts where it is not by as much as the writer's."""
+    low, high = f"limit:{name}:physics:low", f"limit:{name}:physics:high"
+    said = prim.GetAttribute(low).Get(), prim.GetAttribute(high).Get()
+    draft.take(prim, f"@PhysicsLimitAPI:{name}", *((low, high) if said == words.LOCKED else ()))
 
 
 def _is_locked(prim: Any, name: str) -> bool:
@@ -209,7 +231,7 @@ def _behaving(prim: Any, dof: Dof, draft: Draft) -> Dof:
     mjc = {name: draft.number(prim, f"mjc:{name}", math.nan) for name in _MJC}
     newton = {name: draft.number(prim, f"newton:{name}", math.nan) for name in _NEWTON}
     speed = newton["velocityLimit"] * angle
-    return replace(
+    found = replace(
         dof,
         armature=_first(mjc["armature"] * inertia, newton["armature"] * inertia),
         damping=_first(mjc["damping"] * inertia, newton["damping"] * inertia * degree),
@@ -219,6 +241,7 @@ def _behaving(prim: Any, dof: Dof, draft: Draft) -> Dof:
         spring_ref=_first(mjc["springref"] * angle),
         limits=replace(dof.limits, velocity=speed if math.isfinite(speed) else None, effort=_effort(prim, effort, draft)),
     )
+    return with_dialect(prim, found, draft)
 
 
 def _effort(prim: Any, unit: float, draft: Draft) -> float | None:

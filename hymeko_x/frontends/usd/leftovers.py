@@ -78,7 +78,7 @@ def _gather_prim(spec: Any, owner: tuple[Id, Any], folded: set[str], scratch: An
         _author_matrix(copy, moved)
         is_worth_it = True
     has_own_type = bool(copy.typeName) and (is_typed or copy.typeName != "Xform" or path not in folded)
-    if is_worth_it or has_own_type or not (is_typed or spec.typeName or path in folded):
+    if is_worth_it or has_own_type or not (is_typed or spec.typeName):
         relative = str(spec.path.MakeRelativePath(owner[1])) if spec.path != owner[1] else ""
         text = copy.GetAsText().strip().replace(draft.scene.folder + "/", "")
         draft.extras.setdefault(owner[0], []).append(Extra(words.FORMAT, relative, text))
@@ -138,11 +138,18 @@ def _new_place(spec: Any, folded: set[str], draft: Draft) -> Any | None:
     is_top = parent.IsAbsoluteRootPath() or str(parent) in folded or str(parent) in draft.elements
     if not is_top or not prim or not UsdGeom.Xformable(prim):
         return None
+    if _is_skin(parent, draft):
+        return None
     body = _body_of(prim, draft)
     matrix = draft.places.relative(prim, body)
     if body is None and spec.attributes.get("xformOpOrder") is None and Gf.IsClose(matrix, Gf.Matrix4d(1), 1e-12):
         return None
     return None if Gf.IsClose(matrix, _own_matrix(prim), 1e-12) else matrix
+
+
+def _is_skin(path: Any, draft: Draft) -> bool:
+    """Whether the prim is a body and its geometry at once: it keeps its scale, so what is below keeps its place."""
+    return {"body", "shape"} <= {key.kind for key in draft.elements.get(str(path), ())}
 
 
 def _own_matrix(prim: Any) -> Any:

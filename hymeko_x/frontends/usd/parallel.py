@@ -16,12 +16,12 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
     from hymeko_x.frontends.usd.joints import ReadJoint
 
-_TYPES = ("PhysicsRevoluteJoint", "PhysicsPrismaticJoint")
+_TYPES = ("PhysicsRevoluteJoint", "PhysicsPrismaticJoint", "PhysicsSphericalJoint")
 _SAME = 1e-5
 
 
 def merge_parallel(joints: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
-    """The joints with every run of hinges and slides between the same two bodies made one, at the place of its first."""
+    """The joints with every run of hinges, slides and balls between the same two bodies made one, at the place of its first."""
     groups: dict[object, list[ReadJoint]] = {}
     for joint in joints:
         first, second = joint.ends
@@ -61,7 +61,7 @@ def _dof_seen_from(first: ReadJoint, joint: ReadJoint) -> Dof:
     if joint.ends[0].pose == first.ends[0].pose:
         return dof
     frame = compose(inverse(first.ends[0].pose), joint.ends[0].pose)
-    anchor = frame.xyz if dof.kind is DofKind.HINGE else (0.0, 0.0, 0.0)
+    anchor = (0.0, 0.0, 0.0) if dof.kind is DofKind.SLIDE else frame.xyz
     return replace(dof, axis=unit(rotate(frame.quat, dof.axis)), anchor=_tidy(anchor))
 
 

@@ -16,9 +16,11 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
     from hymeko_x.frontends.usd.joints import ReadJoint
     from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.ir.parts import Dof
 
 DRIVE = "PhysicsDriveAPI"
 MIMIC = "NewtonMimicAPI"
+EQUALITY = "MjcEqualityJointAPI"
 
 
 # ---- drives --------------------------------------------------------------------------------------------------------------------
@@ -90,23 +92,51 @@ def _add_drive(prim: Any, key: Id, instance: str, number: int, joint: Joint, dra
 
 
 def read_mimic(prim: Any, end: Driven, ends: dict[str, Driven], draft: Draft) -> None:
-    """NewtonMimicAPI: this joint follows another one; the constant is in degrees for a hinge."""
-    leaders = prim.GetRelationship("newton:mimicJoint").GetTargets() if prim.HasRelationship("newton:mimicJoint") else []
-    leader = ends.get(str(leaders[0])) if leaders else None
+    """This joint follows another one, as NewtonMimicAPI says, with the higher powers of MjcEqualityJointAPI.
+
+    The constant is a coordinate of the follower, in degrees for a hinge; factors are dimensionless. Where Newton's names are
+    not there, MuJoCo's older ones count (radians).
+    """
+    by = next((name for name in ("newton:mimicJoint", "mjc:target") if prim.GetRelationship(name).GetTargets()), None)
+    leader = ends.get(str(prim.GetRelationship(by).GetTargets()[0])) if by is not None and _follows(prim) else None
     follower = draft.edges.get(end.joint)
-    if leader is None or follower is None or not isinstance(follower.data, Joint):
+    if by is None or leader is None or follower is None or not isinstance(follower.data, Joint):
         return
     dof = next((dof for dof in follower.data.dofs if dof.name == end.dof or not end.dof), None)
     if dof is None or dof.kind not in (DofKind.HINGE, DofKind.SLIDE):
         return
-    unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else draft.scene.metres
-    constant = draft.number(prim, "newton:mimicCoef0", 0.0) * unit
-    factor = draft.number(prim, "newton:mimicCoef1", 1.0)
     enabled = prim.GetAttribute("newton:mimicEnabled").Get() if prim.HasAttribute("newton:mimicEnabled") else True
-    draft.take(prim, f"@{MIMIC}", "newton:mimicJoint", "newton:mimicEnabled")
+    draft.take(prim, f"@{MIMIC}", by, "newton:mimicEnabled")
     coupling = draft.own(prim, "coupling", end.dof or end.joint.name)
-    arcs: tuple[RobotArc, ...] = (Arc(end.joint, 1, (1.0,), end.dof), Arc(leader.joint, -1, (constant, factor), leader.dof))
+    if by == "mjc:target":
+        draft.note(coupling, words.EQUALITY, "true")
+    arcs: tuple[RobotArc, ...] = (Arc(end.joint, 1, (1.0,), end.dof), Arc(leader.joint, -1, _polynomial(prim, dof, draft), leader.dof))
     draft.edges[coupling] = Edge(Coupling(enabled is not False), arcs)
+
+
+def _follows(prim: Any) -> bool:
+    """Whether a schema says that the joint follows; other schemas have a target, too."""
+    return any(schema in (MIMIC, EQUALITY) for schema in api_schemas(prim))
+
+
+def _polynomial(prim: Any, dof: Dof, draft: Draft) -> tuple[float, ...]:
+    unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else draft.scene.metres
+    constant = draft.number(prim, "newton:mimicCoef0", math.nan) * unit
+    factor = draft.number(prim, "newton:mimicCoef1", math.nan)
+    if math.isnan(constant):
+        constant = draft.number(prim, "mjc:coef0", 0.0) * (1.0 if dof.kind is DofKind.HINGE else draft.scene.metres)
+    if math.isnan(factor):
+        factor = draft.number(prim, "mjc:coef1", 1.0)
+    higher = [draft.number(prim, f"mjc:coef{power}", 0.0) for power in (2, 3, 4)] if EQUALITY in api_schemas(prim) else []
+    while higher and higher[-1] == 0.0:
+        higher.pop()
+    if (higher or not prim.HasAttribute("newton:mimicCoef1")) and not _says_more(prim):
+        draft.take(prim, f"@{EQUALITY}")
+    return (constant, factor, *higher)
+
+
+def _says_more(prim: Any) -> bool:
+    return any(prim.GetAttribute(f"mjc:{name}").HasAuthoredValue() for name in ("solimp", "solref"))
 
 
 # ---- things that sit somewhere -------------------------------------------------------------------------------------------------
@@ -135,4 +165,5 @@ def _mount(prim: Any, key: Id, draft: Draft) -> None:
         draft.vertices.setdefault(WORLD, World())
     pose = draft.places.seen_from(prim, body).pose
     draft.edges[draft.own(prim, "mount", key.name)] = mount_edge(owner, key, pose)
-    draft.take(prim, *(name for name in prim.GetAuthoredPropertyNames() if name.startswith("xformOp") and "scale" not in name))
+    ops = [name for name in prim.GetAuthoredPropertyNames() if name.startswith("xformOp")]
+    draft.take(prim, *(name for name in ops if "scale" not in name or name == words.WITHIN))

@@ -9,13 +9,14 @@ from pxr import UsdGeom
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
+from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.draft import has_api
 from hymeko_x.frontends.usd.materials import bound_material
 from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
-from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, MeshShape, Plane, Role, Shape, Sphere, World
-from hymeko_x.ir.values import Pose, Vec3, X, Y, compose, quat_about
+from hymeko_x.ir.parts import Mesh, MeshShape, Role, Shape, World
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Vec3, compose
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 COLLISION = "PhysicsCollisionAPI"
 SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 TYPES = ("Cube", "Sphere", "Cylinder", "Capsule", "Plane", "Mesh")
-_TURNS = {"X": quat_about(Y, 1.5707963267948966), "Y": quat_about(X, -1.5707963267948966)}
 _XFORM = "xformOp"
 
 Read = tuple[Any, Shape, Pose, "NDArray[Any] | None"]
@@ -43,21 +43,24 @@ def read_shape(prim: Any, draft: Draft) -> tuple[Id, Read] | None:
     found = body_at(prim, draft)
     body, owner = found if found is not None else (None, WORLD)
     at = draft.places.seen_from(prim, body)
-    pose, points, mesh = at.pose, None, None
-    geometry: Geometry | None
+    pose, points, mesh, said = IDENTITY if prim == body else at.pose, None, None, None
+    geometry: Geometry = MeshShape()
     if prim.GetTypeName() == "Mesh":
         points, mesh = _read_mesh(prim, draft, at.scale)
-        geometry = MeshShape() if mesh is not None else None
+        if mesh is None:
+            return None
     else:
-        geometry, turn = _primitive(prim, at.scale, draft)
-        pose = compose(pose, turn)
-    if geometry is None:
-        return None
+        said = _primitive(prim, at.scale, draft)
+        geometry, turn = gprims.meaning(said)
+        pose = pose if turn == NO_ROTATION else compose(pose, Pose(quat=turn))
+        _take_extent(prim, gprims.half_extent(said), draft)
     if owner == WORLD:
         draft.vertices.setdefault(WORLD, World())
-    draft.take(prim, "@type", "extent", *(name for name in prim.GetAuthoredPropertyNames() if name.startswith(_XFORM)))
+    draft.take(prim, "@type", *(name for name in prim.GetAuthoredPropertyNames() if name.startswith(_XFORM)))
     shape = Shape(geometry, _role(prim, draft), name=str(prim.GetName()), rgba=_colour(prim, draft))
     key = draft.own(prim, "shape")
+    if said is not None and said != gprims.chosen(geometry):
+        draft.note(key, gprims.NOTATION, str(said))
     draft.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, draft))
     return owner, (prim, shape, pose, points)
 
@@ -65,47 +68,20 @@ def read_shape(prim: Any, draft: Draft) -> tuple[Id, Read] | None:
 # ---- primitives ------------------------------------------------------------------------------------------------------------------
 
 
-def _primitive(prim: Any, scale: Vec3, draft: Draft) -> tuple[Geometry | None, Pose]:
-    """A primitive with its scale in its sizes, and the rotation from its axis to z.
-
-    Where a scale would bend a round shape, the largest factor counts, as in UsdPhysics' parser; a sphere becomes an ellipsoid.
-    """
-    x, y, z = map(abs, scale)
-    number = draft.number
-    match str(prim.GetTypeName()):
-        case "Cube":
-            size = number(prim, "size", 2.0)
-            return Box((size * x, size * y, size * z)), Pose()
-        case "Sphere":
-            radius = number(prim, "radius", 1.0)
-            round_ = max(x, y, z) - min(x, y, z) < 1e-6 * max(x, y, z)
-            return (Sphere(radius * x) if round_ else Ellipsoid((radius * x, radius * y, radius * z))), Pose()
-        case "Plane":
-            return _plane(prim, scale, draft)
-        case kind:
-            axis, turn = _axis(prim, draft)
-            along = (x, y, z)["XYZ".index(axis)]
-            across = max(value for letter, value in zip("XYZ", (x, y, z), strict=True) if letter != axis)
-            default_radius, default_height = (0.5, 1.0) if kind == "Capsule" else (1.0, 2.0)
-            radius = number(prim, "radius", default_radius) * across
-            height = number(prim, "height", default_height) * along
-            return (Capsule(radius, height) if kind == "Capsule" else Cylinder(radius, height)), turn
-
-
-def _axis(prim: Any, draft: Draft) -> tuple[str, Pose]:
+def _primitive(prim: Any, scale: Vec3, draft: Draft) -> gprims.Gprim:
+    """What the prim of a primitive says; a wrong axis is z."""
+    kind = str(prim.GetTypeName())
+    sizes = tuple(draft.number(prim, name, default) for name, default in gprims.SIZES[kind])
     axis = str(draft.get(prim, "axis") or "Z")
-    axis = axis if axis in words.AXES else "Z"
-    turn = _TURNS.get(axis)
-    return axis, Pose() if turn is None else Pose(quat=turn)
+    return gprims.Gprim(kind, sizes, axis if axis in words.AXES else "Z", scale)
 
 
-def _plane(prim: Any, scale: Vec3, draft: Draft) -> tuple[Geometry, Pose]:
-    """A plane with half extents along the x and y of its turned frame; colliders are infinite whatever they say."""
-    axis, turn = _axis(prim, draft)
-    x, y, z = map(abs, scale)
-    width, length = draft.number(prim, "width", 2.0), draft.number(prim, "length", 2.0)
-    first, second = {"Z": (x, y), "X": (z, y), "Y": (x, z)}[axis]
-    return Plane((width / 2 * first, length / 2 * second)), turn
+def _take_extent(prim: Any, half: Vec3, draft: Draft) -> None:
+    """A box around the prim that follows from its sizes is no news."""
+    said = prim.GetAttribute("extent").Get() if prim.HasAttribute("extent") else None
+    box = (*(-value for value in half), *half)
+    if said is not None and len(said) == 2 and all(abs(a - b) <= 1e-6 * max(half) for a, b in zip((*said[0], *said[1]), box, strict=True)):
+        draft.take(prim, "extent")
 
 
 # ---- meshes --------------------------------------------------------------------------------------------------------------------
@@ -129,10 +105,21 @@ def _read_mesh(prim: Any, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | Non
     faces = triangles(sizes, corners)
     if prim.GetAttribute("points").GetNumTimeSamples() == 0:
         draft.take(prim, "points")
+    _take_mesh_extent(prim, vertices, draft)
     if (sizes == 3).all():
         draft.take(prim, "faceVertexCounts", "faceVertexIndices")
     key = _shared_mesh(prim, vertices, faces, scale, draft)
     return vertices * np.asarray(scale), key
+
+
+def _take_mesh_extent(prim: Any, vertices: NDArray[Any], draft: Draft) -> None:
+    import numpy as np
+
+    said = prim.GetAttribute("extent").Get()
+    if said is not None and len(said) == 2 and len(vertices):
+        box = np.stack([vertices.min(axis=0), vertices.max(axis=0)])
+        if np.allclose(np.asarray(said, dtype=np.float64), box, rtol=1e-6, atol=1e-6 * float(np.abs(box).max())):
+            draft.take(prim, "extent")
 
 
 def _refused(prim: Any, why: str, draft: Draft) -> tuple[None, None]:
@@ -173,8 +160,6 @@ def _role(prim: Any, draft: Draft) -> Role:
     if not collides:
         return Role.VISUAL
     draft.take(prim, f"@{COLLISION}")
-    if prim.GetAttribute("physics:collisionEnabled").HasAuthoredValue():
-        draft.get(prim, "physics:collisionEnabled")
     purpose = UsdGeom.Imageable(prim).ComputePurpose()
     if purpose == UsdGeom.Tokens.guide:
         draft.get(prim, "purpose")

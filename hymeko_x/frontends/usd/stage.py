@@ -18,6 +18,7 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.frontends.usd.unpack import lay_out
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,10 +55,10 @@ def open_scene(source: Source, report: Report) -> Iterator[Scene]:
     with tempfile.TemporaryDirectory(prefix="hymeko-usd-", ignore_cleanup_errors=True) as folder:
         base = os.path.join(folder, *["d"] * _UP)
         os.makedirs(base)
-        main = os.path.join(base, f"stage{_suffix(source)}")
-        Path(main).write_bytes(source.data)
+        main = lay_out(source, base)
         layers = _gather(main, base, source, report)
         stage = _composed(main, source)
+        _choose_variants(stage, source)
         _expand_instances(stage, source)
         _say_composition_errors(stage, source, report)
         metres, up = UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage)
@@ -68,16 +69,6 @@ def open_scene(source: Source, report: Report) -> Iterator[Scene]:
             yield Scene(stage, world, UsdPhysics.GetStageKilogramsPerUnit(stage), metres, base, flat)
         finally:
             del stage, layers, flat
-
-
-def _suffix(source: Source) -> str:
-    """The suffix by which USD chooses its parser: by content where the name does not say."""
-    suffix = posixpath.splitext(source.name.lower())[1]
-    if source.data.startswith(b"PK\x03\x04"):
-        return ".usdz"
-    if source.data.startswith(b"PXR-USDC"):
-        return ".usdc"
-    return suffix if suffix in (".usda", ".usdc", ".usdz") else ".usda"
 
 
 def _composed(main: str, source: Source) -> Any:
@@ -101,7 +92,8 @@ def _gather(main: str, base: str, source: Source, report: Report) -> list[Any]:
     """Every layer that can be reached, written where the reference expects it; what cannot be found is said and stays out."""
     waiting, kept, seen = [main], [], {main}
     while waiting:
-        layer = _layer(waiting.pop(), base, source, report)
+        path = waiting.pop()
+        layer = _layer(path, base, source, report, is_main=path == main)
         if layer is None:
             continue
         kept.append(layer)
@@ -116,11 +108,11 @@ def _gather(main: str, base: str, source: Source, report: Report) -> list[Any]:
     return kept
 
 
-def _layer(path: str, base: str, source: Source, report: Report) -> Any | None:
+def _layer(path: str, base: str, source: Source, report: Report, *, is_main: bool) -> Any | None:
     try:
         return Sdf.Layer.FindOrOpen(path)
     except Tf.ErrorException as error:
-        if os.path.dirname(path) == base and os.path.basename(path).startswith("stage."):
+        if is_main:
             raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, base)}", Origin(source.name)) from error
         said = f"layer '{os.path.relpath(path, base)}' cannot be read: {_words(error, base)}; it is left out"
         report.error(codes.CANNOT_READ, said, Origin(source.name))
@@ -132,6 +124,9 @@ def _fetch(uri: str, layer: str, base: str, source: Source, report: Report) -> s
     if not uri:
         return None
     folder = posixpath.dirname(os.path.relpath(layer, base).replace(os.sep, "/"))
+    there = os.path.normpath(os.path.join(base, folder, uri))
+    if not _is_absolute(uri) and there.startswith(base + os.sep) and os.path.isfile(there):
+        return there
     for way in dict.fromkeys((uri if _is_absolute(uri) else posixpath.normpath(posixpath.join(folder, uri)), uri)):
         found = source.files.find(way)
         if found is None:
@@ -180,6 +175,35 @@ def _is_plain(stage: Any) -> bool:
 
 
 # ---- composition ---------------------------------------------------------------------------------------------------------------
+
+
+def _choose_variants(stage: Any, source: Source) -> None:
+    """Select what the user chose on every prim that has the set, also where only another selection brings it forth.
+
+    Raises: Refusal HX040 when no prim has the set, or none has that variant.
+    """
+    known: dict[str, set[str]] = {}
+    for _ in range(MOST_NESTED_INSTANCES if source.variants else 0):
+        found = [(prim, name) for prim in stage.Traverse() for name in prim.GetVariantSets().GetNames() if name in source.variants]
+        for prim, name in found:
+            known.setdefault(name, set()).update(prim.GetVariantSets().GetVariantSet(name).GetVariantNames())
+        if not _select(stage, source, found):
+            break
+    for name, variant in source.variants.items():
+        if variant not in known.get(name, ()):
+            said = f"the variant set '{name}' has no variant '{variant}'" if name in known else f"no prim has a variant set '{name}'"
+            hint = f"it has: {', '.join(sorted(known[name]))}" if name in known else ""
+            raise refuse(codes.UNDEFINED_REFERENCE, said, Origin(source.name), hint=hint)
+
+
+def _select(stage: Any, source: Source, found: list[tuple[Any, str]]) -> bool:
+    """Make the selections that are not made yet; returns whether there were any."""
+    with Usd.EditContext(stage, stage.GetSessionLayer()):
+        sets = [(prim.GetVariantSets().GetVariantSet(name), source.variants[name]) for prim, name in found]
+        changed = [(item, variant) for item, variant in sets if item.GetVariantSelection() != variant and variant in item.GetVariantNames()]
+        for item, variant in changed:
+            item.SetVariantSelection(variant)
+    return bool(changed)
 
 
 def _expand_instances(stage: Any, source: Source) -> None:

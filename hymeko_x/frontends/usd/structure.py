@@ -179,5 +179,7 @@ def _hang_free_bodies(hung: set[Id], held: set[Id], draft: Draft) -> None:
         prim = draft.scene.stage.GetPrimAtPath(path)
         key = draft.own(prim, "joint", body.name + FREE_SUFFIX)
         dofs = () if body in held else (Dof(DofKind.FREE),)
+        if body in held:
+            draft.note(key, words.HELD, "true")
         draft.vertices.setdefault(WORLD, World())
         draft.edges[key] = joint_edge(Joint(dofs), WORLD, body, draft.places.of(prim).pose)

@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.parts import DofKind, Joint, Role, Shape
-from hymeko_x.ir.rename import rename
 from hymeko_x.ir.residue import Bridge, Fold, Join
-from hymeko_x.ir.residue.bridge import are_twins, fold_chains, join_twins
+from hymeko_x.ir.residue.bridge import are_twins, cross, fold_chains, join_twins
 from hymeko_x.ir.residue.paths import digest
 from hymeko_x.ir.values import IDENTITY, Pose, add, compose, inverse, quat_about, rotate, rotation_angle, scaled
 
@@ -30,7 +29,7 @@ _SCALAR = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 def bridge_between(image: Mechanism, source: Mechanism) -> Bridge:
     """The bridge that leads from the image to the source. Linear in both."""
     names = _other_names(image, source)
-    renamed = rename(image, names)
+    renamed = cross(image, Bridge(tuple(names.items())))
     folds = tuple(_folds(renamed, source))
     folded = fold_chains(renamed, folds)
     joins = tuple(_joins(folded, source))
@@ -63,7 +62,8 @@ class _Pairs:
 
     def pair(self, old: Id, new: Id) -> None:
         """They are the same element from now on."""
-        if old in self.strange and new in self.missing and old.kind == new.kind:
+        is_world = new == WORLD and old.kind == "body" and WORLD not in self.image.vertices  # a link that stands for the world
+        if old in self.strange and (is_world or (new in self.missing and old.kind == new.kind)):
             self.names[old] = new
             self.strange.discard(old)
             self.missing.discard(new)

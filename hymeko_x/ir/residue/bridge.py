@@ -7,8 +7,8 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.diff import Difference
-from hymeko_x.ir.mechanism import joint_edge, pose_weight
-from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape
+from hymeko_x.ir.mechanism import WORLD, joint_edge, pose_weight
+from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
 from hymeko_x.ir.rename import rename
 from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate, rotate_tensor
 
@@ -24,10 +24,17 @@ if TYPE_CHECKING:
 def cross(image: Mechanism, bridge: Bridge) -> Mechanism:
     """The same robot as the source describes it; what an editor has taken apart stays as it is."""
     names = {old: new for old, new in bridge.names if old != new}
-    mechanism = rename(image, {old: new for old, new in names.items() if _is_there(image, old)})
+    mechanism = _with_world(rename(image, {old: new for old, new in names.items() if _is_there(image, old)}))
     mechanism = fold_chains(mechanism, bridge.folds)
     mechanism = join_twins(mechanism, bridge.joins)
     return move_frames(mechanism, dict(bridge.frames))
+
+
+def _with_world(mechanism: Mechanism) -> Mechanism:
+    """A body that was renamed to the world is the world from now on."""
+    if not isinstance(mechanism.graph.vertices.get(WORLD), Body):
+        return mechanism
+    return mechanism.with_graph(mechanism.graph.replace(vertices={WORLD: World()}))
 
 
 def other_words(bridge: Bridge) -> Iterator[Difference]:

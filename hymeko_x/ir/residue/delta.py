@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.graph import Edge
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.mechanism import ROOT, Id
 from hymeko_x.ir.parts import Body
 from hymeko_x.ir.residue import Addition, Change, Removal, Residue, Sides
 from hymeko_x.ir.residue.align import bridge_between
@@ -18,7 +18,7 @@ from hymeko_x.ir.residue.prints import print_of, shape_group, weight_print
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.ir.residue import Bridge, Run
 
 _NAMED = frozenset({"body", "joint", "frame", "material", "actuator", "sensor", "camera", "light", "tendon"})
@@ -155,8 +155,14 @@ def _extras(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, Extra, bo
 def _known(image: Mechanism, residue: Residue) -> Iterator[tuple[Id, str]]:
     """The elements of the image with names of their own that the residue speaks of, with their digests."""
     names = {new: old for old, new in residue.bridge.names}
-    spoken = dict.fromkeys(names.get(key, key) for key in _spoken_of(residue) if key.kind in _NAMED)
+    spoken = dict.fromkeys(names.get(key, key) for key in map(_named, _spoken_of(residue)) if key.kind in _NAMED)
     yield from ((key, print_of(image, key)) for key in spoken if key in image.graph.vertices or key in image.graph.edges)
+
+
+def _named(key: Id) -> Id:
+    """The element itself, or the body that it is called after."""
+    body, stroke, _ = key.name.partition("/")
+    return Id("body", body) if stroke and key.kind not in _NAMED else key
 
 
 def _spoken_of(residue: Residue) -> Iterator[Id]:

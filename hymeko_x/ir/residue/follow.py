@@ -38,13 +38,13 @@ def renamed_since(image: Mechanism, residue: Residue) -> dict[Id, Id]:
 
 
 def with_old_names(image: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
-    """The image under the old names; what is called after its body (``foot/visual``) follows it."""
+    """The image under the old names; what is called after its body (``foot/visual``, or the same) follows it."""
     bodies = {new.name: old.name for new, old in names.items() if new.kind == "body"}
     there = {*image.graph.vertices, *image.graph.edges}
     followed: dict[Id, Id] = {}
     for key in there if bodies else ():
         body, stroke, rest = key.name.partition("/")
-        old = Id(key.kind, f"{bodies[body]}/{rest}") if stroke and body in bodies else key
+        old = Id(key.kind, f"{bodies[body]}{stroke}{rest}") if body in bodies else key
         if old not in there:
             followed[key] = old
     return rename(image, {**followed, **names})

@@ -175,16 +175,18 @@ class _Merge:
                 queue += self._put_back(target, removed[target], users)
                 continue
             for key in users[target]:
-                edge = self.edges.pop(key, None)
-                if edge is not None:
+                if key in self.edges:
+                    edge = self.edges.pop(key)
                     self._say(key, f"is not restored, because {target} is gone")
                     queue += [key, *self._drop_things(edge, added)]
 
     def _drop_things(self, edge: RobotEdge, added: set[Id]) -> list[Id]:
         """Take away what was carried only to be held by an edge that is not restored: a frame's mount, an actuator's drive."""
         sign = _HOLDS.get(type(edge.data))
-        things = [arc.target for arc in edge.arcs if arc.sign == sign and arc.target in added]
-        return [thing for thing in things if self.vertices.pop(thing, None) is not None]
+        things = [arc.target for arc in edge.arcs if arc.sign == sign and arc.target in added and arc.target in self.vertices]
+        for thing in things:
+            del self.vertices[thing]
+        return things
 
     def _put_back(self, key: Id, part: VertexPart | RobotEdge, users: dict[Id, list[Id]]) -> list[Id]:
         if not isinstance(part, Edge):

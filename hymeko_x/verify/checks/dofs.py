@@ -81,9 +81,10 @@ def _or_none(value: float) -> float:
 def _check_bounds(
     pair: Pair, scalar: list[int], feature: Feature, name: str, unit: str, bounds: Callable[[Dof], tuple[float, float]]
 ) -> Iterator[Check]:
+    _note_unsaid(pair, feature, lambda dof: bounds(dof) != (-INF, INF))
     if not pair.both_say(feature):
-        _note_unsaid(pair, feature, lambda dof: bounds(dof) != (-INF, INF))
         return
+    scalar = [k for k in scalar if _both_say(pair, feature, *pair.match.dofs[k])]
     low = _differences(pair, scalar, lambda dof, _: bounds(dof)[0])
     high = _differences(pair, scalar, lambda dof, _: bounds(dof)[1])
     sizes = np.array([max((abs(x) for x in bounds(pair.a.dofs[pair.match.dofs[k][0]]) if abs(x) < INF), default=0.0) for k in scalar])
@@ -114,17 +115,24 @@ def _is_unlimited(dof: Dof) -> bool:
 
 
 def _check_numbers(pair: Pair, feature: Feature, name: str, unit: str, value: Callable[[Dof], float]) -> Iterator[Check]:
+    _note_unsaid(pair, feature, lambda dof: value(dof) != 0.0)
     if not pair.both_say(feature):
-        _note_unsaid(pair, feature, lambda dof: value(dof) != 0.0)
         return
-    known = list(range(len(pair.match.dofs)))
-    sizes = np.array([abs(value(pair.a.dofs[d])) for d, _ in pair.match.dofs])
-    yield worst(name, unit, _differences(pair, known, lambda dof, _: value(dof)), _allowed(pair, 1e-12, sizes), _label(pair, known))
+    known = [(d, e) for d, e in (*pair.match.dofs, *_turned(pair)) if _both_say(pair, feature, d, e)]
+    sizes = np.array([abs(value(pair.a.dofs[d])) for d, _ in known])
+    apart = np.array([abs(value(pair.b.dofs[e]) - value(pair.a.dofs[d])) for d, e in known])
+    yield worst(name, unit, apart, _allowed(pair, 1e-12, sizes), lambda place: pair.a.dof_label(known[place][0]))
+
+
+def _turned(pair: Pair) -> Iterator[tuple[int, int]]:
+    """A ball and each of the hinges that stand for it: what acts on the ball acts on each of them."""
+    for turned in pair.match.turned:
+        yield from ((d, e) for d in turned.dofs_a for e in turned.dofs_b)
 
 
 def _check_springs(pair: Pair) -> Iterator[Check]:
+    _note_unsaid(pair, Feature.SPRINGS, lambda dof: dof.stiffness != 0.0 or bool(dof.nonlinear))
     if not pair.both_say(Feature.SPRINGS):
-        _note_unsaid(pair, Feature.SPRINGS, lambda dof: dof.stiffness != 0.0 or bool(dof.nonlinear))
         return
     known = list(range(len(pair.match.dofs)))
     label = _label(pair, known)
@@ -168,7 +176,7 @@ def _check_references(pair: Pair) -> Iterator[Check]:
 
 def _check_couplings(pair: Pair) -> Iterator[Check]:
     """The same dofs follow, and are at the same place at every configuration."""
-    ours, theirs = ({coupling.follower for coupling in model.couplings} for model in (pair.a, pair.b))
+    ours, theirs = set(_sayable_followers(pair)), {coupling.follower for coupling in pair.b.couplings}
     if not ours and not theirs:
         return
     partner = dict(pair.match.dofs)
@@ -181,6 +189,15 @@ def _check_couplings(pair: Pair) -> Iterator[Check]:
     apart = np.array([_follower_distance(pair, k) for k in both])
     size = np.array([float(np.abs(pair.q_a[:, pair.a.columns[pair.match.dofs[k][0]]]).max()) for k in both])
     yield worst("coupled coordinates", "rad or m", apart, _allowed(pair, 1e-9, size), _label(pair, both))
+
+
+def _sayable_followers(pair: Pair) -> Iterator[int]:
+    """The first robot's dofs that follow in a way that the second's format can say; a note for the others."""
+    curved = [] if Feature.CURVES in pair.b.says else [coupling for coupling in pair.a.couplings if not coupling.straight]
+    yield from (coupling.follower for coupling in pair.a.couplings if coupling not in curved)
+    if curved:
+        said = ", ".join(pair.a.dof_label(coupling.follower) for coupling in curved[:3])
+        pair.notes.append(f"{Feature.CURVES.value}: {pair.b.format} has none; {len(curved)} in {pair.a.format}: {said}")
 
 
 def _follower_distance(pair: Pair, k: int) -> float:
@@ -213,8 +230,13 @@ def _label(pair: Pair, which: list[int]) -> Callable[[int], str]:
 def _note_unsaid(pair: Pair, feature: Feature, said: Callable[[Dof], bool]) -> None:
     """A note where one side says something that the other's format or reader cannot."""
     for model, other in ((pair.a, pair.b), (pair.b, pair.a)):
-        if feature in other.says:
+        unsaid = [dof for dof in model.dofs if said(dof) and not other.can_say(feature, dof.kind)]
+        if not unsaid:
             continue
-        count = sum(said(dof) for dof in model.dofs)
-        if count:
-            pair.notes.append(f"{feature.value}: {other.format} has none; {count} in {model.format}")
+        kinds = sorted({dof.kind.value for dof in unsaid})
+        where = "" if feature not in other.says else f" for {' and '.join(kinds)} joints"
+        pair.notes.append(f"{feature.value}: {other.format} has none{where}; {len(unsaid)} in {model.format}")
+
+
+def _both_say(pair: Pair, feature: Feature, d: int, e: int) -> bool:
+    return pair.a.can_say(feature, pair.a.dofs[d].kind) and pair.b.can_say(feature, pair.b.dofs[e].kind)

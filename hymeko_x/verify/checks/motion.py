@@ -8,7 +8,7 @@ import numpy as np
 
 from hymeko_x.verify.checks.pair import POSITION, ROTATION, Pair, counted, worst
 from hymeko_x.verify.kinematics import prepare
-from hymeko_x.verify.model import Array, Index, Loop
+from hymeko_x.verify.model import Array, Feature, Index, KinematicModel, Loop
 from hymeko_x.verify.spatial import angle_between
 from hymeko_x.verify.verdict import Check
 
@@ -41,8 +41,10 @@ def check_motion(pair: Pair) -> Iterator[Check]:
     yield _body_check(pair, "forward kinematics, position", "m", far, metres)
     yield _body_check(pair, "forward kinematics, rotation", "rad", turned, radians)
     if loops or findings:
+        anchors = max((float(np.abs(pose[:3, 3]).max()) for loop, _, _ in loops for pose in (loop.pose_a, loop.pose_b)), default=0.0)
+        gaps = pair.allowed(POSITION * max(1.0, reach), depth * max(1e-3, reach, anchors))
         yield counted("loops", findings)
-        yield worst("loop closure, position", "m", gap.values, 2 * metres, lambda k: _loop_label(pair, loops[k][0]))
+        yield worst("loop closure, position", "m", gap.values, 2 * gaps, lambda k: _loop_label(pair, loops[k][0]))
         yield worst("loop closure, rotation", "rad", skew.values, 2 * radians, lambda k: _loop_label(pair, loops[k][0]))
 
 
@@ -83,7 +85,13 @@ def _body_check(pair: Pair, quantity: str, unit: str, peaks: _Peaks, allowed: fl
 
 
 def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
-    """Closures by name, else by the two bodies that they join; and words about those without a counterpart."""
+    """Closures by name, else by the two bodies that they join; and words about those without a counterpart.
+
+    None where the second robot's format has none: trees are then compared, and a note says what else holds their bodies together.
+    """
+    if Feature.LOOPS not in pair.b.says:
+        _note_unsaid(pair)
+        return [], []
     back = {j: i for i, j in pair.match.bodies}
     waiting = list(pair.b.loops)
     pairs: list[LoopPair] = []
@@ -105,6 +113,14 @@ def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
     return pairs, findings
 
 
+def _note_unsaid(pair: Pair) -> None:
+    loops = pair.a.loops
+    if loops:
+        joined = [f"'{loop.name or loop.kind}' between {_ends_of(pair.a, loop)}" for loop in loops[:3]]
+        rest = f" and {len(loops) - 3} more" if len(loops) > 3 else ""
+        pair.notes.append(f"loops: {pair.b.format} has none; {len(loops)} in {pair.a.format}: {', '.join(joined)}{rest}")
+
+
 def _counterpart(loop: Loop, waiting: list[Loop], back: dict[int, int]) -> Loop | None:
     named = [other for other in waiting if loop.name is not None and other.name == loop.name]
     if named:
@@ -114,8 +130,12 @@ def _counterpart(loop: Loop, waiting: list[Loop], back: dict[int, int]) -> Loop 
 
 
 def _loop_label(pair: Pair, loop: Loop) -> str:
-    between = f"between {pair.a.body_label(loop.body_a)} and {pair.a.body_label(loop.body_b)}"
+    between = f"between {_ends_of(pair.a, loop)}"
     return f"loop '{loop.name}' {between}" if loop.name else f"the loop {between}"
+
+
+def _ends_of(model: KinematicModel, loop: Loop) -> str:
+    return f"{model.body_label(loop.body_a)} and {model.body_label(loop.body_b)}"
 
 
 def _compare_loop(poses_a: Array, poses_b: Array, loop_a: Loop, loop_b: Loop, *, swapped: bool) -> tuple[Array, Array]:

@@ -10,15 +10,16 @@ import numpy as np
 
 from hymeko_x.verify.dh import zero_poses
 from hymeko_x.verify.kinematics import prepare
-from hymeko_x.verify.model import Array, Feature, Kind, KinematicModel
 from hymeko_x.verify.sampling import bounds, draw, follow
-from hymeko_x.verify.spatial import inverse, quat_from_rotation
+from hymeko_x.verify.spatial import quat_from_rotation
+from hymeko_x.verify.surfaces import Meshes
 from hymeko_x.verify.verdict import Check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from hymeko_x.verify.match import Match, Turned
+    from hymeko_x.verify.model import Array, Feature, KinematicModel
 
 POSITION, ROTATION = 1e-9, 1e-9
 MASS_MATRIX = 1e-8
@@ -28,7 +29,7 @@ MASS_MATRIX = 1e-8
 class Pair:
     """Two robots, their match, the same configurations (n, width) in the coordinates of each, and notes for the verdict.
 
-    ``meshes`` says whether mesh files are to be read and compared.
+    ``meshes`` reads the mesh files that are compared, each once.
 
     ``shifts`` holds for each pair of dofs by how much the second's coordinate is larger for the same pose.
     """
@@ -39,7 +40,7 @@ class Pair:
     q_a: Array
     q_b: Array
     shifts: tuple[float, ...]
-    meshes: bool = True
+    meshes: Meshes = field(default_factory=Meshes)
     notes: list[str] = field(default_factory=list)
 
     @cached_property
@@ -73,7 +74,7 @@ class Pair:
         return ("in the zero pose", "at all lower limits", "at all upper limits")[row] if row < 3 else f"at sample {row - 2}"
 
 
-def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, seed: int, *, meshes: bool = True) -> Pair:
+def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, seed: int, *, meshes: Meshes | None = None) -> Pair:
     """Configurations drawn in the first robot's limits and said in the coordinates of both."""
     rng = np.random.default_rng(seed)
     q_a = draw(a, samples, rng)
@@ -83,9 +84,8 @@ def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, 
         width = a.dofs[d].kind.width
         q_b[:, b.columns[e] : b.columns[e] + width] = q_a[:, a.columns[d] : a.columns[d] + width] + shift
     follow(b, q_b)
-    for turned in matched.turned:
-        _turn_alike(a, b, turned, q_a, q_b, rng)
-    return Pair(a, b, matched, q_a, q_b, shifts, meshes, list(matched.notes))
+    _turn_alike(a, b, matched.turned, q_a, q_b, rng)
+    return Pair(a, b, matched, q_a, q_b, shifts, Meshes() if meshes is None else meshes, list(matched.notes))
 
 
 def worst(quantity: str, unit: str, differences: Array, allowed: Array | float, label: Callable[[int], str]) -> Check:
@@ -138,20 +138,45 @@ def _same_placement(a: KinematicModel, b: KinematicModel, i: int, j: int) -> boo
     return bool(np.abs(a.bodies[i].joint.placement - b.bodies[j].joint.placement).max() < 1e-6)
 
 
-def _turn_alike(a: KinematicModel, b: KinematicModel, turned: Turned, q_a: Array, q_b: Array, rng: np.random.Generator) -> None:
-    """Gives the ball of one robot the orientation that the hinges of the other have, in place."""
-    ball_first = any(a.dofs[d].kind is Kind.BALL for d in turned.dofs_a)
-    ball, hinges = (a, b) if ball_first else (b, a)
-    q_ball, q_hinges = (q_a, q_b) if ball_first else (q_b, q_a)
-    dof, angles = (turned.dofs_a[0], turned.dofs_b) if ball_first else (turned.dofs_b[0], turned.dofs_a)
-    body, moved = (turned.body_a, turned.body_b) if ball_first else (turned.body_b, turned.body_a)
-    if ball_first:
-        for angle in angles:
-            lower, upper = bounds(hinges.dofs[angle])
-            q_hinges[3:, hinges.columns[angle]] = rng.uniform(lower, upper, len(q_hinges) - 3)
-    poses = prepare(hinges).poses(q_hinges)
-    top = hinges.bodies[hinges.body_of_dof[angles[0]]].parent
-    relative = inverse(poses[:, top]) @ poses[:, moved]
-    turn = np.swapaxes(ball.bodies[body].joint.placement[:3, :3], 0, 1) @ relative[:, :3, :3]
-    column = ball.columns[dof]
-    q_ball[:, column : column + 4] = quat_from_rotation(turn)
+def _turn_alike(a: KinematicModel, b: KinematicModel, turned: Sequence[Turned], q_a: Array, q_b: Array, rng: np.random.Generator) -> None:
+    """Gives each ball of one robot the orientation that the hinges of the other have, in place."""
+    if not turned:
+        return
+    sides = [_Side(b, q_b, item.dofs_b, item.top_b, item.body_b) for item in turned]
+    others = [_Side(a, q_a, item.dofs_a, item.top_a, item.body_a) for item in turned]
+    balls = [side if len(side.dofs) == 1 else other for side, other in zip(sides, others, strict=True)]
+    hinges = [other if len(side.dofs) == 1 else side for side, other in zip(sides, others, strict=True)]
+    for ball, three in zip(balls, hinges, strict=True):
+        ball.q[:, ball.column : ball.column + 4] = (1.0, 0.0, 0.0, 0.0)
+        if ball.model is a:
+            three.draw(rng)
+    poses = {id(model): prepare(model).poses(q) for model, q in ((a, q_a), (b, q_b))}
+    for ball, three in zip(balls, hinges, strict=True):
+        at_rest, wanted = (side.turn(poses[id(side.model)]) for side in (ball, three))
+        ball.q[:, ball.column : ball.column + 4] = quat_from_rotation(np.swapaxes(at_rest, 1, 2) @ wanted)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Side:
+    """One robot's dofs of a joint that turns every way: from the body ``top`` to the body ``below``."""
+
+    model: KinematicModel
+    q: Array
+    dofs: tuple[int, ...]
+    top: int
+    below: int
+
+    @property
+    def column(self) -> int:
+        return self.model.columns[self.dofs[0]]
+
+    def draw(self, rng: np.random.Generator) -> None:
+        """Random angles within the limits in all but the first three rows."""
+        for dof in self.dofs:
+            lower, upper = bounds(self.model.dofs[dof])
+            self.q[3:, self.model.columns[dof]] = rng.uniform(lower, upper, len(self.q) - 3)
+
+    def turn(self, poses: Array) -> Array:
+        """The rotation of the body below, seen from the one on top, (n, 3, 3)."""
+        turn: Array = np.swapaxes(poses[:, self.top, :3, :3], 1, 2) @ poses[:, self.below, :3, :3]
+        return turn

@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from hymeko_x.verify.checks.pair import Pair, counted, worst
+from hymeko_x.verify.checks.stand_ins import stands_for
 from hymeko_x.verify.model import WORLD, Array, Feature, Index, Role, Shape
-from hymeko_x.verify.surfaces import EMPTY, Meshes, measures
+from hymeko_x.verify.surfaces import EMPTY, measures, used
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from hymeko_x.verify.surfaces import Meshes
     from hymeko_x.verify.verdict import Check
 
 _LENGTH = 1e-8  # m; primitive sizes and poses are read from text by both sides
@@ -47,14 +49,13 @@ class _Result:
 
 def check_shapes(pair: Pair) -> Iterator[Check]:
     """Collision shapes and visual shapes of every pair of bodies."""
-    meshes = Meshes(read=pair.meshes)
     for feature, (word, roles) in _ROLES.items():
         if not pair.both_say(feature):
             pair.notes.append(
                 f"{feature.value}: the reader of {pair.a.format if feature not in pair.a.says else pair.b.format} cannot tell"
             )
             continue
-        results = [(i, _compare_body(pair, i, j, roles, meshes)) for i, j in pair.match.bodies if _is_compared(pair, i, j, word)]
+        results = [(i, _compare_body(pair, i, j, roles, pair.meshes)) for i, j in pair.match.bodies if _is_compared(pair, i, j, word)]
         if not results:
             continue
         yield from _summed_up(pair, word, results)
@@ -92,7 +93,7 @@ def _compare_body(pair: Pair, i: int, j: int, roles: tuple[Role, Role], meshes: 
     What collides is often drawn as well, and formats differ in whether they say so: a shape of both roles may be missing
     among the visual ones of the other robot.
     """
-    ours, theirs = _in_common_words(pair, pair.a.bodies[i].shapes, pair.b.bodies[j].shapes)
+    ours, theirs = _in_common_words(pair, pair.a.bodies[i].shapes, pair.b.bodies[j].shapes, meshes)
     best: _Result | None = None
     for left in _readings(ours, roles):
         for right in _readings(theirs, roles):
@@ -105,19 +106,31 @@ def _compare_body(pair: Pair, i: int, j: int, roles: tuple[Role, Role], meshes: 
     return best
 
 
-def _in_common_words(pair: Pair, ours: Sequence[Shape], theirs: Sequence[Shape]) -> tuple[Sequence[Shape], Sequence[Shape]]:
+def _in_common_words(pair: Pair, ours: Sequence[Shape], theirs: Sequence[Shape], meshes: Meshes) -> tuple[Sequence[Shape], Sequence[Shape]]:
     """Against URDF a capsule is a cylinder with two spheres; what URDF cannot say at all is left out with what stands for it."""
     if (pair.a.format == "urdf") == (pair.b.format == "urdf"):
         return ours, theirs
     rich, poor = (theirs, ours) if pair.a.format == "urdf" else (ours, theirs)
     unsaid = [shape for shape in rich if shape.kind in _NOT_IN_URDF]
-    names = {shape.name for shape in unsaid if shape.name is not None}
-    for shape in unsaid:
-        pair.notes.append(f"shapes: URDF has no {shape.kind}; {_label(shape)} was not compared")
+    poor = _without_stand_ins(pair, unsaid, poor, meshes)
     capsules = not any(shape.kind == "capsule" for shape in poor)
     rich = [part for shape in rich if shape.kind not in _NOT_IN_URDF for part in (_split_capsule(shape) if capsules else [shape])]
-    poor = [shape for shape in poor if shape.name not in names]
     return (poor, rich) if pair.a.format == "urdf" else (rich, poor)
+
+
+def _without_stand_ins(pair: Pair, unsaid: Sequence[Shape], poor: Sequence[Shape], meshes: Meshes) -> list[Shape]:
+    """The shapes of the poorer format but those that stand for one that it has no word for, one for each role of it."""
+    waiting = list(poor)
+    for shape in unsaid:
+        stands = []
+        for role in (Role.VISUAL, Role.COLLISION):
+            if shape.role in (role, Role.BOTH):
+                stands += [other for other in waiting if other.role is role and stands_for(other, shape, meshes)][:1]
+        waiting = [other for other in waiting if other not in stands]
+        kind = stands[0].kind if stands else ""
+        words = f"a {kind} stands for {_label(shape)}" if stands else f"{_label(shape)} was not compared"
+        pair.notes.append(f"shapes: URDF has no {shape.kind}; {words}")
+    return waiting
 
 
 def _split_capsule(shape: Shape) -> list[Shape]:
@@ -157,7 +170,7 @@ def _fit(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes) -> _Resu
 
 
 def _label(shape: Shape) -> str:
-    return f"{shape.kind} '{shape.name}'" if shape.name else f"a {shape.kind}"
+    return f"{shape.kind} '{shape.name}'" if shape.name else f"{'an' if shape.kind[0] in 'aeiouh' else 'a'} {shape.kind}"
 
 
 # ---- primitives ------------------------------------------------------------------------------------------------------
@@ -222,14 +235,18 @@ def _mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes
             return 0.0, "", side
     assert not isinstance(ours, str)
     assert not isinstance(theirs, str)
+    extent = float((used(*ours).max(axis=0) - used(*ours).min(axis=0)).max()) or 1.0
+    if len(ours[0]) == len(theirs[0]) and np.array_equal(ours[1], theirs[1]):
+        in_order = float(np.linalg.norm(ours[0] - theirs[0], axis=1).max()) / extent
+        if in_order <= _MESH:  # the same triangles: box, area and volume cannot differ by more
+            return in_order, "the points of the meshes", ""
     box_a, area_a, volume_a = measures(ours[0], ours[1])
     box_b, area_b, volume_b = measures(theirs[0], theirs[1])
-    extent = float((box_a[1] - box_a[0]).max()) or 1.0
     candidates = [
         (float(np.abs(box_a - box_b).max()) / extent, "the bounding box"),
         (0.1 * abs(area_a - area_b) / max(area_a, extent * extent * 1e-3), "the area"),
         (0.1 * abs(abs(volume_a) - abs(volume_b)) / extent**3, "the volume"),
-        (_points_distance(_used(ours), _used(theirs)) / extent, "the points"),
+        (_points_distance(used(*ours), used(*theirs)) / extent, "the points"),
     ]
     difference, where = max(candidates)
     return difference, f"{where} of the meshes", ""
@@ -255,12 +272,6 @@ def _together(shapes: Sequence[Shape], meshes: Meshes) -> tuple[Array, Index] | 
         faces.append(surface.faces + count)
         count += len(surface.vertices)
     return np.concatenate(vertices), np.concatenate(faces)
-
-
-def _used(mesh: tuple[Array, Index]) -> Array:
-    """The points that are corners of triangles."""
-    points: Array = mesh[0][np.unique(mesh[1])]
-    return points
 
 
 def _points_distance(a: Array, b: Array) -> float:

@@ -7,6 +7,7 @@ Source: MuJoCo's mjmodel.h.
 from __future__ import annotations
 
 import contextlib
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import mujoco
@@ -43,7 +44,7 @@ def read(path: Path, places: Places) -> KinematicModel:
     """The robot that MuJoCo compiles. Raises: Refusal HX302 in MuJoCo's words."""
     with overheard() as said, _without_log_file():
         try:
-            compiled = mujoco.MjModel.from_xml_path(str(path))
+            compiled = _compiled(path)
         except (ValueError, mujoco.FatalError) as error:
             words = " ".join(str(error).split()) or said()
             raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses the file: {words}", Origin(str(path))) from error
@@ -52,6 +53,16 @@ def read(path: Path, places: Places) -> KinematicModel:
     if difference:
         raise refuse(codes.ENGINE_REFUSED, f"MuJoCo's own kinematics disagree with its compiled model: {difference}", Origin(str(path)))
     return found
+
+
+def _compiled(path: Path) -> Any:
+    """The mjModel of everything that the file says: bodies without joints are not fused with their parents, visuals stay."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of words that MuJoCo is about to drop: they still mean what they mean
+        spec = mujoco.MjSpec.from_file(str(path))
+        spec.compiler.fusestatic = False
+        spec.compiler.discardvisual = False
+        return spec.compile()
 
 
 @contextlib.contextmanager

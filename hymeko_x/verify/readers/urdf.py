@@ -26,7 +26,17 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.readers import Places
 
-SAYS = frozenset(Feature) - {Feature.ARMATURE, Feature.SPRINGS, Feature.REFS, Feature.ACTUATORS, Feature.TENDONS}
+SAYS = frozenset(Feature) - {
+    Feature.ARMATURE,
+    Feature.SPRINGS,
+    Feature.REFS,
+    Feature.ACTUATORS,
+    Feature.TENDONS,
+    Feature.LOOPS,
+    Feature.CURVES,
+}
+MUTE = frozenset((feature, Kind.FREE) for feature in (Feature.DAMPING, Feature.FRICTION, Feature.VELOCITY_LIMITS, Feature.EFFORT_LIMITS))
+"""urdfdom's <dynamics> and <limit> are those of one coordinate; a floating joint has six, and Pinocchio gives them none."""
 
 
 def read(path: Path, places: Places) -> KinematicModel:
@@ -48,6 +58,7 @@ def read_text(data: bytes, path: Path, places: Places) -> KinematicModel:
         engine=f"urdfdom in Pinocchio {pin.__version__}, yourdfpy",
         bodies=_bodies(model, second),
         says=SAYS if second.shapes is not None else SAYS - {Feature.VISUALS, Feature.COLLISIONS},
+        mute=MUTE,
         notes=second.notes,
     )
     couplings, said = _couplings(text, str(path), found, second)

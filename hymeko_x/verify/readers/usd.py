@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.readers import Places
 
-SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES})
+SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
 SINGLE = 1.2e-7
 """The relative precision of what UsdPhysics stores."""
 
@@ -75,7 +75,8 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     kinds = UsdPhysics.ObjectType
     rigid_bodies = {str(desc.primPath): desc for desc in found.get(kinds.RigidBody, ((), ()))[1] if desc.rigidBodyEnabled}
     joints = [desc for word in _JOINTS for desc in found.get(getattr(kinds, word), ((), ()))[1] if desc.jointEnabled and desc.isValid]
-    joints.sort(key=lambda desc: _stage_order(scene.stage, desc.primPath))
+    ranks: dict[str, int] = {str(prim.GetPath()): rank for rank, prim in enumerate(scene.stage.Traverse(Usd.TraverseInstanceProxies()))}
+    joints.sort(key=lambda desc: ranks.get(str(desc.primPath), len(ranks)))
     edges = [read_joint(scene, desc) for desc in joints]
     order, tree, closing = _spanning_tree(list(rigid_bodies), edges)
     places = {path: index for index, path in enumerate(order, start=1)} | {"": WORLD}
@@ -97,17 +98,6 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     return read_couplings(scene, model, tree)
 
 
-def _stage_order(stage: Any, path: Any) -> tuple[int, ...]:
-    """Where a prim stands among its siblings, level by level: the order in which the file lists it."""
-    order: list[int] = []
-    prim = stage.GetPrimAtPath(path)
-    while prim and not prim.IsPseudoRoot():
-        siblings = prim.GetParent().GetAllChildrenNames() if not prim.IsInstanceProxy() else []
-        order.append(siblings.index(prim.GetName()) if prim.GetName() in siblings else 0)
-        prim = prim.GetParent()
-    return tuple(reversed(order))
-
-
 def _names(stage: Any, paths: Sequence[str]) -> dict[str, str]:
     """Display names where there are any, else prim names; a path where two bodies would have one name."""
     names = {path: stage.GetPrimAtPath(path).GetDisplayName() or path.rpartition("/")[2] for path in paths}
@@ -123,13 +113,13 @@ def _names(stage: Any, paths: Sequence[str]) -> dict[str, str]:
 def _spanning_tree(bodies: Sequence[str], edges: Sequence[JointEdge]) -> tuple[list[str], dict[str, JointEdge], list[JointEdge]]:
     """Bodies with parents first, the joint above each (turned round where body 1 is the parent), and the joints that close loops.
 
-    Trees begin at the world, then at bodies that are nobody's child, then anywhere.
+    Trees begin at the world, then at bodies that are nobody's child, then anywhere. In the order of the stage, a joint whose two
+    bodies hang together already closes a loop.
     """
     below: dict[str, list[JointEdge]] = {}
-    for edge in edges:
-        if not edge.closes:
-            below.setdefault(edge.parent, []).append(edge)
-            below.setdefault(edge.child, []).append(edge)
+    for edge in _acyclic(edges):
+        below.setdefault(edge.parent, []).append(edge)
+        below.setdefault(edge.child, []).append(edge)
     children = {edge.child for edge in edges if not edge.closes}
     starts = ["", *(path for path in bodies if path not in children), *bodies]
     known = set(bodies)
@@ -160,6 +150,30 @@ def _spanning_tree(bodies: Sequence[str], edges: Sequence[JointEdge]) -> tuple[l
                 above[other] = edge if edge.child == other else edge.turned()
                 stack.append(other)
     return order, above, [edge for edge in edges if id(edge) not in used]
+
+
+def _acyclic(edges: Sequence[JointEdge]) -> list[JointEdge]:
+    """The joints that connect what was not connected before, and those beside one of them, which may be further dofs of it."""
+    leader: dict[str, str] = {}
+    pairs: set[frozenset[str]] = set()
+    found = []
+    for edge in edges:
+        pair = frozenset((edge.parent, edge.child))
+        first, second = _leader(edge.parent, leader), _leader(edge.child, leader)
+        if edge.closes or (first == second and pair not in pairs):
+            continue
+        leader[second] = first
+        pairs.add(pair)
+        found.append(edge)
+    return found
+
+
+def _leader(body: str, leader: dict[str, str]) -> str:
+    """The body that stands for all that hang together with this one; the way there is halved on each visit."""
+    while leader.setdefault(body, body) != body:
+        leader[body] = leader[leader[body]]
+        body = leader[body]
+    return body
 
 
 def _body(

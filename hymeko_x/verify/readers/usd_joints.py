@@ -167,7 +167,11 @@ def read_loop(edge: JointEdge, body_a: int, body_b: int) -> Loop:
 
 
 def read_couplings(scene: Scene, model: KinematicModel, tree: Mapping[str, JointEdge]) -> KinematicModel:
-    """The model with what MjcEqualityJointAPI, else NewtonMimicAPI, says about joints that follow others."""
+    """The model with what NewtonMimicAPI and MjcEqualityJointAPI say about joints that follow others.
+
+    Source: Newton's importer, where MjcEqualityJointAPI adds the powers above the first; its own names for what
+    NewtonMimicAPI says are older and count where that says nothing.
+    """
     paths = {edge.path: edge for first in tree.values() for edge in (first, *first.more)}
     dofs = {dof.name: index for index, dof in enumerate(model.dofs) if dof.name is not None}
     found = [coupling for path in paths if (coupling := _coupling(scene, path, paths, dofs)) is not None]
@@ -179,23 +183,25 @@ def _coupling(scene: Scene, path: str, paths: Mapping[str, JointEdge], dofs: Map
     follower = dofs.get(paths[path].name)
     if follower is None:
         return None
-    leader = _leader(prim, "mjc:target", paths, dofs)
-    if leader is not None:
-        constant, *others = (_number(prim, f"mjc:coef{k}", 1.0 if k == 1 else 0.0) for k in range(5))
-        while len(others) > 1 and others[-1] == 0.0:
-            others.pop()
-        return Coupling(follower, constant, ((leader[1], tuple(others)),))
-    leader = _leader(prim, "newton:mimicJoint", paths, dofs)
+    leader = _leader(prim, "newton:mimicJoint", paths, dofs) or _leader(prim, "mjc:target", paths, dofs)
     if leader is None or not _enabled(prim):
         return None
-    own, other = (_unit(scene, paths[p]) for p in (path, leader[0]))
-    slope = _number(prim, "newton:mimicCoef1", 1.0) * own / other
-    return Coupling(follower, _number(prim, "newton:mimicCoef0", 0.0) * own, ((leader[1], (slope,)),))
+    others = [_first(prim, ("newton:mimicCoef1", "mjc:coef1"), 1.0), *(_number(prim, f"mjc:coef{k}", 0.0) for k in (2, 3, 4))]
+    while len(others) > 1 and others[-1] == 0.0:
+        others.pop()
+    return Coupling(follower, _constant(scene, prim, paths[path]), ((leader[1], tuple(others)),))
 
 
-def _unit(scene: Scene, edge: JointEdge) -> float:
-    """What one unit of a joint's coordinate in the file (a degree, or a stage unit) is in rad or m."""
-    return scene.metres if edge.dofs[0].kind is Kind.SLIDE else math.radians(1.0)
+def _constant(scene: Scene, prim: Any, edge: JointEdge) -> float:
+    """The constant of a coupling: Newton's is a coordinate of the follower in the file, MuJoCo's in rad or m."""
+    if not prim.HasAttribute("newton:mimicCoef0"):
+        return _number(prim, "mjc:coef0", 0.0)
+    unit = scene.metres if edge.dofs[0].kind is Kind.SLIDE else math.radians(1.0)
+    return _number(prim, "newton:mimicCoef0", 0.0) * unit
+
+
+def _first(prim: Any, names: tuple[str, ...], default: float) -> float:
+    return next((_number(prim, name, default) for name in names if prim.HasAttribute(name)), default)
 
 
 def _leader(prim: Any, name: str, paths: Mapping[str, JointEdge], dofs: Mapping[str, int]) -> tuple[str, int] | None:

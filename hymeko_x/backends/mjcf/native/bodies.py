@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.native.geoms import geom_op
 from hymeko_x.backends.mjcf.native.joints import joint_ops
-from hymeko_x.backends.mjcf.native.mounts import Mounts, mount_ops, mounts_of
+from hymeko_x.backends.mjcf.native.mounts import mount_ops
 from hymeko_x.backends.mjcf.native.spot import Around, Op, Spot, spot_of
 from hymeko_x.formats.mjcf_codec import POSE
 from hymeko_x.formats.mjcf_places import INERTIAL, seen_from
@@ -23,11 +23,10 @@ if TYPE_CHECKING:
 
 def write_worldbody(sheet: Sheet) -> None:
     """The world's own geometry and every tree below it."""
-    mounts = mounts_of(sheet.mechanism)
     said = sheet.said(WORLD)
     sheet.text.section("worldbody", dict(said))
     stack: list[Op | None] = []
-    _push(stack, _content(sheet, spot_of(sheet, WORLD, said.get("childclass")), mounts))
+    _push(stack, _content(sheet, spot_of(sheet, WORLD, said.get("childclass"))))
     while stack:
         op = stack.pop()
         if op is None:
@@ -40,24 +39,36 @@ def write_worldbody(sheet: Sheet) -> None:
                 sheet.text.raw(line)
             if op.spot is not None and op.kind == "body":
                 stack.append(None)
-                _push(stack, _content(sheet, op.spot, mounts))
+                _push(stack, _content(sheet, op.spot))
     sheet.text.close()
 
 
 def _push(stack: list[Op | None], ops: list[Op]) -> None:
     """Put the content of a body on the stack; frames are opened and closed where they change."""
     wrapped: list[Op | None] = []
-    opened: tuple[Around, ...] = ()
+    opened: Around | None = None
     named: set[str] = set()
     for op in ops:
-        while opened != op.frames[: len(opened)]:
-            wrapped.append(None)
-            opened = opened[:-1]
-        wrapped += [_frame_op(around, named) for around in op.frames[len(opened) :]]
-        opened = op.frames
+        closed, entered = _way(opened, op.around)
+        wrapped += [None] * closed
+        wrapped += [_frame_op(around, named) for around in entered]
+        opened = op.around
         wrapped.append(op)
-    wrapped += [None] * len(opened)
+    wrapped += [None] * (opened.depth if opened else 0)
     stack.extend(reversed(wrapped))
+
+
+def _way(start: Around | None, end: Around | None) -> tuple[int, list[Around]]:
+    """How many frames are left on the way from one frame to another, and which ones are entered, from the outermost."""
+    closed = 0
+    entered: list[Around] = []
+    while start is not end:
+        if start is not None and (end is None or start.depth >= end.depth):
+            start, closed = start.outer, closed + 1
+        elif end is not None:
+            entered.append(end)
+            end = end.outer
+    return closed, entered[::-1]
 
 
 def _frame_op(around: Around, named: set[str]) -> Op:
@@ -69,7 +80,7 @@ def _frame_op(around: Around, named: set[str]) -> Op:
     return Op("frame", "frame", attributes)
 
 
-def _content(sheet: Sheet, spot: Spot, mounts: Mounts) -> list[Op]:
+def _content(sheet: Sheet, spot: Spot) -> list[Op]:
     mechanism = sheet.mechanism
     ops: list[Op] = []
     view = mechanism.parent_joint.get(spot.body)
@@ -78,7 +89,7 @@ def _content(sheet: Sheet, spot: Spot, mounts: Mounts) -> list[Op]:
     if view is not None:
         ops += joint_ops(sheet, spot, view)
     ops += [geom_op(sheet, spot, shape) for shape in mechanism.shapes.get(spot.body, ())]
-    ops += mount_ops(sheet, spot, mounts)
+    ops += mount_ops(sheet, spot)
     ops += [_body_op(sheet, spot, joint) for joint in mechanism.children.get(spot.body, ())]
     if spot.body == WORLD:
         ops += [_body_op(sheet, spot, None, body) for body in mechanism.roots if body not in mechanism.parent_joint]
@@ -113,4 +124,4 @@ def _body_op(sheet: Sheet, spot: Spot, view: JointView | None, body: Id | None =
         **said,
     }
     inner = spot_of(sheet, key, childclass or spot.childclass_in(around))
-    return Op("body", "body", attributes, tuple(sheet.inside(key)), around.chain if around else (), inner)
+    return Op("body", "body", attributes, tuple(sheet.inside(key)), around, inner)

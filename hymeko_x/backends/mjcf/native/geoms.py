@@ -45,4 +45,4 @@ def geom_op(sheet: Sheet, spot: Spot, view: ShapeView) -> Op:
         **sheet.attributes(values, groups, base, notes, context),
         **said,
     }
-    return Op("leaf", "geom", attributes, tuple(sheet.inside(key)), around.chain if around else ())
+    return Op("leaf", "geom", attributes, tuple(sheet.inside(key)), around)

@@ -34,17 +34,16 @@ def _dof_op(sheet: Sheet, spot: Spot, view: JointView, dof: Dof, prefix: str) ->
     said = sheet.said(key, path)
     around = spot.around(notes.get(f"{prefix}frame"))
     name = dof.name if prefix else dof.name or sheet.name(key)
-    frames = around.chain if around else ()
     inside = tuple(sheet.inside(key, path))
     if dof.kind is DofKind.FREE and notes.get(f"{prefix}tag") != "joint" and _is_bare(dof):
-        return Op("leaf", "freejoint", {"name": name, **said}, inside, frames)
+        return Op("leaf", "freejoint", {"name": name, **said}, inside, around)
     own_class = _class_of(sheet, view, prefix)
     base = sheet.base("joint", own_class, spot.childclass_in(around))
     frame = around.pose if around is not None else IDENTITY
     groups, values = _values(view, dof, frame)
     found = sheet.attributes(values, groups, base, notes, said, prefix)
     attributes: Attributes = {"name": name, "class": own_class, **found, **said}
-    return Op("leaf", "joint", attributes, inside, frames)
+    return Op("leaf", "joint", attributes, inside, around)
 
 
 def _class_of(sheet: Sheet, view: JointView, prefix: str) -> str | None:

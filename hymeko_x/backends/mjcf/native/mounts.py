@@ -7,35 +7,20 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x.backends.mjcf.native.parameters import parameter_attributes
 from hymeko_x.backends.mjcf.native.spot import Op, Spot
 from hymeko_x.formats.mjcf_places import CAMERA, LIGHT, SITE, seen_from
-from hymeko_x.ir.mechanism import pose_weight
-from hymeko_x.ir.parts import Camera, Frame, Light, Mount
+from hymeko_x.ir.parts import Camera, Frame, Light
 
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.native.sheet import Sheet
     from hymeko_x.backends.mjcf.text import Attributes
     from hymeko_x.formats.mjcf_codec import Group
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Parameters
-    from hymeko_x.ir.values import Pose
-
-Mounts = dict["Id", list[tuple["Id", "Pose"]]]
 
 
-def mounts_of(mechanism: Mechanism) -> Mounts:
-    """For each body what is mounted on it, with its pose there."""
-    found: Mounts = {}
-    for _, _, arcs in mechanism.edges(Mount):
-        body = next((arc for arc in arcs if arc.sign > 0), None)
-        thing = next((arc for arc in arcs if arc.sign < 0), None)
-        if body is not None and thing is not None:
-            found.setdefault(body.target, []).append((thing.target, pose_weight(body)))
-    return found
-
-
-def mount_ops(sheet: Sheet, spot: Spot, mounts: Mounts) -> list[Op]:
+def mount_ops(sheet: Sheet, spot: Spot) -> list[Op]:
     """What is mounted on a body."""
     ops = []
-    for key, pose in mounts.get(spot.body, ()):
+    for _, key, _, pose in sheet.mechanism.mounts.get(spot.body, ()):
         match sheet.mechanism.graph.vertices.get(key):
             case Frame(size=size):
                 ops.append(_op(sheet, spot, key, "site", SITE, {"pose": pose, "size": size}, ()))
@@ -63,4 +48,4 @@ def _op(sheet: Sheet, spot: Spot, key: Id, tag: str, groups: tuple[Group, ...], 
         **parameter_attributes(parameters, base),
         **said,
     }
-    return Op("leaf", tag, attributes, tuple(sheet.inside(key)), around.chain if around else ())
+    return Op("leaf", tag, attributes, tuple(sheet.inside(key)), around)

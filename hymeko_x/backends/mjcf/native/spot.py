@@ -18,18 +18,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Around:
-    """A <frame>: its number and attributes, its pose in the body, its childclass, and the frames around it from the outermost."""
+    """A <frame>: its number and attributes, its pose in the body, its childclass, and the frame around it."""
 
     number: str
     attributes: dict[str, str]
     pose: Pose
     childclass: str | None
-    outer: tuple[Around, ...] = ()
-
-    @property
-    def chain(self) -> tuple[Around, ...]:
-        """The frames from the outermost to this one."""
-        return (*self.outer, self)
+    outer: Around | None = None
+    depth: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +53,7 @@ class Op:
     tag: str
     attributes: Attributes
     inside: tuple[str, ...] = ()
-    frames: tuple[Around, ...] = ()
+    around: Around | None = None
     spot: Spot | None = None
 
 
@@ -81,7 +77,8 @@ def spot_of(sheet: Sheet, body: Id, childclass: str | None) -> Spot:
             attributes,
             compose(above, pose),
             attributes.get("childclass", inherited),
-            parent.chain if parent else (),
+            parent,
+            parent.depth + 1 if parent else 1,
         )
         number += 1
     return Spot(body, childclass, frames)

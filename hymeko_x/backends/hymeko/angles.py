@@ -1,0 +1,108 @@
+"""Angles in the unit that says them shortest: degrees where the author thought in degrees, else radians."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir import parts
+from hymeko_x.ir.values import Pose, number_text
+from hymeko_x.language.syntax import Quantity
+from hymeko_x.language.units import unit_factor
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.values import Written
+    from hymeko_x.language.syntax import Value
+
+_DEGREE = unit_factor("deg") or 1.0
+_DIGITS = (6, 10, 13, 15, 16, 17)
+_UNITS_BLOCK = 15  # letters of units { angle rad }
+TURNING = frozenset({parts.DofKind.HINGE, parts.DofKind.BALL, parts.DofKind.SCREW})
+"""The dofs whose coordinates are angles."""
+
+
+@dataclass(frozen=True, slots=True)
+class Angles:
+    """How plain angles are written: in degrees or in radians."""
+
+    degrees: bool
+
+    def value(self, radians: float) -> Value:
+        """An angle in the unit in force; with a unit of its own where degrees would not read back to the same double."""
+        if not self.degrees:
+            return radians
+        plain = in_degrees(radians)
+        return Quantity(radians, "rad") if plain is None else plain
+
+    def values(self, radians: Iterable[float]) -> tuple[Value, ...]:
+        """Several angles."""
+        return tuple(map(self.value, radians))
+
+    def rotation(self, written: Written) -> tuple[Value, ...]:
+        """The numbers of a rotation, those of them that are angles in the unit in force."""
+        kind, numbers = written
+        if kind == "rpy" or kind.startswith("euler:"):
+            return self.values(numbers)
+        return (*numbers[:3], self.value(numbers[3])) if kind == "axisangle" else numbers
+
+
+def in_degrees(radians: float) -> float | None:
+    """The shortest number of degrees that reads back to the same double, or None."""
+    for digits in _DIGITS:
+        plain = float(f"{radians / _DEGREE:.{digits}g}")
+        if plain * _DEGREE == radians:
+            return plain
+    return None
+
+
+def shortest(mechanism: Mechanism) -> Angles:
+    """The unit in which all angles of the mechanism together take fewer letters."""
+    radians, degrees = _UNITS_BLOCK, 0
+    for angle in _angles(mechanism):
+        plain = in_degrees(angle)
+        length = len(number_text(angle))
+        radians += length
+        degrees += length + 3 if plain is None else len(number_text(plain))
+    return Angles(degrees < radians)
+
+
+def _angles(mechanism: Mechanism) -> Iterator[float]:
+    """The numbers of the mechanism that are angles."""
+    for edge in mechanism.graph.edges.values():
+        if isinstance(edge.data, parts.Joint | parts.Loop):
+            for dof in edge.data.dofs:
+                yield from _of_dof(dof)
+        for arc in edge.arcs:
+            if isinstance(arc.weight, Pose):
+                yield from _of_pose(arc.weight)
+    for part in mechanism.graph.vertices.values():
+        if isinstance(part, parts.Body) and part.inertial is not None and part.inertial.written is not None:
+            yield from _of_pose(part.inertial.written.frame)
+        elif isinstance(part, parts.Camera) and part.fovy is not None:
+            yield part.fovy
+
+
+def _of_dof(dof: parts.Dof) -> Iterator[float]:
+    if dof.kind not in TURNING:
+        return
+    limits = dof.limits
+    said = [limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk]
+    if dof.safety is not None:
+        said += [dof.safety.soft_lower, dof.safety.soft_upper]
+    if dof.calibration is not None:
+        said += [dof.calibration.rising, dof.calibration.falling, dof.calibration.reference]
+    yield from (value for value in said if value is not None)
+    yield from (value for value in (dof.ref, dof.spring_ref) if value)
+
+
+def _of_pose(pose: Pose) -> Iterator[float]:
+    if pose.written is None:
+        return
+    kind, numbers = pose.written
+    if kind == "rpy" or kind.startswith("euler:"):
+        yield from numbers
+    elif kind == "axisangle":
+        yield numbers[3]

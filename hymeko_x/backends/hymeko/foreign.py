@@ -1,0 +1,185 @@
+"""What formats said of an element and HyMeKo has no word for: blocks of attributes and elements, or the texts as they are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.hymeko import FOREIGN
+from hymeko_x.language.foreign import INDENT, ONE_LINE, PLACE, usual_spacing
+from hymeko_x.language.markup import COMMENT, TEXT, block_of, markup_of, value_of_text
+from hymeko_x.language.syntax import Comment, Field, Item, Node, QuotedName, Ref, Value
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from hymeko_x.ir.mechanism import Extra
+    from hymeko_x.language.markup import Spacing
+
+_FORMATS = FOREIGN - {"hymeko"}
+_OWN_WORDS = frozenset({PLACE, INDENT, TEXT, COMMENT})
+
+
+def foreign_items(extras: Iterable[Extra], *, at_root: bool = False) -> list[Item]:
+    """The items of all extras of one element: comments, a block for each format, and what no block can say, verbatim."""
+    by_format: dict[str, list[Extra]] = {}
+    for extra in extras:
+        by_format.setdefault(extra.format, []).append(extra)
+    items: list[Item] = []
+    for form, found in by_format.items():
+        items.extend(_comments(found) if form == "comment" and not at_root else _of_format(form, found, at_root=at_root))
+    return items
+
+
+def standing_items(extras: list[Extra]) -> list[Item]:
+    """What stands among the elements of the root, in order: a comment each, and one block for neighbours of one format."""
+    items: list[Item] = []
+    run: list[Node] = []
+    form = ""
+    for extra in extras:
+        node = _standing(extra)
+        if node is None or extra.format != form:
+            items.extend(_block(form, run))
+            run, form = [], extra.format
+        if node is not None:
+            run.append(node)
+        elif extra.format == "comment" and not extra.path and sound_comment(extra.text):
+            items.append(Comment(extra.text))
+        else:
+            items.append(verbatim(extra, at_root=True))
+    return [*items, *_block(form, run)]
+
+
+def _standing(extra: Extra) -> Node | None:
+    """The block of an element that needs no word about its white space."""
+    if extra.format not in _FORMATS or extra.path:
+        return None
+    found = block_of(extra.text)
+    usual = usual_spacing(extra.format, at_root=True)
+    return found[0] if found is not None and markup_of(found[0], usual) == extra.text else None
+
+
+def _block(form: str, nodes: list[Node]) -> list[Item]:
+    return [Node(form, tuple(nodes))] if nodes else []
+
+
+def sound_comment(text: str) -> bool:
+    """Whether a comment reads back as it is."""
+    return text == text.strip() and "\0" not in text and ("*/" not in text or "\n" not in text) and "\r" not in text
+
+
+def _comments(extras: list[Extra]) -> list[Item]:
+    """The comments of an element, in order."""
+    if not all(sound_comment(extra.text) and not extra.path for extra in extras):
+        return [verbatim(extra) for extra in extras]
+    return [Comment(extra.text) for extra in sorted(extras, key=lambda extra: extra.index)]
+
+
+# ---- one format ------------------------------------------------------------------------------------------------------------
+
+
+def _of_format(form: str, extras: list[Extra], *, at_root: bool) -> list[Item]:
+    """The block of one format, then the texts that it cannot say. Those of one place stay together, because they are in order."""
+    places: dict[str, list[Extra]] = {}
+    for extra in extras:
+        places.setdefault(_home(extra.path), []).append(extra)
+    said: list[Item] = []
+    left: list[Item] = []
+    inner: list[Item] = []
+    for home, found in places.items():
+        items = _place_items(found, form, at_root=at_root) if form in _FORMATS else None
+        if items is None:
+            left.extend(verbatim(extra) for extra in found)
+        elif home:
+            inner.extend(_wrapped(QuotedName(f"{home}/"), items))
+        else:
+            said = items
+    return [*_wrapped(form, said, inner), *left]
+
+
+def _home(path: str) -> str:
+    """The path of the node on which an attribute or a child stands."""
+    if path.startswith("@") and "/@" not in path:
+        return ""
+    return path.rsplit("/@", 1)[0] if "/@" in path else path
+
+
+def _wrapped(name: str, items: list[Item], inner: Iterable[Item] = ()) -> list[Node]:
+    """The block of a place: attributes and elements, and in a block with parentheses the elements that are a text alone."""
+    texts = [item for item in items if isinstance(item, Node) and _is_text(item)]
+    if not texts:
+        return [Node(name, (*items, *inner))] if items or inner else []
+    attributes = tuple(item for item in items if isinstance(item, Field) and item.name not in (PLACE, INDENT))
+    children = tuple(
+        Field(item.name, item.items[0].value) if item in texts else item  # type: ignore[union-attr]
+        for item in items
+        if item not in attributes
+    )
+    first = [Node(name, (*attributes, *inner))] if attributes or inner else []
+    return [*first, Node(name, children, parameters=())]
+
+
+def _is_text(node: Node) -> bool:
+    return node.parameters == () and len(node.items) == 1 and getattr(node.items[0], "name", "") == TEXT
+
+
+def _place_items(extras: list[Extra], form: str, *, at_root: bool) -> list[Item] | None:
+    """The attributes and elements of one place; None where one of them cannot be said."""
+    items: list[Item] = []
+    children: list[Item] = []
+    place = 0
+    spacing = usual_spacing(form, at_root=at_root)
+    for extra in extras:
+        name = extra.path.rsplit("@", 1)[-1] if _is_attribute(extra.path) else None
+        if name is not None:
+            if extra.index or not name or name in _OWN_WORDS:
+                return None
+            items.append(Field(name, value_of_text(extra.text)))
+            continue
+        found = block_of(extra.text)
+        if found is None or extra.path.endswith("text()"):
+            return None
+        node, own = found
+        if markup_of(node, spacing) != extra.text:
+            children.append(_indent(own))
+            spacing = own
+        if extra.index != place:
+            children.append(Field(PLACE, float(extra.index)))
+        place = extra.index + 1
+        children.append(node)
+    return [*items, *children]
+
+
+def _is_attribute(path: str) -> bool:
+    return path.startswith("@") or "/@" in path
+
+
+def _indent(spacing: Spacing | None) -> Field:
+    if spacing is None:
+        return Field(INDENT, Ref((ONE_LINE,)))
+    if spacing.base.strip(" ") or spacing.step.strip(" "):
+        return Field(INDENT, (spacing.base, spacing.step))
+    return Field(INDENT, (float(len(spacing.base)), float(len(spacing.step))))
+
+
+# ---- as it is ----------------------------------------------------------------------------------------------------------------
+
+
+def verbatim(extra: Extra, *, at_root: bool = False) -> Field:
+    """A format's own text: ``urdf "<x/>"``, ``urdf ["path" "text"]``, ``urdf ["path" 3 "text"]``, ``extra ["format" ..]``."""
+    named = extra.format in _FORMATS
+    values: list[Value] = [] if named else [extra.format]
+    place = 0 if at_root else extra.index
+    if extra.path or place or not named:
+        values.append(extra.path)
+    if place:
+        values.append(float(place))
+    values.append(extra.text)
+    name = extra.format if named else "extra"
+    return Field(name, values[0] if len(values) == 1 else tuple(values))
+
+
+def section_comments(extras: Iterable[Extra]) -> Iterator[Extra]:
+    """The comments that stand in a section of a format, which its elements do not tell."""
+    for extra in extras:
+        if extra.format == "comment" and extra.path not in ("", "preceding", "following"):
+            yield extra

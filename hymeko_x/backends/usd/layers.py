@@ -1,0 +1,110 @@
+"""One stage in several files: an interface with the default prim, and behind its payload geometry, materials and physics.
+
+Source: the structure that public guidelines for simulation-ready assets ask for; what is opened first is small, and each
+aspect can be replaced by itself.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pxr import Sdf
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+GEOMETRY, MATERIALS, PHYSICS = ASPECTS = ("geometry", "materials", "physics")
+_CONTENTS = "contents"
+_PHYSICS = ("physics:", "mjc:", "newton:", "physx", "urdf:", "hymeko:", "drive:", "limit:", "state:", "collection:colliders")
+_MATERIALS = ("material:binding", "inputs:", "outputs:", "info:")
+_PHYSICS_TYPES = ("Physics", "Mjc", "Newton", "Physx")
+_MATERIAL_TYPES = ("Material", "Shader", "NodeGraph", "GeomSubset")
+_HEADER = ("metersPerUnit", "kilogramsPerUnit", "upAxis", "defaultPrim")
+
+
+def split(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
+    """The layers of a stage by file name; the interface, under an empty name, refers to the others in this folder."""
+    aspects = {aspect: Sdf.Layer.CreateAnonymous(".usda") for aspect in ASPECTS}
+    contents, interface = Sdf.Layer.CreateAnonymous(".usda"), Sdf.Layer.CreateAnonymous(".usda")
+    with Sdf.ChangeBlock():
+        for part in (*aspects.values(), contents):
+            _copy_header(layer, part, _HEADER)
+        _copy_header(layer, interface, [name for name in layer.pseudoRoot.ListInfoKeys() if name != "primChildren"])
+        for spec in _prims(layer):
+            _divide(spec, aspects)
+        contents.subLayerPaths = [f"./{aspect}{suffix}" for aspect in reversed(ASPECTS)]
+        _write_interface(layer, interface, f"./{folder}/{_CONTENTS}{suffix}")
+    named = {_CONTENTS: contents} | aspects
+    return {"": interface} | {f"{folder}/{name}{suffix}": part for name, part in named.items()}
+
+
+def _copy_header(layer: Any, part: Any, names: list[str] | tuple[str, ...]) -> None:
+    for name in names:
+        if layer.pseudoRoot.HasInfo(name):
+            part.pseudoRoot.SetInfo(name, layer.pseudoRoot.GetInfo(name))
+
+
+def _prims(layer: Any) -> Iterator[Any]:
+    """Every prim, those above first. Not recursive."""
+    stack = list(reversed(layer.rootPrims))
+    while stack:
+        spec = stack.pop()
+        yield spec
+        stack.extend(reversed(spec.nameChildren))
+
+
+def _write_interface(layer: Any, interface: Any, payload: str) -> None:
+    """A prim for each root, which holds its content as a payload."""
+    for root in layer.rootPrims:
+        spec = Sdf.CreatePrimInLayer(interface, root.path)
+        spec.specifier = root.specifier
+        if root.typeName:
+            spec.typeName = root.typeName
+        for name in ("kind", "displayName"):
+            if root.HasInfo(name):
+                spec.SetInfo(name, root.GetInfo(name))
+        spec.payloadList.prependedItems = [Sdf.Payload(payload, root.path)]
+
+
+# ---- who says what -------------------------------------------------------------------------------------------------------------
+
+
+def _divide(spec: Any, aspects: dict[str, Any]) -> None:
+    """Each property and schema of a prim into the layer that it belongs to; the prim is defined where its type belongs."""
+    home = _home(str(spec.typeName))
+    parts = {home: Sdf.CreatePrimInLayer(aspects[home], spec.path)}
+    parts[home].specifier = spec.specifier
+    if spec.typeName:
+        parts[home].typeName = spec.typeName
+    for name in spec.ListInfoKeys():
+        if name not in ("specifier", "typeName", "apiSchemas", "primChildren", "properties"):
+            parts[home].SetInfo(name, spec.GetInfo(name))
+    for item in spec.properties:
+        aspect = _aspect(item.name, home)
+        if aspect not in parts:
+            parts[aspect] = Sdf.CreatePrimInLayer(aspects[aspect], spec.path)
+        Sdf.CopySpec(spec.layer, item.path, aspects[aspect], item.path)
+    schemas = spec.GetInfo("apiSchemas").GetAppliedItems() if spec.HasInfo("apiSchemas") else []
+    for aspect in ASPECTS:
+        own = [schema for schema in schemas if _schema_aspect(schema, home) == aspect]
+        if own:
+            there = parts.get(aspect) or Sdf.CreatePrimInLayer(aspects[aspect], spec.path)
+            there.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=own))
+
+
+def _home(kind: str) -> str:
+    if kind.startswith(_PHYSICS_TYPES):
+        return PHYSICS
+    return MATERIALS if kind in _MATERIAL_TYPES else GEOMETRY
+
+
+def _aspect(name: str, home: str) -> str:
+    if name.startswith(_PHYSICS):
+        return PHYSICS
+    return MATERIALS if name.startswith(_MATERIALS) else home
+
+
+def _schema_aspect(schema: str, home: str) -> str:
+    if schema.startswith(_PHYSICS_TYPES):
+        return PHYSICS
+    return MATERIALS if schema.startswith("Material") else home

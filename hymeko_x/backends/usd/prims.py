@@ -1,0 +1,107 @@
+"""Prims as plain values until all of them are known; then they are authored through Sdf, each property once.
+
+Every call into USD costs more than all that Python does for a property; so what is changed or looked up on the way is kept here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from pxr import Gf, Sdf
+
+from hymeko_x.formats.usd import value_bytes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+T = Sdf.ValueTypeNames
+_UNIFORM = frozenset(("physics:axis", "axis", "purpose", "xformOpOrder", "physics:approximation", "subdivisionScheme", "info:id"))
+_FLOAT = T.Float
+
+
+@dataclass(slots=True, eq=False)
+class Prim:
+    """A prim in the making: its type, metadata, API schemas, attributes (type and value), and the targets of its relationships.
+
+    ``connections`` lead an attribute to that whose value it takes; ``reference`` is the path of a prim of the same layer.
+    """
+
+    path: Any
+    kind: str = "Xform"
+    specifier: Any = Sdf.SpecifierDef
+    info: dict[str, Any] = field(default_factory=dict)
+    schemas: list[str] = field(default_factory=list)
+    attributes: dict[str, tuple[Any, Any]] = field(default_factory=dict)
+    targets: dict[str, list[Any]] = field(default_factory=dict)
+    connections: dict[str, Any] = field(default_factory=dict)
+    reference: Any = None
+
+    @property
+    def name(self) -> str:
+        """The last step of the path."""
+        return str(self.path.name)
+
+
+def author(prims: Iterable[Prim], layer: Any) -> None:
+    """Write every prim into the layer, parents before their children."""
+    for prim in prims:
+        spec = layer.GetPrimAtPath(prim.path) or Sdf.CreatePrimInLayer(layer, prim.path)
+        spec.specifier = prim.specifier
+        if prim.kind:
+            spec.typeName = prim.kind
+        for name, value in prim.info.items():
+            spec.SetInfo(name, value)
+        if prim.schemas:
+            set_schemas(spec, prim.schemas)
+        if prim.reference is not None:
+            spec.referenceList.prependedItems = [Sdf.Reference(primPath=prim.reference)]
+        for name, (kind, value) in prim.attributes.items():
+            attribute = add_attribute(spec, name, kind, value)
+            if name in prim.connections:
+                attribute.connectionPathList.explicitItems = [prim.connections[name]]
+        for name, targets in prim.targets.items():
+            Sdf.RelationshipSpec(spec, name, False).targetPathList.explicitItems = targets
+
+
+def add_attribute(spec: Any, name: str, kind: Any, value: Any) -> Any:
+    """A new attribute of a prim that is authored already."""
+    is_uniform = name in _UNIFORM or name.startswith("mjc:")
+    attribute = Sdf.AttributeSpec(spec, name, kind, Sdf.VariabilityUniform if is_uniform else Sdf.VariabilityVarying)
+    if value is not None:
+        attribute.default = value
+    return attribute
+
+
+def set_schemas(spec: Any, schemas: list[str]) -> None:
+    """Say which API schemas a prim has."""
+    spec.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=schemas))
+
+
+# ---- native values, for digests ------------------------------------------------------------------------------------------------
+
+
+def drafted_pairs(prim: Prim, prims: Mapping[Any, Prim]) -> Iterator[tuple[str, bytes]]:
+    """Type, schemas and every property of a prim, as the reader will see them through a reference within the layer."""
+    yield "@type", prim.kind.encode()
+    yield "@apiSchemas", " ".join(sorted(prim.schemas)).encode()
+    referred = prims[prim.reference].attributes if prim.reference is not None else {}
+    for name, (kind, value) in {**referred, **prim.attributes}.items():
+        yield name, value_bytes(Gf.Vec2f(value, 0.0)[0] if kind == _FLOAT else value)
+    for name, targets in prim.targets.items():
+        yield name, " ".join(map(str, targets)).encode()
+
+
+def authored_pairs(spec: Any, layer: Any) -> Iterator[tuple[str, bytes]]:
+    """The same of a prim that extras may have changed after it was authored; our own attributes are left out."""
+    yield "@type", str(spec.typeName).encode()
+    schemas = spec.GetInfo("apiSchemas").GetAppliedItems() if spec.HasInfo("apiSchemas") else []
+    yield "@apiSchemas", " ".join(sorted(schemas)).encode()
+    said: dict[str, Any] = {}
+    for reference in spec.referenceList.prependedItems:
+        said |= {item.name: item for item in layer.GetPrimAtPath(reference.primPath).properties}
+    said |= {item.name: item for item in spec.properties}
+    for name, item in said.items():
+        targets = getattr(item, "targetPathList", None)
+        value = None if targets is not None or isinstance(item.default, Sdf.ValueBlock) else item.default
+        yield name, " ".join(map(str, targets.GetAppliedItems())).encode() if targets is not None else value_bytes(value)

@@ -1,0 +1,42 @@
+"""xacro out: the URDF of a mechanism with everything said once that repeats, as macros, properties and arithmetic.
+
+Expanding it gives the elements and attributes that the URDF backend writes, to the letter. docs/mapping/xacro.md says
+what is written how.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends import urdf
+from hymeko_x.backends.xacro.dialect import DIALECT
+from hymeko_x.backends.xacro.elements import top_level
+from hymeko_x.backends.xacro.printing import print_file
+from hymeko_x.backends.xacro.remarks import placed
+from hymeko_x.formats import carrier
+from hymeko_x.ir.factor import factor
+from hymeko_x.source import Package
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Mechanism
+
+
+def write(mechanism: Mechanism, report: Report) -> Package:
+    """The xacro file of a mechanism that is legal for URDF.
+
+    Raises: Refusal with HX104 for what URDF cannot say.
+    """
+    del report  # printing takes no decisions, so there is nothing to say
+    draft = urdf.draft(mechanism)
+    forms, remarks = top_level(draft.root, mechanism)
+    factored = factor(forms, DIALECT)
+    return Package(print_file(draft, factored, placed(factored, remarks)).encode(), draft.meshes)
+
+
+def carry_residue(package: Package, text: str) -> Package:
+    """The package with a residue in its file, in which nothing is left for xacro to evaluate."""
+    plain = re.sub(r"\$+(?=[{(])", r"\g<0>$", text)
+    return replace(package, main=carrier.inserted(package.main, carrier.xml_elements(plain, readable=False)))

@@ -1,0 +1,132 @@
+"""The text of a xacro file: properties, macros, then the robot; sections under comments that xacro drops when it expands."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends.xacro.elements import INSTRUCTION, TEXT
+from hymeko_x.backends.xacro.quoting import arguments_to_quote
+from hymeko_x.backends.xacro.texts import argument, default, spelled
+from hymeko_x.formats.xacro import NAMESPACE
+from hymeko_x.formats.xml_print import escaped
+from hymeko_x.ir.forms import Call
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from hymeko_x.backends.urdf import Draft
+    from hymeko_x.backends.xacro.remarks import Placed
+    from hymeko_x.ir.forms import Element, Factored, Item, Macro, Parameter
+
+_INDENT = "  "
+
+
+def print_file(draft: Draft, factored: Factored, remarks: Placed) -> str:
+    """The whole file."""
+    page = Page(factored, remarks)
+    page.lines += ['<?xml version="1.0"?>', *draft.before, root_start(draft)]
+    page.values()
+    page.macros()
+    page.heading("The robot", factored.macros and factored.items)
+    page.body("", factored.items, 1)
+    page.lines += ["</robot>", *draft.after, ""]
+    return "\n".join(page.lines)
+
+
+def root_start(draft: Draft) -> str:
+    """The start tag of the root, which declares xacro's prefix."""
+    own = {name: value for name, value in draft.root.attributes.items() if name != "xmlns:xacro"}
+    said = "".join([f' {name}="{escaped(spelled(value))}"' for name, value in own.items()])
+    return f'<robot{said} xmlns:xacro="{NAMESPACE}">'
+
+
+class Page:
+    """Lines of a file under construction."""
+
+    def __init__(self, factored: Factored, remarks: Placed) -> None:
+        self.lines: list[str] = []
+        self._factored = factored
+        self._remarks = remarks
+        self._quoted = arguments_to_quote(factored)
+
+    def heading(self, words: str, section: Sequence[object]) -> None:
+        """A comment over a section that begins with a call, so that it is gone after expansion."""
+        if section and isinstance(section[0], Call) and not self._remarks.get(("", 0)):
+            self.lines += ["", f"{_INDENT}<!-- {words} -->"]
+
+    def values(self) -> None:
+        """The properties."""
+        if self._factored.values:
+            self.lines += ["", f"{_INDENT}<!-- Values -->"]
+        for value in self._factored.values:
+            said = escaped(argument(value.text, quoted=False))
+            self.lines.append(f'{_INDENT}<xacro:property name="{value.name}" value="{said}"/>')
+
+    def macros(self) -> None:
+        """The definitions of the macros."""
+        for macro in self._factored.macros:
+            self._macro(macro)
+
+    def _macro(self, macro: Macro) -> None:
+        names = " ".join(map(_parameter, macro.parameters))
+        self.lines += ["", f"{_INDENT}<!-- {_about(macro)} -->", f'{_INDENT}<xacro:macro name="{macro.name}" params="{escaped(names)}">']
+        self.body(macro.name, macro.body, 2)
+        self.lines.append(f"{_INDENT}</xacro:macro>")
+
+    def body(self, name: str, items: Sequence[Item], depth: int) -> None:
+        """The items of the file ("") or of a macro, with the comments between them."""
+        for place, item in enumerate(items):
+            self._comments((name, place), depth, apart=isinstance(item, Call))
+            self._item(item, depth)
+        self._comments((name, len(items)), depth, apart=False)
+
+    def _comments(self, place: tuple[str, int], depth: int, *, apart: bool) -> None:
+        said = self._remarks.get(place, ())
+        self.lines += [_INDENT * depth + comment for comment in said]
+        if said and apart:
+            self.lines.append("")
+
+    def _item(self, top: Item, depth: int) -> None:
+        """An item with everything in it, line by line."""
+        stack: list[tuple[Item | str, int]] = [(top, depth)]
+        while stack:
+            item, level = stack.pop()
+            indent = _INDENT * level
+            if isinstance(item, str):
+                self.lines.append(indent + item)
+            elif isinstance(item, Call):
+                self.lines.append(indent + self._call(item))
+            elif item.children:
+                self.lines.append(f"{indent}{_start(item)}>")
+                stack.append((f"</{item.tag}>", level))
+                stack += [(child, level + 1) for child in reversed(item.children)]
+            else:
+                self.lines.append(indent + _leaf(item))
+
+    def _call(self, call: Call) -> str:
+        given = [(name, argument(text, quoted=(id(call), name) in self._quoted)) for name, text in call.arguments]
+        return f"<xacro:{call.macro}" + "".join([f' {name}="{escaped(text)}"' for name, text in given]) + "/>"
+
+
+def _about(macro: Macro) -> str:
+    """What a macro is, in words for its heading."""
+    return macro.name.replace("_", " ")
+
+
+def _parameter(parameter: Parameter) -> str:
+    return parameter.name if parameter.default is None else f"{parameter.name}:={default(parameter.default)}"
+
+
+def _start(element: Element) -> str:
+    return f"<{element.tag}" + "".join([f' {name}="{escaped(spelled(text))}"' for name, text in element.leaves if name])
+
+
+def _leaf(element: Element) -> str:
+    words = next((spelled(text) for name, text in element.leaves if not name), None)
+    if element.tag == TEXT:
+        return escaped(words or "")
+    if element.tag == INSTRUCTION:
+        return f"<?{words}?>"
+    if element.tag.startswith("<!--"):
+        return element.tag
+    return _start(element) + ("/>" if words is None else f">{escaped(words)}</{element.tag}>")

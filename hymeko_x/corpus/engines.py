@@ -1,0 +1,134 @@
+"""Who runs the files: the processes of this machine, or a Ray cluster. Outcomes come as they are ready, in any order."""
+
+from __future__ import annotations
+
+import hashlib
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol
+
+from hymeko_x import codes
+from hymeko_x.corpus.supervise import make_pool, supervise
+from hymeko_x.corpus.work import work
+from hymeko_x.diagnostics import refuse
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from hymeko_x.corpus.cases import Case
+    from hymeko_x.corpus.plan import Plan
+    from hymeko_x.corpus.rows import Outcome
+    from hymeko_x.corpus.supervise import Task
+
+_ERRORS = 40
+"""The level of logging.ERROR: Ray speaks of nothing less."""
+
+_AHEAD = 2
+"""How many files per worker are handed out before the first of them is done."""
+
+
+class Engine(Protocol):
+    """What runs files."""
+
+    def run(self, cases: Iterable[Case], plan: Plan) -> Iterator[Outcome]:
+        """The outcome of every case."""
+        ...
+
+
+class Local:
+    """This machine: ``jobs`` files at a time, each in a process of its own. ``cache`` is where remote folders are fetched to."""
+
+    def __init__(self, jobs: int, cache: Path, task: Task = work) -> None:
+        self._jobs, self._cache, self._task = jobs, cache, task
+
+    def run(self, cases: Iterable[Case], plan: Plan) -> Iterator[Outcome]:
+        """The outcome of every case. A closed iterator ends the processes."""
+        pool = make_pool(self._jobs)
+        threads = ThreadPoolExecutor(self._jobs)
+        rest = iter(cases)
+
+        def one(case: Case) -> Outcome:
+            return supervise(case, plan, fetched(case.folder, self._cache), pool, self._task)
+
+        running: set[Future[Outcome]] = {threads.submit(one, case) for case in islice(rest, self._jobs * _AHEAD)}
+        try:
+            while running:
+                done, running = wait(running, return_when=FIRST_COMPLETED)
+                running |= {threads.submit(one, case) for case in islice(rest, len(done))}
+                yield from (future.result() for future in done)
+        finally:
+            pool.stop()
+            threads.shutdown(cancel_futures=True)
+            pool.join()
+
+
+class OnRay:
+    """A Ray cluster that is running: one task per file, which starts a process for it as :class:`Local` does.
+
+    A task whose node dies is run again on another node. Folders must be reachable from every node: shared, or fsspec URLs.
+    """
+
+    def __init__(self, address: str | None, cache: Path, task: Task = work) -> None:
+        """Raises: Refusal HX301 without Ray, HX001 when the cluster cannot be reached."""
+        self._address, self._cache, self._task = address, cache, task
+
+    def run(self, cases: Iterable[Case], plan: Plan) -> Iterator[Outcome]:
+        """The outcome of every case, in the order in which they are done."""
+        ray = _connected(self._address)
+        remote = ray.remote(num_cpus=1, max_retries=-1)(_on_node)
+        rest = iter(cases)
+        try:
+            ahead = _AHEAD * max(1, int(ray.cluster_resources().get("CPU", 1)))
+            running = [remote.remote(case, plan, str(self._cache), self._task) for case in islice(rest, ahead)]
+            while running:
+                done, running = ray.wait(running)
+                running += [remote.remote(case, plan, str(self._cache), self._task) for case in islice(rest, len(done))]
+                yield from ray.get(done)
+        finally:
+            ray.shutdown()
+
+
+def _on_node(case: Case, plan: Plan, cache: str, task: Task) -> Outcome:
+    """What a Ray task does."""
+    with make_pool(1) as pool:
+        outcome = supervise(case, plan, fetched(case.folder, Path(cache)), pool, task)
+        pool.stop()
+        return outcome
+
+
+def _connected(address: str | None) -> Any:
+    try:
+        import ray
+    except ImportError as error:
+        raise refuse(codes.ENGINE_MISSING, "ray is not installed", hint="pip install 'hymeko-x[ray]'") from error
+    try:
+        ray.init(address=address or "auto", log_to_driver=False, logging_level=_ERRORS)
+    except (ConnectionError, RuntimeError, ValueError) as error:
+        words = " ".join(str(error).split())[:200]
+        raise refuse(codes.CANNOT_READ, f"no Ray cluster answers at '{address or 'auto'}': {words}", hint="ray start --head") from error
+    return ray
+
+
+def fetched(folder: str, cache: Path) -> str:
+    """The folder on this machine: itself, or a copy of what an fsspec URL names, fetched once by whoever is first.
+
+    Raises: Refusal HX001 when it cannot be fetched.
+    """
+    if "://" not in folder:
+        return folder
+    from filelock import FileLock
+    from fsspec.core import url_to_fs
+
+    final = cache / "remote" / hashlib.sha256(folder.encode()).hexdigest()[:16]
+    final.parent.mkdir(parents=True, exist_ok=True)
+    with FileLock(f"{final}.lock"):
+        if not final.is_dir():
+            part = final.with_suffix(".part")
+            files, root = url_to_fs(folder)
+            try:
+                files.get(root, str(part), recursive=True)
+            except OSError as error:
+                raise refuse(codes.CANNOT_READ, f"'{folder}' cannot be fetched: {error}") from error
+            part.rename(final)
+    return str(final)

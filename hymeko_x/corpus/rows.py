@@ -1,0 +1,105 @@
+"""What a batch run says about one robot: facts that every run repeats, and costs that no two runs share.
+
+One :class:`Robot` per file, one :class:`Leg` per file and target format, one :class:`Cost` per measured step. Facts and costs
+are kept apart, so that the facts of two runs can be compared byte for byte.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+DONE, REFUSED, FAILED = "done", "refused", "failed"
+"""The answers of a step that came to an end: it worked; the input cannot be processed; an exception, which is a bug of ours."""
+CRASHED, TIMED_OUT, OUT_OF_MEMORY, UNREAD = "crashed", "timed out", "out of memory", "unread"
+"""The answers of a step that did not; and of a conversion whose source could not be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """One file as it was found. ``engine`` says what the format's reference reader did; ``whole`` is False where other files
+    of the format are included, so that the lengths are not those of the robot."""
+
+    key: str
+    package: str
+    format: str
+    sha256: str = ""
+    status: str = DONE
+    reason: str = ""
+    engine: str = ""
+    engine_reason: str = ""
+    bodies: int = 0
+    joints: int = 0
+    dofs: int = 0
+    shapes: int = 0
+    whole: bool = True
+    bytes: int | None = None
+    characters: int | None = None
+    code: int | None = None
+    tokens: int | None = None
+    gzip: int | None = None
+    diagnostics: Mapping[str, int] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """One conversion: the lengths of the result, what was lost by kind, what was said by code, and the engines' verdict.
+
+    ``verdict`` is empty where nothing was verified. ``failed`` are the verifier's quantities that differ, with the place of the worst.
+    """
+
+    key: str
+    source: str
+    target: str
+    status: str = DONE
+    reason: str = ""
+    files: int = 0
+    bytes: int | None = None
+    characters: int | None = None
+    code: int | None = None
+    tokens: int | None = None
+    gzip: int | None = None
+    losses: int | None = None
+    lost: Mapping[str, int] | None = None
+    diagnostics: Mapping[str, int] | None = None
+    verdict: str = ""
+    verdict_reason: str = ""
+    failed: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """One step: its wall-clock seconds, the processor's seconds, and the peak memory of its process in MB while it lasted."""
+
+    key: str
+    step: str
+    seconds: float
+    processor: float
+    megabytes: float
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Everything about one file."""
+
+    robot: Robot
+    legs: tuple[Leg, ...]
+    costs: tuple[Cost, ...]
+
+    def as_json(self) -> dict[str, Any]:
+        """The document of one part of a run's results."""
+        return asdict(self)
+
+
+def outcome_from_json(document: Mapping[str, Any]) -> Outcome:
+    """The outcome in a part. Raises: KeyError or TypeError when it is none."""
+    legs = tuple(Leg(**item) for item in document["legs"])
+    return Outcome(Robot(**document["robot"]), legs, tuple(Cost(**item) for item in document["costs"]))
+
+
+def with_verdict(leg: Leg, verdict: Leg) -> Leg:
+    """A conversion with what the verifier said of it."""
+    return replace(leg, verdict=verdict.verdict, verdict_reason=verdict.verdict_reason, failed=verdict.failed)

@@ -1,0 +1,184 @@
+"""One file from outside: its process, the clock, and what to make of a process that did not come back."""
+
+from __future__ import annotations
+
+import json
+import signal
+import tempfile
+from concurrent.futures import TimeoutError as Late
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from hymeko_x import formats
+from hymeko_x.corpus import rows
+from hymeko_x.corpus.plan import CONVERT, ENGINE, READ, VERIFY
+from hymeko_x.corpus.rows import Cost, Leg, Outcome, Robot
+from hymeko_x.corpus.work import NOTES, work
+
+if TYPE_CHECKING:
+    import multiprocessing.context
+    from collections.abc import Callable, Mapping, Sequence
+
+    from pebble import ProcessPool
+
+    from hymeko_x.corpus.cases import Case
+    from hymeko_x.corpus.plan import Plan
+
+    Task = Callable[[Case, Plan, str, str, Sequence[str]], None]
+
+_PRELOADED = (
+    "hymeko_x.assets.mesh",
+    "hymeko_x.corpus.work",
+    "hymeko_x.frontends.mjcf.weigh",
+    "hymeko_x.verify.compare",
+    "hymeko_x.verify.readers.hymeko",
+    "hymeko_x.verify.readers.mechanism",
+    "hymeko_x.verify.readers.mjcf",
+    "hymeko_x.verify.readers.urdf",
+    "hymeko_x.verify.readers.usd",
+    "networkx",
+    "scipy.sparse",
+    "scipy.spatial",
+    "scipy.spatial.transform",
+    "trimesh",
+    "yourdfpy",
+)
+"""What most files' processes need beside all readers and writers."""
+
+_FROM_OUTSIDE = (-signal.SIGTERM, -getattr(signal, "SIGKILL", 9))
+_MOST_DEATHS = 3
+"""A process that somebody else ends is started again, so often; the kernel kills like this when memory runs out."""
+_NO_MEMORY = ("bad_alloc", "allocate memory", "MemoryError", "out of memory")
+
+
+class End(NamedTuple):
+    """Why a step did not come to its end."""
+
+    status: str
+    reason: str
+
+
+def make_pool(jobs: int) -> ProcessPool:
+    """A pool in which every task has a process of its own, forked from a server that has the heavy libraries loaded."""
+    from pebble import ProcessPool
+
+    return ProcessPool(max_workers=jobs, max_tasks=1, context=_context())
+
+
+def _context() -> multiprocessing.context.BaseContext:
+    import multiprocessing
+
+    if "forkserver" not in multiprocessing.get_all_start_methods():
+        return multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(list(preloaded()))
+    return context
+
+
+def preloaded() -> tuple[str, ...]:
+    """The modules that are loaded once, in the server that the processes are forked from."""
+    ours = (module for format in formats.FORMATS for module in (format.frontend, format.backend) if module)
+    return (*dict.fromkeys(ours), *_PRELOADED)
+
+
+def supervise(case: Case, plan: Plan, folder: str, pool: ProcessPool, task: Task = work) -> Outcome:
+    """Have a file worked on until each of its steps has an answer. Whatever a step does, the others get theirs."""
+    steps = plan.steps(case.format)
+    notes: dict[str, dict[str, Any]] = {}
+    ends: dict[str, End] = {}
+    deaths = 0
+    while todo := _left(steps, notes, ends):
+        with tempfile.TemporaryDirectory(prefix="hymeko-x-", ignore_cleanup_errors=True) as scratch:
+            asked = replace(plan, verify=plan.verify and ENGINE not in ends)
+            future = pool.schedule(task, args=(case, asked, folder, scratch, todo), timeout=plan.limits.seconds)
+            error = future.exception()
+            notes.update(_read_notes(Path(scratch)))
+        stuck = next(iter(_left(steps, notes, ends)), None)
+        if stuck is None:
+            break
+        if _is_from_outside(error) and deaths < _MOST_DEATHS:
+            deaths += 1
+            continue
+        ends[stuck] = _end_of(error, plan)
+    return _outcome(case, plan, steps, notes, ends)
+
+
+def _left(steps: tuple[str, ...], notes: Mapping[str, object], ends: Mapping[str, End]) -> tuple[str, ...]:
+    """The steps that are still to be done: none when the source cannot be read, no verification of what was not written."""
+    read = notes.get(READ)
+    if READ in ends or (isinstance(read, dict) and read["said"]["status"] != rows.DONE):
+        return ()
+    open_steps = (step for step in steps if step not in notes and step not in ends)
+    return tuple(step for step in open_steps if not (step.startswith(VERIFY) and step.replace(VERIFY, CONVERT, 1) in ends))
+
+
+def _read_notes(scratch: Path) -> dict[str, dict[str, Any]]:
+    """The steps that came to their end; a line that was cut off is none."""
+    try:
+        lines = (scratch / NOTES).read_text("utf-8").split("\n")[:-1]
+    except FileNotFoundError:
+        return {}
+    return {note["step"]: note for note in map(json.loads, lines)}
+
+
+def _is_from_outside(error: BaseException | None) -> bool:
+    from pebble import ProcessExpired
+
+    return isinstance(error, ProcessExpired) and error.exitcode in _FROM_OUTSIDE
+
+
+def _end_of(error: BaseException | None, plan: Plan) -> End:
+    """The answer for the step at which a process ended."""
+    from pebble import ProcessExpired
+
+    if error is None:
+        return End(rows.FAILED, "the process ended without a word")
+    if isinstance(error, Late | TimeoutError):
+        return End(rows.TIMED_OUT, f"more than {plan.limits.seconds:g} s")
+    if isinstance(error, ProcessExpired):
+        return _end_of_process(error.exitcode or 0)
+    words = f"{type(error).__name__}: {' '.join(str(error).split())}"
+    if isinstance(error, MemoryError) or any(word in words for word in _NO_MEMORY):
+        return End(rows.OUT_OF_MEMORY, f"more than {plan.limits.bytes / 2**20:g} MiB")
+    return End(rows.FAILED, words[:300])
+
+
+def _end_of_process(code: int) -> End:
+    if code >= 0:
+        return End(rows.CRASHED, f"exit code {code}")
+    name = signal.Signals(-code).name
+    if name == "SIGXCPU":
+        return End(rows.TIMED_OUT, "too much processor time")
+    return End(rows.OUT_OF_MEMORY if name == "SIGKILL" else rows.CRASHED, f"killed by {name}")
+
+
+# ---- rows ------------------------------------------------------------------------------------------------------------
+
+
+def _outcome(case: Case, plan: Plan, steps: tuple[str, ...], notes: Mapping[str, dict[str, Any]], ends: Mapping[str, End]) -> Outcome:
+    robot = _robot(case, plan, notes, ends)
+    legs = tuple(_leg(robot, target, notes, ends) for target in plan.targets(case.format))
+    return Outcome(robot, legs, tuple(Cost(**notes[step]["cost"]) for step in steps if step in notes))
+
+
+def _robot(case: Case, plan: Plan, notes: Mapping[str, dict[str, Any]], ends: Mapping[str, End]) -> Robot:
+    if READ in ends:
+        return Robot(case.key, case.package, case.format, status=ends[READ].status, reason=ends[READ].reason)
+    robot = Robot(**notes[READ]["said"])
+    if ENGINE in ends:
+        return replace(robot, engine=ends[ENGINE].status, engine_reason=ends[ENGINE].reason)
+    return replace(robot, **notes[ENGINE]["said"]) if ENGINE in notes else robot
+
+
+def _leg(robot: Robot, target: str, notes: Mapping[str, dict[str, Any]], ends: Mapping[str, End]) -> Leg:
+    convert, verify = f"{CONVERT}:{target}", f"{VERIFY}:{target}"
+    empty = Leg(robot.key, robot.format, target)
+    if robot.status != rows.DONE:
+        return replace(empty, status=rows.UNREAD, reason=robot.reason)
+    if convert in ends:
+        return replace(empty, status=ends[convert].status, reason=ends[convert].reason)
+    leg = Leg(**notes[convert]["said"])
+    if verify in ends:
+        return replace(leg, verdict="not comparable", verdict_reason=f"the verifier {ends[verify].status}: {ends[verify].reason}")
+    return rows.with_verdict(leg, Leg(**notes[verify]["said"])) if verify in notes else leg

@@ -1,0 +1,136 @@
+"""Primitive prims of UsdGeom as plain values: what a prim says, and the geometry that it stands for.
+
+Shared by reader and writer, so that sizes, axis and scale leave as their author wrote them.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere
+from hymeko_x.ir.values import NO_ROTATION, Quat, Vec3, X, Y, quat_about
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.parts import Geometry
+
+NOTATION = "usd.gprim"
+"""The notation of a shape that keeps what its prim says where that is not what the writer would choose."""
+
+SIZES: Mapping[str, tuple[tuple[str, float], ...]] = MappingProxyType(
+    {
+        "Cube": (("size", 2.0),),
+        "Sphere": (("radius", 1.0),),
+        "Cylinder": (("radius", 1.0), ("height", 2.0)),
+        "Capsule": (("radius", 0.5), ("height", 1.0)),
+        "Plane": (("width", 2.0), ("length", 2.0)),
+    }
+)
+"""The sizes of each primitive with UsdGeom's defaults."""
+TURNS: Mapping[str, Quat] = MappingProxyType(
+    {"X": quat_about(Y, 1.5707963267948966), "Y": quat_about(X, -1.5707963267948966), "Z": NO_ROTATION}
+)
+"""The rotation that takes z to the axis."""
+_AXIAL = ("Cylinder", "Capsule", "Plane")
+_WRITTEN = re.compile(r"(\w+) ([XYZ]) ([^;]+); (.+)")
+
+
+@dataclass(frozen=True, slots=True)
+class Gprim:
+    """A primitive as a prim says it: type, sizes and axis, and the scale (in m per unit) of the space that they are in."""
+
+    kind: str
+    sizes: tuple[float, ...]
+    axis: str = "Z"
+    scale: Vec3 = (1.0, 1.0, 1.0)
+
+    @property
+    def is_axial(self) -> bool:
+        """Whether its type has an axis."""
+        return self.kind in _AXIAL
+
+    def __str__(self) -> str:
+        return f"{self.kind} {self.axis} {' '.join(map(repr, self.sizes))}; {' '.join(map(repr, self.scale))}"
+
+
+class Meaning(NamedTuple):
+    """The geometry of a primitive, and the rotation from its own z to its axis."""
+
+    geometry: Geometry
+    turn: Quat
+
+
+def parse(text: str | None) -> Gprim | None:
+    """The primitive of a notation; None for what is none."""
+    found = _WRITTEN.fullmatch(text or "")
+    if found is None or found[1] not in SIZES:
+        return None
+    try:
+        sizes, (x, y, z) = tuple(map(float, found[3].split())), map(float, found[4].split())
+    except ValueError:
+        return None
+    return Gprim(found[1], sizes, found[2], (x, y, z)) if len(sizes) == len(SIZES[found[1]]) else None
+
+
+def meaning(prim: Gprim) -> Meaning:
+    """A primitive with its scale in its sizes. Where a scale would bend a round shape, the largest factor counts; a sphere bends.
+
+    Source: the shapes of UsdPhysics' parser.
+    """
+    x, y, z = map(abs, prim.scale)
+    first, *rest = prim.sizes
+    turn = TURNS[prim.axis]
+    match prim.kind:
+        case "Cube":
+            return Meaning(Box((first * x, first * y, first * z)), NO_ROTATION)
+        case "Sphere":
+            is_round = max(x, y, z) - min(x, y, z) < 1e-6 * max(x, y, z)
+            return Meaning(Sphere(first * x) if is_round else Ellipsoid((first * x, first * y, first * z)), NO_ROTATION)
+        case "Plane":
+            across, along = {"Z": (x, y), "X": (z, y), "Y": (x, z)}[prim.axis]
+            return Meaning(Plane((first / 2 * across, rest[0] / 2 * along)), turn)
+        case kind:
+            along = (x, y, z)["XYZ".index(prim.axis)]
+            across = max(value for letter, value in zip("XYZ", (x, y, z), strict=True) if letter != prim.axis)
+            radius, height = first * across, rest[0] * along
+            return Meaning(Capsule(radius, height) if kind == "Capsule" else Cylinder(radius, height), turn)
+
+
+def chosen(geometry: Geometry) -> Gprim | None:
+    """The primitive by which the writer says a geometry; None for meshes and empty shapes."""
+    match geometry:
+        case Box(size):
+            return Gprim("Cube", (1.0,), scale=size)
+        case Sphere(radius):
+            return Gprim("Sphere", (radius,))
+        case Ellipsoid(radii):
+            return Gprim("Sphere", (1.0,), scale=radii)
+        case Cylinder(radius, length):
+            return Gprim("Cylinder", (radius, length))
+        case Capsule(radius, length):
+            return Gprim("Capsule", (radius, length))
+        case Plane((x, y)):
+            return Gprim("Plane", (2 * x, 2 * y))
+        case _:
+            return None
+
+
+def half_extent(prim: Gprim) -> Vec3:
+    """Half the box around a primitive in its own space."""
+    first, *rest = prim.sizes
+    match prim.kind:
+        case "Cube":
+            return (first / 2, first / 2, first / 2)
+        case "Sphere":
+            return (first, first, first)
+        case "Plane":
+            across, along = first / 2, rest[0] / 2
+            return {"Z": (across, along, 0.0), "X": (0.0, along, across), "Y": (across, 0.0, along)}[prim.axis]
+        case kind:
+            along = rest[0] / 2 + (first if kind == "Capsule" else 0.0)
+            x, y, z = (along if letter == prim.axis else first for letter in "XYZ")
+            return (x, y, z)

@@ -1,0 +1,47 @@
+"""The words of xacro: the names that it takes for itself, and how it turns texts into values."""
+
+from __future__ import annotations
+
+import math
+from contextlib import suppress
+from keyword import kwlist
+
+FORMAT = "xacro"
+NAMESPACE = "http://www.ros.org/wiki/xacro"
+PREFIX = "xacro:"
+
+TAGS = frozenset(
+    ("arg", "attribute", "call", "element", "if", "include", "insert_block", "macro", "property", "unless"),
+)
+"""Elements of xacro itself, which no macro may be called."""
+
+_FUNCTIONS = (
+    *("list", "dict", "map", "len", "str", "float", "int", "bool", "True", "False", "min", "max", "round", "sorted", "range"),
+    *("python", "math", "xacro", "load_yaml", "abs_filename", "dotify", "arg"),
+)
+GLOBALS = frozenset((*_FUNCTIONS, *(name for name in vars(math) if not name.startswith("_"))))
+"""What every expression knows already; a parameter of such a name is a warning."""
+
+TAKEN = TAGS | GLOBALS | frozenset(kwlist)
+"""What neither macros, parameters nor properties are called here."""
+
+
+def literal(text: str) -> str | int | float | bool:
+    """What a parameter is inside a macro that is given this text.
+
+    Source: xacro 2.1, ``Table._eval_literal``.
+    """
+    if len(text) >= 2 and text[0] == "'" and text[-1] == "'":
+        return text[1:-1]
+    if "_" in text:
+        return text
+    with suppress(ValueError):
+        return int(text)
+    with suppress(ValueError):
+        return float(text)
+    return {"true": True, "True": True, "false": False, "False": False}.get(text, text)
+
+
+def survives(text: str) -> bool:
+    """Whether a parameter that is given this text prints as it again."""
+    return str(literal(text)) == text

@@ -1,0 +1,213 @@
+"""XML that a format said verbatim as blocks of the language, and back to the last character.
+
+``<option timestep="0.01"><flag gravity="disable"/></option>`` is ``option { timestep 0.01 flag { gravity=disable } }``.
+Fields are attributes; where an element holds texts, its attributes stand in parentheses and its fields are elements with a
+text: ``<gazebo reference="hip"><mu1>0.9</mu1></gazebo>`` is ``gazebo(reference=hip) { mu1 0.9 }``.
+Numbers and words are plain where their text is the shortest there is, everything else is quoted. Entities stay as they are.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from hymeko_x.ir.values import number_text
+from hymeko_x.language.syntax import Field, Item, Node, Parameter, QuotedName, Ref, Value, is_list
+
+TEXT = QuotedName("text()")
+"""The field that holds the text of an element with attributes."""
+COMMENT = QuotedName("//")
+"""The field that holds a comment, with the blanks that it has."""
+
+_NAME = r"[^\W\d][\w:.-]*"
+_TOKEN = re.compile(
+    rf'<(?P<tag>{_NAME})(?P<attributes>(?: {_NAME}="[^"<]*")*)(?P<ends>/?)>|</(?P<closed>{_NAME})>|(?P<text>[^<]+)'
+    r"|<!--(?P<comment>(?:[^-]|-(?!->))*)-->"
+)
+_ATTRIBUTE = re.compile(rf' ({_NAME})="([^"<]*)"')
+_NUMBERS = re.compile(r"[-\d][-\de.]*(?: [-\d][-\de.]*)*")
+_WORD = re.compile(r"[^\W\d]\w*")
+_NO_WORDS = frozenset({"inf", "nan"})
+_MAX_DEPTH = 50
+
+
+class Spacing(NamedTuple):
+    """White space between the tags of pretty XML: what stands before the closing tag, and what every level adds."""
+
+    base: str
+    step: str
+
+
+# ---- values --------------------------------------------------------------------------------------------------------------
+
+
+def value_of_text(text: str) -> Value:
+    """A number, a list of numbers or a word where that reads back to the same characters, else the text."""
+    if _NUMBERS.fullmatch(text):
+        try:
+            numbers = tuple(map(float, text.split(" ")))
+        except ValueError:
+            return text
+        if " ".join(map(number_text, numbers)) == text:
+            return numbers[0] if len(numbers) == 1 else numbers
+        return text
+    return Ref((text,)) if _WORD.fullmatch(text) and text not in _NO_WORDS else text
+
+
+def text_of_value(value: Value | None) -> str | None:
+    """The text that a value stands for; None for what cannot stand for one."""
+    if isinstance(value, str):
+        return value
+    if type(value) is float:
+        return number_text(value)
+    if isinstance(value, Ref):
+        return value.path[0] if len(value.path) == 1 and not value.direction else None
+    if value is not None and is_list(value):
+        parts = [number_text(part) if type(part) is float else None for part in value]  # type: ignore[union-attr]
+        return None if None in parts else " ".join(map(str, parts))
+    return None
+
+
+# ---- XML to a block --------------------------------------------------------------------------------------------------------
+
+
+class _Open(NamedTuple):
+    """An element that is being read."""
+
+    tag: str
+    attributes: list[tuple[str, str]]
+    children: list[Node | Field]
+    texts: list[str]
+
+
+def block_of(xml: str) -> tuple[Node, Spacing | None] | None:
+    """The block that says what one XML element says, and the white space of it; None where it would not read back the same."""
+    node = _read(xml)
+    if node is None:
+        return None
+    spacing = _spacing(xml)
+    return (node, spacing) if markup_of(node, spacing) == xml else None
+
+
+def _read(xml: str) -> Node | None:
+    root = _Open("", [], [], [])
+    stack = [root]
+    position = 0
+    while position < len(xml):
+        match = _TOKEN.match(xml, position)
+        if match is None:
+            return None
+        position = match.end()
+        if (text := match["text"]) is not None:
+            stack[-1].texts.append(text)
+        elif (comment := match["comment"]) is not None:
+            stack[-1].children.append(Field(COMMENT, comment))
+        elif (tag := match["tag"]) is not None:
+            stack.append(_Open(tag, _ATTRIBUTE.findall(match["attributes"]), [], []))
+            if match["ends"]:
+                _close(stack, empty=True)
+        elif len(stack) < 2 or match["closed"] != stack[-1].tag:
+            return None
+        else:
+            _close(stack, empty=False)
+        if len(stack) > _MAX_DEPTH:
+            return None
+    only = root.children[0] if len(stack) == 1 and len(root.children) == 1 and not root.texts else None
+    return _as_node(only) if only is not None else None
+
+
+def _as_node(item: Node | Field) -> Node:
+    """An element with a text alone, as a block of its own."""
+    return item if isinstance(item, Node) else Node(item.name, (Field(TEXT, item.value),), parameters=())
+
+
+def _close(stack: list[_Open], *, empty: bool) -> None:
+    """Put the innermost element into the one around it."""
+    tag, attributes, children, texts = stack.pop()
+    text = "".join(texts)
+    if not children and not empty and not attributes:
+        stack[-1].children.append(Field(tag, value_of_text(text)))
+        return
+    if not children and not empty:
+        children = [Field(TEXT, value_of_text(text))]
+    parenthesised = any(isinstance(child, Field) for child in children)
+    said = [(name, value_of_text(value)) for name, value in attributes]
+    if parenthesised:
+        node = Node(tag, tuple(children), parameters=tuple(Parameter(name, value) for name, value in said))
+    else:
+        node = Node(tag, (*(Field(name, value) for name, value in said), *children))
+    stack[-1].children.append(node)
+
+
+def _spacing(xml: str) -> Spacing | None:
+    """The white space that the first and the last line break tell; None for XML in one line."""
+    if "\n" not in xml:
+        return None
+    first = re.search(r"\n([ \t]*)", xml)
+    last = re.search(r"\n([ \t]*)</[^<>]*>$", xml)
+    if first is None or last is None or not first[1].startswith(last[1]):
+        return None
+    return Spacing(last[1], first[1].removeprefix(last[1]))
+
+
+# ---- a block to XML --------------------------------------------------------------------------------------------------------
+
+
+def markup_of(node: Node, spacing: Spacing | None) -> str | None:
+    """The XML of a block; None where it holds what no XML says."""
+    parts: list[str] = []
+    stack: list[tuple[int, Item | str]] = [(0, node)]
+    while stack:
+        depth, item = stack.pop()
+        if isinstance(item, str):
+            parts.append(item)
+            continue
+        if not isinstance(item, Node | Field):
+            return None
+        if isinstance(item, Field):
+            text = text_of_value(item.value)
+            if text is None:
+                return None
+            parts.append(_leaf(item.name, text))
+            continue
+        head, children = _parts_of(item)
+        if head is None:
+            return None
+        if not children:
+            parts.append(f"{head}/>")
+            continue
+        parts.append(f"{head}>")
+        stack.append((depth, f"</{item.name}>"))
+        alone = isinstance(children[0], Field) and children[0].name == TEXT
+        if spacing is not None and not alone:
+            stack.append((depth, _line(spacing, depth)))
+        for child in reversed(children):
+            stack.append((depth + 1, child))
+            if spacing is not None and not alone:
+                stack.append((depth, _line(spacing, depth + 1)))
+    return "".join(parts)
+
+
+def _leaf(name: str, text: str) -> str:
+    """The XML of a field."""
+    if isinstance(name, QuotedName) and name in (TEXT, COMMENT):
+        return text if name == TEXT else f"<!--{text}-->"
+    return f"<{name}>{text}</{name}>"
+
+
+def _line(spacing: Spacing, depth: int) -> str:
+    return "\n" + spacing.base + spacing.step * depth
+
+
+def _parts_of(node: Node) -> tuple[str | None, tuple[Item, ...]]:
+    """The beginning of the element's tag, and what stands in the element."""
+    if node.parameters is None:
+        said = [(item.name, item.value) for item in node.items if isinstance(item, Field)]
+        children: tuple[Item, ...] = tuple(item for item in node.items if not isinstance(item, Field))
+    else:
+        said = [(parameter.name, parameter.default) for parameter in node.parameters]
+        children = node.items
+    texts = [(name, text_of_value(value)) for name, value in said]
+    if any(text is None for _, text in texts):
+        return None, ()
+    return f"<{node.name}" + "".join(f' {name}="{text}"' for name, text in texts), children

@@ -1,0 +1,216 @@
+"""Which body of one robot is which of the other: by name, by place in the tree, or by the shape of the tree."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hymeko_x.verify.model import WORLD, Array, Body, Kind, KinematicModel
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Iterable, Iterator, Sequence
+
+_SAME_PLACE = 1e-5  # of a body that must have been renamed, because it is where the other was and weighs as much
+
+
+# ---- bodies by name --------------------------------------------------------------------------------------------------
+
+
+def plain(name: str) -> str:
+    """A name as USD would have to spell it."""
+    spelled = re.sub(r"\W", "_", name)
+    return f"_{spelled}" if spelled[:1].isdigit() else spelled
+
+
+def pair_by_name(a: KinematicModel, b: KinematicModel) -> dict[int, int]:
+    """For each matched body of the first robot the second's; what has no name or another one is matched by its place."""
+    pairs = {WORLD: WORLD}
+    taken = {WORLD}
+    for i, body in enumerate(a.bodies[1:], start=1):
+        j = b.index.get(body.name) if body.name is not None else None
+        if j is not None and j not in taken:  # the world is taken: a link may only be called so
+            pairs[i] = j
+            taken.add(j)
+    if "usd" in (a.format, b.format):
+        _pair_spelled(a, b, pairs, taken)
+    _pair_by_place(a, b, pairs, taken)
+    return pairs
+
+
+def _pair_spelled(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], taken: set[int]) -> None:
+    """Names that USD cannot spell, compared as it spells them, where that leaves no doubt."""
+    ours = _spelled(a, pairs.keys())
+    theirs = _spelled(b, taken)
+    for spelling in ours.keys() & theirs.keys():
+        pairs[ours[spelling]] = theirs[spelling]
+        taken.add(theirs[spelling])
+
+
+def _spelled(model: KinematicModel, taken: Iterable[int]) -> dict[str, int]:
+    used = set(taken)
+    names = [(plain(body.name), i) for i, body in enumerate(model.bodies) if body.name is not None and i not in used]
+    counts = Counter(name for name, _ in names)
+    return {name: i for name, i in names if counts[name] == 1}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Limb:
+    """An unmatched body below a matched one, maybe behind bodies that only carry dofs.
+
+    ``names`` and ``kinds`` are those of all dofs up to the matched body, a ball being three hinges; ``place`` is its pose there.
+    """
+
+    body: int
+    names: tuple[str, ...]
+    kinds: tuple[Kind, ...]
+    place: Array
+    mass: float
+    direct: bool
+
+
+def _pair_by_place(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], taken: set[int]) -> None:
+    """Unmatched bodies below matched ones, by the names of their joints, else as the only ones of their kind there."""
+    for parent in range(len(a.bodies)):
+        if parent not in pairs:
+            continue
+        rivals = [k for k in a.children[parent] if k not in pairs]
+        if not rivals:
+            continue
+        free = [limb for j in b.children[pairs[parent]] for limb in _limbs(b, j, taken)]
+        crowded = len(rivals) != sum(limb.direct for limb in free)
+        for limbs in [list(_limbs(a, k, pairs)) for k in rivals]:
+            _pair_limbs((a, b), limbs, free, pairs, taken, crowded=crowded)
+
+
+def _limbs(model: KinematicModel, body: int, matched: Container[int]) -> Iterator[_Limb]:
+    """A body, and as long as it only carries dofs the one below it."""
+    names: tuple[str, ...] = ()
+    kinds: tuple[Kind, ...] = ()
+    place = np.eye(4)
+    direct = True
+    while body not in matched:
+        part = model.bodies[body]
+        names, kinds, place = names + _joint_names(part), kinds + _hinged(part), place @ part.joint.placement
+        yield _Limb(body, names, kinds, place, part.mass, direct)
+        if not only_carries(model, body):
+            return
+        direct = False
+        (body,) = model.children[body]
+
+
+def _pair_limbs(
+    models: tuple[KinematicModel, KinematicModel],
+    limbs: Sequence[_Limb],
+    free: Sequence[_Limb],
+    pairs: dict[int, int],
+    taken: set[int],
+    *,
+    crowded: bool,
+) -> None:
+    """The first of a chain of bodies that has a counterpart gets it."""
+    for limb in limbs:
+        other = _counterpart(models, limb, [other for other in free if other.body not in taken], crowded=crowded)
+        if other is not None:
+            pairs[limb.body] = other.body
+            taken.add(other.body)
+            return
+
+
+def _counterpart(models: tuple[KinematicModel, KinematicModel], limb: _Limb, free: Sequence[_Limb], *, crowded: bool) -> _Limb | None:
+    """The one of ``free`` that the limb must be: of the same joints, else alike; where both have names, at the same place as well."""
+    named = [other for other in free if limb.names and other.names and _nested(set(limb.names), set(other.names))]
+    if named:
+        return min(named, key=lambda other: (limb.kinds != other.kinds, limb.names != other.names, _distance(limb, other)))
+    alike = [
+        other
+        for other in free
+        if limb.kinds == other.kinds
+        and (
+            _one_is_unnamed(models, limb, other) or (not crowded and limb.direct and other.direct and _distance(limb, other) < _SAME_PLACE)
+        )
+    ]
+    return min(alike, key=lambda other: _distance(limb, other), default=None)
+
+
+def _nested(a: set[str], b: set[str]) -> bool:
+    """Whether one holds the other: dofs may be nameless on one side."""
+    return a <= b or b <= a
+
+
+def _one_is_unnamed(models: tuple[KinematicModel, KinematicModel], limb: _Limb, other: _Limb) -> bool:
+    return models[0].bodies[limb.body].name is None or models[1].bodies[other.body].name is None
+
+
+def _joint_names(body: Body) -> tuple[str, ...]:
+    return tuple(dof.name for dof in body.joint.dofs if dof.name is not None)
+
+
+def _kinds(body: Body) -> tuple[Kind, ...]:
+    return tuple(dof.kind for dof in body.joint.dofs)
+
+
+def _hinged(body: Body) -> tuple[Kind, ...]:
+    """The kinds of the dofs above a body, each ball as three hinges."""
+    return tuple(kind for whole in _kinds(body) for kind in ((Kind.HINGE,) * 3 if whole is Kind.BALL else (whole,)))
+
+
+def _distance(a: _Limb, b: _Limb) -> float:
+    """How far apart two bodies' places and masses are; only its order matters."""
+    return float(np.abs(a.place - b.place).sum()) + abs(a.mass - b.mass)
+
+
+def only_carries(model: KinematicModel, i: int) -> bool:
+    """A body between two joints that has neither mass nor shape, and moves."""
+    body = model.bodies[i]
+    return body.mass == 0.0 and not body.shapes and bool(body.joint.dofs) and len(model.children[i]) == 1
+
+
+# ---- bodies by structure ---------------------------------------------------------------------------------------------
+
+
+def pair_by_structure(a: KinematicModel, b: KinematicModel) -> dict[int, int]:
+    """Rooted tree isomorphism: subtrees of one colour are paired below paired parents, the nearest ones first."""
+    colours: dict[tuple[object, ...], int] = {}
+    colour_a, colour_b = _colours(a, colours), _colours(b, colours)
+    pairs = {WORLD: WORLD}
+    stack = [(WORLD, WORLD)]
+    while stack:
+        i, j = stack.pop()
+        for k, m in _pair_children(a, b, a.children[i], b.children[j], colour_a, colour_b):
+            pairs[k] = m
+            stack.append((k, m))
+    return pairs
+
+
+def _colours(model: KinematicModel, known: dict[tuple[object, ...], int]) -> list[int]:
+    """A number per body that is equal exactly for subtrees of the same joints and branches, from the leaves up."""
+    colours = [0] * len(model.bodies)
+    for i in range(len(model.bodies) - 1, -1, -1):
+        below = tuple(sorted(colours[k] for k in model.children[i]))
+        key = (tuple(kind.value for kind in _kinds(model.bodies[i])), below)
+        colours[i] = known.setdefault(key, len(known))
+    return colours
+
+
+def _pair_children(
+    a: KinematicModel, b: KinematicModel, ours: Sequence[int], theirs: Sequence[int], colour_a: list[int], colour_b: list[int]
+) -> Iterable[tuple[int, int]]:
+    from scipy.optimize import linear_sum_assignment
+
+    groups: dict[int, tuple[list[int], list[int]]] = {}
+    for i in ours:
+        groups.setdefault(colour_a[i], ([], []))[0].append(i)
+    for j in theirs:
+        groups.setdefault(colour_b[j], ([], []))[1].append(j)
+    for left, right in groups.values():
+        cost = np.array([[_apart(a.bodies[i], b.bodies[j]) for j in right] for i in left]).reshape(len(left), len(right))
+        rows, columns = linear_sum_assignment(cost)
+        yield from ((left[r], right[c]) for r, c in zip(rows, columns, strict=True))
+
+
+def _apart(a: Body, b: Body) -> float:
+    return float(np.abs(a.joint.placement - b.joint.placement).sum()) + abs(a.mass - b.mass)

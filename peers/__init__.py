@@ -1,0 +1,81 @@
+"""Other people's programs that the tests and benchmarks compare with, each in an environment of its own.
+
+They cannot share ours: some bring their own build of USD, others pin an older MuJoCo. ``python -m peers`` makes the
+environments below ``.peers/``; without them the tests that need one are skipped and say so.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+ROOT = Path(__file__).parents[1] / ".peers"
+_DRIVERS = Path(__file__).parent / "drivers"
+
+
+@dataclass(frozen=True, slots=True)
+class Peer:
+    """A program: what the package index calls it and needs beside it, and the driver that runs in its environment."""
+
+    name: str
+    requirements: tuple[str, ...]
+    driver: str
+
+    @property
+    def python(self) -> Path:
+        """The interpreter of its environment, which need not exist."""
+        return ROOT / self.name / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
+
+    def is_installed(self) -> bool:
+        """Whether ``python -m peers`` has made its environment."""
+        return (ROOT / self.name / ".installed").exists()
+
+    def install(self) -> None:
+        """Make the environment from the package index. Raises: subprocess.CalledProcessError."""
+        subprocess.run([sys.executable, "-m", "venv", "--clear", str(ROOT / self.name)], check=True)
+        command = [str(self.python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", *self.requirements]
+        subprocess.run(command, check=True)
+        (ROOT / self.name / ".installed").touch()
+
+    def run(self, jobs: Iterable[Mapping[str, Any]], timeout: float = 600.0) -> list[dict[str, Any]]:
+        """What the driver answers to each job, in one process so that imports are paid once.
+
+        A job that fails has ``error``. When the process dies, so have all jobs that it did not answer.
+        """
+        asked = [json.dumps(job) for job in jobs]
+        command = [str(self.python), str(_DRIVERS / self.driver)]
+        done = subprocess.run(command, input="\n".join(asked), capture_output=True, text=True, timeout=timeout, check=False)
+        answers = [json.loads(line[2:]) for line in done.stdout.splitlines() if line.startswith("> ")]
+        said = done.stderr.strip().splitlines()[-1:] or [f"exit {done.returncode}"]
+        return answers + [{"error": f"the process died: {said[0]}"}] * (len(asked) - len(answers))
+
+
+URDF_USD_CONVERTER = Peer("urdf-usd-converter", ("urdf-usd-converter==0.3.4",), "urdf_usd.py")
+MUJOCO_USD_CONVERTER = Peer("mujoco-usd-converter", ("mujoco-usd-converter==0.8.0",), "mujoco_usd.py")
+CYBERWAVE = Peer("cyberwave-robot-format", ("cyberwave-robot-format[usd]==0.1.8",), "cyberwave.py")
+SCIKIT_ROBOT = Peer("scikit-robot", ("scikit-robot==0.4.7", "usd-core==26.11"), "scikit.py")
+NEWTON = Peer(
+    "newton",
+    (
+        "newton==1.8.0",
+        "newton-usd-schemas==0.6.0",
+        "usd-core>=25.5,<26.9",
+        "mujoco~=3.17.0",
+        "trimesh>=4.6.8",
+        "scipy>=1.11",
+        "pycollada>=0.9",
+        "resolve-robotics-uri-py>=0.5.1",
+    ),
+    "newton_models.py",
+)
+VALIDATOR = Peer("omniverse-asset-validator", ("omniverse-asset-validator==1.18.0", "usd-core==26.11"), "validator.py")
+PEERS = (URDF_USD_CONVERTER, MUJOCO_USD_CONVERTER, CYBERWAVE, SCIKIT_ROBOT, NEWTON, VALIDATOR)
+CONVERTERS = {"urdf": (URDF_USD_CONVERTER, CYBERWAVE, SCIKIT_ROBOT), "mjcf": (MUJOCO_USD_CONVERTER, CYBERWAVE)}
+"""Who converts which format to USD."""

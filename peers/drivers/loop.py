@@ -1,0 +1,34 @@
+"""What all drivers do: one job per line in, one answer per line out, with the processor time that the work took."""
+
+from __future__ import annotations
+
+import gc
+import json
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def answer_all(work: Callable[[dict[str, Any]], dict[str, Any] | None]) -> None:
+    """Answer every line of stdin. ``repeat`` in a job runs it so often; ``seconds`` is the least processor time."""
+    for line in sys.stdin:
+        if line.strip():
+            job = json.loads(line)
+            print("> " + json.dumps(_answer(work, job)), flush=True)
+
+
+def _answer(work: Callable[[dict[str, Any]], dict[str, Any] | None], job: dict[str, Any]) -> dict[str, Any]:
+    best = float("inf")
+    said: dict[str, Any] = {}
+    for _ in range(job.get("repeat", 1)):
+        gc.collect()
+        start = time.process_time()
+        try:
+            said = work(job) or {}
+        except Exception as error:  # noqa: BLE001 - somebody else's program may fail in any way
+            return {"error": f"{type(error).__name__}: {str(error)[:300]}"}
+        best = min(best, time.process_time() - start)
+    return {**said, "seconds": best}

@@ -1,0 +1,44 @@
+"""Factoring: what repeats is said once, and expanding gives back exactly what was there."""
+
+from __future__ import annotations
+
+from hymeko_x.ir.factor import Dialect, factor
+from hymeko_x.ir.forms import Call, Element, Factored, Hole, Macro, Parameter, Signed, expand
+
+DIALECT = Dialect(macro=10, call=3, argument=2, least=1)
+
+
+def leg(prefix: str, side: str) -> list[Element]:
+    minus = "-" if side == "-1" else ""
+    inertia = (("ixx", "0.0125"), ("ixy", f"{minus}0.00125"), ("iyy", "1.25e-05"), ("izz", "0.10"))
+    hip = Element("link", (("name", f"{prefix}_hip"),), (Element("mass", (("value", "1.50"),)), Element("inertia", inertia)))
+    joint = Element(
+        "joint",
+        (("name", f"{prefix}_knee"),),
+        (Element("origin", (("xyz", f"0 {minus}0.1 0"),)), Element("child", (("link", f"{prefix}_hip"),))),
+    )
+    return [hip, joint]
+
+
+def test_left_and_right_legs_become_calls_of_one_macro_with_prefix_and_side() -> None:
+    forms = (Element("link", (("name", "torso"),)), *leg("left", "1"), *leg("right", "-1"))
+    found = factor(forms, DIALECT)
+    assert expand(found) == forms
+    (macro,) = found.macros
+    assert macro.parameters == (Parameter("prefix"), Parameter("side"))
+    assert macro.body[0].children[1].leaves[1] == ("ixy", (Signed(("side",), False, "0.00125"),))
+    assert macro.body[0].leaves == (("name", (Hole("prefix"), "_hip")),)
+    calls = (Call(macro.name, (("prefix", "left"), ("side", "1"))), Call(macro.name, (("prefix", "right"), ("side", "-1"))))
+    assert found.items == (forms[0], *calls)
+
+
+def test_a_form_without_repetition_stays_as_it_is() -> None:
+    forms = (Element("link", (("name", "a"),)), Element("joint", (("name", "b"),)))
+    assert factor(forms, DIALECT) == Factored(forms)
+
+
+def test_holes_are_filled_in_calls_inside_of_macros() -> None:
+    inner = Macro("inner", (Parameter("x", "7"),), (Element("e", (("v", ("<", Hole("x"), ">")),)),))
+    outer = Macro("outer", (Parameter("y"),), (Call("inner", (("x", (Hole("y"), "!")),)), Call("inner")))
+    factored = Factored((Element("root", (), (Call("outer", (("y", "1"),)),)),), (inner, outer))
+    assert expand(factored) == (Element("root", (), (Element("e", (("v", "<1!>"),)), Element("e", (("v", "<7>"),)))),)

@@ -1,0 +1,163 @@
+"""PutGet: what was edited in a file that carries a residue survives the way back, and everything else is restored."""
+
+from __future__ import annotations
+
+import mujoco
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import hymeko_x as hx
+from hymeko_x import formats, pipeline
+from hymeko_x.diagnostics import Report
+from hymeko_x.formats.carrier import taken_off
+from hymeko_x.ir.diff import Tolerance, diff
+from hymeko_x.ir.legalize import Options
+from hymeko_x.ir.mechanism import Id, Mechanism
+from hymeko_x.source import NoFiles, Source
+from tests.residue.edits import Edit, applied, mjcf_edits, urdf_edits
+from tests.residue.exactness import unequal
+from tests.residue.samples import MJCF, PLAIN_MJCF, URDF
+
+_NEARLY = Tolerance(1e-9, 1e-9)
+
+
+def _native(data: bytes, format: str) -> Mechanism:
+    """What the format itself says, without what the file carries."""
+    return taken_off(pipeline.reader(formats.by_name(format))(Source("<text>", data, NoFiles()), Report()))[0]
+
+
+def _written_again(robot: Mechanism, format: str) -> Mechanism:
+    return _native(pipeline.write(robot, formats.by_name(format), Options(), NoFiles(), Report()).main, format)
+
+
+@pytest.fixture(scope="module")
+def walker() -> str:
+    return hx.dumps(hx.loads(PLAIN_MJCF, "mjcf"), "urdf")
+
+
+@pytest.fixture(scope="module")
+def arm() -> str:
+    return hx.dumps(hx.loads(URDF, "urdf"), "mjcf")
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(urdf_edits(), min_size=1, max_size=3))
+def test_edits_of_a_urdf_survive_and_the_rest_of_the_mjcf_is_restored(walker: str, edits: list[Edit]) -> None:
+    text, done = applied(walker, edits)
+    back = hx.loads(text, "urdf")
+    _expect_same(_native(text.encode(), "urdf"), _written_again(back, "urdf"), done)
+    _expect_only_edits(hx.loads(PLAIN_MJCF, "mjcf"), back, done)
+    mujoco.MjModel.from_xml_string(hx.dumps(back, "mjcf", pure=True))
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(mjcf_edits(), min_size=1, max_size=3))
+def test_edits_of_an_mjcf_survive_and_the_rest_of_the_urdf_is_restored(arm: str, edits: list[Edit]) -> None:
+    text, done = applied(arm, edits)
+    back = hx.loads(text, "mjcf")
+    _expect_same(_native(text.encode(), "mjcf"), _written_again(back, "mjcf"), done)
+    _expect_only_edits(hx.loads(URDF, "urdf"), back, done)
+
+
+def _expect_same(edited: Mechanism, again: Mechanism, done: list[str]) -> None:
+    """The same robot; shapes may come in another order, and generated files may be called after another body."""
+    found = [difference for difference in diff(edited, again, _NEARLY) if difference.element.kind not in ("shape", "mesh")]
+    assert list(map(str, found)) == [], done
+    assert _shapes(edited) == _shapes(again), done
+
+
+def _shapes(robot: Mechanism) -> list[str]:
+    views = [view for views in robot.shapes.values() for view in views]
+    return sorted(f"{view.body} {view.shape.role} {view.shape.geometry} {[round(x, 6) + 0.0 for x in view.pose.xyz]}" for view in views)
+
+
+def _expect_only_edits(source: Mechanism, back: Mechanism, done: list[str]) -> None:
+    """Nothing is missing but what was removed or renamed, or was on it."""
+    takes_along = {"remove", "rename link", "rename joint", "rename body", "move", "shift"}
+    missing = [difference for difference in diff(source, back) if difference.after is None and difference.field == ""]
+    if not any(edit.partition(":")[0] in takes_along for edit in done):
+        assert missing == [], done
+
+
+# ---- one by one ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_limit_on_a_chain_of_joints_changes_the_joint_of_several_dofs() -> None:
+    source = hx.loads(MJCF, "mjcf")
+    text = hx.dumps(source, "urdf")
+    assert 'name="left_hip_y"' in text
+    upper = repr(110 * 3.141592653589793 / 180)
+    assert text.count(f'upper="{upper}"') == 1
+    back = hx.loads(text.replace(f'upper="{upper}"', 'upper="1.5"'), "urdf")
+    (found,) = diff(source, back)
+    assert (found.element, found.field, found.after) == (Id("joint", "left_thigh"), "dofs[1].limits.upper", "1.5")
+    mujoco.MjModel.from_xml_string(hx.dumps(back, "mjcf"))
+
+
+def test_a_renamed_link_of_a_chain_takes_along_what_was_carried_for_it() -> None:
+    source = hx.loads(MJCF, "mjcf")
+    report = Report()
+    back = hx.loads(hx.dumps(source, "urdf").replace('"left_shin"', '"shank"'), "urdf", report=report)
+    assert back.joints[Id("joint", "left_knee")].child == Id("body", "shank")
+    assert [arc.target for arc in back.graph.edges[Id("tendon", "strap")].arcs] == [Id("frame", "left_sole"), Id("frame", "right_sole")]
+    assert "shank" in str(list(report))
+
+
+def test_a_deleted_link_takes_along_what_was_carried_on_it() -> None:
+    source = hx.loads(PLAIN_MJCF, "mjcf")
+    text, done = applied(
+        hx.dumps(source, "urdf"), [lambda root: [root.remove(e) for e in root if e.get("name") in ("right_shin", "right_knee")] and ""]
+    )
+    report = Report()
+    back = hx.loads(text, "urdf", report=report)
+    gone = {difference.element for difference in diff(source, back) if difference.after is None and difference.field == ""}
+    assert {
+        Id("body", "right_shin"),
+        Id("frame", "right_sole"),
+        Id("tendon", "strap"),
+        Id("drive", "right_knee"),
+        Id("loop", "chained"),
+    } <= gone
+    assert not {Id("body", "left_shin"), Id("frame", "left_sole"), Id("sensor", "imu"), Id("drive", "left_knee")} & gone
+    assert any("right_sole" in str(said) for said in report)
+    assert done == [""]
+
+
+def test_what_the_editor_names_like_something_carried_is_kept() -> None:
+    source = hx.loads(PLAIN_MJCF, "mjcf")
+    text = hx.dumps(source, "urdf")
+    again = text.replace("</robot>", '<material name="grid"><color rgba="1 0 0 1"/></material></robot>')
+    back = hx.loads(again, "urdf")
+    assert (
+        back.vertex(Id("material", "grid"), type(back.graph.vertices[Id("material", "grid")]))
+        != source.graph.vertices[Id("material", "grid")]
+    )
+
+
+def test_a_damaged_residue_is_one_warning_and_the_file_is_read_without() -> None:
+    text = hx.dumps(hx.loads(MJCF, "mjcf"), "urdf")
+    for broken in (
+        text.replace("version 1", "version 2"),
+        text.replace("carried : residue {", "carried : residue"),
+        text.replace("dofs.1.ref", "dofs.x.ref"),
+    ):
+        report = Report()
+        assert broken != text
+        hx.loads(broken, "urdf", report=report)
+        assert [said.code.id for said in report] == ["HX107"] or "dofs.x" in broken
+
+
+def test_pure_files_carry_nothing() -> None:
+    for source, own, other in ((MJCF, "mjcf", "urdf"), (URDF, "urdf", "mjcf")):
+        robot = hx.loads(source, own)
+        assert "hymeko" in hx.dumps(robot, other)
+        assert "hymeko" not in hx.dumps(robot, other, pure=True)
+
+
+@pytest.mark.parametrize(
+    ("text", "own", "other"), [(MJCF, "mjcf", "urdf"), (MJCF, "mjcf", "xacro"), (URDF, "urdf", "mjcf"), (URDF, "urdf", "xacro")]
+)
+def test_there_and_back_is_the_same_to_the_last_bit(text: str, own: str, other: str) -> None:
+    robot = hx.loads(text, own)
+    assert unequal(robot, hx.loads(hx.dumps(robot, other), other)) == []

@@ -1,0 +1,149 @@
+"""What a stage says comes back as its author wrote it: sizes, axes, scales, defaults that were spelt out, groups without a type."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+from pxr import Sdf, Usd
+
+from hymeko_x.ir.diff import diff
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
+from hymeko_x.ir.parts import Box, Capsule, Coupling, DofKind, Joint
+from tests.usd.stages import again, opened, parsed, read_text, written
+from tests.usd.test_read import ENDS, PLACE, body, joint, robot, the_joint
+
+SCALE = '    double3 xformOp:scale = (0.1, 0.2, 0.4)\n    uniform token[] xformOpOrder = ["xformOp:scale"]\n'
+
+
+def said(stage: Any) -> dict[str, str]:
+    """Every authored property with its value, and the types and schemas of every prim; where prims are apart."""
+    found = {}
+    for prim in stage.TraverseAll():
+        listed = prim.GetMetadata("apiSchemas") or Sdf.TokenListOp()
+        found[str(prim.GetPath())] = str(prim.GetTypeName())
+        found |= {f"{prim.GetPath()} {schema}": "applied" for schema in listed.GetAppliedItems()}
+        for item in prim.GetAuthoredProperties():
+            if not item.GetName().startswith(("xformOp", "hymeko:")):
+                value = item.Get() if isinstance(item, Usd.Attribute) else item.GetTargets()
+                found[str(item.GetPath())] = repr(value)
+    return found
+
+
+def missing(text: str, tmp_path: Path) -> dict[str, tuple[str, str | None]]:
+    """What a stage says that the stage written of it does not say, or says otherwise."""
+    source = opened(text.encode(), tmp_path, "source.usda")
+    mechanism = read_text(text)
+    result = opened(written(mechanism), tmp_path)
+    assert [str(item) for item in diff(mechanism, again(mechanism))] == []
+    assert parsed(result).shapes == parsed(source).shapes
+    assert parsed(result).joints == parsed(source).joints
+    before, after = said(source), said(result)
+    return {key: (value, after.get(key)) for key, value in before.items() if after.get(key) != value}
+
+
+def test_sizes_and_axis_of_a_primitive(tmp_path: Path) -> None:
+    capsule = (
+        '    def Capsule "c"\n    {\n        uniform token axis = "X"\n        double radius = 0.08\n        double height = 0.4\n    }\n'
+    )
+    cube = '    def Cube "d"\n    {\n        double size = 2\n        double3 xformOp:scale = (1, 2, 3)\n'
+    text = robot(body("a", capsule + cube + '        uniform token[] xformOpOrder = ["xformOp:scale"]\n    }\n'))
+    assert missing(text, tmp_path) == {}
+    shapes = [view.shape.geometry for view in read_text(text).shapes[Id("body", "a")]]
+    assert shapes == [Capsule(0.08, 0.4), Box((2.0, 4.0, 6.0))]
+
+
+def test_a_body_whose_prim_is_its_geometry_with_what_is_below_it_and_joints_in_its_scaled_space(tmp_path: Path) -> None:
+    site = '    def Xform "tip" (prepend apiSchemas = ["MjcSiteAPI"])\n    {\n    ' + PLACE.format(x=0, y=0, z=0.5) + "    }\n"
+    cube = body("a", "    double size = 1\n" + SCALE + site, "PhysicsCollisionAPI").replace("Xform", "Cube", 1)
+    text = robot(cube, body("b"), joint("PhysicsRevoluteJoint", "j", ENDS + "    point3f physics:localPos0 = (0.5, 0.5, 0.5)\n"))
+    assert missing(text, tmp_path) == {}
+    mechanism = read_text(text)
+    (view,) = mechanism.shapes[Id("body", "a")]
+    assert (view.shape.geometry, the_joint(mechanism).parent_pose.xyz) == (Box((0.1, 0.2, 0.4)), (0.05, 0.1, 0.2))
+    assert mechanism.graph.edges[Id("mount", "tip")].arcs[0].weight.xyz == pytest.approx((0, 0, 0.2))  # type: ignore[union-attr]
+
+
+def test_values_that_say_no_more_than_the_default(tmp_path: Path) -> None:
+    limits = (
+        "    float physics:lowerLimit = -inf\n    float physics:upperLimit = 0\n    uniform double mjc:damping = 0\n"
+        "    bool physics:jointEnabled = 1\n    bool physics:collisionEnabled = 0\n"
+    )
+    mass = "    float physics:mass = 0\n    float physics:density = 0\n"
+    shape = '    def Cube "c" (prepend apiSchemas = ["PhysicsCollisionAPI"])\n    {\n        bool physics:collisionEnabled = 1\n    }\n'
+    text = robot(
+        body("a", shape),
+        body("b", mass, "PhysicsMassAPI"),
+        joint("PhysicsPrismaticJoint", "j", ENDS + limits, "MjcJointAPI NewtonJointAPI"),
+    )
+    assert missing(text, tmp_path) == {}
+    assert the_joint(read_text(text)).joint.dofs[0].limits.upper == 0.0
+
+
+def test_groups_without_a_type_and_the_group_that_stands_for_the_world(tmp_path: Path) -> None:
+    text = robot(
+        'def "joints"\n{\n'
+        + joint("PhysicsFixedJoint", "j", "    rel physics:body0 = </robot>\n    rel physics:body1 = </robot/a>\n")
+        + "}\n",
+        body("a"),
+    )
+    assert missing(text, tmp_path) == {}
+
+
+def test_how_far_the_bounds_of_a_locked_axis_are_crossed(tmp_path: Path) -> None:
+    axes = ("transX", "transY", "transZ", "rotX", "rotY")
+    locks = "".join(f"    float limit:{axis}:physics:low = 2\n    float limit:{axis}:physics:high = -2\n" for axis in axes)
+    text = robot(body("a"), body("b"), joint("PhysicsJoint", "j", ENDS + locks, " ".join(f"PhysicsLimitAPI:{axis}" for axis in axes)))
+    assert missing(text, tmp_path) == {}
+
+
+# ---- what stands still, and what follows -----------------------------------------------------------------------------------------
+
+
+def the_base(mechanism: Mechanism) -> Joint:
+    view = mechanism.parent_joint[Id("body", "a")]
+    assert view.parent == WORLD
+    return view.joint
+
+
+@pytest.mark.parametrize("flag", ["bool physics:kinematicEnabled = 1", "bool physics:rigidBodyEnabled = 0"])
+def test_a_body_that_is_not_simulated_stands_still_without_a_joint_prim(flag: str, tmp_path: Path) -> None:
+    text = robot(body("a", f"    {flag}\n"))
+    assert the_base(read_text(text)).dofs == ()
+    assert missing(text, tmp_path) == {}
+    assert [dof.kind for dof in the_base(read_text(robot(body("a")))).dofs] == [DofKind.FREE]
+
+
+def follower(content: str, apis: str) -> str:
+    follows = ENDS.replace("/a>", "/b>", 1).replace("body1 = </robot/b>", "body1 = </robot/c>")
+    return robot(
+        body("a"),
+        body("b"),
+        body("c"),
+        joint("PhysicsRevoluteJoint", "j", ENDS),
+        joint("PhysicsRevoluteJoint", "k", follows + content, apis),
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "apis", "coefficients"),
+    [
+        (
+            "    rel newton:mimicJoint = </robot/j>\n    float newton:mimicCoef0 = 180\n    float newton:mimicCoef1 = 2\n"
+            "    uniform double mjc:coef2 = 3\n    uniform double mjc:coef4 = 5\n",
+            "NewtonMimicAPI MjcEqualityJointAPI",
+            (3.141592653589793, 2.0, 3.0, 0.0, 5.0),
+        ),
+        (
+            "    rel mjc:target = </robot/j>\n    uniform double mjc:coef0 = 0.5\n    uniform double mjc:coef1 = 1.5\n",
+            "MjcEqualityJointAPI",
+            (0.5, 1.5),
+        ),
+    ],
+)
+def test_a_joint_that_follows_by_a_polynomial(content: str, apis: str, coefficients: tuple[float, ...], tmp_path: Path) -> None:
+    text = follower(content, apis)
+    ((_, _, arcs),) = read_text(text).edges(Coupling)
+    assert [(arc.target.name, arc.sign, arc.weight) for arc in arcs] == [("k", 1, (1.0,)), ("j", -1, coefficients)]
+    assert missing(text, tmp_path) == {}

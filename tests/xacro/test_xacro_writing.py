@@ -1,0 +1,194 @@
+"""What is written as xacro expands to what is written as URDF, to the letter."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import statistics
+from dataclasses import replace
+from pathlib import Path
+from xml.dom import minidom
+
+import pytest
+import xacro
+from hypothesis import HealthCheck, given, settings
+from lxml import etree
+
+from hymeko_x import disk, formats, pipeline
+from hymeko_x.backends import urdf
+from hymeko_x.backends import xacro as backend
+from hymeko_x.diagnostics import Report
+from hymeko_x.frontends.xacro import read
+from hymeko_x.ir.diff import diff
+from hymeko_x.ir.legalize import Options, legalize
+from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.source import Source
+from tests.conftest import RealRobots
+from tests.strategies import mechanisms
+from tests.urdf.samples import load, robot
+from tests.urdf.test_laws import sayable
+
+
+def library(text: bytes) -> minidom.Document:
+    """What xacro itself makes of a file, without a warning; not as text, in which minidom loses line breaks of attributes."""
+    xacro.init_stacks("robot.xacro")
+    with contextlib.redirect_stderr(io.StringIO()) as said:
+        document = xacro.parse(text.decode())
+        xacro.process_doc(document)
+    assert said.getvalue() == ""
+    return document
+
+
+def elements(document: minidom.Document) -> object:
+    """The elements in their order, each with its attributes in none, and with its words."""
+
+    def of(node: minidom.Node) -> object:
+        if not isinstance(node, minidom.Element):
+            return node.data.strip() if isinstance(node, minidom.Text) else ""
+        attributes = sorted(item for item in node.attributes.items() if item[0] != "xmlns:xacro")
+        return node.tagName, attributes, [kid for child in node.childNodes if (kid := of(child))]
+
+    return of(document.documentElement)
+
+
+def check(mechanism: Mechanism) -> str:
+    """The xacro of a mechanism, which expands to its URDF."""
+    text = backend.write(mechanism, Report()).main
+    assert elements(library(text)) == elements(minidom.parseString(urdf.write(mechanism, Report()).main))
+    return text.decode()
+
+
+def characters(text: bytes) -> int:
+    """How many characters count: no comments, no white space."""
+    return len(re.sub(rb"\s+|<!--.*?-->", b"", text, flags=re.DOTALL).decode())
+
+
+LEG = """<link name="{0}_hip"><inertial><mass value="1.5"/>
+<inertia ixx="0.0125" ixy="{1}2.5e-05" ixz="0" iyy="1e-05" iyz="0" izz="0.1"/></inertial>
+<visual><geometry><mesh filename="package://p/hip.stl"/></geometry><material name="black"/></visual></link>
+<joint name="{0}_hip_joint" type="revolute"><origin xyz="0 {1}0.125 0" rpy="{1}1.5707963267948966 0 0"/><parent link="base"/>
+<child link="{0}_hip"/><axis xyz="1 0 0"/><limit lower="-1" upper="1" effort="40" velocity="10"/></joint>
+<transmission name="{0}_t"><type>simple</type><joint name="{0}_hip_joint"><hardwareInterface>e</hardwareInterface></joint></transmission>"""
+PAIR = robot('<!-- the base -->\n<link name="base"/>' + LEG.format("left", "") + LEG.format("right", "-"))
+
+
+def test_left_and_right_are_calls_of_one_macro() -> None:
+    text = check(load(PAIR))
+    calls = re.findall(r"<xacro:.*/>", text)
+    assert calls == ['<xacro:hip_to_t prefix="left" side="1"/>', '<xacro:hip_to_t prefix="right" side="-1"/>']
+    assert 'xyz="0 ${side*0.125} 0" rpy="${side*pi/2} 0 0"' in text
+    assert 'ixy="${side*2.5}e-5"' in text
+
+
+def test_comments_stay_and_headings_go() -> None:
+    back = read(Source("r.xacro", backend.write(load(PAIR), Report()).main), Report())
+    assert diff(load(PAIR), back) == ()
+    assert [extra.text for extras in back.extras.values() for extra in extras if extra.format == "comment"] == ["the base"]
+
+
+ODD = (
+    "1e-05",
+    "1e5",
+    "0.10",
+    "+1",
+    "007",
+    "true",
+    "False",
+    "inf",
+    "nan",
+    "1_0",
+    "'a'",
+    "'",
+    '"',
+    "''",
+    "${x}",
+    "$(find x)",
+    "$${x}",
+    "$$",
+    "a$",
+)
+
+
+@pytest.mark.parametrize(
+    "text", [*ODD, "", " ", "a b", "<&>", "${", "$", "a\nb", "\t", "^|a", "a:=b", "１", "0x1", "1.", ".5", "-0", "None", "__import__('os')"]
+)
+def test_every_text_comes_back_as_a_text_that_varies_and_one_that_does_not(text: str) -> None:
+    said = etree.Element("x", a=text, b="the same in all of them, and long enough")
+    quoted = etree.tostring(said).decode()
+    names = ("one", "two", "three", "four", "five")
+    gazebo = "".join(f'<gazebo reference="{name}"><sensor><fixed>{quoted}</fixed></sensor></gazebo>' for name in names)
+    varied = "".join(
+        f'<gazebo><plugin of="{name}" long="words that are always the same">{quoted}</plugin></gazebo>'
+        for name in (*names, text)
+        for quoted in (etree.tostring(etree.Element("y", v=name)).decode(),)
+    )
+    written = check(load(robot('<link name="one"/>' + gazebo + varied.replace("\n", "&#10;"))))
+    assert "<xacro:macro" in written
+
+
+@given(sayable())
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+def test_whatever_urdf_can_say_expands_to_it(mechanism: Mechanism) -> None:
+    check(mechanism)
+
+
+@given(mechanisms())
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+def test_every_legal_mechanism_expands_to_its_urdf(mechanism: Mechanism) -> None:
+    check(legalize(replace(mechanism, extras={}), "xacro", Options(), Report()))
+
+
+def test_the_ledger_of_a_conversion_to_xacro_is_empty() -> None:
+    mechanism = load(PAIR)
+    assert pipeline.convert(mechanism, formats.by_name("xacro"), Options(), Source("", b"").files, Report()).losses == ()
+
+
+@pytest.mark.robots("urdf")
+def test_the_xacro_of_a_real_robot_expands_to_its_urdf(robot: Path) -> None:
+    check(load(robot.read_bytes()))
+
+
+@pytest.mark.robots("xacro")
+def test_xacro_through_a_mechanism_and_back_is_the_expansion_of_the_source(robot: Path) -> None:
+    source = disk.open_source(str(robot))
+    mechanism = read(source, Report())
+    text = check(mechanism)
+    assert diff(mechanism, read(Source("again.xacro", text.encode()), Report())) == ()
+
+
+@pytest.mark.corpus
+@pytest.mark.slow
+def test_xacro_is_shorter_than_urdf(real_robot: RealRobots) -> None:
+    """Characters without white space and comments, over the development URDFs; and those with repeated limbs."""
+    from hymeko_x.corpus import catalog
+
+    ratios, limbs = [], []
+    for file in catalog.development_files("urdf"):
+        path = real_robot(file)
+        mechanism = load(path.read_bytes())
+        ours = characters(backend.write(mechanism, Report()).main)
+        ratio = ours / characters(urdf.write(mechanism, Report()).main)
+        ratios.append(ratio)
+        if any(word in file.id for word in LIMBED):
+            limbs.append(ratio)
+    assert statistics.median(ratios) < 0.5
+    assert statistics.median(limbs) < 0.4
+
+
+LIMBED = (
+    "anymal",
+    "quadruped",
+    "minitaur",
+    "vision60",
+    "office",
+    "centauro",
+    "allegro",
+    "shadow",
+    "dclaw",
+    "iris",
+    "racecar",
+    "g1",
+    "talos",
+)
+"""Legs, fingers, wheels or rotors several times."""
