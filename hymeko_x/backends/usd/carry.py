@@ -12,7 +12,7 @@ import numpy as np
 from pxr import Sdf, Vt
 
 from hymeko_x.backends.usd.prims import T, add_attribute, authored_pairs, drafted_pairs
-from hymeko_x.backends.usd.shapes import is_drawable
+from hymeko_x.backends.usd.surfaces import surface_of
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.parts import Mesh
@@ -107,7 +107,7 @@ def _mesh_pairs(mesh: Mesh, has_prim: bool) -> dict[str, Value]:
     pairs = words.flat(replace(mesh, vertices=(), faces=()))
     if mesh.uri is not None:
         return pairs
-    if not has_prim or not is_drawable(mesh):
+    if not has_prim or surface_of(mesh) is None:
         return words.flat(mesh)
     points = np.asarray(mesh.vertices, dtype=np.float64)
     with np.errstate(over="ignore"):

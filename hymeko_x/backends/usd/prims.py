@@ -45,11 +45,10 @@ class Prim:
 
 def author(prims: Iterable[Prim], layer: Any) -> None:
     """Write every prim into the layer, parents before their children."""
+    specs: dict[Any, Any] = {Sdf.Path.absoluteRootPath: layer}
     for prim in prims:
-        spec = layer.GetPrimAtPath(prim.path) or Sdf.CreatePrimInLayer(layer, prim.path)
-        spec.specifier = prim.specifier
-        if prim.kind:
-            spec.typeName = prim.kind
+        path = prim.path
+        spec = specs[path] = Sdf.PrimSpec(specs[path.GetParentPath()], path.name, prim.specifier, prim.kind)
         for name, value in prim.info.items():
             spec.SetInfo(name, value)
         if prim.schemas:
