@@ -11,8 +11,13 @@ from omni.asset_validator import IssueSeverity, ValidationEngine
 def validate(job: dict[str, Any]) -> dict[str, Any]:
     """Every rule that is on by default."""
     found = ValidationEngine().validate(job["stage"])
-    return {"issues": [f"{issue.rule.__name__ if issue.rule else '?'}: {issue.severity.name}: {issue.message} {issue.at or ''}"
-                       for issue in found.issues() if issue.severity not in (IssueSeverity.NONE, IssueSeverity.INFO)]}
+    return {
+        "issues": [
+            f"{issue.rule.__name__ if issue.rule else '?'}: {issue.severity.name}: {issue.message} {issue.at or ''}"
+            for issue in found.issues()
+            if issue.severity not in (IssueSeverity.NONE, IssueSeverity.INFO)
+        ]
+    }
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from hymeko_x.backends.usd.bodies import write_bodies, write_mounts
 from hymeko_x.backends.usd.carry import carry_elements
 from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
-from hymeko_x.backends.usd.layers import split
+from hymeko_x.backends.usd.layers import encoded, split
 from hymeko_x.backends.usd.materials import write_materials
 from hymeko_x.backends.usd.prims import author
 from hymeko_x.backends.usd.relations import write_drives, write_mimics
@@ -33,8 +33,9 @@ _ARTICULATION = "PhysicsArticulationRootAPI"
 
 def write(mechanism: Mechanism, report: Report) -> Package:
     """The mechanism as USD text. Textures are not part of it: `assets.pack` returns them."""
-    texts = {name: layer.ExportToString().encode() for name, layer in write_layers(mechanism, report, ".usda").items()}
-    return Package(texts.pop(""), texts)
+    layers = write_layers(mechanism, report, ".usda")
+    written = {name: encoded(layer) if name.endswith(".usdc") else layer.ExportToString().encode() for name, layer in layers.items()}
+    return Package(written.pop(""), written)
 
 
 def write_layers(mechanism: Mechanism, report: Report, suffix: str) -> dict[str, Any]:

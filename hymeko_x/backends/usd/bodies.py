@@ -127,8 +127,9 @@ def write_inertial(spec: Any, inertial: Inertial, com: Vec3) -> None:
     if inertial.tensor is None:
         return
     moments, quat = principal(inertial)
-    put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*moments))
-    put(spec, "physics:principalAxes", T.Quatf, quatf(quat))
+    if min(moments) > 0.0:  # UsdPhysics takes anything else for "not said"
+        put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*moments))
+        put(spec, "physics:principalAxes", T.Quatf, quatf(quat))
     apply(spec, "NewtonMassAPI")
     put(spec, "newton:inertia", T.DoubleArray, Vt.DoubleArray(list(inertial.tensor)))
 

@@ -62,7 +62,7 @@ def _carry_alone(sheet: Sheet, keys: list[Id]) -> None:
         group = _new_prim(sheet.layer, path, "Scope")
         add_attribute(group, f"{words.PREFIX}scope", T.Bool, True)
     for number, key in enumerate(keys):
-        spec = _new_prim(sheet.layer, path.AppendChild(f"e{number}"), "")
+        spec = _new_prim(sheet.layer, path.AppendChild(f"e{number}"), "Scope")
         add_attribute(spec, f"{words.PREFIX}alone", T.Bool, True)
         _carry(sheet, spec, key)
 
@@ -70,8 +70,7 @@ def _carry_alone(sheet: Sheet, keys: list[Id]) -> None:
 def _new_prim(layer: Any, path: Any, kind: str) -> Any:
     spec = Sdf.CreatePrimInLayer(layer, path)
     spec.specifier = Sdf.SpecifierDef
-    if kind:
-        spec.typeName = kind
+    spec.typeName = kind
     return spec
 
 

@@ -8,7 +8,7 @@ from pxr import Gf, Sdf, Vt
 
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put
-from hymeko_x.backends.usd.surfaces import surface_of
+from hymeko_x.backends.usd.surfaces import normals_of, surface_of
 from hymeko_x.formats import usd as words
 from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.ir.mechanism import WORLD
@@ -109,13 +109,15 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
         _carry_mesh(sheet, spec, view.mesh)
         if surface is not None:
             _write_surface(spec, surface)
+            if sheet.mechanism.notation(view.id, words.PATH) is None:
+                _write_normals(spec, surface)
     else:
         if view.mesh not in shared:
             shared[view.mesh] = _write_prototype(sheet, view.mesh, surface)
             _carry_mesh(sheet, spec, view.mesh)
         spec.kind = "Mesh"
         spec.reference = shared[view.mesh]
-    sheet.made[spec.path].append("subdivisionScheme")
+    sheet.made[spec.path] += ["subdivisionScheme", "normals"]
     return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
 
 
@@ -134,6 +136,7 @@ def _write_prototype(sheet: Sheet, key: Id, surface: Surface) -> Any:
         put(group, f"{words.PREFIX}scope", T.Bool, True)
     spec = sheet.define(sheet.free_path(scope, key.name), "Mesh")
     _write_surface(spec, surface)
+    _write_normals(spec, surface)
     return spec.path
 
 
@@ -149,6 +152,12 @@ def _write_surface(prim: Prim, surface: Surface) -> None:
     put(prim, "subdivisionScheme", T.Token, "none")
     box = np.stack([points.min(axis=0), points.max(axis=0)])
     put(prim, "extent", T.Float3Array, Vt.Vec3fArray.FromNumpy(box))
+
+
+def _write_normals(prim: Prim, surface: Surface) -> None:
+    """One normal for each triangle, for programs that compute none of their own; a degenerate triangle has some unit vector."""
+    put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(normals_of(surface)))
+    prim.per_face.append("normals")
 
 
 # ---- looks ---------------------------------------------------------------------------------------------------------------------

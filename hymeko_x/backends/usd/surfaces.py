@@ -25,3 +25,13 @@ def surface_of(mesh: Mesh) -> Surface | None:
     if not np.isfinite(points).all() or (faces.size and (faces.min() < 0 or faces.max() >= len(points))):
         return None
     return points, faces.astype(np.int32)
+
+
+def normals_of(surface: Surface) -> NDArray[Any]:
+    """The unit normal of each triangle (n x 3, single precision), by the right hand; z where a triangle has none."""
+    points, faces = surface
+    first, second, third = (points[faces[corner::3]].astype(np.float64) for corner in range(3))
+    normals = np.cross(second - first, third - first)
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    up = np.broadcast_to(np.array([0.0, 0.0, 1.0]), normals.shape)
+    return np.where(lengths > 0.0, np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0), up).astype(np.float32)
