@@ -53,6 +53,11 @@ VERSION = 2
 AXES: Mapping[str, values.Vec3] = MappingProxyType({"X": values.X, "Y": values.Y, "Z": values.Z})
 D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 """The axes of a generic joint in the order in which they move: what comes first is nearer to the parent."""
+LIGHTS: Mapping[str, str] = MappingProxyType({"DistantLight": "directional", "SphereLight": "point", "DomeLight": "image"})
+"""The lights of UsdLux that the IR has a word for; a sphere light with a cone is a spot."""
+CONE = "ShapingAPI"
+DRIVES = ("angular", "linear", *D6_AXES)
+"""The instances of a DriveAPI."""
 
 Value = bool | int | float | str | tuple[float, ...] | tuple[int, ...] | tuple[str, ...]
 

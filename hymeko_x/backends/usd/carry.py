@@ -5,6 +5,7 @@ Beside the elements of a prim stands a digest of its native values, so that an e
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -40,10 +41,17 @@ def carry_elements(sheet: Sheet) -> None:
     _carry_mechanism(sheet)
     for path, made in sheet.made.items():
         spec = sheet.layer.GetPrimAtPath(path)
-        own = [name for name in dict.fromkeys(made) if name not in sheet.restored.get(path, ())]
+        names = dict.fromkeys((*made, *_zeros(sheet, path)))
+        own = [name for name in names if name not in sheet.restored.get(path, ())]
         if own:
             add_attribute(spec, f"{words.PREFIX}made", T.StringArray, Vt.StringArray(own))
         add_attribute(spec, words.DIGEST, T.String, words.digest(_native_pairs(sheet, path, spec)))
+
+
+def _zeros(sheet: Sheet, path: Any) -> list[str]:
+    """The numbers of a prim that say nothing by themselves, so that the reader would keep them as they are."""
+    drafted = sheet.prims[path].attributes if path in sheet.prims else {}
+    return [name for name, (_, value) in drafted.items() if isinstance(value, float) and (value == 0.0 or math.isinf(value))]
 
 
 def _native_pairs(sheet: Sheet, path: Any, spec: Any) -> Iterator[tuple[str, bytes]]:
@@ -147,4 +155,5 @@ def _carry_mechanism(sheet: Sheet) -> None:
         pairs["layout"] = tuple(text for key in sheet.mechanism.layout for text in key)
     if WORLD in sheet.mechanism.graph.vertices:
         pairs["world"] = True
+    pairs |= {f"world_{name}": value for name, value in _tables(sheet, WORLD)}
     _author(sheet.layer.GetPrimAtPath(sheet.root), "mechanism", pairs)
