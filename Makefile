@@ -5,12 +5,13 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 JOBS ?= 2
 
-.PHONY: demo test lint types pytest bench clean help
+.PHONY: demo test lint types pytest bench peers clean help
 
 help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
 	@echo "make test   ruff, mypy --strict, pytest"
 	@echo "make bench  speed as ratios against yardsticks timed in the same run"
+	@echo "make peers  other people's programs that tests and benchmarks compare with, each into .peers/"
 	@echo "make clean  remove .venv and everything that was built"
 
 $(STAMP): pyproject.toml
@@ -36,7 +37,10 @@ pytest: $(STAMP)
 	$(BIN)/python -m pytest -W error -n $(JOBS) tests
 
 bench: $(STAMP)
-	@for name in parse load load_mjcf chain; do $(BIN)/python benchmarks/$$name.py || failed=1; done; exit $${failed:-0}
+	@for name in parse load load_mjcf chain $$(test -d .peers && echo usd); do $(BIN)/python benchmarks/$$name.py || failed=1; done; exit $${failed:-0}
+
+peers: $(STAMP)
+	$(BIN)/python -m peers
 
 clean:
-	rm -rf .venv build dist demo .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .peers build dist demo .mypy_cache .pytest_cache .ruff_cache

@@ -198,13 +198,14 @@ def _written(
 
 
 def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
-    """What came from MJCF, with the inertias that MuJoCo computes from shapes, for formats in which they have to be said."""
+    """What came from MJCF, with what MuJoCo computes from shapes, for formats in which it has to be said."""
     if format in (formats.MJCF, formats.HYMEKO) or mechanism.notation(ROOT, formats.MJCF.name) is None:
         return mechanism
     from hymeko_x.frontends.mjcf.weigh import weigh
 
     native = legalize(mechanism, formats.MJCF.name, Options(), Report())
-    return weigh(mechanism, writer(formats.MJCF)(native, Report()).main, files, report)
+    of_files = format not in (formats.USD, formats.USDC, formats.USDZ)
+    return weigh(mechanism, writer(formats.MJCF)(native, Report()).main, files, report, shapes=of_files)
 
 
 def read_back(package: Package, format: Format, files: Files) -> Mechanism:

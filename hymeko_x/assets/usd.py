@@ -22,11 +22,14 @@ if TYPE_CHECKING:
 def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """The mechanism with the points of every mesh that can be read, in the axes and at the unit scale of its file."""
     changed: dict[Id, Mesh] = {}
+    known: dict[str, Mesh] = {}
     for key, mesh in mechanism.vertices(Mesh):
-        if mesh.uri is not None and not mesh.vertices:
-            read = _read(mechanism, key, mesh, files, report)
-            if read is not None:
-                changed[key] = read
+        if mesh.uri is None or mesh.vertices:
+            continue
+        read = known.get(mesh.uri) or _read(mechanism, key, mesh, files, report)
+        if read is not None:
+            known[mesh.uri] = read
+            changed[key] = replace(mesh, vertices=read.vertices, faces=read.faces)
     packed = _with_textures(mechanism, shelf, files, report)
     return packed.with_graph(packed.graph.replace(vertices=changed)) if changed else packed
 

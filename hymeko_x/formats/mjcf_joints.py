@@ -92,8 +92,12 @@ def _is_limited(said: Mapping[str, str], settings: Settings, span: str, flag: st
     if word not in ("true", "false", "auto"):
         raise BadAttribute(flag, "true, false or auto")
     ordered = found is not None and found[0] < found[1]
+    if word == "auto" and not settings.autolimits and found is not None and any(found):
+        raise BadAttribute(flag, f"true or false beside {span}, since <compiler autolimits> is false")
     if word == "true" and not ordered and said.get("type") not in ("ball", "free"):
         raise BadAttribute(span, f"a lower and a greater number, since {flag} is true")
+    if ordered and found is not None and found[0] != 0.0 and said.get("type") == "ball":
+        raise BadAttribute(span, "0 and the greatest angle of a ball joint")
     return ordered and (word == "true" or (word == "auto" and settings.autolimits))
 
 

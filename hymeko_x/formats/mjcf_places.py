@@ -47,6 +47,7 @@ from hymeko_x.ir.values import (
     ZERO,
     Pose,
     Written,
+    apply,
     compose,
     inverse,
     number_text,
@@ -64,7 +65,9 @@ if TYPE_CHECKING:
 # ---- geoms -------------------------------------------------------------------------------------------------------------------
 
 _SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3, "plane": 3}
+_ALONG = ("capsule", "cylinder", "box", "ellipsoid")
 GRID = 0.05
+_MARK = 0.005
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,18 +82,22 @@ class Place:
 def _read_place(said: Mapping[str, str], settings: Settings) -> Place:
     pose = read_pose(said, settings)
     word = said.get("type", "sphere")
+    if "fromto" in said and word not in _ALONG:
+        raise BadAttribute("fromto", "a capsule, cylinder, box or ellipsoid")
+    if word == "hfield" and not said.get("hfield"):
+        raise BadAttribute("hfield", "the name of a height field")
     if word == "mesh" and "mesh" in said:
         return Place(MeshShape(), pose)
     if word not in _SIZES or "mesh" in said:
         return Place(NoShape(), pose)
     size = list(numbers_of(said, "size", 1, 3) or ())
     length = None if pose.written is None or pose.written.kind != "fromto" else length_of(pose.written)
-    if length is not None and word not in ("capsule", "cylinder", "box", "ellipsoid"):
-        raise BadAttribute("fromto", "a capsule, cylinder, box or ellipsoid")
     if length is not None:
         size = _sizes_along(word, size, length / 2.0)
     if len(size) < _SIZES[word]:
         raise BadAttribute("size", f"{_SIZES[word]} number{'s' if _SIZES[word] > 1 else ''} for a {word}")
+    if any(number <= 0.0 for number in (size[2:3] if word == "plane" else size[: _SIZES[word]])):
+        raise BadAttribute("size", "a distance of grid lines that is more than 0" if word == "plane" else "lengths that are more than 0")
     return Place(_geometry(word, size, length), pose, size[2] if word == "plane" else None)
 
 
@@ -158,29 +165,50 @@ def _seen_place(said: Mapping[str, str], settings: Settings) -> Any:
     return word, size, seen_pose(said, settings)
 
 
-PLACE = Group("place", ("type", "size", "fromto", *POSE_NAMES), _read_place, _write_place, _seen_place, ("mesh",))
+PLACE = Group("place", ("type", "size", "fromto", *POSE_NAMES), _read_place, _write_place, _seen_place, ("mesh", "hfield"))
 
 GEOM = (PLACE, text("mesh"), text("material"), reals("rgba", 4, 4), real("mass"), real("density"), reals("friction", 1, 3))
 
 FITTED_GEOM = tuple(group for group in GEOM if group.key != "mesh")
 """A primitive that MuJoCo fits to a mesh: the mesh's name says what to fit, and stays as it is."""
 
-SITE = (SITE_POSE, reals("size", 1, 3))
+
+def _read_site_size(said: Mapping[str, str], settings: Settings) -> tuple[float, ...]:
+    word = said.get("type", "sphere")
+    if (word not in _SIZES and word != "mesh") or word == "plane":
+        raise BadAttribute("type", "one of sphere, capsule, ellipsoid, cylinder, box, mesh")
+    if "fromto" in said and word not in _ALONG:
+        raise BadAttribute("fromto", "a capsule, cylinder, box or ellipsoid")
+    found = numbers_of(said, "size", 1, 3) or ()
+    needed = 1 if "fromto" in said else _SIZES.get(word, 0)
+    if any(number <= 0.0 for number in (*found, *[_MARK] * 3)[:needed]):
+        raise BadAttribute("size", "lengths that are more than 0")
+    return found
+
+
+SITE = (SITE_POSE, replace(reals("size", 1, 3), read=_read_site_size, needs=("type", "fromto")))
 
 
 def seen_from(group: Group, frame: Pose) -> Group:
     """A group of a pose, for an element that stands in a <frame>: its value is seen from the body."""
 
     def read(said: Mapping[str, str], settings: Settings) -> Any:
-        value = group.read(said, settings)
-        return replace(value, pose=compose(frame, value.pose)) if isinstance(value, Place) else compose(frame, value)
+        return _moved(frame, group.read(said, settings))
 
     def write(value: Any, settings: Settings) -> dict[str, str]:
-        back = inverse(frame)
-        inner = replace(value, pose=compose(back, value.pose)) if isinstance(value, Place) else compose(back, value)
-        return group.write(inner, settings)
+        return group.write(_moved(inverse(frame), value), settings)
 
     return replace(group, read=read, write=write)
+
+
+def _moved(frame: Pose, value: Any) -> Any:
+    """A value with a pose, seen from where the frame is."""
+    if isinstance(value, Place):
+        return replace(value, pose=compose(frame, value.pose))
+    if isinstance(value, Inertial):
+        tensor = None if value.tensor is None else rotate_tensor(frame.quat, value.tensor)
+        return Inertial(value.mass, apply(frame, value.com), tensor)
+    return compose(frame, value)
 
 
 def same_value(a: Any, b: Any) -> bool:

@@ -284,7 +284,7 @@ def _children() -> dict[str, dict[str, str]]:
             found[parent or "mujoco"][tag] = path
     found["default"]["default"] = "default"
     for path in _BODY_LIKE:
-        content = {tag: below for tag, below in found["body"].items() if path == "body" or tag != "inertial"}
+        content = {tag: below for tag, below in found["body"].items() if path in ("body", "body/frame") or tag != "inertial"}
         found[path] = {**content, "body": "body", "frame": "body/frame", "replicate": "body/replicate"}
     found["mujoco"]["worldbody"] = "worldbody"
     return found
@@ -302,15 +302,26 @@ def attributes_of(path: str) -> frozenset[str]:
 
 REMOVED: Mapping[str, str] = MappingProxyType(
     {
-        "composite": "<composite> was removed in MuJoCo 4.0; cables, grids and cloth are made with <flexcomp> or <replicate>",
-        "flexvert": "<flexvert> was removed in MuJoCo 4.0; use <flex>",
-        "passive": "the flag passive was split into spring and damper in MuJoCo 3.3.6",
-        "apirate": "option/apirate was removed; it never changed the simulation",
-        "orthographic": "camera/orthographic is projection since MuJoCo 3.3.6",
-        "collision": "option/collision was removed in MuJoCo 3.0; use contype, conaffinity, <pair> and <exclude>",
-        "mpr_iterations": "mpr_iterations is ccd_iterations since MuJoCo 3.2",
-        "mpr_tolerance": "mpr_tolerance is ccd_tolerance since MuJoCo 3.2",
-        "convexhull": "compiler/convexhull was removed in MuJoCo 3.3; hulls are always computed",
+        "composite": "<composite> was removed in MuJoCo 4.0: use <flexcomp> for cables, grids and cloth, <replicate> for rows of bodies",
+        "equality/flexvert": "<flexvert> was removed in MuJoCo 4.0: use <flex>, or elasticity",
+        "equality/distance": "the equality <distance> was removed in MuJoCo 2.2.2",
+        "material/rgb": "textures of a material are <layer role=... texture=...> since MuJoCo 3.2.5",
+        "option@collision": "option/collision was removed in MuJoCo 3.0: use contype, conaffinity, <pair> and <exclude>",
+        "option@apirate": "option/apirate was removed in MuJoCo 3.3.7; it never changed the simulation",
+        "option@mpr_iterations": "mpr_iterations is ccd_iterations since MuJoCo 3.2.3",
+        "option@mpr_tolerance": "mpr_tolerance is ccd_tolerance since MuJoCo 3.2.3",
+        "flag@passive": "the flag passive was split into spring and damper in MuJoCo 3.3.6",
+        "flag@sensornoise": "the flag sensornoise was removed in MuJoCo 3.1.4; noise is added by whoever reads the sensor",
+        "compiler@convexhull": "compiler/convexhull was removed in MuJoCo 3.2.5; hulls are always computed",
+        "compiler@exactmeshinertia": 'compiler/exactmeshinertia is inertia="exact" of each <mesh> since MuJoCo 3.2.5',
+        "camera@orthographic": 'camera/orthographic is projection="orthographic" since MuJoCo 3.5',
+        "contact@internal": "flex/contact/internal was removed in MuJoCo 3.15: use selfcollide",
+        "contact@vertcollide": "flex/contact/vertcollide was removed in MuJoCo 3.7",
+        "contact@evpair": "flex/contact/evpair was removed in MuJoCo 3.15",
+        "mujoco.elasticity.cable": 'the plugin was removed in MuJoCo 4.0: use <flexcomp dim="1"> with <elasticity>',
+        "mujoco.elasticity.solid": 'the plugin was removed in MuJoCo 3.2.4: use <flexcomp dim="3"> with <elasticity>',
+        "mujoco.elasticity.membrane": 'the plugin was removed in MuJoCo 3.2.4: use <flexcomp dim="2"> with <elasticity>',
+        "mujoco.elasticity.shell": 'the plugin was removed in MuJoCo 3.3.3: use <flexcomp dim="2"> with <elasticity>',
     }
 )
-"""What a user can do about words that earlier versions had."""
+"""What changed about words that earlier versions had: ELEMENT or PARENT/ELEMENT, ELEMENT@ATTRIBUTE, and plugins by their names."""

@@ -92,6 +92,7 @@ class _Builder:
         parser.CommentHandler = self._comment
         parser.CharacterDataHandler = self._characters
         parser.EntityDeclHandler = self._entity
+        parser.ProcessingInstructionHandler = self._instruction
         self._parser = parser
 
     def read(self, data: bytes) -> Element:
@@ -117,6 +118,12 @@ class _Builder:
     def _characters(self, text: str) -> None:
         if text.strip():
             self._stack[-1].words += text
+
+    def _instruction(self, target: str, data: str) -> None:
+        """Before the root they are read over; inside of it MuJoCo stops reading."""
+        if len(self._stack) > 1:
+            place = Origin(self._file, self._parser.CurrentLineNumber)
+            raise refuse(codes.NOT_XML, f"a processing instruction (<?{target} ...?>) cannot stand inside of an element", place)
 
     def _entity(self, *_: object) -> None:
         raise refuse(codes.ENTITIES, "the file defines XML entities, which are never expanded", Origin(self._file))

@@ -53,6 +53,11 @@ VERSION = 2
 AXES: Mapping[str, values.Vec3] = MappingProxyType({"X": values.X, "Y": values.Y, "Z": values.Z})
 D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 """The axes of a generic joint in the order in which they move: what comes first is nearer to the parent."""
+LIGHTS: Mapping[str, str] = MappingProxyType({"DistantLight": "directional", "SphereLight": "point", "DomeLight": "image"})
+"""The lights of UsdLux that the IR has a word for; a sphere light with a cone is a spot."""
+CONE = "ShapingAPI"
+DRIVES = ("angular", "linear", *D6_AXES)
+"""The instances of a DriveAPI."""
 
 Value = bool | int | float | str | tuple[float, ...] | tuple[int, ...] | tuple[str, ...]
 
@@ -95,11 +100,8 @@ def single(value: float) -> float:
 
 def digest(pairs: Iterable[tuple[str, bytes]]) -> str:
     """A short hash of named native values, in whatever order they come."""
-    found = hashlib.sha256()
-    for name, value in sorted(pairs):
-        found.update(b"%d:%s%d:" % (len(name), name.encode(), len(value)))
-        found.update(value)
-    return found.hexdigest()[:16]
+    said = b"".join(b"%d:%s%d:%s" % (len(name), name.encode(), len(value), value) for name, value in sorted(pairs))
+    return hashlib.sha256(said).hexdigest()[:16]
 
 
 def value_bytes(value: object) -> bytes:
@@ -121,7 +123,7 @@ _ID = re.compile(r'{"id":("(?:[^"\\]|\\["\\/bfnrt]|\\u[0-9a-f]{4})*")')
 
 def is_long(value: tuple[object, ...]) -> bool:
     """Whether a tuple of numbers is an array of its own rather than part of a text."""
-    return len(value) > _LONG and not any(isinstance(item, str) for item in value)
+    return len(value) > _LONG and not isinstance(value[0], str)
 
 
 def text_of(pairs: Mapping[str, Value]) -> str:
@@ -153,6 +155,7 @@ _TYPES: Mapping[str, type] = MappingProxyType(
         if isinstance(kind, type) and (dataclasses.is_dataclass(kind) or kind is values.Written)
     }
 )
+_PARTS = frozenset(_TYPES.values())
 PART_OF: Mapping[str, type] = MappingProxyType({kind: part for part, kind in KINDS.items()})
 """The part of each kind of element."""
 
@@ -165,17 +168,21 @@ def flat(part: object) -> dict[str, Value]:
 
 
 def _flatten(part: Any, prefix: str, found: dict[str, Value]) -> None:
-    for name, default in _fields(type(part)):
+    kind_of_part: type = type(part)
+    for name, default in _fields(kind_of_part):
         value = getattr(part, name)
+        if value is default:
+            continue
         key = f"{prefix}{name}"
+        kind = type(value)
         if name == "parameters":
             if value:
                 found[key] = json.dumps(value, ensure_ascii=False)
-        elif _is_part(value):
-            if type(value) is not type(default):
-                found[f"{key}:is"] = type(value).__name__
+        elif kind in _PARTS:
+            if kind is not type(default):
+                found[f"{key}:is"] = kind.__name__
             _flatten(value, f"{key}:", found)
-        elif isinstance(value, tuple) and value and all(_is_part(item) for item in value):
+        elif kind is tuple and value and type(value[0]) in _PARTS:
             found[f"{key}:count"] = len(value)
             for number, item in enumerate(value):
                 found[f"{key}:{number}:is"] = type(item).__name__
@@ -228,15 +235,12 @@ def _build_several(tree: Mapping[str, Any]) -> tuple[Any, ...]:
     return tuple(_build(_TYPES[tree[str(number)]["is"]], tree[str(number)]) for number in range(tree["count"]))
 
 
-def _is_part(value: object) -> bool:
-    return (dataclasses.is_dataclass(value) and not isinstance(value, type)) or isinstance(value, values.Written)
-
-
-def _fields(kind: type) -> list[tuple[str, object]]:
+@functools.cache
+def _fields(kind: type) -> tuple[tuple[str, object], ...]:
     """The fields of a part with their defaults; a required field has the default ``MISSING``."""
     if kind is values.Written:
-        return [("kind", dataclasses.MISSING), ("numbers", dataclasses.MISSING)]
-    return [(field.name, field.default) for field in dataclasses.fields(kind)]
+        return ("kind", dataclasses.MISSING), ("numbers", dataclasses.MISSING)
+    return tuple((field.name, field.default) for field in dataclasses.fields(kind))
 
 
 @functools.cache

@@ -46,7 +46,7 @@ def factor(forms: Iterable[Element], dialect: Dialect) -> Factored:
     """The forms with everything said once that repeats and is shorter so. Deterministic and near-linear in their number."""
     grown = Grown(grow(forms))
     for _ in range(_MOST_ROUNDS):
-        flat = Flat(grown.lists, dialect)
+        flat = Flat(grown, dialect)
         if not apply(families(flat, dialect), flat, grown, dialect):
             break
     return finish(grown, dialect)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.factor_find import family_of
@@ -88,10 +89,17 @@ def _define(family: Family, flat: Flat, grown: Grown, dialect: Dialect, calls: d
     namer = Namer(family, flat, dialect, grown)
     names = namer.parameters()
     body = _body(family.runs[0], [_named(text, names) for text in family.unified.texts], flat)
-    draft = Draft(namer.macro(), names, body)
+    usual = tuple([_usual(values) for values in family.unified.parameters])
+    draft = Draft(namer.macro(), names, usual, body)
     grown.macros[draft.name] = draft
     for place, (first, _) in enumerate(family.runs):
-        calls[first] = Form(draft.name, names, [values[place] for values in family.unified.parameters], is_call=True)
+        calls[first] = Form(draft.name, names, tuple([values[place] for values in family.unified.parameters]), is_call=True)
+
+
+def _usual(values: tuple[Text, ...]) -> Text | None:
+    """What more than one instance gives for a parameter, and most of them; None if there is no such text."""
+    text, uses = Counter(values).most_common(1)[0]
+    return text if uses > 1 else None
 
 
 def _named(text: Text, names: tuple[str, ...]) -> Text:
@@ -116,15 +124,20 @@ def _body(run: Run, texts: list[Text], flat: Flat) -> list[Form]:
     base = flat.start[run[0]]
     for number in range(run[0], flat.end[run[1]]):
         form = flat.forms[number]
-        own = texts[flat.start[number] - base : flat.start[number + 1] - base]
+        own = tuple(texts[flat.start[number] - base : flat.start[number + 1] - base])
         copy = copies[number] = Form(form.tag, form.leaves, own, is_call=form.is_call, hint=form.hint)
+        if form.kids:
+            copy.kids = []
         above = copies.get(flat.up[number])
-        (top if above is None else above.kids).append(copy)
+        row = top if above is None else above.kids
+        assert isinstance(row, list)
+        row.append(copy)
     return top
 
 
 def _replace(grown: Grown, flat: Flat, calls: dict[int, Form], gone: set[int]) -> None:
-    lists = [grown.items, *(macro.body for macro in grown.macros.values()), *(form.kids for form in flat.forms if form.kids)]
+    lists = [grown.items, *(macro.body for macro in grown.macros.values())]
+    lists += [form.kids for form in flat.forms if isinstance(form.kids, list)]
     for row in lists:
         if any(id(form) in gone for form in row):
             row[:] = [calls.get(id(form), form) for form in row if id(form) in calls or id(form) not in gone]

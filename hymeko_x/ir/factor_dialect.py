@@ -9,20 +9,12 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-_CHUNK = re.compile(r"\s+|\S+")
-_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
-_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^A-Za-z0-9]")
+_PIECE = re.compile(r"(?<!\S)[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?!\S)|\s+|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^A-Za-z0-9\s]")
 
 
 def words(text: str) -> tuple[str, ...]:
     """A text cut into numbers, words, digits behind words, and single separators: ``LF_hip2`` -> LF _ hip 2."""
-    found: list[str] = []
-    for chunk in _CHUNK.findall(text):
-        if chunk.isspace() or _NUMBER.fullmatch(chunk):
-            found.append(chunk)
-        else:
-            found += _WORD.findall(chunk)
-    return tuple(found)
+    return tuple(_PIECE.findall(text))
 
 
 def _leaf_name(tag: str, leaf: str) -> str:

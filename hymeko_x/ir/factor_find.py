@@ -25,11 +25,14 @@ Run = tuple[int, int]
 
 _NAME = 7
 """How long a name is thought to be before it is there."""
-_WORK_PER_TEXT = 12
-_LEAST_WORK = 400_000
+_WORK_PER_TEXT = 4
+_LEAST_WORK = 200_000
 """How many texts are compared in a round, at most."""
 _MOST_WORDS = 8
-_DEEPEST_PARAMETERS = 40
+_WIDEST_GAP = 16
+"""How many forms without a likely partner may lie between two that have one."""
+_MOST_PARAMETERS = 40
+_NUMERIC = frozenset("-.0123456789")
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,14 +46,11 @@ class Family:
 
 def families(flat: Flat, dialect: Dialect) -> list[Family]:
     """What is worth a macro, the best first."""
-    candidates = sorted(_candidates(flat, dialect), key=lambda runs: (-_bound(runs, flat), runs))
+    bounds = {runs: _bound(runs, flat) for runs in _candidates(flat, dialect) if len(runs) > 1}
+    candidates = sorted((runs for runs, bound in bounds.items() if bound >= dialect.least), key=lambda runs: (-bounds[runs], runs))
     work = max(_LEAST_WORK, _WORK_PER_TEXT * len(flat.texts))
     found: list[Family] = []
-    seen: set[tuple[Run, ...]] = set()
     for runs in candidates:
-        if runs in seen or _bound(runs, flat) < dialect.least:
-            continue
-        seen.add(runs)
         work -= len(runs) * (flat.start[flat.end[runs[0][1]]] - flat.start[runs[0][0]])
         if work < 0:
             break
@@ -88,7 +88,7 @@ def _saving(runs: tuple[Run, ...], columns: list[Vector], unified: Unified, flat
         if text is not column[0]:
             body += _length(text, flat) - flat.length(column[0])
     after = body + dialect.macro + _NAME + len(runs) * (dialect.call + _NAME)
-    if len(unified.parameters) > _DEEPEST_PARAMETERS:
+    if len(unified.parameters) > _MOST_PARAMETERS:
         return 0
     for values in unified.parameters:
         default, uses = Counter(values).most_common(1)[0]
@@ -118,28 +118,44 @@ def _candidates(flat: Flat, dialect: Dialect) -> Iterator[tuple[Run, ...]]:
 def _groups(flat: Flat, keys: _Keys) -> Iterator[tuple[Run, ...]]:
     """Forms of one shape, and those among them whose numbers are the same up to the sign."""
     for labels in (flat.shape, keys.alike):
-        groups: dict[int, list[Run]] = {}
+        groups: dict[int, list[int]] = {}
         for number, label in enumerate(labels):
-            if not flat.forms[number].is_call:
-                groups.setdefault(label, []).append((number, number))
-        yield from (tuple(runs) for runs in groups.values() if len(runs) > 1)
+            groups.setdefault(label, []).append(number)
+        for group in groups.values():
+            if len(group) > 1 and not flat.forms[group[0]].is_call and not _is_covered(group, groups, labels, flat):
+                yield tuple([(number, number) for number in group])
+
+
+def _is_covered(group: list[int], groups: dict[int, list[int]], labels: list[int], flat: Flat) -> bool:
+    """Whether all that a group has in common stands inside of forms that have even more in common."""
+    around = {flat.up[number] for number in group}
+    if len(around) < len(group) or min(around) < 0:
+        return False
+    kinds = {labels[number] for number in around}
+    return len(kinds) == 1 and len(groups[kinds.pop()]) == len(group)
 
 
 def _runs(flat: Flat, keys: _Keys) -> Iterator[tuple[Run, ...]]:
     row = _Row(flat)
+    seen: set[tuple[int, ...]] = set()
     for distance, start, length in _segments(_pairs(flat, keys, row), row):
-        if length > distance or (length == distance and distance > 1):
+        if distance == 1:
+            continue  # forms of one shape in a row: they are a group
+        if length >= distance:
             count = length // distance + 1
             starts = [start + distance * step for step in range(count)]
             yield tuple([row.run(place, distance) for place in starts if row.fits(start, place, distance)])
-        if 1 < length <= distance:
+        length = min(length, distance)
+        key = tuple(row.shapes[start : start + length])
+        if length > 1 and key not in seen:
+            seen.add(key)
             yield _occurrences(start, length, keys, row)
 
 
 def _occurrences(start: int, length: int, keys: _Keys, row: _Row) -> tuple[Run, ...]:
     """Every run like the one at a place: those that begin with a form like its first one, without overlap."""
     found: list[int] = []
-    alike = min((keys.members[key] for key in keys.of[row.numbers[start]]), key=len)
+    alike = {number for key in keys.of(row.numbers[start]) for number in keys.members[key]}
     for place in sorted([row.place[number] for number in alike]):
         if row.fits(start, place, length) and (not found or place >= found[-1] + length):
             found.append(place)
@@ -187,7 +203,7 @@ def _segments(pairs: dict[int, list[int]], row: _Row) -> Iterator[tuple[int, int
     for distance, places in pairs.items():
         start = last = places[0]
         for place in places[1:]:
-            if place - last > distance or not row.fits(last, last + distance, place - last):
+            if place - last > min(distance, _WIDEST_GAP) or not row.fits(last, last + distance, place - last):
                 yield distance, start, last - start + 1
                 start = place
             last = place
@@ -199,42 +215,39 @@ class _Keys:
 
     def __init__(self, flat: Flat, dialect: Dialect) -> None:
         self._dialect = dialect
-        self._texts: dict[object, Hashable] = {}
         self.alike = self._alike(flat)
-        found: dict[Hashable, list[int]] = {}
-        self.of: list[list[Hashable]] = []
+        self._flat = flat
+        self.members: dict[Hashable, list[int]] = {}
         for number in range(len(flat)):
-            keys = list(self._of(number, flat))
-            self.of.append(keys)
-            for key in keys:
-                found.setdefault(key, []).append(number)
-        self.members = found
+            for key in self.of(number):
+                self.members.setdefault(key, []).append(number)
 
     def _alike(self, flat: Flat) -> list[int]:
         """A number for each form; the same where shapes are, and numbers up to their signs."""
         known: dict[Hashable, int] = {}
-        alike = []
-        for number in range(len(flat)):
-            texts = flat.texts[flat.start[number] : flat.start[flat.end[number]]]
-            key = (flat.shape[number], tuple([self._unsigned(text) for text in texts]))
-            alike.append(known.setdefault(key, len(known)))
+        alike = [0] * len(flat)
+        kids: dict[int, list[int]] = {}
+        for number in range(len(flat) - 1, -1, -1):
+            texts = tuple([self._unsigned(text) for text in flat.forms[number].texts])
+            key = (flat.shape[number], texts, tuple(kids.pop(number, ())))
+            alike[number] = known.setdefault(key, len(known))
+            if flat.up[number] >= 0:
+                kids.setdefault(flat.up[number], []).append(alike[number])
         return alike
 
-    def _unsigned(self, text: object) -> Hashable:
-        """The numbers of a text without their signs; words do not count."""
-        found = self._texts.get(text)
-        if found is None:
-            pieces = self._dialect.cut(text) if isinstance(text, str) else ()
-            found = self._texts[text] = tuple([piece.lstrip("-") for piece in pieces if piece[-1:].isdigit() and len(piece) > 2])
-        return found
+    @staticmethod
+    def _unsigned(text: object) -> str:
+        """A text that begins with a number, without signs; nothing for other words."""
+        return text.replace("-", "") if isinstance(text, str) and text[:1] in _NUMERIC else ""
 
-    def _of(self, number: int, flat: Flat) -> Iterator[Hashable]:
-        form = flat.forms[number]
-        yield flat.shape[number], self.alike[number]
+    def of(self, number: int) -> Iterator[Hashable]:
+        """The keys of a form: whoever shares one is a likely partner."""
+        shape, form = self._flat.shape[number], self._flat.forms[number]
+        yield self.alike[number]
         if self._dialect.name not in form.leaves:
             return
         name = form.texts[form.leaves.index(self._dialect.name)]
         words = self._dialect.cut(name)[:_MOST_WORDS] if isinstance(name, str) else ()
         for place, word in enumerate(words):
             if word.isalnum():
-                yield flat.shape[number], words[:place], words[place + 1 :]
+                yield shape, words[:place], words[place + 1 :]

@@ -41,8 +41,8 @@ def _parameters(draft: Draft, calls: list[Form], dialect: Dialect) -> tuple[Para
     found = []
     for place, name in enumerate(draft.parameters):
         values = Counter(call.texts[place] for call in calls)
-        possible = [(text, uses) for text, uses in values.items() if isinstance(text, str) and dialect.can_be_default(text)]
-        best = max(possible, key=lambda item: item[1], default=("", 0))
+        texts = [(text, uses) for text, uses in values.items() if uses > 1 and isinstance(text, str) and dialect.can_be_default(text)]
+        best = max(texts, key=lambda item: item[1], default=("", 0))
         saved = best[1] * (dialect.argument + len(name) + len(best[0])) - dialect.default - len(best[0])
         found.append(Parameter(name, best[0] if best[1] > 1 and saved > 0 else None))
     return tuple(found)

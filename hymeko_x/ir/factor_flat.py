@@ -22,23 +22,24 @@ class Form:
 
     __slots__ = ("hint", "is_call", "kids", "leaves", "tag", "texts")
 
-    def __init__(self, tag: str, leaves: tuple[str, ...], texts: list[Text], *, is_call: bool = False, hint: str = "") -> None:
+    def __init__(self, tag: str, leaves: tuple[str, ...], texts: tuple[Text, ...], *, is_call: bool = False, hint: str = "") -> None:
         self.tag = tag
         self.leaves = leaves
         self.texts = texts
-        self.kids: list[Form] = []
+        self.kids: list[Form] | tuple[()] = ()
         self.is_call = is_call
         self.hint = hint
 
 
 class Draft:
-    """A macro while it is worked on: its name, parameters in order, and its body's place among the lists."""
+    """A macro while it is worked on: its name, parameters in order, what most calls give for each, and its body."""
 
-    __slots__ = ("body", "name", "parameters")
+    __slots__ = ("body", "name", "parameters", "usual")
 
-    def __init__(self, name: str, parameters: tuple[str, ...], body: list[Form]) -> None:
+    def __init__(self, name: str, parameters: tuple[str, ...], usual: tuple[Text | None, ...], body: list[Form]) -> None:
         self.name = name
         self.parameters = parameters
+        self.usual = usual
         self.body = body
 
 
@@ -62,9 +63,12 @@ def grow(forms: Iterable[Element]) -> list[Form]:
     while stack:
         form, out = stack.pop()
         names = tuple([name for name, _ in form.leaves])
-        made = Form(form.tag, names, [text for _, text in form.leaves], hint=form.hint)
+        made = Form(form.tag, names, tuple([text for _, text in form.leaves]), hint=form.hint)
         out.append(made)
-        stack += [(kid, made.kids) for kid in reversed(form.children) if isinstance(kid, Element)]
+        if form.children:
+            kids: list[Form] = []
+            made.kids = kids
+            stack += [(kid, kids) for kid in reversed(form.children) if isinstance(kid, Element)]
     return top
 
 
@@ -89,8 +93,9 @@ def rest(forms: list[Form], items_of: dict[int, Call]) -> tuple[Item, ...]:
 class Flat:
     """Arrays over all forms, by number. Texts of a run of siblings are one slice of ``texts``."""
 
-    def __init__(self, lists: list[list[Form]], dialect: Dialect) -> None:
+    def __init__(self, grown: Grown, dialect: Dialect) -> None:
         self._sizes: dict[str, int] = {}
+        self._macros = grown.macros
         self._dialect = dialect
         self.forms: list[Form] = []
         self.end: list[int] = []
@@ -100,7 +105,7 @@ class Flat:
         self.texts: list[Text] = []
         self.start: list[int] = []
         """Where each form's texts start; one entry more than there are forms."""
-        self._number(lists)
+        self._number(grown.lists)
         self.size = self._measured()
         self.shape = self._shapes()
 
@@ -126,19 +131,27 @@ class Flat:
                 self.end[self.up[number]] = max(self.end[self.up[number]], self.end[number])
 
     def _measured(self) -> list[int]:
-        costs = self._dialect
         size = [0] * len(self.forms)
         for number in range(len(self.forms) - 1, -1, -1):
             form = self.forms[number]
-            own = costs.call if form.is_call else costs.element
-            own += len(form.tag) + sum([len(name) for name in form.leaves]) + costs.leaf * len(form.leaves)
-            own += sum([self.length(text) for text in form.texts])
-            if form.kids:
-                own += costs.block + (len(form.tag) if costs.closes_by_tag else 0)
-            size[number] += own
+            size[number] += self._own_call(form) if form.is_call else self._own(form)
             if self.up[number] >= 0:
                 size[self.up[number]] += size[number]
         return size
+
+    def _own(self, form: Form) -> int:
+        costs = self._dialect
+        own = costs.element + len(form.tag) + sum([len(name) + costs.leaf for name in form.leaves])
+        if form.kids:
+            own += costs.block + (len(form.tag) if costs.closes_by_tag else 0)
+        return own + sum([self.length(text) for text in form.texts])
+
+    def _own_call(self, form: Form) -> int:
+        costs = self._dialect
+        usual = self._macros[form.tag].usual
+        given = zip(form.leaves, form.texts, usual, strict=True)
+        said = [costs.argument + len(name) + self.length(text) for name, text, default in given if text != default]
+        return costs.call + len(form.tag) + sum(said)
 
     def _shapes(self) -> list[int]:
         known: dict[Hashable, int] = {}

@@ -133,7 +133,8 @@ def _is_sayable(view: JointView, mechanism: Mechanism) -> bool:
     if kinds == (DofKind.BALL,):
         return mechanism.notation(view.id, TYPE_NOTATION) is not None
     if kinds == (DofKind.SLIDE, DofKind.SLIDE, DofKind.HINGE):
-        return tuple(dof.axis for dof in dofs[:2]) == plane_axes(dofs[2].axis)
+        plain = all(dof == Dof(dof.kind, dof.axis) for dof in dofs)  # a planar joint has one name, and no limits or damping
+        return plain and tuple(dof.axis for dof in dofs[:2]) == plane_axes(dofs[2].axis)
     return not dofs or (len(dofs) == 1 and kinds[0] in (*_SINGLE, DofKind.FREE))
 
 

@@ -120,7 +120,8 @@ def _append_inertia(native: Any, body: Body, number: int, place: Array) -> None:
     if body.mass == 0.0 and not body.tensor.any():
         return
     inertia = pin.Inertia.Zero()
-    inertia.mass, inertia.lever, inertia.inertia = body.mass, body.com, body.tensor
+    tensor = (body.tensor + body.tensor.T) / 2.0  # a turned diagonal is symmetric up to rounding, which it does not take
+    inertia.mass, inertia.lever, inertia.inertia = body.mass, body.com, tensor
     native.appendBodyToJoint(number, inertia, _se3(place))
 
 

@@ -29,6 +29,8 @@ ROBOTS = {
         <body xyaxes="1 .1 0 .2 1 .3"/><body zaxis="1 -2 .5"/><body quat="1 2 -3 .5"/><body quat="-1 0 0 0"/></worldbody>""",
     "turned inertia": """<worldbody><body><freejoint/>
         <inertial pos=".1 .2 .3" mass="2" diaginertia=".3 .2 .4" euler="10 20 30"/></body></worldbody>""",
+    "inertia in a frame": """<worldbody><body><freejoint/><geom size=".1"/><frame pos="1 2 3" euler="0 0 30">
+        <inertial pos=".1 .2 .3" mass="2" diaginertia=".3 .2 .4" zaxis="1 0 1"/></frame></body></worldbody>""",
     "full inertia": """<worldbody><body><freejoint/>
         <inertial pos=".1 .2 .3" mass="2" fullinertia=".3 .2 .4 .01 .02 .03"/></body></worldbody>""",
     "from point to point": """<worldbody><geom type="capsule" size=".013" fromto=".1 .2 .3 .7 .1 -.4"/>

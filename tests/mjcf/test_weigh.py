@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 from mjmodels import read_text, write
 
+import hymeko_x as hx
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.mjcf.weigh import weigh
 from hymeko_x.ir.legalize import Options, legalize
@@ -78,3 +82,41 @@ def test_a_geometry_that_only_mujoco_knows_is_left_out_elsewhere_with_a_warning(
     legal = legalize(read_text(text), "urdf", Options(), report)
     assert not [shape for _, shape, _ in legal.edges(Shape) if isinstance(shape.geometry, NoShape)]
     assert any("has a geometry that only MuJoCo knows; it is left out" in str(said) for said in report)
+
+
+WEDGE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 3"
+
+
+@pytest.mark.parametrize(
+    "mesh",
+    [
+        f'vertex="{WEDGE}"',
+        f'vertex="{WEDGE}" refpos="1 2 3" refquat="1 1 0 0" scale="1 2 3"',
+        'builtin="cone" params="8 0.5"',
+    ],
+    ids=["without faces", "seen from elsewhere", "of a formula"],
+)
+@pytest.mark.parametrize("kind", ["mesh", "capsule", "box"])
+def test_meshes_and_fitted_shapes_are_in_urdf_where_mujoco_has_them(mesh: str, kind: str, tmp_path: Path) -> None:
+    source, target = tmp_path / "robot.xml", tmp_path / "robot.urdf"
+    geom = f'<geom type="{kind}" mesh="m" pos=".1 .2 .3" euler="10 20 30"/>'
+    source.write_text(f'<mujoco><asset><mesh name="m" {mesh}/></asset><worldbody><body name="b">{geom}</body></worldbody></mujoco>')
+    hx.convert(source, target)
+    verdict = hx.verify(source, target, samples=2)
+    assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
+    compared = {check.quantity for check in verdict.checks}
+    assert {"collision shapes", "collision meshes"} <= compared if kind == "mesh" else "collision shapes, size and pose" in compared
+
+
+def test_a_file_of_mujocos_own_type_becomes_one_that_every_tool_reads(tmp_path: Path) -> None:
+    source, target = tmp_path / "robot.xml", tmp_path / "robot.urdf"
+    points = np.array(WEDGE.split(), dtype="<f4")
+    corners = "021 014 042 765 753 736 123 135 154 246 263 456"
+    faces = np.array([int(corner) for corner in corners.replace(" ", "")], dtype="<i4")
+    header = np.array([len(points) // 3, 0, 0, len(faces) // 3], dtype="<i4")
+    (tmp_path / "part.msh").write_bytes(header.tobytes() + points.tobytes() + faces.tobytes())
+    geom = '<body name="b"><geom type="mesh" mesh="part"/></body>'
+    source.write_text(f'<mujoco><asset><mesh file="part.msh"/></asset><worldbody>{geom}</worldbody></mujoco>')
+    hx.convert(source, target)
+    assert b'<mesh filename="shapes/part.obj"/>' in target.read_bytes()
+    assert hx.verify(source, target, samples=2).verdict == "same"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from dataclasses import replace
 
 import pytest
 
@@ -28,7 +29,7 @@ from hymeko_x.ir.parts import (
     Sphere,
     World,
 )
-from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, pose_from_rpy, quat_about, rotation_angle, scaled, unit
+from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, plane_axes, pose_from_rpy, quat_about, rotation_angle, scaled, unit
 from tests.urdf.samples import dump, load, robot, visual
 
 A, B, C, J = Id("body", "a"), Id("body", "b"), Id("body", "c"), Id("joint", "j")
@@ -114,6 +115,13 @@ def test_a_ball_that_urdf_said_is_left_alone() -> None:
     assert legal(mechanism) == mechanism
 
 
+def test_a_planar_joint_says_nothing_of_its_dofs_so_that_names_and_damping_make_a_chain() -> None:
+    x, y = plane_axes(AXIS)
+    plain = (Dof(DofKind.SLIDE, x), Dof(DofKind.SLIDE, y), Dof(DofKind.HINGE, AXIS))
+    for dofs, count in (((*plain[:2], replace(plain[2], damping=0.1)), 3), ((replace(plain[0], name="x"), *plain[1:]), 3), (plain, 1)):
+        assert len(legal(pair(Joint(dofs))).joints) == count
+
+
 def test_what_hangs_on_a_dof_follows_it() -> None:
     mechanism = pair(Joint((Dof(DofKind.SLIDE, name="s"), Dof(DofKind.HINGE, name="h"))))
     follower = joint_edge(Joint((Dof(limits=Limits(0.0, 1.0)),)), B, C)
@@ -192,6 +200,15 @@ def test_an_ellipsoid_becomes_a_mesh_of_a_sphere_in_a_file_of_its_own() -> None:
     package = write(after, Report())
     assert list(package.files) == ["shapes/a_ellipsoid.obj"]
     assert b'<mesh filename="shapes/a_ellipsoid.obj" scale="1 2 3"/>' in package.main
+
+
+def test_ellipsoids_of_all_sizes_share_one_file() -> None:
+    from hymeko_x.backends.urdf import write
+
+    both = {
+        Id("shape", name): shape_edge(Shape(Ellipsoid(radii), Role.BOTH), A) for name, radii in (("s", (1.0, 2.0, 3.0)), ("t", (1.0,) * 3))
+    }
+    assert list(write(legal(Mechanism("r", Hypergraph({A: Body()}, both))), Report()).files) == ["shapes/a_ellipsoid.obj"]
 
 
 def _determinant(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:

@@ -18,15 +18,20 @@ FOLDER = "shapes"
 
 
 def files_of_meshes(mechanism: Mechanism) -> dict[Id, str]:
-    """The relative path of every mesh that carries its points, made of what is harmless in its name."""
+    """The relative path of every mesh that carries its points, made of what is harmless in its name. Equal points share a file."""
     found: dict[Id, str] = {}
     taken: set[str] = set()
+    known: dict[tuple[tuple[float, ...], tuple[int, ...]], str] = {}
     for key, mesh in mechanism.vertices(Mesh):
         if mesh.uri is None and mesh.vertices:
+            content = mesh.vertices, mesh.faces
+            if content in known:
+                found[key] = known[content]
+                continue
             stem = re.sub(r"[^A-Za-z0-9_-]+", "_", key.name).strip("_") or "mesh"
             name = next(name for name in _numbered(stem) if name.lower() not in taken)
             taken.add(name.lower())
-            found[key] = f"{FOLDER}/{name}.obj"
+            found[key] = known[content] = f"{FOLDER}/{name}.obj"
     return found
 
 

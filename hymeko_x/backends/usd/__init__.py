@@ -9,11 +9,13 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Kind, Sdf, UsdGeom
 
+from hymeko_x.backends.usd.actuators import write_actuators
 from hymeko_x.backends.usd.bodies import write_bodies, write_mounts
 from hymeko_x.backends.usd.carry import carry_elements
+from hymeko_x.backends.usd.contacts import write_contacts, write_frictions
 from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
-from hymeko_x.backends.usd.layers import split
+from hymeko_x.backends.usd.layers import encoded, split
 from hymeko_x.backends.usd.materials import write_materials
 from hymeko_x.backends.usd.prims import author
 from hymeko_x.backends.usd.relations import write_drives, write_mimics
@@ -29,12 +31,26 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
 
 _ARTICULATION = "PhysicsArticulationRootAPI"
+_SECTIONS = (
+    write_materials,
+    write_bodies,
+    write_shapes,
+    write_mounts,
+    write_contacts,
+    write_frictions,
+    write_joints,
+    write_loops,
+    write_drives,
+    write_actuators,
+    write_mimics,
+)
 
 
 def write(mechanism: Mechanism, report: Report) -> Package:
     """The mechanism as USD text. Textures are not part of it: `assets.pack` returns them."""
-    texts = {name: layer.ExportToString().encode() for name, layer in write_layers(mechanism, report, ".usda").items()}
-    return Package(texts.pop(""), texts)
+    layers = write_layers(mechanism, report, ".usda")
+    written = {name: encoded(layer) if name.endswith(".usdc") else layer.ExportToString().encode() for name, layer in layers.items()}
+    return Package(written.pop(""), written)
 
 
 def write_layers(mechanism: Mechanism, report: Report, suffix: str) -> dict[str, Any]:
@@ -51,7 +67,7 @@ def write_layer(mechanism: Mechanism, report: Report) -> Any:
     sheet = Sheet(mechanism, layer, _root(mechanism))
     with Sdf.ChangeBlock():
         _write_stage(sheet)
-        for section in (write_materials, write_bodies, write_shapes, write_mounts, write_joints, write_loops, write_drives, write_mimics):
+        for section in _SECTIONS:
             section(sheet)
         _write_articulations(sheet)
         author(sheet.prims.values(), layer)

@@ -14,7 +14,7 @@ from hymeko_x.formats import usd as words
 from hymeko_x.formats.xml import read_numbers
 from hymeko_x.ir.legalize_usd import NESTED
 from hymeko_x.ir.mechanism import ROOT, WORLD, pose_weight
-from hymeko_x.ir.parts import Body, Camera, Frame, Mesh, Mount
+from hymeko_x.ir.parts import Body, Camera, Frame, Light, Mesh, Mount
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle, unit_quat
 
 if TYPE_CHECKING:
@@ -121,14 +121,15 @@ def world_poses(mechanism: Mechanism) -> dict[Id, Pose]:
 def write_inertial(spec: Any, inertial: Inertial, com: Vec3) -> None:
     """Mass, centre of mass (in the prim's space), and the tensor both as principal moments and as Newton's six doubles."""
     apply(spec, "PhysicsMassAPI")
-    if inertial.mass is not None:
+    if inertial.mass:  # a mass of 0 means that nothing was said
         put(spec, "physics:mass", T.Float, inertial.mass)
     put(spec, "physics:centerOfMass", T.Point3f, Gf.Vec3f(*com))
     if inertial.tensor is None:
         return
     moments, quat = principal(inertial)
-    put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*moments))
-    put(spec, "physics:principalAxes", T.Quatf, quatf(quat))
+    if min(moments) > 0.0:  # UsdPhysics takes anything else for "not said"
+        put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*moments))
+        put(spec, "physics:principalAxes", T.Quatf, quatf(quat))
     apply(spec, "NewtonMassAPI")
     put(spec, "newton:inertia", T.DoubleArray, Vt.DoubleArray(list(inertial.tensor)))
 
@@ -164,25 +165,46 @@ def _eigen(tensor: Tensor) -> tuple[Vec3, Quat]:
 
 
 def write_mounts(sheet: Sheet) -> None:
-    """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras as cameras; each carries where it is mounted."""
+    """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras and lights; each carries where it is mounted."""
     for key, _, arcs in sheet.mechanism.edges(Mount):
         body = next((arc for arc in arcs if arc.sign > 0), None)
         thing = next((arc for arc in arcs if arc.sign < 0), None)
         part = sheet.mechanism.graph.vertices.get(thing.target) if thing else None
-        if body is None or thing is None or not isinstance(part, Frame | Camera) or thing.target in sheet.homes:
+        if body is None or thing is None or not isinstance(part, Frame | Camera | Light) or thing.target in sheet.homes:
             continue
         home = sheet.root if body.target == WORLD else sheet.homes.get(body.target)
         if home is None:
             continue
-        spec = sheet.place(thing.target, home, "Xform" if isinstance(part, Frame) else "Camera", below=body.target != WORLD)
+        spec = sheet.place(thing.target, home, _type_of(part), below=body.target != WORLD)
         sheet.carried[spec.path]["mount"] = key
         sheet.homes[key] = spec.path
         sheet.move(spec, pose_weight(body), on=body.target)
-        if isinstance(part, Frame):
-            apply(spec, "MjcSiteAPI", "NewtonSiteAPI")
-            sheet.made[spec.path] += ["@MjcSiteAPI", "@NewtonSiteAPI", "@type"]
-        elif part.fovy is not None and 0.0 < part.fovy < math.pi:
-            aperture = 15.2908
-            put(spec, "verticalAperture", T.Float, aperture)
-            put(spec, "focalLength", T.Float, aperture / 2.0 / math.tan(part.fovy / 2.0))
-            sheet.made[spec.path] += ["@type", "verticalAperture", "focalLength"]
+        sheet.made[spec.path].append("@type")
+        _write_thing(sheet, spec, part)
+
+
+def _type_of(part: Frame | Camera | Light) -> str:
+    match part:
+        case Frame():
+            return "Xform"
+        case Camera():
+            return "Camera"
+        case Light(kind):
+            return next((name for name, meant in words.LIGHTS.items() if meant == kind), "SphereLight")
+
+
+def _write_thing(sheet: Sheet, spec: Any, part: Frame | Camera | Light) -> None:
+    """What a frame, a camera or a light says beside where it is."""
+    if isinstance(part, Frame):
+        apply(spec, "MjcSiteAPI", "NewtonSiteAPI")
+        sheet.made[spec.path] += ["@MjcSiteAPI", "@NewtonSiteAPI"]
+    elif isinstance(part, Light):
+        if part.kind == "spot":
+            apply(spec, words.CONE)
+        if part.diffuse is not None:
+            put(spec, "inputs:color", T.Color3f, Gf.Vec3f(*part.diffuse))
+    elif part.fovy is not None and 0.0 < part.fovy < math.pi:
+        aperture = 15.2908
+        put(spec, "verticalAperture", T.Float, aperture)
+        put(spec, "focalLength", T.Float, aperture / 2.0 / math.tan(part.fovy / 2.0))
+        sheet.made[spec.path] += ["verticalAperture", "focalLength"]

@@ -5,6 +5,7 @@ Beside the elements of a prim stands a digest of its native values, so that an e
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ import numpy as np
 from pxr import Sdf, Vt
 
 from hymeko_x.backends.usd.prims import T, add_attribute, authored_pairs, drafted_pairs
-from hymeko_x.backends.usd.shapes import is_drawable
+from hymeko_x.backends.usd.surfaces import surface_of
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.parts import Mesh
@@ -40,10 +41,17 @@ def carry_elements(sheet: Sheet) -> None:
     _carry_mechanism(sheet)
     for path, made in sheet.made.items():
         spec = sheet.layer.GetPrimAtPath(path)
-        own = [name for name in dict.fromkeys(made) if name not in sheet.restored.get(path, ())]
+        names = dict.fromkeys((*made, *_zeros(sheet, path)))
+        own = [name for name in names if name not in sheet.restored.get(path, ())]
         if own:
             add_attribute(spec, f"{words.PREFIX}made", T.StringArray, Vt.StringArray(own))
         add_attribute(spec, words.DIGEST, T.String, words.digest(_native_pairs(sheet, path, spec)))
+
+
+def _zeros(sheet: Sheet, path: Any) -> list[str]:
+    """The numbers of a prim that say nothing by themselves, so that the reader would keep them as they are."""
+    drafted = sheet.prims[path].attributes if path in sheet.prims else {}
+    return [name for name, (_, value) in drafted.items() if isinstance(value, float) and (value == 0.0 or math.isinf(value))]
 
 
 def _native_pairs(sheet: Sheet, path: Any, spec: Any) -> Iterator[tuple[str, bytes]]:
@@ -62,7 +70,7 @@ def _carry_alone(sheet: Sheet, keys: list[Id]) -> None:
         group = _new_prim(sheet.layer, path, "Scope")
         add_attribute(group, f"{words.PREFIX}scope", T.Bool, True)
     for number, key in enumerate(keys):
-        spec = _new_prim(sheet.layer, path.AppendChild(f"e{number}"), "")
+        spec = _new_prim(sheet.layer, path.AppendChild(f"e{number}"), "Scope")
         add_attribute(spec, f"{words.PREFIX}alone", T.Bool, True)
         _carry(sheet, spec, key)
 
@@ -70,8 +78,7 @@ def _carry_alone(sheet: Sheet, keys: list[Id]) -> None:
 def _new_prim(layer: Any, path: Any, kind: str) -> Any:
     spec = Sdf.CreatePrimInLayer(layer, path)
     spec.specifier = Sdf.SpecifierDef
-    if kind:
-        spec.typeName = kind
+    spec.typeName = kind
     return spec
 
 
@@ -107,7 +114,7 @@ def _mesh_pairs(mesh: Mesh, has_prim: bool) -> dict[str, Value]:
     pairs = words.flat(replace(mesh, vertices=(), faces=()))
     if mesh.uri is not None:
         return pairs
-    if not has_prim or not is_drawable(mesh):
+    if not has_prim or surface_of(mesh) is None:
         return words.flat(mesh)
     points = np.asarray(mesh.vertices, dtype=np.float64)
     with np.errstate(over="ignore"):
@@ -148,4 +155,5 @@ def _carry_mechanism(sheet: Sheet) -> None:
         pairs["layout"] = tuple(text for key in sheet.mechanism.layout for text in key)
     if WORLD in sheet.mechanism.graph.vertices:
         pairs["world"] = True
+    pairs |= {f"world_{name}": value for name, value in _tables(sheet, WORLD)}
     _author(sheet.layer.GetPrimAtPath(sheet.root), "mechanism", pairs)

@@ -6,6 +6,8 @@ aspect can be replaced by itself.
 
 from __future__ import annotations
 
+import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pxr import Sdf
@@ -32,10 +34,24 @@ def split(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
         _copy_header(layer, interface, [name for name in layer.pseudoRoot.ListInfoKeys() if name != "primChildren"])
         for spec in _prims(layer):
             _divide(spec, aspects)
-        contents.subLayerPaths = [f"./{aspect}{suffix}" for aspect in reversed(ASPECTS)]
+        suffixes = dict.fromkeys(ASPECTS, suffix) | ({GEOMETRY: ".usdc"} if _has_meshes(layer) else {})
+        contents.subLayerPaths = [f"./{aspect}{suffixes[aspect]}" for aspect in reversed(ASPECTS)]
         _write_interface(layer, interface, f"./{folder}/{_CONTENTS}{suffix}")
-    named = {_CONTENTS: contents} | aspects
-    return {"": interface} | {f"{folder}/{name}{suffix}": part for name, part in named.items()}
+    parts = {f"{folder}/{aspect}{suffixes[aspect]}": part for aspect, part in aspects.items()}
+    return {"": interface, f"{folder}/{_CONTENTS}{suffix}": contents} | parts
+
+
+def _has_meshes(layer: Any) -> bool:
+    """Whether there are long arrays, which are no text for people and slow to read as one."""
+    return any(spec.typeName == "Mesh" for spec in _prims(layer))
+
+
+def encoded(layer: Any) -> bytes:
+    """A layer as the bytes of a crate file, which USD writes only onto a disk: they pass through a temporary file."""
+    with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
+        path = Path(folder) / "stage.usdc"
+        layer.Export(str(path))
+        return path.read_bytes()
 
 
 def _copy_header(layer: Any, part: Any, names: list[str] | tuple[str, ...]) -> None:

@@ -24,7 +24,8 @@ _FLOAT = T.Float
 class Prim:
     """A prim in the making: its type, metadata, API schemas, attributes (type and value), and the targets of its relationships.
 
-    ``connections`` lead an attribute to that whose value it takes; ``reference`` is the path of a prim of the same layer.
+    ``connections`` lead an attribute to that whose value it takes; ``per_face`` are the attributes with a value for each face;
+    ``reference`` is the path of a prim of the same layer.
     """
 
     path: Any
@@ -35,6 +36,7 @@ class Prim:
     attributes: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     targets: dict[str, list[Any]] = field(default_factory=dict)
     connections: dict[str, Any] = field(default_factory=dict)
+    per_face: list[str] = field(default_factory=list)
     reference: Any = None
 
     @property
@@ -45,11 +47,10 @@ class Prim:
 
 def author(prims: Iterable[Prim], layer: Any) -> None:
     """Write every prim into the layer, parents before their children."""
+    specs: dict[Any, Any] = {Sdf.Path.absoluteRootPath: layer}
     for prim in prims:
-        spec = layer.GetPrimAtPath(prim.path) or Sdf.CreatePrimInLayer(layer, prim.path)
-        spec.specifier = prim.specifier
-        if prim.kind:
-            spec.typeName = prim.kind
+        path = prim.path
+        spec = specs[path] = Sdf.PrimSpec(specs[path.GetParentPath()], path.name, prim.specifier, prim.kind)
         for name, value in prim.info.items():
             spec.SetInfo(name, value)
         if prim.schemas:
@@ -60,6 +61,8 @@ def author(prims: Iterable[Prim], layer: Any) -> None:
             attribute = add_attribute(spec, name, kind, value)
             if name in prim.connections:
                 attribute.connectionPathList.explicitItems = [prim.connections[name]]
+            if name in prim.per_face:
+                attribute.SetInfo("interpolation", "uniform")
         for name, targets in prim.targets.items():
             Sdf.RelationshipSpec(spec, name, False).targetPathList.explicitItems = targets
 

@@ -12,10 +12,10 @@ from hymeko_x.ir.parts import Actuator, Coupling, DofKind, Drive, Joint
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import Sheet
-    from hymeko_x.ir.mechanism import RobotArc
+    from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Dof
 
-_KINDS = ("position", "velocity", "motor", "general")
+_KINDS = ("position", "velocity")
 
 
 def write_drives(sheet: Sheet) -> None:
@@ -25,13 +25,19 @@ def write_drives(sheet: Sheet) -> None:
         driven = next((arc for arc in arcs if arc.sign < 0), None)
         actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
         found = dof_of(sheet, driven) if driven is not None else None
-        if found is None or source is None or not isinstance(actuator, Actuator) or actuator.kind not in _KINDS:
+        if found is None or source is None or not isinstance(actuator, Actuator) or not _is_drive(sheet, source, actuator):
             continue
         spec, axis, dof = found
         _write_drive(spec, axis or ("angular" if dof.kind is DofKind.HINGE else "linear"), actuator, dof)
         if not {"actuator", "drive"} & {*sheet.carried[spec.path]}:
             sheet.carried[spec.path] |= {"actuator": source, "drive": key}
             sheet.homes |= {source: spec.path, key: spec.path}
+
+
+def _is_drive(sheet: Sheet, key: Id, actuator: Actuator) -> bool:
+    """Whether a drive says it: servos, and motors that were drives before."""
+    noted = sheet.mechanism.notation(key, words.TYPE)
+    return actuator.kind in _KINDS or (actuator.kind == "motor" and noted in words.DRIVES)
 
 
 def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None:

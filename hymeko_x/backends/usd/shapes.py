@@ -8,6 +8,7 @@ from pxr import Gf, Sdf, Vt
 
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put
+from hymeko_x.backends.usd.surfaces import normals_of, surface_of
 from hymeko_x.formats import usd as words
 from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.ir.mechanism import WORLD
@@ -15,7 +16,9 @@ from hymeko_x.ir.parts import Mesh, MeshShape, Role
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_inverse
 
 if TYPE_CHECKING:
+    from hymeko_x.backends.usd.prims import Prim
     from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.backends.usd.surfaces import Surface
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.values import Vec3
 
@@ -99,17 +102,23 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
     mesh = sheet.mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
     if view.mesh is None or not isinstance(mesh, Mesh):
         return None
-    if users[view.mesh] == 1 or not is_drawable(mesh):
+    if view.mesh not in sheet.surfaces:
+        sheet.surfaces[view.mesh] = surface_of(mesh)
+    surface = sheet.surfaces[view.mesh]
+    if users[view.mesh] == 1 or surface is None:
         _carry_mesh(sheet, spec, view.mesh)
-        _write_points(spec, mesh)
+        if surface is not None:
+            _write_surface(spec, surface)
+            if sheet.mechanism.notation(view.id, words.PATH) is None:
+                _write_normals(spec, surface)
     else:
         if view.mesh not in shared:
-            shared[view.mesh] = _write_prototype(sheet, view.mesh, mesh)
+            shared[view.mesh] = _write_prototype(sheet, view.mesh, surface)
             _carry_mesh(sheet, spec, view.mesh)
         spec.kind = "Mesh"
         spec.reference = shared[view.mesh]
-    sheet.made[spec.path].append("subdivisionScheme")
-    return None if mesh.scale == (1.0, 1.0, 1.0) or not is_drawable(mesh) else mesh.scale
+    sheet.made[spec.path] += ["subdivisionScheme", "normals"]
+    return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
 
 
 def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
@@ -118,7 +127,7 @@ def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
     sheet.carried[spec.path]["mesh"] = mesh
 
 
-def _write_prototype(sheet: Sheet, key: Id, mesh: Mesh) -> Any:
+def _write_prototype(sheet: Sheet, key: Id, surface: Surface) -> Any:
     """A mesh that is shown several times: a class, which is seen only through references to it."""
     scope = sheet.root.AppendChild("meshes")
     if scope not in sheet.prims:
@@ -126,37 +135,29 @@ def _write_prototype(sheet: Sheet, key: Id, mesh: Mesh) -> Any:
         group.specifier = Sdf.SpecifierClass
         put(group, f"{words.PREFIX}scope", T.Bool, True)
     spec = sheet.define(sheet.free_path(scope, key.name), "Mesh")
-    _write_points(spec, mesh)
+    _write_surface(spec, surface)
+    _write_normals(spec, surface)
     return spec.path
 
 
-def is_drawable(mesh: Mesh) -> bool:
-    """Whether a mesh has points, all of them finite in single precision, and triangles between them."""
+def _write_surface(prim: Prim, surface: Surface) -> None:
+    """Points in single precision, triangles, and no subdivision."""
     import numpy as np
 
-    if not mesh.vertices or len(mesh.vertices) % 3 or len(mesh.faces) % 3:
-        return False
-    points, faces = np.asarray(mesh.vertices), np.asarray(mesh.faces, dtype=np.int64)
-    if np.abs(points).max() > 3e38 or not np.isfinite(points).all():
-        return False
-    return not faces.size or bool(faces.min() >= 0 and faces.max() < len(points) // 3)
-
-
-def _write_points(spec: Any, mesh: Mesh) -> None:
-    """Points in single precision, triangles, and no subdivision. Nothing for a mesh whose file was not there."""
-    import numpy as np
-
-    if not is_drawable(mesh):
-        return
-    points = np.asarray(mesh.vertices, dtype=np.float32).reshape(-1, 3)
-    faces = np.asarray(mesh.faces, dtype=np.int32)
-    spec.kind = "Mesh"
-    put(spec, "points", T.Point3fArray, Vt.Vec3fArray.FromNumpy(points))
-    put(spec, "faceVertexCounts", T.IntArray, Vt.IntArray.FromNumpy(np.full(len(faces) // 3, 3, dtype=np.int32)))
-    put(spec, "faceVertexIndices", T.IntArray, Vt.IntArray.FromNumpy(faces))
-    put(spec, "subdivisionScheme", T.Token, "none")
+    points, faces = surface
+    prim.kind = "Mesh"
+    put(prim, "points", T.Point3fArray, Vt.Vec3fArray.FromNumpy(points))
+    put(prim, "faceVertexCounts", T.IntArray, Vt.IntArray.FromNumpy(np.full(len(faces) // 3, 3, dtype=np.int32)))
+    put(prim, "faceVertexIndices", T.IntArray, Vt.IntArray.FromNumpy(faces))
+    put(prim, "subdivisionScheme", T.Token, "none")
     box = np.stack([points.min(axis=0), points.max(axis=0)])
-    put(spec, "extent", T.Float3Array, Vt.Vec3fArray.FromNumpy(box))
+    put(prim, "extent", T.Float3Array, Vt.Vec3fArray.FromNumpy(box))
+
+
+def _write_normals(prim: Prim, surface: Surface) -> None:
+    """One normal for each triangle, for programs that compute none of their own; a degenerate triangle has some unit vector."""
+    put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(normals_of(surface)))
+    prim.per_face.append("normals")
 
 
 # ---- looks ---------------------------------------------------------------------------------------------------------------------

@@ -12,6 +12,7 @@ from hymeko_x.backends.usd.prims import Prim, T
 from hymeko_x.formats import usd as words
 
 if TYPE_CHECKING:
+    from hymeko_x.backends.usd.surfaces import Surface
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.values import Pose, Quat, Vec3
 
@@ -39,6 +40,7 @@ class Sheet:
     restored: dict[Any, set[str]] = field(default_factory=dict)
     skins: dict[Id, Id] = field(default_factory=dict)
     scales: dict[Id, Vec3] = field(default_factory=dict)
+    surfaces: dict[Id, Surface | None] = field(default_factory=dict)
 
     # ---- prims -----------------------------------------------------------------------------------------------------------
 

@@ -22,9 +22,11 @@ from hymeko_x.frontends.mjcf.delegate import expand_by_mujoco
 from hymeko_x.frontends.mjcf.draft import Draft
 from hymeko_x.frontends.mjcf.equalities import read_equalities
 from hymeko_x.frontends.mjcf.include import expand_includes
+from hymeko_x.frontends.mjcf.references import check_references
 from hymeko_x.frontends.mjcf.sections import keep_sections, read_settings
 from hymeko_x.frontends.mjcf.sensors import read_sensors
 from hymeko_x.frontends.mjcf.tendons import read_tendons
+from hymeko_x.ir.mechanism import Id
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -44,11 +46,14 @@ def read(source: Source, report: Report) -> Mechanism:
     _check_root(root)
     carried = list(_take_carried(root))
     root = expand_includes(root, source, report)
-    root = expand_by_mujoco(root, source, report)
-    check_words(root)
+    words = check_words(root)
+    expanded = expand_by_mujoco(root, source, report)
+    if expanded is not root:
+        root, words = expanded, check_words(expanded)
     _warn_of_ignored(root, report)
     draft = Draft(report, read_settings(root), Classes(root_sections(root, "default")), source.name, source.files)
     name = _read_name(root, source, draft)
+    draft.named |= {name: Id(*name) for name in words.names if name[0] in ("hfield", "flex")}
     keep_sections(root, draft)
     reserve_names(root, draft)
     read_assets(root.take_children("asset"), draft)
@@ -58,6 +63,7 @@ def read(source: Source, report: Report) -> Mechanism:
     read_equalities(root.take_children("equality"), draft)
     read_actuators(root.take_children("actuator"), draft)
     read_sensors(root.take_children("sensor"), draft)
+    check_references(words.references, draft)
     draft.keep_rest(root)
     return carrier.with_residue(draft.mechanism(name), carried)
 

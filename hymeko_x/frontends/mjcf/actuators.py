@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf_words import RESOLVED, TRANSMISSIONS
 from hymeko_x.formats.xml import read_numbers
 from hymeko_x.frontends.mjcf.mounts import take_parameters
@@ -37,6 +39,7 @@ def _read_actuator(element: Element, draft: Draft) -> None:
     gear = element.take("gear")
     arcs: list[RobotArc] = [Arc(key, 1)]
     words = [word for word in TRANSMISSIONS if word in element.attributes]
+    _check(element, {**base, **element.attributes}, words, draft)
     weight = read_numbers(gear or base.get("gear", "")) or None
     for word in words:
         arcs.append(_arc(element, word, weight if word == words[0] else None, draft))
@@ -50,6 +53,29 @@ def _read_actuator(element: Element, draft: Draft) -> None:
         drive = draft.names.take("drive", key.name)
         draft.edges[drive] = Edge(Drive(kind), tuple(arcs))
         draft.show(drive)
+
+
+def _check(element: Element, said: dict[str, str], words: list[str], draft: Draft) -> None:
+    """What MuJoCo refuses."""
+    if not words:
+        raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag}> acts on nothing: it needs {', '.join(TRANSMISSIONS[:6])}", element.origin)
+    if "cranksite" in words and "slidersite" not in words:
+        raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag} cranksite> needs slidersite", element.origin)
+    for word in ("ctrl", "force", "act"):
+        flag, numbers = said.get(f"{word}limited", "auto"), read_numbers(said.get(f"{word}range", "")) or (0.0, 0.0)
+        forced = word == "ctrl" and element.tag in ("adhesion", "damper")
+        if flag == "auto" and any(numbers) and not (draft.settings.autolimits or forced):
+            raise refuse(
+                codes.BAD_NUMBER,
+                f"<{element.tag}> has {word}range but not {word}limited, and <compiler autolimits> is false",
+                element.origin,
+            )
+        if (flag == "true" or forced) and not numbers[0] < numbers[-1] and not said.get("inheritrange"):
+            raise refuse(
+                codes.BAD_NUMBER,
+                f"<{element.tag} {word}range> is '{said.get(f'{word}range', '')}', expected a lower and a greater number",
+                element.origin,
+            )
 
 
 def _arc(element: Element, word: str, gear: tuple[float, ...] | None, draft: Draft) -> RobotArc:

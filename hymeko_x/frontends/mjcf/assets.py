@@ -5,6 +5,8 @@ from __future__ import annotations
 import posixpath
 from typing import TYPE_CHECKING
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf_places import MATERIAL, MESH
 from hymeko_x.formats.mjcf_words import joined
 from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
@@ -54,16 +56,33 @@ def read_mesh(element: Element, draft: Draft) -> None:
     uri = None if file is None else _uri(element, file, draft.settings.mesh_folder, draft)
     name = element.take("name") or None
     stem = posixpath.basename(file_stem(uri)) if uri else ""
-    key = draft.names.take("mesh", name or stem or "mesh")
+    if not (name or stem):
+        raise refuse(codes.BAD_NAME, "<mesh> needs a name or a file", element.origin)
+    key = draft.names.take("mesh", name or stem)
     draft.origins[key] = element.origin
     draft.register(element, "mesh", name or stem, key)
     base = draft.base(element, key)
     found = draft.values(element, MESH, base, key)
     faces = tuple(map(int, found["face"]))
+    _check_mesh(element, uri, len(found["vertex"]), faces)
     draft.vertices[key] = Mesh(uri, found["scale"], None if name in (stem, key.name) else name, found["vertex"], faces)
     draft.keep(element, key)
     if key in draft.extras or key in draft.notations or key in draft.stereotypes:
         draft.show(key)
+
+
+def _check_mesh(element: Element, uri: str | None, count: int, faces: tuple[int, ...]) -> None:
+    """What MuJoCo refuses in inline data."""
+    made = uri is not None or "builtin" in element.attributes or any(child.tag == "plugin" for child in element.children)
+    if count % 3 or len(faces) % 3:
+        word = "vertex" if count % 3 else "face"
+        raise refuse(
+            codes.BAD_NUMBER, f"<mesh {word}> has {count if count % 3 else len(faces)} numbers, expected three for each", element.origin
+        )
+    if not made and count < 12:
+        raise refuse(codes.BAD_NUMBER, f"<mesh vertex> has {count // 3} points, expected at least 4 where there is no file", element.origin)
+    if count and faces and not (min(faces) >= 0 and max(faces) < count // 3):
+        raise refuse(codes.BAD_NUMBER, f"<mesh face> refers to a point that is not there; there are {count // 3}", element.origin)
 
 
 def read_texture(element: Element, draft: Draft) -> None:
@@ -72,6 +91,8 @@ def read_texture(element: Element, draft: Draft) -> None:
     uri = None if file is None else _uri(element, file, draft.settings.texture_folder, draft)
     name = element.take("name") or None
     stem = file_stem(uri) if uri else ""
+    if not (name or stem) and element.attributes.get("type") != "skybox":
+        raise refuse(codes.BAD_NAME, "<texture> needs a name or a file, unless it is a skybox", element.origin)
     key = draft.names.take("texture", name or stem or "texture")
     draft.origins[key] = element.origin
     draft.register(element, "texture", name or stem or _skybox(element), key)

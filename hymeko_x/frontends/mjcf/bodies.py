@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf_codec import POSE, BadAttribute
-from hymeko_x.formats.mjcf_places import INERTIAL
+from hymeko_x.formats.mjcf_places import INERTIAL, seen_from
 from hymeko_x.formats.mjcf_words import kind_of
 from hymeko_x.frontends.mjcf.geoms import read_geom
 from hymeko_x.frontends.mjcf.joints import read_joints
@@ -68,6 +70,7 @@ def _read_body(element: Element, spot: Spot, draft: Draft) -> list[tuple[Element
         draft.check_class(element, childclass)
     if spot.frame:
         draft.note(key, "frame", spot.frame)
+    _check_mocap(element, spot)
     pose = placed(draft.values(element, (POSE,), {}, key, always=bool(spot.frame))["pose"], spot)
     draft.vertices[key] = Body(_read_inertial(element, key, draft))
     draft.show(key)
@@ -75,6 +78,15 @@ def _read_body(element: Element, spot: Spot, draft: Draft) -> list[tuple[Element
     below = _read_content(element, here, draft, joined=(spot.body, pose))
     draft.keep(element, key)
     return below
+
+
+def _check_mocap(element: Element, spot: Spot) -> None:
+    """A body that is moved from outside hangs on the world and has no joints."""
+    if element.attributes.get("mocap") != "true":
+        return
+    jointed = any(child.tag in ("joint", "freejoint") for child in element.children)
+    if jointed or spot.body != WORLD:
+        raise refuse(codes.UNKNOWN_WORD, "a mocap body is a child of the world and has no joints", element.origin)
 
 
 def _read_inertial(element: Element, key: Id, draft: Draft) -> Inertial | None:
@@ -87,6 +99,19 @@ def _read_inertial(element: Element, key: Id, draft: Draft) -> Inertial | None:
     element.children[:0] = found[1:]
     inertial: Inertial = draft.values(node, (INERTIAL,), {}, key, "inertial/")["inertial"]
     draft.keep(node, key, "inertial")
+    return inertial
+
+
+def _read_framed_inertial(node: Element, spot: Spot, draft: Draft, *, in_world: bool) -> Inertial | None:
+    """The inertial of a body that stands in a <frame> of it."""
+    if in_world:
+        raise refuse(codes.UNKNOWN_WORD, "the world cannot have an inertial", node.origin)
+    if draft.settings.inertia_from_geoms:
+        return None
+    draft.note(spot.body, "inertial/frame", spot.frame)
+    groups = (seen_from(INERTIAL, spot.pose),)
+    inertial: Inertial = draft.values(node, groups, {}, spot.body, "inertial/", always=True)["inertial"]
+    draft.keep(node, spot.body, "inertial")
     return inertial
 
 
@@ -103,9 +128,13 @@ def _read_content(element: Element, here: Spot, draft: Draft, joined: tuple[Id, 
             joints.append((child, spot))
         elif child.tag in _READERS:
             content.append((child, spot))
+        elif child.tag == "inertial" and spot.frame:
+            draft.vertices[here.body] = Body(_read_framed_inertial(child, spot, draft, in_world=joined is None))
         else:
             left.append(child)
     element.children = left
+    if joined is None and joints:
+        raise refuse(codes.UNKNOWN_WORD, "the world cannot have joints", joints[0][0].origin)
     if joined is not None:
         read_joints(joints, here.body, *joined, draft)
     for child, spot in content:
@@ -137,4 +166,6 @@ def _read_frame(element: Element, spot: Spot, number: str, draft: Draft) -> Spot
         pose = POSE.read(element.attributes, draft.settings)
     except BadAttribute as error:
         raise draft.bad(element, error) from error
+    if "childclass" in element.attributes:
+        draft.check_class(element, element.attributes["childclass"])
     return Spot(spot.body, spot.stem, number, compose(spot.pose, pose), element.attributes.get("childclass", spot.childclass))

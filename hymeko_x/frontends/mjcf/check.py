@@ -1,35 +1,95 @@
-"""Words that MJCF does not have are refused, as MuJoCo refuses them."""
+"""Words and values that MJCF does not have are refused, as MuJoCo refuses them."""
 
 from __future__ import annotations
 
+import re
+from dataclasses import dataclass
 from difflib import get_close_matches
+from math import isinf
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import refuse
+from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.mjcf_classes import TURNS
 from hymeko_x.formats.mjcf_schema import CHILDREN, REMOVED, attributes_of
 from hymeko_x.formats.mjcf_tree import COMMENT
+from hymeko_x.formats.mjcf_types import EXCLUSIVE, REQUIRED, kinds_of
+from hymeko_x.formats.xml import read_numbers
+from hymeko_x.frontends.mjcf.references import Reference, references_of
+from hymeko_x.frontends.mjcf.rules import complaint
+from hymeko_x.ir.mechanism import file_stem
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.diagnostics import Refusal
     from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf_types import Kind
+
+_NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|0x[\da-f.]+(?:p[+-]?\d+)?|inf(?:inity)?|nan)", re.ASCII | re.IGNORECASE)
+_WHOLE = re.compile(r"[+-]?\d+", re.ASCII)
+_GREATEST = 2**31
+_READ_ELSEWHERE = frozenset({"vertex", "face"})
+_NAMED_APART: Mapping[str, str] = MappingProxyType(
+    {
+        "asset/hfield": "hfield",
+        "custom/numeric": "numeric",
+        "custom/text": "text",
+        "custom/tuple": "tuple",
+        "deformable/flex": "flex",
+        "deformable/skin": "skin",
+        "keyframe/key": "key",
+        "body/frame": "frame",
+        "equality/connect": "equality",
+        "equality/weld": "equality",
+        "equality/joint": "equality",
+        "equality/tendon": "equality",
+        "equality/flex": "equality",
+        "equality/flexstrain": "equality",
+    }
+)
+"""Elements of which the IR has no part, and those that share their names with such: what their names must not be twice among."""
 
 
-def check_words(root: Element) -> None:
-    """Raises: Refusal (HX027) at the first element or attribute that MuJoCo 4.0 does not know there."""
+@dataclass(frozen=True, slots=True)
+class Words:
+    """The ``names`` of elements of which the IR has no part, by kind, with their places; and ``references`` that have no arc."""
+
+    names: Mapping[tuple[str, str], Origin]
+    references: list[Reference]
+
+
+def check_words(root: Element) -> Words:
+    """The names and references in a tree of known words. Empty numbers are taken out: to MuJoCo they are not there.
+
+    Raises: Refusal (HX020, HX021, HX023, HX027, HX047) at the first element, attribute or value that MuJoCo 4.0 does not know there.
+    """
     stack = [(root, "mujoco")]
+    names: dict[tuple[str, str], Origin] = {}
+    references: list[Reference] = []
     while stack:
         element, path = stack.pop()
         _check_attributes(element, path)
+        _check_values(element, path)
+        said = complaint(element, path)
+        if said is not None:
+            raise refuse(codes.BAD_NUMBER, said, element.origin)
+        references += references_of(element, path)
+        if path in _NAMED_APART:
+            _check_name(element, _NAMED_APART[path], names)
         known = CHILDREN.get(path, {})
+        below = []
         for child in element.children:
             if child.tag == COMMENT:
                 continue
-            below = known.get(child.tag)
-            if below is None:
-                raise _unknown(child, f"<{element.tag}> has no <{child.tag}>", child.tag, list(known))
-            stack.append((child, below))
+            place = known.get(child.tag)
+            if place is None:
+                changed = REMOVED.get(f"{element.tag}/{child.tag}") or REMOVED.get(child.tag)
+                raise _unknown(child, f"<{element.tag}> has no <{child.tag}>", child.tag, list(known), changed)
+            below.append((child, place))
+        stack.extend(reversed(below))
+    return Words(names, references)
 
 
 def _check_attributes(element: Element, path: str) -> None:
@@ -37,14 +97,73 @@ def _check_attributes(element: Element, path: str) -> None:
     turns = 0
     for name in element.attributes:
         turns += name in TURNS
-        if name not in known and ":" not in name and not name.startswith("xmlns"):
-            raise _unknown(element, f"<{element.tag}> has no attribute '{name}'", name, sorted(known))
+        if name not in known and (path != "mujoco" or not (":" in name or name.startswith("xmlns"))):
+            changed = REMOVED.get(f"{element.tag}@{name}")
+            raise _unknown(element, f"<{element.tag}> has no attribute '{name}'", name, sorted(known), changed)
     if turns > 1:
         found = ", ".join(name for name in element.attributes if name in TURNS)
         raise refuse(codes.REPEATED, f"<{element.tag}> has more than one orientation: {found}", element.origin)
 
 
-def _unknown(element: Element, message: str, word: str, known: list[str]) -> Refusal:
+def _check_values(element: Element, path: str) -> None:
+    kinds = kinds_of(path)
+    plugin = element.attributes.get("plugin", "")
+    if plugin in REMOVED:
+        raise refuse(codes.UNKNOWN_WORD, f"there is no plugin '{plugin}'", element.origin, hint=REMOVED[plugin])
+    for name, text in list(element.attributes.items()):
+        kind = kinds.get(name)
+        if kind is None or name in _READ_ELSEWHERE:
+            continue
+        if not kind.words and not text.strip():
+            del element.attributes[name]
+        elif not _fits(text, kind):
+            raise refuse(codes.BAD_NUMBER, f"<{element.tag} {name}> is '{_short(text)}', expected {kind}", element.origin)
+    for name in REQUIRED.get(path, ()):
+        if name not in element.attributes:
+            raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag}> needs {name}", element.origin)
+    for names in EXCLUSIVE.get(path, ()):
+        found = [name for name in names if name in element.attributes]
+        if len(found) > 1:
+            raise refuse(codes.REPEATED, f"<{element.tag}> has {' and '.join(found)}, of which it may have one", element.origin)
+
+
+def _fits(text: str, kind: Kind) -> bool:
+    if kind.words:
+        return all(word in kind.words for word in text.split()) if kind.several else text in kind.words
+    numbers = None if kind.whole else read_numbers(text)
+    if numbers is not None:
+        return kind.least <= len(numbers) <= kind.most
+    words = text.split()
+    return kind.least <= len(words) <= kind.most and all(map(_is_whole if kind.whole else _is_number, words))
+
+
+def _is_whole(word: str) -> bool:
+    return _WHOLE.fullmatch(word) is not None and abs(int(word)) < _GREATEST
+
+
+def _is_number(word: str) -> bool:
+    """Whether MuJoCo reads it as a number: also nan, infinities and hexadecimal ones; not one that is too large for a double."""
+    if _NUMBER.fullmatch(word) is None:
+        return False
+    return not word.lstrip("+-")[0].isdigit() or "x" in word.lower() or not isinf(float(word))
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= 60 else f"{text[:60]}..."
+
+
+def _check_name(element: Element, kind: str, names: dict[tuple[str, str], Origin]) -> None:
+    name = element.attributes.get("name") or file_stem(element.attributes.get("file", ""))
+    key = (kind, name)
+    if not element.attributes.get("name") and not element.attributes.get("file"):
+        return
+    if key in names:
+        raise refuse(codes.DUPLICATE_NAME, f"{kind} '{key[1]}' is defined twice; the first one: {names[key]}", element.origin)
+    names[key] = element.origin
+
+
+def _unknown(element: Element, message: str, word: str, known: list[str], changed: str | None) -> Refusal:
+    """The refusal of a word; the hint says what changed since it was one, or what was meant."""
     near = get_close_matches(word, known, n=2)
-    hint = REMOVED.get(word, "") or (f"did you mean {' or '.join(near)}?" if near else "")
+    hint = changed or (f"did you mean {' or '.join(near)}?" if near else "")
     return refuse(codes.UNKNOWN_WORD, message, element.origin, hint=hint)

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf_codec import BadAttribute, numbers_of
 from hymeko_x.formats.mjcf_words import shifted
 from hymeko_x.frontends.mjcf.contacts import find_end
 from hymeko_x.frontends.mjcf.mounts import take_parameters
+from hymeko_x.frontends.mjcf.paths import moves_along_one
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Coupling, Joint, Loop
@@ -29,7 +32,18 @@ def read_equalities(sections: list[Element], draft: Draft) -> None:
             elif element.tag == "joint" and "joint2" in element.attributes:
                 _read_coupling(element, draft)
             else:
+                _check_held(element, draft)
                 draft.keep_at_root(element, "equality")
+
+
+def _check_held(element: Element, draft: Draft) -> None:
+    """A joint that an equality holds in place moves along one coordinate."""
+    name = element.attributes.get("joint1")
+    if name is None:
+        return
+    joint = draft.find(element, "joint", name)
+    if not moves_along_one(Arc(joint, 0, None, draft.roles.get(joint, {}).get(name, "")), draft):
+        raise refuse(codes.UNKNOWN_WORD, f"<joint> holds '{name}', expected a hinge or a slide", element.origin)
 
 
 # ---- couplings -----------------------------------------------------------------------------------------------------------------
@@ -39,6 +53,11 @@ def _read_coupling(element: Element, draft: Draft) -> None:
     """Source: MuJoCo, equality/joint: q1 - ref1 = c0 + c1 (q2 - ref2) + ..."""
     follower, follower_role, follower_ref = _dof(element, "joint1", draft)
     leader, leader_role, leader_ref = _dof(element, "joint2", draft)
+    for joint, role in ((follower, follower_role), (leader, leader_role)):
+        if not moves_along_one(Arc(joint, 0, None, role), draft):
+            raise refuse(codes.UNKNOWN_WORD, f"<joint> couples '{role or joint.name}', expected hinges and slides", element.origin)
+    if (follower, follower_role) == (leader, leader_role):
+        raise refuse(codes.REPEATED, f"<joint> couples '{follower_role or follower.name}' to itself", element.origin)
     key = draft.own(element, "coupling", follower.name)
     draft.base(element, key, tag="joint@equality")
     try:
@@ -94,6 +113,8 @@ def _body_arcs(element: Element, key: Id, draft: Draft, placed: dict[Id, Pose]) 
     """Both bodies with the closure's frame in each, where the bodies are at the reference configuration unless it says where."""
     first = find_end(element, "body", "body1", draft)
     second = find_end(element, "body", "body2", draft) if "body2" in element.attributes else WORLD
+    if first == second:
+        raise refuse(codes.REPEATED, f"<{element.tag}> joins '{first.name}' to itself", element.origin)
     said = {name: text for name in ("anchor", "relpose") if (text := element.take(name)) is not None}
     for name, text in said.items():
         draft.note(key, f"@{name}", text)

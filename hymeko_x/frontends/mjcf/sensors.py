@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf_words import ALONE, SENSED, SENSED_TYPES
 from hymeko_x.frontends.mjcf.contacts import find_end
 from hymeko_x.frontends.mjcf.mounts import take_parameters
+from hymeko_x.frontends.mjcf.paths import moves_along_one
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.parts import Sense, Sensor
+from hymeko_x.ir.parts import Camera, Sense, Sensor
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf_tree import Element
@@ -36,6 +39,7 @@ def _read_sensor(element: Element, draft: Draft) -> None:
     for word, kind in SENSED.items():
         if word in element.attributes:
             arcs.append(_arc(element, kind, word, "" if word in ALONE and not arcs else word, draft))
+    _check_target(element, arcs, draft)
     draft.vertices[key] = Sensor(element.tag, None, take_parameters(element, {}))
     draft.keep(element, key)
     draft.show(key)
@@ -43,6 +47,25 @@ def _read_sensor(element: Element, draft: Draft) -> None:
         sense = draft.names.take("sense", key.name)
         draft.edges[sense] = Edge(Sense(), (*arcs, Arc(key, -1)))
         draft.show(sense)
+
+
+_SINGLE = ("jointpos", "jointvel", "jointactuatorfrc", "jointlimitpos", "jointlimitvel", "jointlimitfrc")
+
+
+def _check_target(element: Element, arcs: list[RobotArc], draft: Draft) -> None:
+    """Some sensors need a joint that moves along one coordinate, others a ball, others a camera with an image."""
+    for arc in arcs:
+        camera = draft.vertices.get(arc.target)
+        if element.tag in ("camprojection", "rangefinder") and isinstance(camera, Camera) and 0 in (camera.resolution or (1, 1)):
+            raise refuse(codes.BAD_NUMBER, f"<{element.tag}> measures in '{arc.target.name}', which has no resolution", element.origin)
+    if "joint" not in element.attributes and not any(arc.target.kind == "joint" for arc in arcs):
+        return
+    single = moves_along_one(arcs[0], draft)
+    if (element.tag in _SINGLE and not single) or (element.tag.startswith("ball") and single):
+        kind = "a ball joint" if single else "a hinge or a slide"
+        raise refuse(
+            codes.UNKNOWN_WORD, f"<{element.tag}> measures '{arcs[0].role or arcs[0].target.name}', expected {kind}", element.origin
+        )
 
 
 def _arc(element: Element, kind: str, word: str, role: str, draft: Draft) -> RobotArc:

@@ -9,6 +9,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf_codec import BadAttribute, numbers_of
 from hymeko_x.formats.mjcf_joints import TENDON
 from hymeko_x.formats.mjcf_tree import COMMENT
+from hymeko_x.frontends.mjcf.paths import wrong_fixed, wrong_spatial
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import UNLIMITED, Limits, Tendon
 
@@ -47,10 +48,20 @@ def _read_tendon(element: Element, draft: Draft) -> None:
     arcs: list[RobotArc] = []
     for step in element.take_children("joint", "site", "geom", "pulley"):
         arcs += _path(step, key, draft)
+    _check_path(element, tendon, arcs, draft)
     draft.edges[key] = Edge(tendon, tuple(arcs))
     element.children = [child for child in element.children if child.tag != COMMENT]
     draft.keep(element, key)
     draft.show(key)
+
+
+def _check_path(element: Element, tendon: Tendon, arcs: list[RobotArc], draft: Draft) -> None:
+    """Raises: Refusal for a path that MuJoCo refuses."""
+    wrong = wrong_fixed(arcs, draft) if tendon.kind == "fixed" else wrong_spatial(arcs, draft)
+    if wrong is None and tendon.kind == "spatial" and tendon.armature and any(arc.role == "wrap" for arc in arcs):
+        wrong = "has an armature and wraps around a geom"
+    if wrong is not None:
+        raise refuse(codes.BAD_NUMBER, f"the path of <{element.tag}> {wrong}", element.origin)
 
 
 def _path(step: Element, tendon: Id, draft: Draft) -> list[RobotArc]:

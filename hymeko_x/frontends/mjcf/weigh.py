@@ -1,4 +1,4 @@
-"""Inertias that MuJoCo computes from geoms, made explicit for formats that have no such thing.
+"""What MuJoCo computes, made explicit for formats that have no such thing: inertias from geoms, springs, meshes, fitted shapes.
 
 MuJoCo itself is asked, so that meshes, <compiler> and everything that changes masses count as they do there.
 """
@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x import codes
 from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.formats.mjcf_words import NAME, joined, settings_of
+from hymeko_x.frontends.mjcf.solids import fitted_shape, solid_mesh, unsolid
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
 from hymeko_x.ir.parts import Body, DofKind, Inertial, Joint, Mesh, Texture
 from hymeko_x.ir.values import rotate_tensor, unit_quat
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import RobotEdge
+    from hymeko_x.ir.mechanism import RobotEdge, ShapeView
     from hymeko_x.ir.parts import Dof
     from hymeko_x.source import Files
 
@@ -26,32 +27,36 @@ _SCALES = ("settotalmass", "boundmass", "boundinertia", "balanceinertia")
 """Attributes of <compiler> that change inertias which are said."""
 
 
-def weigh(mechanism: Mechanism, text: bytes, files: Files, report: Report) -> Mechanism:
+def weigh(mechanism: Mechanism, text: bytes, files: Files, report: Report, *, shapes: bool = False) -> Mechanism:
     """The mechanism, which came from MJCF and is ``text`` in it, with the mass, centre of mass and tensor of every body.
 
-    Bodies that weigh nothing stay without. Where MuJoCo is not there or refuses the text, nothing changes, with a warning.
+    With ``shapes`` also with the points of meshes and the sizes of primitives that only MuJoCo knows. Bodies that weigh
+    nothing stay without. Where MuJoCo is not there or refuses the text, nothing changes, with a warning.
     """
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
     scaled = _is_scaled(mechanism)
     sprung = b"springdamper=" in text
-    if not (wanted or scaled or sprung):
+    meshes, fitted = unsolid(mechanism) if shapes else ([], [])
+    if not (wanted or scaled or sprung or meshes or fitted):
         return mechanism
     try:
         import mujoco
     except ImportError:
-        report.warn(codes.ENGINE_MISSING, "MuJoCo computes inertias from geoms, and is not installed; such bodies are written without")
+        report.warn(codes.ENGINE_MISSING, "MuJoCo computes inertias from geoms and some meshes, and is not installed; they are left out")
         return mechanism
     try:
         model = _compiled(mujoco, text, _assets(mechanism, files))
     except (ValueError, mujoco.FatalError) as error:
         said = str(error).strip().splitlines()[0]
-        report.warn(codes.ENGINE_REFUSED, f"MuJoCo refuses the model, so that bodies without inertia are written without: {said}")
+        report.warn(codes.ENGINE_REFUSED, f"MuJoCo refuses the model, so that inertias and meshes that it computes are left out: {said}")
         return mechanism
     order = {key: number for number, key in enumerate(mechanism.depth_first(), 1)}
     chosen = [key for key, _ in mechanism.vertices(Body)] if scaled else wanted
     bodies = {key: _weighed(mechanism, model, key, order[key]) for key in chosen}
-    joints = _sprung(mechanism, model, order) if sprung else {}
-    return mechanism.with_graph(mechanism.graph.replace(vertices=bodies, edges=joints))
+    edges = _sprung(mechanism, model, order) if sprung else {}
+    edges |= _fitted(mechanism, mujoco, model, fitted, order)
+    solid = {key: solid_mesh(mechanism, mujoco, model, key) for key in meshes}
+    return mechanism.with_graph(mechanism.graph.replace(vertices={**bodies, **solid}, edges=edges))
 
 
 def _is_scaled(mechanism: Mechanism) -> bool:
@@ -70,6 +75,7 @@ def _compiled(mujoco: Any, text: bytes, assets: dict[str, bytes]) -> Any:
             spec.delete(key)  # a pose weighs nothing, and may be of another number of joints
         spec.compiler.fusestatic = False
         spec.compiler.alignfree = False
+        spec.compiler.discardvisual = False
         for joint in spec.joints:
             with contextlib.suppress(AttributeError):
                 joint.align = 0
@@ -111,6 +117,17 @@ def _weighed(mechanism: Mechanism, model: Any, key: Id, number: int) -> Body:
     px, py, pz = model.body_ipos[number].tolist()
     tensor = rotate_tensor(unit_quat((w, x, y, z)), (a, b, c, 0.0, 0.0, 0.0))
     return replace(body, inertial=Inertial(mass, (px, py, pz), tensor))
+
+
+def _fitted(mechanism: Mechanism, mujoco: Any, model: Any, views: list[ShapeView], order: dict[Id, int]) -> dict[Id, RobotEdge]:
+    """The primitives that MuJoCo fits to meshes."""
+    found: dict[Id, RobotEdge] = {}
+    for view in views:
+        place = [other.id for other in mechanism.shapes[view.body]].index(view.id)
+        edge = fitted_shape(mujoco, model, view, int(model.body_geomadr[order.get(view.body, 0)]) + place)
+        if edge is not None:
+            found[view.id] = edge
+    return found
 
 
 def _sprung(mechanism: Mechanism, model: Any, order: dict[Id, int]) -> dict[Id, RobotEdge]:

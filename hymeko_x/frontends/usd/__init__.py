@@ -12,15 +12,19 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd_actuators import PRIM as ACTUATOR
+from hymeko_x.frontends.usd.actuators import read_actuator
 from hymeko_x.frontends.usd.bare_links import hang_bare_links, read_bare_links
 from hymeko_x.frontends.usd.bodies import BODY, read_body, read_mass
 from hymeko_x.frontends.usd.carried import put_carried
+from hymeko_x.frontends.usd.contacts import read_filtered_pairs
 from hymeko_x.frontends.usd.dialects import is_passive_drive, is_world, read_named_mimic
 from hymeko_x.frontends.usd.draft import Draft, api_schemas
 from hymeko_x.frontends.usd.joints import TYPES, ReadJoint, read_joint
 from hymeko_x.frontends.usd.leftovers import gather_leftovers
+from hymeko_x.frontends.usd.lights import read_light
 from hymeko_x.frontends.usd.materials import read_material
-from hymeko_x.frontends.usd.relations import driven_ends, read_camera, read_drives, read_mimic, read_site
+from hymeko_x.frontends.usd.relations import Driven, driven_ends, read_camera, read_drives, read_mimic, read_site
 from hymeko_x.frontends.usd.shapes import SITES, Read, is_shape, read_shape
 from hymeko_x.frontends.usd.stage import Scene, open_scene
 from hymeko_x.frontends.usd.structure import build_trees, note_poses
@@ -51,12 +55,7 @@ def read(source: Source, report: Report) -> Mechanism:
             if prim.GetTypeName() == "Material":
                 read_material(prim, draft)
         _read_shapes(prims, draft)
-        _read_joints(prims, bare, draft)
-        for prim in prims:
-            if prim.GetTypeName() == "Camera":
-                read_camera(prim, draft)
-            elif any(site in api_schemas(prim) for site in SITES):
-                read_site(prim, draft)
+        _read_things(prims, _read_joints(prims, bare, draft), draft)
         note_poses(draft)
         draft.native_meshes = _native_meshes(draft)
         carried = put_carried(draft)
@@ -90,7 +89,25 @@ def _read_shapes(prims: list[Any], draft: Draft) -> None:
         read_mass(draft.scene.stage.GetPrimAtPath(path), body, on.get(body, []), draft)
 
 
-def _read_joints(prims: list[Any], bare: list[Any], draft: Draft) -> None:
+def _read_things(prims: list[Any], ends: dict[str, Driven], draft: Draft) -> None:
+    """What sits on bodies, then what acts on it."""
+    for prim in prims:
+        kind = str(prim.GetTypeName())
+        if kind == "Camera":
+            read_camera(prim, draft)
+        elif kind in words.LIGHTS:
+            read_light(prim, draft)
+        elif any(site in api_schemas(prim) for site in SITES):
+            read_site(prim, draft)
+    for prim in prims:
+        if prim.GetTypeName() == ACTUATOR:
+            read_actuator(prim, ends, draft)
+    for path in draft.bodies:
+        read_filtered_pairs(draft.scene.stage.GetPrimAtPath(path), draft)
+
+
+def _read_joints(prims: list[Any], bare: list[Any], draft: Draft) -> dict[str, Driven]:
+    """The joints, with what acts on them; returns which dof each of their prims is."""
     joints = [joint for prim in prims if str(prim.GetTypeName()) in TYPES for joint in [read_joint(prim, draft)] if joint is not None]
     joints = hang_bare_links(bare, joints, draft)
     joints = build_trees(joints, _articulation_roots(prims, joints, draft), _held(draft), draft)
@@ -102,6 +119,7 @@ def _read_joints(prims: list[Any], bare: list[Any], draft: Draft) -> None:
                 read_drives(prim, end, draft)
             read_mimic(prim, end, ends, draft)
             read_named_mimic(prim, end, named, draft)
+    return ends
 
 
 def _articulation_roots(prims: list[Any], joints: list[ReadJoint], draft: Draft) -> list[Id]:

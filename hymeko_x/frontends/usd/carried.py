@@ -63,6 +63,7 @@ def put_carried(draft: Draft) -> str | None:
             name = str(whole.get("id", ""))
             draft.vertices.pop(WORLD, None)
             _put_tables(ROOT, whole, draft)
+            _put_tables(WORLD, {key.removeprefix("world_"): value for key, value in whole.items() if key.startswith("world_")}, draft)
         carried += [(path, kind, pairs) for kind, pairs in groups.items() if Id(kind, str(pairs.get("id"))) not in edited]
     _forget(replaced, draft)
     for path, kind, pairs in carried:

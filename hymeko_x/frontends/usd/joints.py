@@ -249,7 +249,8 @@ def _effort(prim: Any, unit: float, draft: Draft) -> float | None:
     low, high = (prim.GetAttribute(f"mjc:actuatorfrcrange:{end}") for end in ("min", "max"))
     if not (low and high and low.HasAuthoredValue() and high.HasAuthoredValue()) or low.Get() != -high.Get():
         return None
-    return abs(draft.number(prim, "mjc:actuatorfrcrange:max", 0.0) * unit) + 0.0 * draft.number(prim, "mjc:actuatorfrcrange:min", 0.0)
+    draft.take(prim, "mjc:actuatorfrcrange:min", "mjc:actuatorfrcrange:max")
+    return float(abs(high.Get() * unit))
 
 
 def _first(*values: float) -> float:

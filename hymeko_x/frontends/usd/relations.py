@@ -121,12 +121,10 @@ def _follows(prim: Any) -> bool:
 
 def _polynomial(prim: Any, dof: Dof, draft: Draft) -> tuple[float, ...]:
     unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else draft.scene.metres
-    constant = draft.number(prim, "newton:mimicCoef0", math.nan) * unit
-    factor = draft.number(prim, "newton:mimicCoef1", math.nan)
-    if math.isnan(constant):
-        constant = draft.number(prim, "mjc:coef0", 0.0) * (1.0 if dof.kind is DofKind.HINGE else draft.scene.metres)
-    if math.isnan(factor):
-        factor = draft.number(prim, "mjc:coef1", 1.0)
+    said, factor = draft.get(prim, "newton:mimicCoef0"), draft.get(prim, "newton:mimicCoef1")
+    older = draft.scene.metres if dof.kind is DofKind.SLIDE else 1.0
+    constant = draft.number(prim, "mjc:coef0", 0.0) * older if said is None else said * unit
+    factor = draft.number(prim, "mjc:coef1", 1.0) if factor is None else factor
     higher = [draft.number(prim, f"mjc:coef{power}", 0.0) for power in (2, 3, 4)] if EQUALITY in api_schemas(prim) else []
     while higher and higher[-1] == 0.0:
         higher.pop()
@@ -146,7 +144,7 @@ def read_site(prim: Any, draft: Draft) -> None:
     """A frame at the prim; the shape by which it is shown stays an extra."""
     key = draft.own(prim, "frame")
     draft.vertices[key] = Frame()
-    _mount(prim, key, draft)
+    mount(prim, key, draft)
 
 
 def read_camera(prim: Any, draft: Draft) -> None:
@@ -155,10 +153,11 @@ def read_camera(prim: Any, draft: Draft) -> None:
     focal = prim.GetAttribute("focalLength").Get() or 50.0
     aperture = prim.GetAttribute("verticalAperture").Get() or 15.2908
     draft.vertices[key] = Camera(2.0 * math.atan(words.single(aperture) / (2.0 * words.single(focal))))
-    _mount(prim, key, draft)
+    mount(prim, key, draft)
 
 
-def _mount(prim: Any, key: Id, draft: Draft) -> None:
+def mount(prim: Any, key: Id, draft: Draft) -> None:
+    """The edge that puts a thing where its prim is, on the body above or on the world."""
     found = body_at(prim, draft)
     body, owner = found if found is not None else (None, WORLD)
     if owner == WORLD:

@@ -12,6 +12,7 @@ from hymeko_x.formats import usd as words
 from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bodies import body_at
+from hymeko_x.frontends.usd.contacts import friction_of
 from hymeko_x.frontends.usd.draft import has_api
 from hymeko_x.frontends.usd.materials import bound_material
 from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
@@ -57,7 +58,9 @@ def read_shape(prim: Any, draft: Draft) -> tuple[Id, Read] | None:
     if owner == WORLD:
         draft.vertices.setdefault(WORLD, World())
     draft.take(prim, "@type", *(name for name in prim.GetAuthoredPropertyNames() if name.startswith(_XFORM)))
-    shape = Shape(geometry, _role(prim, draft), name=str(prim.GetName()), rgba=_colour(prim, draft))
+    role = _role(prim, draft)
+    friction = friction_of(prim) if role is not Role.VISUAL else ()
+    shape = Shape(geometry, role, name=str(prim.GetName()), rgba=_colour(prim, draft), friction=friction)
     key = draft.own(prim, "shape")
     if said is not None and said != gprims.chosen(geometry):
         draft.note(key, gprims.NOTATION, str(said))

@@ -101,8 +101,10 @@ def _inertial_ops(sheet: Sheet, spot: Spot) -> list[Op]:
     if inertial is None:
         return []
     notes = sheet.notes(spot.body)
-    attributes = sheet.attributes({"inertial": inertial}, (INERTIAL,), {}, notes, {}, "inertial/")
-    return [Op("leaf", "inertial", {**attributes, **sheet.said(spot.body, "inertial")})]
+    around = spot.around(notes.get("inertial/frame"))
+    group = INERTIAL if around is None else seen_from(INERTIAL, around.pose)
+    attributes = sheet.attributes({"inertial": inertial}, (group,), {}, notes, {}, "inertial/")
+    return [Op("leaf", "inertial", {**attributes, **sheet.said(spot.body, "inertial")}, around=around)]
 
 
 def _body_op(sheet: Sheet, spot: Spot, view: JointView | None, body: Id | None = None) -> Op:

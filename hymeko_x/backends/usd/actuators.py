@@ -1,0 +1,82 @@
+"""Actuators that UsdPhysics' drives cannot say, as MjcActuator prims."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from pxr import Vt
+
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.sheet import point, put
+from hymeko_x.formats import usd_actuators as table
+from hymeko_x.ir.mechanism import numbers_weight
+from hymeko_x.ir.parts import Actuator, Drive
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.usd.prims import Prim
+    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.ir.mechanism import Id, RobotArc
+
+_STATED = ("motor", "general")
+
+
+def write_actuators(sheet: Sheet) -> None:
+    """Each motor and general actuator that no drive says, with what it acts on."""
+    for key, drive, arcs in sheet.mechanism.edges(Drive):
+        source = next((arc.target for arc in arcs if arc.sign > 0), None)
+        actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
+        targets = [(arc, _target(sheet, arc)) for arc in arcs if arc.sign < 0]
+        if source is None or not isinstance(actuator, Actuator) or actuator.kind not in _STATED or source in sheet.homes:
+            continue
+        if not targets or any(target is None for _, target in targets):
+            continue
+        spec = sheet.place(source, "actuators", table.PRIM)
+        _carry_drive(sheet, spec, key)
+        _write_targets(spec, targets, drive)
+        _write_parameters(spec, actuator)
+        sheet.made[spec.path].append("@type")
+
+
+def _carry_drive(sheet: Sheet, spec: Prim, key: Id) -> None:
+    sheet.carried[spec.path]["drive"] = key
+    sheet.homes[key] = spec.path
+
+
+def _target(sheet: Sheet, arc: RobotArc) -> Any | None:
+    """The prim of what an arc means: of one dof where a joint has several."""
+    from hymeko_x.backends.usd.relations import dof_of
+
+    if arc.target.kind != "joint":
+        return sheet.homes.get(arc.target)
+    found = dof_of(sheet, arc)
+    return found[0].path if found is not None and not found[1] else sheet.homes.get(arc.target)
+
+
+def _write_targets(spec: Prim, targets: list[tuple[RobotArc, Any]], drive: Drive) -> None:
+    roles = {"slider", "reference"}
+    for place, (arc, target) in enumerate(targets):
+        name = table.RELATIONSHIPS[arc.role] if arc.role in roles else table.TARGET
+        if place == 0 or arc.role in roles:
+            point(spec, name, target)
+    gear = numbers_weight(targets[0][0])
+    if gear:
+        put(spec, "mjc:gear", T.DoubleArray, Vt.DoubleArray([*gear, *[0.0] * (6 - len(gear))]))
+    if drive.kind == "jointinparent":
+        put(spec, "mjc:jointInParent", T.Bool, True)
+
+
+def _write_parameters(spec: Prim, actuator: Actuator) -> None:
+    """The parameters that the schema has an attribute for."""
+    for name, value in actuator.parameters:
+        if name in table.TOKENS and isinstance(value, str):
+            put(spec, f"mjc:{table.TOKENS[name]}", T.Token, value)
+        elif name in table.VECTORS and not isinstance(value, str):
+            numbers = value if isinstance(value, tuple) else (value,)
+            put(spec, f"mjc:{table.VECTORS[name]}", T.DoubleArray, Vt.DoubleArray([*numbers, *[0.0] * (table.LENGTH - len(numbers))]))
+        elif name in table.RANGES and isinstance(value, tuple) and len(value) == 2:
+            for end, bound in zip(("min", "max"), value, strict=True):
+                put(spec, f"mjc:{table.RANGES[name]}:{end}", T.Double, bound)
+        elif name in table.NUMBERS and isinstance(value, int | float):
+            put(spec, f"mjc:{table.NUMBERS[name]}", T.Double, value)
+        elif name in table.INTEGERS and isinstance(value, int | float):
+            put(spec, f"mjc:{table.INTEGERS[name]}", T.Int, int(value))

@@ -1,0 +1,62 @@
+"""What touches what: filtered pairs of bodies, and physics materials for the friction of colliders."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.sheet import apply, point, put
+from hymeko_x.formats import usd as words
+from hymeko_x.ir.parts import Contact, Role
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.usd.sheet import Sheet
+
+_BINDING = "material:binding:physics"
+
+
+def write_contacts(sheet: Sheet) -> None:
+    """Pairs of bodies that do not collide, on the first of them; each prim carries one of its pairs."""
+    for key, contact, arcs in sheet.mechanism.edges(Contact):
+        paths = [sheet.homes.get(arc.target) for arc in arcs if arc.target.kind == "body"]
+        if contact.kind != "exclude" or len(paths) != 2 or None in paths:
+            continue
+        spec = sheet.prims[paths[0]]
+        apply(spec, "PhysicsFilteredPairsAPI")
+        point(spec, "physics:filteredPairs", paths[1])
+        if "contact" not in sheet.carried[spec.path]:
+            sheet.carried[spec.path]["contact"] = key
+            sheet.homes[key] = spec.path
+
+
+def write_frictions(sheet: Sheet) -> None:
+    """One physics material for all colliders of one friction; those that had a material of their own keep that."""
+    materials: dict[tuple[float, ...], Any] = {}
+    for views in sheet.mechanism.shapes.values():
+        for view in views:
+            extras = sheet.mechanism.extras.get(view.id, ())
+            is_bound = any(extra.format == words.FORMAT and _BINDING in extra.text for extra in extras)
+            if not view.shape.friction or view.shape.role is Role.VISUAL or is_bound or view.id not in sheet.homes:
+                continue
+            if view.shape.friction not in materials:
+                materials[view.shape.friction] = _write_material(sheet, view.shape.friction)
+            spec = sheet.prims[sheet.homes[view.id]]
+            apply(spec, "MaterialBindingAPI")
+            point(spec, _BINDING, materials[view.shape.friction])
+            sheet.made[spec.path] += ["@MaterialBindingAPI", _BINDING]
+
+
+def _write_material(sheet: Sheet, friction: tuple[float, ...]) -> Any:
+    """Sliding friction for UsdPhysics, torsional and rolling friction for MuJoCo and Newton."""
+    scope = sheet.scope("frictions")
+    put(sheet.prims[scope], f"{words.PREFIX}scope", T.Bool, True)
+    sheet.made.pop(scope, None)
+    spec = sheet.define(sheet.free_path(scope, "friction"), "Material")
+    apply(spec, "PhysicsMaterialAPI")
+    put(spec, "physics:staticFriction", T.Float, friction[0])
+    put(spec, "physics:dynamicFriction", T.Float, friction[0])
+    for value, mjc, newton in zip(friction[1:3], ("torsional", "rolling"), ("torsional", "rolling"), strict=False):
+        apply(spec, "MjcMaterialAPI", "NewtonMaterialAPI")
+        put(spec, f"mjc:{mjc}friction", T.Double, value)
+        put(spec, f"newton:{newton}Friction", T.Float, value)
+    return spec.path

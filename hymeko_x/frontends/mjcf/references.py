@@ -1,0 +1,55 @@
+"""References of attributes that have no arc in the IR: they are looked up all the same, once everything is read."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.frontends.mjcf.draft import Draft
+
+_REFERENCES: Mapping[str, tuple[tuple[str, str], ...]] = MappingProxyType(
+    {
+        "body/geom": (("hfield", "hfield"),),
+        "body/site": (("material", "material"), ("mesh", "mesh")),
+        "body/camera": (("target", "body"),),
+        "body/light": (("target", "body"), ("texture", "texture")),
+        "asset/skin": (("material", "material"),),
+        "asset/skin/bone": (("body", "body"),),
+        "deformable/skin": (("material", "material"),),
+        "deformable/skin/bone": (("body", "body"),),
+        "tendon/spatial": (("material", "material"),),
+        "equality/joint": (("joint1", "joint"),),
+        "equality/tendon": (("tendon1", "tendon"), ("tendon2", "tendon")),
+        "equality/flex": (("flex", "flex"),),
+        "equality/flexstrain": (("flex", "flex"),),
+    }
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Reference:
+    """An element that names another one."""
+
+    element: Element
+    kind: str
+    name: str
+
+
+def references_of(element: Element, path: str) -> Iterable[Reference]:
+    """What the element refers to without an arc."""
+    for attribute, kind in _REFERENCES.get(path, ()):
+        name = element.attributes.get(attribute)
+        if name:
+            yield Reference(element, kind, name)
+
+
+def check_references(found: Iterable[Reference], draft: Draft) -> None:
+    """Raises: Refusal (HX040) at the first one that leads nowhere."""
+    for reference in found:
+        if reference.kind != "body" or reference.name != "world":
+            draft.find(reference.element, reference.kind, reference.name)

@@ -1,0 +1,229 @@
+"""What the attributes of one element may not say together: rules that MuJoCo checks element by element.
+
+Each rule gets an element and says what is wrong with it, or None. Numbers and words have been checked before.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.mjcf_tree import COMMENT
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from hymeko_x.formats.mjcf_tree import Element
+
+    Rule = Callable[[Element], str | None]
+
+
+def _numbers(element: Element, name: str) -> list[float]:
+    """The numbers of an attribute; none where it is not there. Whole ones come before spellings that only MuJoCo knows."""
+    try:
+        return [float(word) for word in element.attributes.get(name, "").split()]
+    except ValueError:
+        return []
+
+
+def _less_than(least: float, *names: str) -> Rule:
+    """A rule: none of these attributes is smaller."""
+
+    def rule(element: Element) -> str | None:
+        bad = next((name for name in names if any(number < least for number in _numbers(element, name))), None)
+        return None if bad is None else f"<{element.tag} {bad}> is '{element.attributes[bad]}', expected at least {least:g}"
+
+    return rule
+
+
+def _positive(*names: str) -> Rule:
+    """A rule: these attributes are greater than zero."""
+
+    def rule(element: Element) -> str | None:
+        bad = next((name for name in names if any(number <= 0.0 for number in _numbers(element, name))), None)
+        return None if bad is None else f"<{element.tag} {bad}> is '{element.attributes[bad]}', expected more than 0"
+
+    return rule
+
+
+def _together(*names: str) -> Rule:
+    """A rule: an element has all of these attributes or none."""
+
+    def rule(element: Element) -> str | None:
+        missing = [name for name in names if name not in element.attributes]
+        return None if len(missing) in (0, len(names)) else f"<{element.tag}> needs {' and '.join(names)} together"
+
+    return rule
+
+
+def _one_of(*names: str) -> Rule:
+    """A rule: an element has one of these attributes."""
+
+    def rule(element: Element) -> str | None:
+        return None if any(name in element.attributes for name in names) else f"<{element.tag}> needs {' or '.join(names)}"
+
+    return rule
+
+
+def _only_with(attribute: str, *names: str) -> Rule:
+    """A rule: these attributes stand beside that one."""
+
+    def rule(element: Element) -> str | None:
+        bad = next((name for name in names if name in element.attributes), None)
+        alone = bad is not None and attribute not in element.attributes
+        return f"<{element.tag}> has {bad}, which stands beside {attribute} only" if alone else None
+
+    return rule
+
+
+def _unique(*tags: str) -> Rule:
+    """A rule: there is at most one of each of these elements inside, of all elements where none is named."""
+
+    def rule(element: Element) -> str | None:
+        found = [
+            child.tag for child in element.children if child.tag != COMMENT and (child.tag in tags if tags else child.tag != "default")
+        ]
+        bad = next((tag for tag in found if found.count(tag) > 1), None) if len(found) > len(set(found)) else None
+        return None if bad is None else f"<{element.tag}> has more than one <{bad}>"
+
+    return rule
+
+
+def _eulerseq(element: Element) -> str | None:
+    said = element.attributes.get("eulerseq", "xyz")
+    good = len(said) == 3 and set(said) <= set("xyzXYZ")
+    return None if good else f"<compiler eulerseq> is '{said}', expected three letters of x, y, z, X, Y, Z"
+
+
+def _frame_scale(element: Element) -> str | None:
+    scale = _numbers(element, "scale")
+    if len(set(scale)) > 1 and element.attributes.get("scaling") != "geometry":
+        return '<frame scale> has different factors, which needs scaling="geometry"'
+    return None
+
+
+def _hfield(element: Element) -> str | None:
+    rows, columns = (int(element.attributes.get(name, "0")) for name in ("nrow", "ncol"))
+    heights = element.attributes.get("elevation", "").split()
+    if "file" not in element.attributes and (rows < 2 or columns < 2):
+        return f"<hfield> has {rows} rows and {columns} columns, expected at least 2 of each"
+    if heights and len(heights) != rows * columns:
+        return f"<hfield elevation> has {len(heights)} numbers, expected {rows * columns}"
+    return None
+
+
+def _contact_size(element: Element) -> str | None:
+    said = element.attributes.get("condim", "3")
+    return None if int(said) in (1, 3, 4, 6) else f"<{element.tag} condim> is '{said}', expected 1, 3, 4 or 6"
+
+
+def _layers(element: Element) -> str | None:
+    layers = [child for child in element.children if child.tag == "layer"]
+    if layers and "texture" in element.attributes:
+        return "<material> has a texture and layers, of which it may have one"
+    bad = next((role for layer in layers if (role := layer.attributes.get("role", "")) not in _ROLES), None)
+    return None if bad is None else f"<layer role> is '{bad}', expected one of {', '.join(_ROLES)}"
+
+
+_ROLES = ("rgb", "occlusion", "roughness", "metallic", "opacity", "emissive", "normal", "orm", "rgba", "user")
+
+
+def _numeric(element: Element) -> str | None:
+    room, count = int(element.attributes.get("size", "-1")), len(element.attributes.get("data", "").split())
+    if "size" in element.attributes and room < 1:
+        return f"<numeric size> is '{room}', expected more than 0"
+    return None if room < 0 or count <= room else f"<numeric data> has {count} numbers, and room for {room}"
+
+
+def _filled(element: Element) -> str | None:
+    return None if element.attributes.get("data") else "<text> needs data that is not empty"
+
+
+def _inhabited(element: Element) -> str | None:
+    return None if any(child.tag == "element" for child in element.children) else "<tuple> is empty"
+
+
+def _gains(element: Element) -> str | None:
+    both = "kv" in element.attributes and "dampratio" in element.attributes
+    return f"<{element.tag}> has kv and dampratio, of which it may have one" if both else None
+
+
+def _springdamper(element: Element) -> str | None:
+    found = _numbers(element, "springdamper")
+    bad = any(found) and min(found) <= 0.0
+    return f"<joint springdamper> is '{element.attributes['springdamper']}', expected two numbers more than 0" if bad else None
+
+
+def _springlength(element: Element) -> str | None:
+    found = _numbers(element, "springlength")
+    bad = len(found) == 2 and found[0] > found[1]
+    return f"<{element.tag} springlength> is '{element.attributes['springlength']}', expected the lower number first" if bad else None
+
+
+def _skin(element: Element) -> str | None:
+    points = len(element.attributes.get("vertex", "").split()) // 3
+    faces = _numbers(element, "face")
+    bad = "file" not in element.attributes and bool(faces) and not (min(faces) >= 0.0 and max(faces) < points)
+    return f"<skin face> refers to a point that is not there; there are {points}" if bad else None
+
+
+_DIMENSIONS = MappingProxyType({"axis": "3", "quaternion": "4"})
+
+
+def _datatype(element: Element) -> str | None:
+    kind = element.attributes.get("datatype", "")
+    wanted = _DIMENSIONS.get(kind)
+    good = wanted is None or element.attributes.get("dim") == wanted
+    return None if good else f"<user datatype> is '{kind}', which needs dim=\"{wanted}\""
+
+
+def _attached(element: Element) -> str | None:
+    sites, bodies = ("site1" in element.attributes, "site2" in element.attributes), "body1" in element.attributes
+    if all(sites) or (bodies and (element.tag == "weld" or "anchor" in element.attributes)):
+        return None
+    return f"<{element.tag}> needs site1 and site2, or body1{' and anchor' if element.tag == 'connect' else ''}"
+
+
+_NOT_NEGATIVE = _less_than(0.0, "cutoff", "noise")
+_COUNTS = tuple(f"nuser_{kind}" for kind in ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor"))
+_TRANSMITS = (_only_with("site", "refsite"), _only_with("cranksite", "slidersite", "cranklength"))
+
+_RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
+    {
+        "compiler": (_eulerseq,),
+        "size": (_less_than(-1.0, *_COUNTS, "njmax", "nconmax", "nstack"),),
+        "statistic": (_positive("extent"),),
+        "default": (_unique(),),
+        "body": (_unique("inertial", "freejoint"),),
+        "body/frame": (_positive("scale"), _less_than(0.0, "massscale"), _frame_scale),
+        "body/joint": (_springdamper,),
+        "body/geom": (_contact_size,),
+        "contact/pair": (_contact_size,),
+        "asset/hfield": (_hfield, _positive("size")),
+        "asset/material": (_one_of("name"), _layers),
+        "custom/numeric": (_numeric,),
+        "custom/text": (_filled,),
+        "custom/tuple": (_inhabited,),
+        "asset/skin": (_skin,),
+        "deformable/skin": (_skin,),
+        "equality/connect": (_attached,),
+        "equality/weld": (_attached,),
+        "tendon/fixed": (_less_than(0.0, "armature"), _springlength),
+        "tendon/spatial": (_less_than(0.0, "armature"), _springlength),
+        "tendon/spatial/pulley": (_positive("divisor"),),
+        "actuator/position": (_gains, _less_than(0.0, "kv", "dampratio")),
+        "actuator/intvelocity": (_gains, _less_than(0.0, "kv", "dampratio")),
+        "sensor/user": (_datatype, _together("objtype", "objname")),
+        **dict.fromkeys(("sensor/distance", "sensor/normal", "sensor/fromto"), (_one_of("geom1", "body1"), _one_of("geom2", "body2"))),
+    }
+)
+
+
+def complaint(element: Element, path: str) -> str | None:
+    """What MuJoCo would refuse in this element, which stands at this place of the schema; None when it is fine."""
+    rules = _RULES.get(path, ())
+    if path.startswith("sensor/"):
+        rules = (*rules, _NOT_NEGATIVE, *((_together("reftype", "refname"),) if path.startswith("sensor/frame") else ()))
+    elif path.startswith("actuator/"):
+        rules = (*rules, *_TRANSMITS)
+    return next((said for rule in rules if (said := rule(element)) is not None), None)

@@ -1,0 +1,95 @@
+"""What acts and shines: MjcActuator prims, filtered pairs, friction, lights, in and out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hymeko_x import formats, pipeline
+from hymeko_x.diagnostics import Report
+from hymeko_x.frontends import mjcf
+from hymeko_x.ir.legalize import Options
+from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.parts import Actuator, Contact, Drive, Light
+from hymeko_x.source import NoFiles, Source
+from tests.usd.stages import opened, read_text
+from tests.usd.test_kept import missing
+from tests.usd.test_read import ENDS, PLACE, body, joint, robot
+
+ACTUATOR = (
+    'def MjcActuator "act"\n{{\n    rel mjc:target = </robot/j>\n    uniform double[] mjc:gear = [50, 0, 0, 0, 0, 0]\n'
+    "    uniform double mjc:ctrlRange:min = -1\n    uniform double mjc:ctrlRange:max = 2\n{more}}}\n"
+)
+SERVO = (
+    '    uniform token mjc:biasType = "affine"\n    uniform double[] mjc:gainPrm = [7, 0, 0, 0, 0, 0, 0, 0, 0, 0]\n'
+    "    uniform double[] mjc:biasPrm = [0, -7, -1, 0, 0, 0, 0, 0, 0, 0]\n"
+)
+
+
+def two(*more: str) -> str:
+    return robot(body("a"), body("b"), joint("PhysicsRevoluteJoint", "j", ENDS), *more)
+
+
+@pytest.mark.parametrize(
+    ("more", "actuator"),
+    [
+        ("", Actuator("motor", (("ctrlrange", (-1.0, 2.0)),))),
+        (
+            SERVO,
+            Actuator("general", (("biastype", "affine"), ("gainprm", (7.0,)), ("biasprm", (0.0, -7.0, -1.0)), ("ctrlrange", (-1.0, 2.0)))),
+        ),
+    ],
+)
+def test_an_actuator_of_mujoco_drives_its_joint(more: str, actuator: Actuator, tmp_path: Path) -> None:
+    text = two(ACTUATOR.format(more=more))
+    mechanism = read_text(text)
+    assert mechanism.graph.vertices[Id("actuator", "act")] == actuator
+    ((_, _, arcs),) = mechanism.edges(Drive)
+    assert [(arc.target, arc.sign, arc.weight) for arc in arcs] == [(Id("actuator", "act"), 1, None), (Id("joint", "j"), -1, (50.0,))]
+    assert missing(text, tmp_path) == {}
+
+
+def test_bodies_that_are_filtered_against_each_other_do_not_collide(tmp_path: Path) -> None:
+    text = robot(body("a", "    rel physics:filteredPairs = [</robot/b>, </robot/c>]\n", "PhysicsFilteredPairsAPI"), body("b"), body("c"))
+    found = [(contact.kind, [arc.target.name for arc in arcs]) for _, contact, arcs in read_text(text).edges(Contact)]
+    assert found == [("exclude", ["a", "b"]), ("exclude", ["a", "c"])]
+    assert missing(text, tmp_path) == {}
+
+
+def test_a_light_keeps_its_kind_and_colour_and_everything_else_of_it(tmp_path: Path) -> None:
+    spot = '    def SphereLight "lamp" (prepend apiSchemas = ["ShapingAPI"])\n    {\n        color3f inputs:color = (1, 0.5, 0.25)\n'
+    text = robot(body("a", spot + "        float inputs:intensity = 30\n" + PLACE.format(x=0, y=0, z=1) + "    }\n"))
+    mechanism = read_text(text)
+    assert mechanism.graph.vertices[Id("light", "lamp")] == Light("spot", (1.0, 0.5, 0.25))
+    assert missing(text, tmp_path) == {}
+
+
+MODEL = """<mujoco><worldbody>
+  <body name="a"><joint name="j"/><geom name="g" size="0.1" friction="0.5 0.02 0.003"/>
+    <light name="sun" type="directional" diffuse="1 0.5 0.25"/>
+    <body name="b"><joint name="k"/><geom name="h" size="0.1" pos="1 0 0" friction="0.5 0.02 0.003"/></body></body>
+  <body name="c"><freejoint/><geom name="i" size="0.1" pos="0 0 5"/></body></worldbody>
+  <contact><exclude body1="a" body2="c"/></contact>
+  <actuator><motor name="m" joint="j" gear="3" ctrlrange="-1 1"/>
+    <general name="n" joint="k" biastype="affine" gainprm="2" biasprm="0 -2"/></actuator>
+</mujoco>"""
+
+
+def test_what_mjcf_says_stands_in_the_schemas_of_the_stage(tmp_path: Path) -> None:
+    mechanism = mjcf.read(Source("m.xml", MODEL.encode()), Report())
+    data = pipeline.write(mechanism, formats.USD, Options(), NoFiles(), Report()).main
+    stage = opened(data, tmp_path)
+    root = stage.GetDefaultPrim().GetPath()
+    motor, general = (stage.GetPrimAtPath(f"{root}/actuators/{name}") for name in "mn")
+    assert motor.GetTypeName() == general.GetTypeName() == "MjcActuator"
+    assert [str(path) for path in motor.GetRelationship("mjc:target").GetTargets()] == [f"{root}/joints/j"]
+    assert (motor.GetAttribute("mjc:gear").Get()[0], motor.GetAttribute("mjc:ctrlRange:max").Get()) == (3.0, 1.0)
+    assert list(general.GetAttribute("mjc:biasPrm").Get()) == [0.0, -2.0, *[0.0] * 8]
+    assert [str(path) for path in stage.GetPrimAtPath(f"{root}/a").GetRelationship("physics:filteredPairs").GetTargets()] == [f"{root}/c"]
+    bound = [stage.GetPrimAtPath(f"{root}/{path}").GetRelationship("material:binding:physics").GetTargets() for path in ("a/g", "b/h")]
+    assert bound[0] == bound[1]
+    material = stage.GetPrimAtPath(bound[0][0])
+    assert material.GetAttribute("physics:dynamicFriction").Get() == 0.5
+    assert (material.GetAttribute("mjc:torsionalfriction").Get(), material.GetAttribute("mjc:rollingfriction").Get()) == (0.02, 0.003)
+    assert stage.GetPrimAtPath(f"{root}/a/sun").GetTypeName() == "DistantLight"
