@@ -21,6 +21,7 @@ from hymeko_x.ir.legalize_loops import anchor_closures, close_by_points, open_se
 from hymeko_x.ir.legalize_names import make_names_usable, name_assets_once
 from hymeko_x.ir.legalize_native import drop_shapes_of_mujoco, drop_stale_keyframes
 from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
+from hymeko_x.ir.legalize_solids import fill_tensors
 from hymeko_x.ir.legalize_urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
 from hymeko_x.ir.legalize_urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
 from hymeko_x.ir.legalize_usd import choose_layout
@@ -53,6 +54,7 @@ _USD: tuple[Rule, ...] = (make_names_usable, hold_or_free_open_bases, expand_scr
 _URDF: tuple[Rule, ...] = (
     make_names_usable,
     drop_shapes_of_mujoco,
+    fill_tensors,
     expand_screws,
     chain_dofs,
     hold_or_free_open_bases,
@@ -83,6 +85,7 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             split_overfull_joints,
             make_limits_intervals,
             make_couplings_scalar,
+            fill_tensors,
             make_tensors_physical,
             give_moving_bodies_mass,
             drop_empty_shapes,

@@ -14,6 +14,7 @@ from hymeko_x.verify.model import WORLD, Array, Body, Kind, KinematicModel
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Iterator, Sequence
 
+_MOST_CARRIERS = 8  # between two bodies: no joint has more than six dofs, and a ball below three slides is all that takes more
 _SAME_PLACE = 1e-5  # of a body that must have been renamed, because it is where the other was and weighs as much
 
 
@@ -80,10 +81,16 @@ def _pair_by_place(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], 
         rivals = [k for k in a.children[parent] if k not in pairs]
         if not rivals:
             continue
-        free = [limb for j in b.children[pairs[parent]] for limb in _limbs(b, j, taken)]
-        crowded = len(rivals) != sum(limb.direct for limb in free)
+        free = _Free([limb for j in b.children[pairs[parent]] for limb in _limbs(b, j, taken)])
+        crowded = len(rivals) != free.count
         for limbs in [list(_limbs(a, k, pairs)) for k in rivals]:
-            _pair_limbs((a, b), limbs, free, pairs, taken, crowded=crowded)
+            for limb in limbs:  # the first of a chain of bodies that has a counterpart gets it
+                other = _counterpart((a, b), limb, free, crowded=crowded)
+                if other is not None:
+                    pairs[limb.body] = other.body
+                    taken.add(other.body)
+                    free.remove(other)
+                    break
 
 
 def _limbs(model: KinematicModel, body: int, matched: Container[int]) -> Iterator[_Limb]:
@@ -91,54 +98,62 @@ def _limbs(model: KinematicModel, body: int, matched: Container[int]) -> Iterato
     names: tuple[str, ...] = ()
     kinds: tuple[Kind, ...] = ()
     place = np.eye(4)
-    direct = True
-    while body not in matched:
+    for depth in range(_MOST_CARRIERS + 1):
+        if body in matched:
+            return
         part = model.bodies[body]
         names, kinds, place = names + _joint_names(part), kinds + _hinged(part), place @ part.joint.placement
-        yield _Limb(body, names, kinds, place, part.mass, direct)
+        yield _Limb(body, names, kinds, place, part.mass, depth == 0)
         if not only_carries(model, body):
             return
-        direct = False
         (body,) = model.children[body]
 
 
-def _pair_limbs(
-    models: tuple[KinematicModel, KinematicModel],
-    limbs: Sequence[_Limb],
-    free: Sequence[_Limb],
-    pairs: dict[int, int],
-    taken: set[int],
-    *,
-    crowded: bool,
-) -> None:
-    """The first of a chain of bodies that has a counterpart gets it."""
-    for limb in limbs:
-        other = _counterpart(models, limb, [other for other in free if other.body not in taken], crowded=crowded)
-        if other is not None:
-            pairs[limb.body] = other.body
-            taken.add(other.body)
-            return
+class _Free:
+    """Limbs that wait for a counterpart, by the names of their joints and by how they move."""
+
+    def __init__(self, limbs: Sequence[_Limb]) -> None:
+        self.count = sum(limb.direct for limb in limbs)
+        self._named: dict[str, list[_Limb]] = {}
+        self._moving: dict[tuple[Kind, ...], list[_Limb]] = {}
+        for limb in limbs:
+            self._moving.setdefault(limb.kinds, []).append(limb)
+            for name in set(limb.names):
+                self._named.setdefault(name, []).append(limb)
+
+    def remove(self, limb: _Limb) -> None:
+        """One that has its counterpart now."""
+        self._moving[limb.kinds].remove(limb)
+        for name in set(limb.names):
+            self._named[name].remove(limb)
+
+    def named(self, limb: _Limb) -> list[_Limb]:
+        """Those with the same joints; dofs may be nameless on one side."""
+        names = set(limb.names)
+        near = {other.body: other for name in names for other in self._named.get(name, ())}
+        return [other for other in near.values() if names <= set(other.names) or names >= set(other.names)]
+
+    def alike(self, limb: _Limb) -> Iterator[_Limb]:
+        """Those that move in the same way."""
+        yield from self._moving.get(limb.kinds, ())
 
 
-def _counterpart(models: tuple[KinematicModel, KinematicModel], limb: _Limb, free: Sequence[_Limb], *, crowded: bool) -> _Limb | None:
-    """The one of ``free`` that the limb must be: of the same joints, else alike; where both have names, at the same place as well."""
-    named = [other for other in free if limb.names and other.names and _nested(set(limb.names), set(other.names))]
+def _counterpart(models: tuple[KinematicModel, KinematicModel], limb: _Limb, free: _Free, *, crowded: bool) -> _Limb | None:
+    """The one that the limb must be: of the same joints, else alike; where both have names, at the same place as well."""
+    named = free.named(limb)
     if named:
         return min(named, key=lambda other: (limb.kinds != other.kinds, limb.names != other.names, _distance(limb, other)))
-    alike = [
-        other
-        for other in free
-        if limb.kinds == other.kinds
-        and (
-            _one_is_unnamed(models, limb, other) or (not crowded and limb.direct and other.direct and _distance(limb, other) < _SAME_PLACE)
-        )
-    ]
-    return min(alike, key=lambda other: _distance(limb, other), default=None)
-
-
-def _nested(a: set[str], b: set[str]) -> bool:
-    """Whether one holds the other: dofs may be nameless on one side."""
-    return a <= b or b <= a
+    nearest: tuple[float, _Limb] | None = None
+    for other in free.alike(limb):
+        distance = _distance(limb, other)
+        renamed = not crowded and limb.direct and other.direct and distance < _SAME_PLACE
+        if not renamed and not _one_is_unnamed(models, limb, other):
+            continue
+        if nearest is None or distance < nearest[0]:
+            nearest = distance, other
+        if distance == 0.0:
+            break
+    return nearest[1] if nearest else None
 
 
 def _one_is_unnamed(models: tuple[KinematicModel, KinematicModel], limb: _Limb, other: _Limb) -> bool:

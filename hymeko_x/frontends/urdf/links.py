@@ -28,7 +28,10 @@ _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 def read_link(node: Node, draft: Draft) -> None:
     """Add a link with its shapes: visuals first, then collisions, each in their order."""
     key = take_name(node, "body", draft.links, draft)
-    draft.vertices[key] = Body(_read_inertial(node, draft))
+    inertial = _read_inertial(node, draft)
+    draft.vertices[key] = Body(inertial)
+    if inertial is not None and inertial.tensor is None:
+        draft.note(key, words.TENSOR, words.UNSAID)
     for tag, role in words.ROLES.items():
         for shape in node.children(tag):
             _read_shape(shape, role, key, draft)
