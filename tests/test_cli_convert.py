@@ -327,10 +327,10 @@ def test_what_vanishes_is_dropped_and_what_changes_is_approximated(folder: Path,
         ARM.replace('<link name="tip">', '<link name="tip"><visual><geometry><sphere radius="1"/></geometry></visual>').encode()
     )
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: lossy)
-    assert [loss.fate for loss in hx.convert("arm.urdf", "more.urdf").losses or ()] == ["approximated"]
+    assert [loss.fate for loss in hx.convert("arm.urdf", "more.urdf", pure=True).losses or ()] == ["approximated"]
     (folder / "arm.urdf").write_bytes(lossy.main)
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: Package(ARM.encode()))
-    assert [loss.fate for loss in hx.convert("arm.urdf", "less.urdf").losses or ()] == ["dropped"]
+    assert [loss.fate for loss in hx.convert("arm.urdf", "less.urdf", pure=True).losses or ()] == ["dropped"]
 
 
 # ---- diff and info -------------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""The README's session is what really happens. `python tests/test_readme.py` writes the present output into it."""
+"""The sessions in the README and in the docs are what really happens. `python tests/test_readme.py` writes the present output into them."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 README = Path(__file__).parents[1] / "README.md"
+PAGES = (README, README.parent / "docs" / "lossless.md")
 BLOCK = re.compile(r"```(\w+)(?: (\S+))?\n(.*?)```\n", re.DOTALL)
 
 
@@ -27,7 +28,7 @@ def shell(command: str, folder: Path) -> str:
 
 
 def session(text: str, folder: Path) -> str:
-    """The README with every command's output as it is now; the files that it shows are put into the folder."""
+    """The page with every command's output as it is now; the files that it shows are put into the folder."""
 
     def rerun(block: re.Match[str]) -> str:
         language, name, content = block.groups()
@@ -42,8 +43,9 @@ def session(text: str, folder: Path) -> str:
     return BLOCK.sub(rerun, text)
 
 
-def test_the_session_in_the_readme_is_what_really_happens(tmp_path: Path) -> None:
-    text = README.read_text("utf-8")
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_the_session_in_a_page_is_what_really_happens(page: Path, tmp_path: Path) -> None:
+    text = page.read_text("utf-8")
     assert session(text, tmp_path) == text
 
 
@@ -63,5 +65,6 @@ def test_the_python_in_the_readme_is_what_really_happens(tmp_path: Path, monkeyp
 if __name__ == "__main__":
     import tempfile
 
-    with tempfile.TemporaryDirectory() as folder:
-        README.write_text(session(README.read_text("utf-8"), Path(folder)), "utf-8")
+    for page in PAGES:
+        with tempfile.TemporaryDirectory() as folder:
+            page.write_text(session(page.read_text("utf-8"), Path(folder)), "utf-8")

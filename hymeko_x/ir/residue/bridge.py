@@ -40,7 +40,8 @@ def _with_world(mechanism: Mechanism) -> Mechanism:
 def other_words(bridge: Bridge) -> Iterator[Difference]:
     """What the image says in other words, as differences: names, chains, shapes said twice, frames and coordinates."""
     for old, new in bridge.names:
-        yield Difference(new, "name", repr(new.name), repr(old.name))
+        if old.name != new.name:
+            yield Difference(new, "name", repr(new.name), repr(old.name))
     for fold in bridge.folds:
         yield Difference(fold.joint, "chain", fold.joint.name, " ".join(key.name for key in fold.chain))
     for shape, twin in bridge.joins:
