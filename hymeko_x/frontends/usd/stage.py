@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import posixpath
+import re
 import tempfile
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -18,6 +19,8 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.frontends.usd.size import check_depth, check_size
+from hymeko_x.frontends.usd.types import drop_unknown_types
 from hymeko_x.frontends.usd.unpack import lay_out
 
 if TYPE_CHECKING:
@@ -57,16 +60,20 @@ def open_scene(source: Source, report: Report) -> Iterator[Scene]:
         os.makedirs(base)
         main = lay_out(source, base)
         layers = _gather(main, base, source, report)
+        check_size(layers, MOST_PRIMS, source)
+        drop_unknown_types(layers, source, report)
         stage = _composed(main, source)
         _choose_variants(stage, source)
         _expand_instances(stage, source)
-        _say_composition_errors(stage, source, report)
+        _say_composition_errors(stage, base, source, report)
         metres, up = UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage)
         turn = Gf.Rotation(Gf.Vec3d(1, 0, 0), 90.0 if up == UsdGeom.Tokens.y else 0.0)
         world = Gf.Matrix4d().SetScale(metres) * Gf.Matrix4d().SetRotate(turn)
         flat = stage.GetRootLayer() if _is_plain(stage) else stage.Flatten(False)
         try:
             yield Scene(stage, world, UsdPhysics.GetStageKilogramsPerUnit(stage), metres, base, flat)
+        except Tf.ErrorException as error:  # whatever USD complains of while somebody asks it something
+            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, base)}", Origin(source.name)) from error
         finally:
             del stage, layers, flat
 
@@ -80,7 +87,10 @@ def _composed(main: str, source: Source) -> Any:
 
 def _words(error: Exception, folder: str) -> str:
     """The first sentence of what USD says, without its own source files and our temporary folder."""
-    text = str(error)
+    try:
+        text = str(error)
+    except UnicodeDecodeError:  # USD quotes the bytes of the file
+        return "it is not UTF-8"
     said = text.rsplit(" : ", 1)[-1].split(" matching ")[0] if " : " in text else text
     return " ".join(said.replace(folder + "/", "").strip("' \n\t").split())[:300] or "no reason is given"
 
@@ -109,6 +119,7 @@ def _gather(main: str, base: str, source: Source, report: Report) -> list[Any]:
 
 
 def _layer(path: str, base: str, source: Source, report: Report, *, is_main: bool) -> Any | None:
+    check_depth(path, source)
     try:
         return Sdf.Layer.FindOrOpen(path)
     except Tf.ErrorException as error:
@@ -224,6 +235,10 @@ def _expand_instances(stage: Any, source: Source) -> None:
     raise refuse(codes.TOO_LARGE, f"instances are nested deeper than {MOST_NESTED_INSTANCES} levels", Origin(source.name))
 
 
-def _say_composition_errors(stage: Any, source: Source, report: Report) -> None:
+_OURS = re.compile(r",?@anon:0x[0-9a-f]+:[^@]*@")
+
+
+def _say_composition_errors(stage: Any, base: str, source: Source, report: Report) -> None:
     for error in stage.GetCompositionErrors()[:20]:
-        report.error(codes.UNDEFINED_REFERENCE, f"composition: {' '.join(str(error).split())[:300]}", Origin(source.name))
+        said = _OURS.sub("", str(error).replace(base + "/", ""))
+        report.error(codes.UNDEFINED_REFERENCE, f"composition: {' '.join(said.split())[:300]}", Origin(source.name))
