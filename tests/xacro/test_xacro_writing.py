@@ -14,6 +14,7 @@ import pytest
 import xacro
 from hypothesis import HealthCheck, given, settings
 from lxml import etree
+from tests.strategies import mechanisms
 
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.backends import urdf
@@ -25,7 +26,6 @@ from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.source import Source
 from tests.conftest import RealRobots
-from tests.strategies import mechanisms
 from tests.urdf.samples import load, robot
 from tests.urdf.test_laws import sayable
 
