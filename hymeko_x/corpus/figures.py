@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,7 +18,15 @@ if TYPE_CHECKING:
     from hymeko_x.corpus.statistics import Numbers, PairRow
     from hymeko_x.corpus.tables import Tables
 
-_SETTINGS = {"svg.hashsalt": "hymeko-x", "svg.fonttype": "path", "font.family": "DejaVu Sans", "font.size": 9.0, "axes.grid": True, "grid.alpha": 0.3}
+_SETTINGS: Any = {
+    "backend": "Agg",
+    "svg.hashsalt": "hymeko-x",
+    "svg.fonttype": "path",
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+}
 _COLOURS = {"urdf": "#1f77b4", "mjcf": "#d62728", "xacro": "#9467bd", "usd": "#2ca02c", HYMEKO: "#ff7f0e"}
 _OTHER = "#7f7f7f"
 
@@ -34,7 +42,7 @@ def figures(tables: Tables) -> Iterator[tuple[str, bytes]]:
         ("sizes", lambda: _scatter(frame)),
         ("pairs", lambda: _matrix(pair_rows(tables))),
     )
-    with mpl.rc_context({"backend": "Agg", **_SETTINGS}):
+    with mpl.rc_context(_SETTINGS):
         for name, draw in drawings:
             figure = draw()
             yield f"{name}.svg", _saved(figure, "svg", {"Date": None, "Creator": None})
@@ -117,7 +125,8 @@ def _scatter(frame: pl.DataFrame) -> Figure:
         own = frame.filter(pl.col("format") == source)
         both = own.drop_nulls([HYMEKO, column]) if column in own.columns else own.head(0)
         if len(both):
-            axis.scatter(both[column].to_numpy(), both[HYMEKO].to_numpy(), s=9, alpha=0.6, color=_COLOURS[source], label=f"{source} ({len(both)})")
+            label = f"{source} ({len(both)})"
+            axis.scatter(both[column].to_numpy(), both[HYMEKO].to_numpy(), s=9, alpha=0.6, color=_COLOURS[source], label=label)
     ends = np.array([2e2, 1e6])
     axis.plot(ends, ends, color="black", linewidth=0.8)
     axis.plot(ends, ends / 2, color="black", linewidth=0.8, linestyle=":")

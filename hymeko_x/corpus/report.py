@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x.corpus import statistics
 from hymeko_x.corpus.figures import figures
-from hymeko_x.corpus.statistics import FOUND, MEASURES, PRINTED
+from hymeko_x.corpus.statistics import MEASURES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -75,12 +75,13 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
     share = f"{100.0 * same / asked:.1f} %" if asked else "none"
     parts = [
         "# What a batch run measured",
-        f"{len(robots)} files, {len(robots.filter(robots['status'] == 'done'))} read, {accepted} accepted by the reference reader of their format.",
+        f"{len(robots)} files, {len(robots.filter(robots['status'] == 'done'))} read, "
+        f"{accepted} accepted by the reference reader of their format.",
         f"Of {asked} conversions of accepted files {same} give the same robot ({share}).",
         "## Pairs of formats",
         "Of the files that the reference reader of the source accepts, those that convert into the same robot.",
         matrix(rows),
-        _table(["from", "into", "accepted", "converted", "same", "different", "not comparable", "no loss", "losses (median)"], _pair_lines(rows)),
+        _table(_PAIR_HEAD, _pair_lines(rows)),
         "## Lengths (the paper's table 4)",
         "Characters without white space and comments; mean and standard deviation, of the robots that were found in each format.",
         _table(["found in", "robots", "HyMeKo", "compared with", "length"], _length_lines(short)),
@@ -100,6 +101,7 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
     return "\n\n".join(parts) + "\n"
 
 
+_PAIR_HEAD = ["from", "into", "accepted", "converted", "same", "different", "not comparable", "no loss", "losses (median)"]
 _SHORT_HEAD = ["found in", "compared with", "robots", "shorter", "sums", "median", "95 %", "p", "effect"]
 
 
@@ -109,10 +111,8 @@ def _table(head: Sequence[str], lines: Sequence[Sequence[Any]]) -> str:
 
 
 def _pair_lines(rows: Sequence[PairRow]) -> list[list[str]]:
-    return [
-        [row.source, row.target, *map(str, (row.accepted, row.converted, row.same, row.different, row.not_comparable, row.exact)), f"{row.losses:g}"]
-        for row in rows
-    ]
+    counts = ("accepted", "converted", "same", "different", "not_comparable", "exact")
+    return [[row.source, row.target, *(str(getattr(row, name)) for name in counts), f"{row.losses:g}"] for row in rows]
 
 
 def _length_lines(short: Sequence[Shortness]) -> list[list[str]]:
@@ -125,7 +125,7 @@ def _length_lines(short: Sequence[Shortness]) -> list[list[str]]:
             f"{row.mean:.0f} ± {row.deviation:.0f}",
         ]
         for row in short
-        if row.measure == "code" and (row.state == FOUND or row.state == PRINTED)
+        if row.measure == "code"
     ]
 
 
@@ -157,13 +157,16 @@ def costs_page(tables: Tables) -> str:
     steps = statistics.steps(tables)
     files = max(1, len(tables.robots))
     total = float(tables.costs["processor"].sum())
-    return "\n\n".join(
-        [
-            "# What the run cost",
-            f"{files} files took {total:.0f} s of processor time, {total / files:.2f} s each; "
-            f"the most memory of one process was {float(tables.costs['megabytes'].max() or 0):.0f} MB.",  # type: ignore[arg-type]
-            _table(steps.columns, steps.rows()),
-            "The slowest files:",
-            _table(["file", "processor", "megabytes", "step"], statistics.slowest(tables).rows()),
-        ]
-    ) + "\n"
+    return (
+        "\n\n".join(
+            [
+                "# What the run cost",
+                f"{files} files took {total:.0f} s of processor time, {total / files:.2f} s each; "
+                f"the most memory of one process was {float(tables.costs['megabytes'].max() or 0):.0f} MB.",  # type: ignore[arg-type]
+                _table(steps.columns, steps.rows()),
+                "The slowest files:",
+                _table(["file", "processor", "megabytes", "step"], statistics.slowest(tables).rows()),
+            ]
+        )
+        + "\n"
+    )

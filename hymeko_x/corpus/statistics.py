@@ -166,10 +166,11 @@ def pair_rows(tables: Tables) -> tuple[PairRow, ...]:
     for (source, target), all_legs in sorted(legs.group_by("source", "target")):
         accepted = all_legs.filter(pl.col("engine") == "done")
         done = accepted.filter(pl.col("status") == "done")
-        counts = {word: len(done.filter(pl.col("verdict") == word)) for word in ("same", "different", "not comparable")}
+        same, different, unknown = (len(done.filter(pl.col("verdict") == word)) for word in ("same", "different", "not comparable"))
         exact = len(done.filter((pl.col("losses") == 0) & (pl.col("verdict") == "same")))
         median = float(np.median(done["losses"].drop_nulls().to_numpy())) if done["losses"].drop_nulls().len() else 0.0
-        rows.append(PairRow(str(source), str(target), len(all_legs), len(accepted), len(done), *counts.values(), exact, median))
+        counts = (len(all_legs), len(accepted), len(done), same, different, unknown, exact)
+        rows.append(PairRow(str(source), str(target), *counts, median))
     return tuple(rows)
 
 
@@ -191,9 +192,10 @@ def failures(tables: Tables) -> pl.DataFrame:
     legs = tables.legs.join(engines, on="key", how="left").filter(pl.col("engine") == "done")
     bad = legs.filter((pl.col("status") != "done") | ((pl.col("verdict") != "same") & (pl.col("verdict") != "")))
     failed = pl.col("failed").list.eval(pl.element().struct.field("name")).list.join("; ")
-    cause = pl.when(pl.col("status") != "done").then(pl.col("status") + ": " + pl.col("reason"))
-    cause = cause.when(pl.col("verdict") == "different").then(pl.lit("different: ") + failed)
-    cause = cause.otherwise(pl.lit("not comparable: ") + pl.col("verdict_reason"))
+    ended = pl.col("status") + ": " + pl.col("reason")
+    differs = pl.lit("different: ") + failed
+    unknown = pl.lit("not comparable: ") + pl.col("verdict_reason")
+    cause = pl.when(pl.col("status") != "done").then(ended).when(pl.col("verdict") == "different").then(differs).otherwise(unknown)
     return bad.select("key", "source", "target", cause.alias("cause")).sort("key", "target")
 
 

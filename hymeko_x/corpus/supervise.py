@@ -74,10 +74,11 @@ class Processes:
         from pebble.concurrent import process
 
         start = process(timeout=plan.limits.seconds, mp_context=self._context)(task)
-        future = start(case, plan, folder, scratch, steps)
+        future: ProcessFuture[None] = start(case, plan, folder, scratch, steps)
         self._running.add(future)
         try:
-            return future.exception()
+            error: BaseException | None = future.exception()
+            return error
         finally:
             self._running.discard(future)
 

@@ -5,7 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 LINK = "<link name='{}'><inertial><mass value='1'/><inertia ixx='1' ixy='0' ixz='0' iyy='1' iyz='0' izz='1'/></inertial></link>"
-JOINT = "<joint name='j{0}' type='revolute'><parent link='l{0}'/><child link='l{1}'/><axis xyz='0 0 1'/><limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+JOINT = (
+    "<joint name='j{0}' type='revolute'><parent link='l{0}'/><child link='l{1}'/><axis xyz='0 0 1'/>"
+    "<limit lower='-1' upper='1' effort='1' velocity='1'/></joint>"
+)
 
 
 def urdf(name: str, joints: int) -> str:

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -53,10 +54,8 @@ def start(words: list[str], environment: dict[str, str]) -> subprocess.Popen[byt
 
 def end(node: subprocess.Popen[bytes]) -> None:
     """Kill a node with everything that it started."""
-    try:
+    with suppress(ProcessLookupError):
         os.killpg(node.pid, signal.SIGKILL)
-    except ProcessLookupError:
-        pass
     node.wait()
 
 
@@ -76,9 +75,8 @@ def test_a_node_that_dies_changes_nothing(cluster: tuple[str, subprocess.Popen[b
     robots = fill(tmp_path / "toys", robots=8)
     words = [sys.executable, "-m", "hymeko_x.cli", "corpus", "run", "--from", str(robots), "--pairs", PAIRS, "--verify"]
     results = tmp_path / "ray"
-    with subprocess.Popen(
-        [*words, "--engine", "ray", "--address", address, "-o", str(results)], cwd=ROOT, stderr=subprocess.PIPE, text=True, stdout=subprocess.PIPE
-    ) as run:
+    distributed = [*words, "--engine", "ray", "--address", address, "-o", str(results)]
+    with subprocess.Popen(distributed, cwd=ROOT, stderr=subprocess.PIPE, text=True, stdout=subprocess.DEVNULL) as run:
         while len(list(results.glob("parts/*/*.json"))) < 2 and run.poll() is None:
             time.sleep(0.05)
         end(victim)
@@ -92,7 +90,8 @@ def test_a_node_that_dies_changes_nothing(cluster: tuple[str, subprocess.Popen[b
 
 def test_a_cluster_that_is_not_there_is_said_in_one_line(tmp_path: Path) -> None:
     robots = fill(tmp_path / "toys", robots=1)
-    words = ["corpus", "run", "--from", str(robots), "--pairs", "urdf:hymeko", "--engine", "ray", "--address", "127.0.0.1:1", "-o", str(tmp_path / "o")]
+    where = ["--engine", "ray", "--address", "127.0.0.1:1", "-o", str(tmp_path / "o")]
+    words = ["corpus", "run", "--from", str(robots), "--pairs", "urdf:hymeko", *where]
     run = subprocess.run([sys.executable, "-m", "hymeko_x.cli", *words], cwd=ROOT, capture_output=True, text=True, check=False)
     assert run.returncode == 1, run.stderr
     assert "no Ray cluster answers at '127.0.0.1:1'" in run.stderr

@@ -41,9 +41,7 @@ def test_a_file_that_does_no_harm_has_all_its_rows(tmp_path: Path) -> None:
         ("killed", "out of memory", "killed by SIGKILL"),
     ],
 )
-def test_a_conversion_that_ends_its_process_costs_itself_only(
-    tmp_path: Path, deed: str, status: str, reason: str
-) -> None:
+def test_a_conversion_that_ends_its_process_costs_itself_only(tmp_path: Path, deed: str, status: str, reason: str) -> None:
     found = outcome(tmp_path, f"convert:hymeko={deed}")
     assert rows(found) == [("hymeko", status, reason, ""), ("mjcf", "done", "", "same")]
     assert (found.robot.status, found.robot.engine) == ("done", "done")
