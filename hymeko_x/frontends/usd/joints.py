@@ -232,6 +232,8 @@ def _behaving(prim: Any, dof: Dof, draft: Draft) -> Dof:
     mjc = {name: draft.number(prim, f"mjc:{name}", math.nan) for name in _MJC}
     newton = {name: draft.number(prim, f"newton:{name}", math.nan) for name in _NEWTON}
     speed = newton["velocityLimit"] * angle
+    if math.isfinite(speed):
+        draft.take(prim, "newton:velocityLimit")
     found = replace(
         dof,
         armature=_first(mjc["armature"] * inertia, newton["armature"] * inertia),
