@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 MOST_PRIMS = 2_000_000
 MOST_LAYERS = 10_000
 MOST_NESTED_INSTANCES = 32
+_FOLDER = re.compile(r"[^\s'<@]*hymeko-usd-[^\s'>@]*/")
 _UP = 8
 """How many folders a reference may lead upwards from the file."""
 _SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
@@ -53,8 +54,17 @@ class Scene:
 def open_scene(source: Source, report: Report) -> Iterator[Scene]:
     """The composed stage of a source, with every instance expanded; everything is gone after the block.
 
-    Raises: Refusal with HX001 (USD cannot read it), HX007 (too large).
+    Raises: Refusal with HX001 (USD cannot read it, which it may find out only in the block), HX007 (too large).
     """
+    try:
+        with _opened(source, report) as scene:
+            yield scene
+    except (Tf.ErrorException, UnicodeDecodeError) as error:
+        raise refuse(codes.CANNOT_READ, f"the file is damaged: {_words(error)}", Origin(source.name)) from error
+
+
+@contextmanager
+def _opened(source: Source, report: Report) -> Iterator[Scene]:
     with tempfile.TemporaryDirectory(prefix="hymeko-usd-", ignore_cleanup_errors=True) as folder:
         base = os.path.join(folder, *["d"] * _UP)
         os.makedirs(base)
@@ -82,17 +92,17 @@ def _composed(main: str, source: Source) -> Any:
     try:
         return Usd.Stage.Open(main, Usd.Stage.LoadAll)
     except Tf.ErrorException as error:
-        raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, os.path.dirname(main))}", Origin(source.name)) from error
+        raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error)}", Origin(source.name)) from error
 
 
-def _words(error: Exception, folder: str) -> str:
+def _words(error: Exception) -> str:
     """The first sentence of what USD says, without its own source files and our temporary folder."""
     try:
         text = str(error)
     except UnicodeDecodeError:  # USD quotes the bytes of the file
         return "it is not UTF-8"
     said = text.rsplit(" : ", 1)[-1].split(" matching ")[0] if " : " in text else text
-    return " ".join(said.replace(folder + "/", "").strip("' \n\t").split())[:300] or "no reason is given"
+    return " ".join(_FOLDER.sub("", said).strip("' \n\t").split())[:300] or "no reason is given"
 
 
 # ---- layers ------------------------------------------------------------------------------------------------------------------
@@ -124,8 +134,8 @@ def _layer(path: str, base: str, source: Source, report: Report, *, is_main: boo
         return Sdf.Layer.FindOrOpen(path)
     except Tf.ErrorException as error:
         if is_main:
-            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, base)}", Origin(source.name)) from error
-        said = f"layer '{os.path.relpath(path, base)}' cannot be read: {_words(error, base)}; it is left out"
+            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error)}", Origin(source.name)) from error
+        said = f"layer '{os.path.relpath(path, base)}' cannot be read: {_words(error)}; it is left out"
         report.error(codes.CANNOT_READ, said, Origin(source.name))
         return None
 
