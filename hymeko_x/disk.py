@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import errno
+import os
 import secrets
 import shutil
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -35,13 +36,24 @@ def open_source(
     try:
         if place.is_dir():
             raise refuse(codes.CANNOT_READ, "this is a folder, and a file was expected", origin)
+        if place.is_char_device() or place.is_block_device() or (confine is not None and place.exists() and not place.is_file()):
+            raise refuse(codes.CANNOT_READ, "this is a device or a pipe, and a file was expected", origin)
         if confine is not None and not place.resolve().is_relative_to(confine.resolve()):
             raise refuse(codes.CANNOT_READ, f"the file is outside '{confine}', to which reading is confined", origin)
         if place.stat().st_size > MOST_BYTES:
             raise refuse(codes.TOO_LARGE, f"the file has {place.stat().st_size} bytes; at most {MOST_BYTES} are read", origin)
-        return Source(path, place.read_bytes(), files)
+        return Source(path, _content(place, origin), files)
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_READ, f"cannot be read: {_reason(error)}", origin) from error
+
+
+def _content(place: Path, origin: Origin) -> bytes:
+    """The content of a file or of a pipe, whose size nobody knows beforehand."""
+    with place.open("rb") as file:
+        data = file.read(MOST_BYTES + 1) if place.is_fifo() else file.read()
+    if len(data) > MOST_BYTES:
+        raise refuse(codes.TOO_LARGE, f"more than {MOST_BYTES} bytes came out of the pipe", origin)
+    return data
 
 
 def write_package(package: Package, path: str, files: Files) -> None:
@@ -62,12 +74,30 @@ def write_package(package: Package, path: str, files: Files) -> None:
             target.write_bytes(package.main)
         else:
             staged.append(_stage(target, package.main))
-        for temporary, final in staged:
-            temporary.replace(final)
+        with _alone_in(target.parent):
+            for temporary, final in staged:
+                temporary.replace(final)
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
     finally:
         _clean([temporary for temporary, _ in staged], made)
+
+
+@contextmanager
+def _alone_in(folder: Path) -> Iterator[None]:
+    """While files are renamed into place no other run does so in the same folder, so that their outputs do not mix."""
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        with suppress(OSError):  # file systems without locks
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
 
 
 def _assets(package: Package, target: Path, files: Files) -> Iterator[tuple[str, bytes]]:

@@ -70,6 +70,7 @@ NEWTON = Peer(
         "mujoco~=3.17.0",
         "trimesh>=4.6.8",
         "scipy>=1.11",
+        "pillow>=11.3",
         "pycollada>=0.9",
         "resolve-robotics-uri-py>=0.5.1",
     ),

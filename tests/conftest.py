@@ -14,7 +14,10 @@ from hymeko_x.diagnostics import Refusal
 
 # The same examples in every run, so that a change is judged by what it changed; `HYPOTHESIS_PROFILE=search` looks for new ones.
 settings.register_profile("same", derandomize=True, database=None)
+# `ci` and `nightly` look for new ones for minutes and for hours (`make fuzz`): tests of laws take their number from the profile.
 settings.register_profile("search", derandomize=False)
+settings.register_profile("ci", derandomize=False, max_examples=200)
+settings.register_profile("nightly", derandomize=False, max_examples=20_000)
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
 
 

@@ -18,7 +18,7 @@ LAYERS = (
     ("frontends", "backends"),
     ("pipeline", "disk", "verify", "draw", "corpus"),
     ("api",),
-    ("cli",),
+    ("cli", "testing"),
 )
 """A module may import from its own part of the program and from the layers before its own; within a layer see BESIDE."""
 
@@ -46,6 +46,7 @@ HOMES = {
     "pebble": ("corpus/",),
     "polars": ("corpus/",),
     "ray": ("corpus/",),
+    "hypothesis": ("testing/",),
 }
 """Heavy libraries and the only places that may import them."""
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hymeko_x import disk
 from hymeko_x.cli import exits
+from hymeko_x.cli.guard import UsageError
+from hymeko_x.source import NoFiles, Package
 
 if TYPE_CHECKING:
     import argparse
@@ -12,8 +16,31 @@ if TYPE_CHECKING:
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """The words of `corpus stats`."""
+    parser.add_argument("results", nargs="?", default="corpus-run", metavar="DIR", help="the results of a run (default corpus-run)")
+    where = "where tables and figures go (default: beside the results)"
+    parser.add_argument("-o", dest="output", metavar="DIR", help=where)
+    parser.add_argument("--page", action="append", default=[], metavar="FILE.md", help="renew the pair matrix in this page (repeatable)")
 
 
 def run(chosen: argparse.Namespace) -> int:
-    """Write tables and figures."""
+    """Write tables and figures, and the tables of the run where they go elsewhere."""
+    from hymeko_x.corpus.report import costs_page, files_of, with_pairs
+    from hymeko_x.corpus.store import Store
+    from hymeko_x.corpus.tables import load, save
+
+    store = Store(chosen.results)
+    tables = load(store)
+    target = Store(chosen.output or chosen.results)
+    if chosen.output:
+        save(tables, target)
+    for name, data in files_of(tables):
+        target.put(name, data)
+    target.put("costs.md", costs_page(tables).encode())
+    for page in chosen.page:
+        try:
+            text = with_pairs(Path(page).read_text("utf-8"), tables)
+        except (OSError, ValueError) as error:
+            raise UsageError(f"{page}: {error}") from error
+        disk.write_package(Package(text.encode()), page, NoFiles())
+    print(target.place)
     return exits.DONE

@@ -43,6 +43,7 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--layout", choices=("single", "layered"), help=layouts)
     parser.add_argument("--nested", action="store_true", default=None, help="USD: put each body inside of its parent")
     parser.add_argument("--pure", action="store_true", help="write no residue of what the format cannot say itself")
+    parser.add_argument("--split", action="store_true", help="xacro: put the macros into a file of their own")
     parser.add_argument("--report", metavar="FILE.json", help="write diagnostics and losses to a file")
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
 
@@ -52,7 +53,7 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
 
     With ``measured`` the result is read back and its losses are listed.
     """
-    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested)
+    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split)
     what = (given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
     result = pipeline.convert(*what, pure=chosen.pure) if measured else pipeline.write_unmeasured(*what)
     beside = [*result.package.files, *result.package.copies]

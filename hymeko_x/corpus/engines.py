@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import hashlib
+import socket
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from hymeko_x import codes
-from hymeko_x.corpus.supervise import make_pool, supervise
+from hymeko_x.corpus.supervise import Processes, supervise
 from hymeko_x.corpus.work import work
 from hymeko_x.diagnostics import refuse
 
@@ -44,12 +45,12 @@ class Local:
 
     def run(self, cases: Iterable[Case], plan: Plan) -> Iterator[Outcome]:
         """The outcome of every case. A closed iterator ends the processes."""
-        pool = make_pool(self._jobs)
+        processes = Processes()
         threads = ThreadPoolExecutor(self._jobs)
         rest = iter(cases)
 
         def one(case: Case) -> Outcome:
-            return supervise(case, plan, fetched(case.folder, self._cache), pool, self._task)
+            return supervise(case, plan, fetched(case.folder, self._cache), processes, self._task)
 
         running: set[Future[Outcome]] = {threads.submit(one, case) for case in islice(rest, self._jobs * _AHEAD)}
         try:
@@ -58,9 +59,9 @@ class Local:
                 running |= {threads.submit(one, case) for case in islice(rest, len(done))}
                 yield from (future.result() for future in done)
         finally:
-            pool.stop()
-            threads.shutdown(cancel_futures=True)
-            pool.join()
+            threads.shutdown(wait=False, cancel_futures=True)
+            processes.end()
+            threads.shutdown()
 
 
 class OnRay:
@@ -91,10 +92,7 @@ class OnRay:
 
 def _on_node(case: Case, plan: Plan, cache: str, task: Task) -> Outcome:
     """What a Ray task does."""
-    with make_pool(1) as pool:
-        outcome = supervise(case, plan, fetched(case.folder, Path(cache)), pool, task)
-        pool.stop()
-        return outcome
+    return supervise(case, plan, fetched(case.folder, Path(cache)), Processes(), task)
 
 
 def _connected(address: str | None) -> Any:
@@ -102,12 +100,27 @@ def _connected(address: str | None) -> Any:
         import ray
     except ImportError as error:
         raise refuse(codes.ENGINE_MISSING, "ray is not installed", hint="pip install 'hymeko-x[ray]'") from error
+    _knock(address)
     try:
         ray.init(address=address or "auto", log_to_driver=False, logging_level=_ERRORS)
     except (ConnectionError, RuntimeError, ValueError) as error:
         words = " ".join(str(error).split())[:200]
         raise refuse(codes.CANNOT_READ, f"no Ray cluster answers at '{address or 'auto'}': {words}", hint="ray start --head") from error
     return ray
+
+
+def _knock(address: str | None) -> None:
+    """Ray ends the process when a cluster does not answer, so somebody has to look first.
+
+    Raises: Refusal HX001.
+    """
+    host, colon, port = (address or "").rpartition(":")
+    if not (colon and port.isdigit()) or "/" in host:
+        return
+    try:
+        socket.create_connection((host, int(port)), timeout=5.0).close()
+    except OSError as error:
+        raise refuse(codes.CANNOT_READ, f"no Ray cluster answers at '{address}': {error}", hint="ray start --head") from error
 
 
 def fetched(folder: str, cache: Path) -> str:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import multiprocessing.context
     from collections.abc import Callable, Mapping, Sequence
 
-    from pebble import ProcessPool
+    from pebble import ProcessFuture
 
     from hymeko_x.corpus.cases import Case
     from hymeko_x.corpus.plan import Plan
@@ -59,11 +59,33 @@ class End(NamedTuple):
     reason: str
 
 
-def make_pool(jobs: int) -> ProcessPool:
-    """A pool in which every task has a process of its own, forked from a server that has the heavy libraries loaded."""
-    from pebble import ProcessPool
+class Processes:
+    """One process per task, each with its own clock; all that run can be ended at once."""
 
-    return ProcessPool(max_workers=jobs, max_tasks=1, context=_context())
+    def __init__(self) -> None:
+        self._context = _context()
+        self._running: set[ProcessFuture[None]] = set()
+
+    def run(self, task: Task, case: Case, plan: Plan, folder: str, scratch: str, steps: Sequence[str]) -> BaseException | None:
+        """Run a task to its end; return what it raised, or what became of its process.
+
+        Raises: concurrent.futures.CancelledError after :meth:`end`.
+        """
+        from pebble.concurrent import process
+
+        start = process(timeout=plan.limits.seconds, mp_context=self._context)(task)
+        future: ProcessFuture[None] = start(case, plan, folder, scratch, steps)
+        self._running.add(future)
+        try:
+            error: BaseException | None = future.exception()
+            return error
+        finally:
+            self._running.discard(future)
+
+    def end(self) -> None:
+        """End every process that runs."""
+        for future in tuple(self._running):
+            future.cancel()
 
 
 def _context() -> multiprocessing.context.BaseContext:
@@ -82,7 +104,7 @@ def preloaded() -> tuple[str, ...]:
     return (*dict.fromkeys(ours), *_PRELOADED)
 
 
-def supervise(case: Case, plan: Plan, folder: str, pool: ProcessPool, task: Task = work) -> Outcome:
+def supervise(case: Case, plan: Plan, folder: str, processes: Processes, task: Task = work) -> Outcome:
     """Have a file worked on until each of its steps has an answer. Whatever a step does, the others get theirs."""
     steps = plan.steps(case.format)
     notes: dict[str, dict[str, Any]] = {}
@@ -91,8 +113,7 @@ def supervise(case: Case, plan: Plan, folder: str, pool: ProcessPool, task: Task
     while todo := _left(steps, notes, ends):
         with tempfile.TemporaryDirectory(prefix="hymeko-x-", ignore_cleanup_errors=True) as scratch:
             asked = replace(plan, verify=plan.verify and ENGINE not in ends)
-            future = pool.schedule(task, args=(case, asked, folder, scratch, todo), timeout=plan.limits.seconds)
-            error = future.exception()
+            error = processes.run(task, case, asked, folder, scratch, todo)
             notes.update(_read_notes(Path(scratch)))
         stuck = next(iter(_left(steps, notes, ends)), None)
         if stuck is None:

@@ -206,7 +206,8 @@ def _verdict(desk: Desk, model: KinematicModel, output: Path) -> Verdict:
 
 
 def _output(desk: Desk, target: str) -> Path:
-    return desk.scratch / target / f"robot{formats.by_name(target).suffixes[0]}"
+    suffixes = formats.by_name(target).suffixes
+    return desk.scratch / target / f"robot{'.xml' if '.xml' in suffixes else suffixes[0]}"  # MuJoCo takes no other
 
 
 # ---- words -----------------------------------------------------------------------------------------------------------

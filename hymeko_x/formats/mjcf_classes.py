@@ -32,6 +32,35 @@ FAMILIES: Mapping[str, str] = MappingProxyType(
 TURNS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
 """The attributes that say an orientation; an element's own replaces whichever the class has."""
 
+ACTUATORS = frozenset(
+    ("general", "motor", "position", "velocity", "intvelocity", "orientation", "pid", "damper", "cylinder", "muscle", "adhesion", "dcmotor")
+)
+"""In <default> all of these set one and the same actuator: what they have in common is inherited across tags, and the last one
+says which kind it is, so that gains of another tag before it are gone."""
+
+_SHARED = frozenset(
+    (
+        "ctrllimited",
+        "ctrlrange",
+        "forcelimited",
+        "forcerange",
+        "actlimited",
+        "actrange",
+        "gear",
+        "group",
+        "user",
+        "lengthrange",
+        "armature",
+        "damping",
+        "cranklength",
+        "inheritrange",
+        "delay",
+        "nsample",
+        "interp",
+    )
+)
+_ANY_ACTUATOR = "actuator"
+
 PARTIAL = frozenset({"size", "friction", "gear", "damping", "stiffness", "solref", "solimp", "user"})
 """Attributes that may have fewer numbers than there are; the rest is inherited."""
 
@@ -77,15 +106,30 @@ class Classes:
 
     def of(self, tag: str, name: str | None) -> Mapping[str, str]:
         """What the class gives to elements of this tag; nothing where there is no such class."""
-        return self._classes.get(name or MAIN, {}).get(FAMILIES.get(tag, tag.partition("@")[0]), _NOTHING)
+        found = self._classes.get(name or MAIN, {})
+        if tag in ACTUATORS and _ANY_ACTUATOR in found:
+            return {**found[_ANY_ACTUATOR], **found.get(tag, _NOTHING)}
+        return found.get(FAMILIES.get(tag, tag.partition("@")[0]), _NOTHING)
 
 
 def _with_own(inherited: dict[str, Attributes], element: Element) -> dict[str, Attributes]:
     merged = dict(inherited)
     for child in element.children:
-        if child.tag != "default" and not child.tag.startswith("#"):
+        if child.tag in ACTUATORS:
+            _add_actuator(merged, child)
+        elif child.tag != "default" and not child.tag.startswith("#"):
             merged[child.tag] = dict(merge(merged.get(child.tag, _NOTHING), child.attributes))
     return merged
+
+
+def _add_actuator(merged: dict[str, Attributes], child: Element) -> None:
+    shared = {name: text for name, text in child.attributes.items() if name in _SHARED}
+    own = {name: text for name, text in child.attributes.items() if name not in _SHARED}
+    merged[_ANY_ACTUATOR] = dict(merge(merged.get(_ANY_ACTUATOR, _NOTHING), shared))
+    if child.tag != "general":
+        for other in ACTUATORS - {child.tag}:
+            merged.pop(other, None)
+    merged[child.tag] = dict(merge(merged.get(child.tag, _NOTHING), own))
 
 
 def merge(base: Mapping[str, str], own: Mapping[str, str]) -> Mapping[str, str]:

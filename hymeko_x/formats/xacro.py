@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from contextlib import suppress
 from keyword import kwlist
 
@@ -24,6 +25,11 @@ GLOBALS = frozenset((*_FUNCTIONS, *(name for name in vars(math) if not name.star
 
 TAKEN = TAGS | GLOBALS | frozenset(kwlist)
 """What neither macros, parameters nor properties are called here."""
+
+
+def macros_file(robot: str) -> str:
+    """The name of the file with a robot's macros, beside the robot's own."""
+    return f"{re.sub('[^A-Za-z0-9]+', '_', robot).strip('_') or 'robot'}.macros.xacro"
 
 
 def literal(text: str) -> str | int | float | bool:

@@ -254,6 +254,7 @@ _NAME = re.compile(r"(?:\{[^}]*\})?[^\W\d][\w.-]*")
 _PIECES = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<[^\s<>!?/][^<>]*>?|[^<]+|<", re.DOTALL)
 _DECLARATION = re.compile(r"<\?xml\s[^?>]*\?>")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
+_REFERENCE = re.compile(r"&#(\d{1,30}|x[0-9a-fA-F]{1,30});")
 _BARE_AMPERSAND = re.compile(r"&(?![A-Za-z_][\w.-]*;|#\d+;|#x[0-9a-fA-F]+;)")
 _NO_BLANK = re.compile(r"""(=\s*(?:"[^"]*"|'[^']*'))(?=[\w:])""")
 _WORDS = re.compile(rb">\s*[^\s<]")
@@ -269,7 +270,7 @@ def _decoded(data: bytes) -> tuple[str, str]:
     for candidate in (name, "utf-8"):
         try:
             text = data.decode(candidate)
-        except (UnicodeDecodeError, LookupError):
+        except (UnicodeError, LookupError):
             continue
         return text, "" if candidate == name else f"the text is not {name}, as it says; read as {candidate}"
     return data.decode("latin-1"), f"the text is not {name}; read as latin-1"
@@ -292,10 +293,20 @@ def _without_declaration(text: str) -> tuple[str, str]:
 
 def _without_controls(text: str) -> tuple[str, str]:
     clean, count = _CONTROL.subn("", text.rstrip("\0 \t\r\n"))
+    wrong = sum(not _is_character(found[1]) for found in _REFERENCE.finditer(clean))
+    if wrong:
+        clean = _REFERENCE.sub(lambda found: found[0] if _is_character(found[1]) else "", clean)
+    count += wrong
     said = f"{count} control character{'s' if count > 1 else ''} left out" if count else ""
     if not said and text.endswith("\0"):
         said = "NUL bytes after the end left out"
     return clean, said
+
+
+def _is_character(number: str) -> bool:
+    """Whether the number of a character reference is that of a character that XML allows."""
+    value = int(number[1:], 16) if number.startswith("x") else int(number)
+    return value in (9, 10, 13) or 32 <= value < 0xD800 or 0xE000 <= value < 0xFFFE or 0x10000 <= value < 0x110000
 
 
 def _without_rest(text: str) -> tuple[str, str]:

@@ -34,7 +34,8 @@ class Dialect:
     ``least`` characters must a macro save to be worth its reader's while. ``cut`` cuts a text into the pieces that a hole
     may take; return ``(text,)`` where only the whole text can be one. ``leaf_name`` proposes a parameter's name from
     tag and leaf. ``taken`` are names that nothing may have. ``name`` is the leaf that names a form. ``can_be_default``
-    says whether a text can be a default, ``signs`` whether the dialect can write a number with the sign of a parameter.
+    says whether a text can be a default, ``signs`` whether the dialect can write a number with the sign of a parameter,
+    ``values`` whether it has named values, and ``can_be_value`` which texts can be one.
     """
 
     element: int = 3
@@ -55,3 +56,5 @@ class Dialect:
     name: str = "name"
     can_be_default: Callable[[str], bool] = bool
     signs: bool = True
+    values: bool = False
+    can_be_value: Callable[[str], bool] = bool

@@ -29,6 +29,7 @@ class Namer:
         first, last = family.runs[0]
         self._forms = flat.forms[first : flat.end[last]]
         self._top = [number - first for number in range(first, flat.end[last]) if flat.up[number] == flat.up[first]]
+        self._around = flat.forms[flat.up[first]].tag if flat.up[first] >= 0 else ""
         self._leaves = self._places(first, flat)
 
     def _places(self, first: int, flat: Flat) -> list[tuple[str, Form, str]]:
@@ -76,7 +77,7 @@ class Namer:
             return [_identifier("_".join([*said[0], tops[0].tag])), _identifier(tops[0].tag)]
         named = [words for words in said if words]
         if not named:
-            return [_identifier(f"{tops[0].tag}_group")]
+            return [_identifier(f"{self._around}_parts" if self._around else f"{tops[0].tag}_group")]
         common = [word for word in named[0] if all(word in words for words in named)]
         if common:
             return [_identifier("_".join(common))]

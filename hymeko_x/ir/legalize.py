@@ -25,6 +25,7 @@ from hymeko_x.ir.legalize_solids import fill_tensors
 from hymeko_x.ir.legalize_urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
 from hymeko_x.ir.legalize_urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
 from hymeko_x.ir.legalize_usd import choose_layout
+from hymeko_x.ir.legalize_xacro import choose_files
 from hymeko_x.ir.mechanism import ROOT
 
 if TYPE_CHECKING:
@@ -38,13 +39,15 @@ class Options:
 
     ``base``: what becomes of an open base (None = the target's own default). ``actuators``: which kind to give every
     driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows. ``layout`` and
-    ``nested``: how a stage of USD is laid out (None = as it was, else one file with flat bodies).
+    ``nested``: how a stage of USD is laid out (None = as it was, else one file with flat bodies). ``split``: whether the
+    macros of xacro go into a file of their own.
     """
 
     base: Literal["fixed", "free"] | None = None
     actuators: Literal["none", "motor", "position", "velocity"] | None = None
     layout: Literal["single", "layered"] | None = None
     nested: bool | None = None
+    split: bool = False
 
 
 Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]
@@ -96,7 +99,7 @@ RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
             make_names_usable,  # once more, for what the rules have added
         ),
         "urdf": _URDF,
-        "xacro": _URDF,
+        "xacro": (*_URDF, choose_files),
     }
 )
 """The rules of each target, in order. A target that is not here takes every mechanism as it is."""

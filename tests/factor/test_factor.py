@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hymeko_x.ir.factor import Dialect, factor
-from hymeko_x.ir.forms import Call, Element, Factored, Hole, Macro, Parameter, Signed, expand
+from hymeko_x.ir.forms import Call, Element, Factored, Hole, Macro, Parameter, Signed, Value, expand
 
 DIALECT = Dialect(macro=10, call=3, argument=2, least=1)
 
@@ -42,3 +42,26 @@ def test_holes_are_filled_in_calls_inside_of_macros() -> None:
     outer = Macro("outer", (Parameter("y"),), (Call("inner", (("x", (Hole("y"), "!")),)), Call("inner")))
     factored = Factored((Element("root", (), (Call("outer", (("y", "1"),)),)),), (inner, outer))
     assert expand(factored) == (Element("root", (), (Element("e", (("v", "<1!>"),)), Element("e", (("v", "<7>"),)))),)
+
+
+def test_the_folder_of_many_files_has_a_name() -> None:
+    folder = "package://some_robot_description/meshes/visual"
+    forms = tuple(Element(tag, (("mesh", f"{folder}/{tag}.stl"),)) for tag in ("hip", "thigh", "shank", "foot"))
+    found = factor(forms, Dialect(values=True))
+    assert found.values == (Value("visual", folder),)
+    assert found.items[0] == Element("hip", (("mesh", (Hole("visual"), "/hip.stl")),))
+    assert expand(found) == forms
+
+
+def test_a_macro_is_called_what_its_source_called_it() -> None:
+    forms = tuple(form._replace(hint="shoulder") for prefix in ("l", "r") for form in leg(prefix, "1"))
+    assert [macro.name for macro in factor(forms, DIALECT).macros] == ["shoulder"]
+
+
+def test_the_result_does_not_depend_on_how_deep_forms_are_nested() -> None:
+    form = Element("body", (("name", "b0"),))
+    for number in range(1, 5000):
+        form = Element("body", (("name", f"b{number}"),), (Element("geom", (("size", "0.1 0.2"), ("rgba", "0.5 0.5 0.5 1"))), form))
+    found = factor((form,), DIALECT)
+    (macro,) = found.macros
+    assert [macro.parameters, len(found.items)] == [(), 1]

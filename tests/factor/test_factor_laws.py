@@ -23,7 +23,7 @@ TEXTS = (
     NUMBERS
     | st.lists(WORDS, max_size=4).map("".join)
     | st.lists(NUMBERS, min_size=2, max_size=3).map(" ".join)
-    | st.sampled_from(["", " ", "${x}", "x${", "$", "ü", "\n", "<a>"])
+    | st.sampled_from(["", " ", "package://robot/meshes/hip.stl", "package://robot/meshes/knee.stl", "${x}", "x${", "$", "ü", "\n", "<a>"])
 )
 LEAVES = st.lists(st.tuples(st.sampled_from(["name", "xyz", "value"]), TEXTS), max_size=3, unique_by=lambda leaf: leaf[0]).map(tuple)
 
@@ -60,8 +60,8 @@ def _flipped(text: object) -> str:
 
 @pytest.mark.parametrize(
     "dialect",
-    [Dialect(), CHEAP, replace(CHEAP, signs=False), replace(CHEAP, cut=lambda text: (text,))],
-    ids=["xml", "cheap", "unsigned", "whole"],
+    [Dialect(), CHEAP, replace(CHEAP, signs=False), replace(CHEAP, cut=lambda text: (text,)), replace(CHEAP, values=True, value=1, hole=0)],
+    ids=["xml", "cheap", "unsigned", "whole", "values"],
 )
 @given(repetitive())
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])

@@ -15,7 +15,7 @@ from hymeko_x.ir.diff import Difference, Tolerance, diff
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import KINDS, ROOT, Extra, Id, Mechanism, RobotEdge
 from hymeko_x.ir.values import Pose, pose_from_rpy, quat_about
-from tests.strategies import mechanisms
+from hymeko_x.testing import mechanisms
 
 LIMITS = parts.Limits(-1.0, 1.0, 2.0, 3.0, 4.0, 5.0)
 DOF = parts.Dof(

@@ -38,8 +38,8 @@ from hymeko_x.ir.parts import (
     Sphere,
 )
 from hymeko_x.ir.values import X, Y, Z, pose
+from hymeko_x.testing import mechanisms
 from tests.robots import SOLID, body, chain, hinge, joint
-from tests.strategies import mechanisms
 
 QUIET = Options(base="fixed")
 FREE = Joint((Dof(DofKind.FREE),))

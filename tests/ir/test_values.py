@@ -40,7 +40,7 @@ from hymeko_x.ir.values import (
     unit,
     unit_quat,
 )
-from tests.strategies import POSES, QUATERNIONS, VECTORS
+from hymeko_x.testing.values import POSES, QUATERNIONS, VECTORS
 
 ANGLES = st.floats(-10.0, 10.0) | st.sampled_from([0.0, math.pi, -math.pi, math.pi / 2, -math.pi / 2])
 MANY = settings(max_examples=100, deadline=None)

@@ -24,7 +24,7 @@ from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Field, Node, Query, Ref
 from hymeko_x.source import Source
-from tests.strategies import DOCUMENTS
+from hymeko_x.testing import DOCUMENTS
 
 CORPUS = sorted((Path(__file__).parents[2] / "corpus").glob("*/*.hymeko"))
 TABLES = Path(__file__).parents[2] / "hymeko_x" / "language" / "tables.json"

@@ -13,7 +13,7 @@ from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Document, Field, Import, Item, Node
 from hymeko_x.source import Source
-from tests.strategies import DOCUMENTS, mechanisms
+from hymeko_x.testing import DOCUMENTS, mechanisms
 
 FEW = settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 
+import mujoco
 import pytest
 from mjmodels import read_text
 
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.ir.mechanism import WORLD, Id
-from hymeko_x.ir.parts import Body, Box, Capsule, DofKind, Ellipsoid, Geometry, Loop, MeshShape, Plane, Role, Shape
+from hymeko_x.ir.parts import Actuator, Body, Box, Capsule, DofKind, Ellipsoid, Geometry, Loop, MeshShape, Plane, Role, Shape
 
 
 def in_world(content: str, head: str = "") -> str:
@@ -54,6 +55,22 @@ def test_the_element_wins_over_its_class_and_its_class_over_the_childclass() -> 
     robot = read_text(in_world('<body childclass="a"><joint name="j" class="b" frictionloss="4"/><geom size="1"/></body>', head))
     dof = robot.joints[Id("joint", "j")].joint.dofs[0]
     assert (dof.damping, dof.armature, dof.friction) == (1.0, 3.0, 4.0)
+
+
+def test_actuators_of_all_kinds_share_what_they_have_in_common_in_a_class() -> None:
+    head = """<default><position ctrllimited="true" kp="10"/><motor ctrlrange="-3 3" gear="7"/>
+        <default class="a"><position kp="5"/><default class="b"><general ctrlrange="-1 1"/></default></default></default>"""
+    body = '<worldbody><body><joint name="j"/><geom size="1"/></body></worldbody>'
+    text = f"""<mujoco>{head}{body}<actuator><position joint="j" name="p"/><position joint="j" name="q" class="a"/>
+        <position joint="j" name="r" class="b"/><motor joint="j" name="m"/></actuator></mujoco>"""
+    robot = read_text(text)
+    model = mujoco.MjModel.from_xml_string(text)
+    found = {key.name: dict(actuator.parameters) for key, actuator in robot.vertices(Actuator)}
+    for name, said in found.items():
+        number = model.actuator(name).id
+        assert said["ctrlrange"] == tuple(model.actuator_ctrlrange[number])
+        assert said.get("kp", 1.0) == model.actuator_gainprm[number, 0]
+        assert model.actuator_gear[number, 0] == 7.0
 
 
 def test_a_nested_class_begins_with_what_its_parent_has() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hypothesis import given, settings
+from tests.strategies import mechanisms
 
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.mechanism import Mechanism
@@ -10,7 +11,6 @@ from hymeko_x.ir.residue.delta import residue_of
 from hymeko_x.ir.residue.merge import restore
 from hymeko_x.language.residue import parse_residue, print_residue
 from tests.residue.exactness import unequal
-from tests.strategies import mechanisms
 
 
 @settings(max_examples=80, deadline=None)

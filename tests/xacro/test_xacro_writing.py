@@ -18,16 +18,16 @@ from lxml import etree
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.backends import urdf
 from hymeko_x.backends import xacro as backend
+from hymeko_x.cli import main
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.xacro import read
 from hymeko_x.ir.diff import diff
 from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.source import Source
+from hymeko_x.testing import mechanisms, urdf_mechanisms
 from tests.conftest import RealRobots
-from tests.strategies import mechanisms
 from tests.urdf.samples import load, robot
-from tests.urdf.test_laws import sayable
 
 
 def library(text: bytes) -> minidom.Document:
@@ -127,7 +127,7 @@ def test_every_text_comes_back_as_a_text_that_varies_and_one_that_does_not(text:
     assert "<xacro:macro" in written
 
 
-@given(sayable())
+@given(urdf_mechanisms())
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_whatever_urdf_can_say_expands_to_it(mechanism: Mechanism) -> None:
     check(mechanism)
@@ -192,3 +192,13 @@ LIMBED = (
     "talos",
 )
 """Legs, fingers, wheels or rotors several times."""
+
+
+def test_macros_in_a_file_of_their_own(tmp_path: Path) -> None:
+    (tmp_path / "in.urdf").write_text(PAIR)
+    assert main(["convert", str(tmp_path / "in.urdf"), str(tmp_path / "out.xacro"), "--split", "--fail-on", "loss"]) == 0
+    text, macros = ((tmp_path / name).read_text() for name in ("out.xacro", "r.macros.xacro"))
+    assert '<xacro:include filename="r.macros.xacro"/>' in text
+    assert ["<xacro:macro" in text, "<xacro:macro" in macros] == [False, True]
+    back = read(disk.open_source(str(tmp_path / "out.xacro")), Report())
+    assert diff(load(PAIR), back) == ()

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Sdf, Vt
 
-from hymeko_x.backends.usd.prims import T, add_attribute, authored_pairs, drafted_pairs
+from hymeko_x.backends.usd.prims import T, add_attribute, authored_pairs, drafted_pairs, stored
 from hymeko_x.backends.usd.surfaces import surface_of
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -51,7 +51,8 @@ def carry_elements(sheet: Sheet) -> None:
 def _zeros(sheet: Sheet, path: Any) -> list[str]:
     """The numbers of a prim that say nothing by themselves, so that the reader would keep them as they are."""
     drafted = sheet.prims[path].attributes if path in sheet.prims else {}
-    return [name for name, (_, value) in drafted.items() if isinstance(value, float) and (value == 0.0 or math.isinf(value))]
+    numbers = {name: stored(kind, value) for name, (kind, value) in drafted.items() if isinstance(value, float)}
+    return [name for name, value in numbers.items() if value == 0.0 or math.isinf(value)]
 
 
 def _native_pairs(sheet: Sheet, path: Any, spec: Any) -> Iterator[tuple[str, bytes]]:

@@ -196,10 +196,11 @@ def write_behaviour(spec: Any, dof: Dof) -> None:
         "springref": dof.spring_ref / degree,
     }
     newton = {"armature": dof.armature, "damping": dof.damping * degree, "friction": dof.friction}
-    if dof.limits.velocity is not None:
-        newton["velocityLimit"] = dof.limits.velocity / degree
     _write_schema(spec, "MjcJointAPI", "mjc", T.Double, mjc)
     _write_schema(spec, "NewtonJointAPI", "newton", T.Float, newton)
+    if dof.limits.velocity is not None:
+        apply(spec, "NewtonJointAPI")
+        put(spec, "newton:velocityLimit", T.Float, dof.limits.velocity / degree)
     if dof.limits.effort is not None:
         apply(spec, "MjcJointAPI")
         put(spec, "mjc:actuatorfrcrange:min", T.Double, -dof.limits.effort)

@@ -90,9 +90,14 @@ def drafted_pairs(prim: Prim, prims: Mapping[Any, Prim]) -> Iterator[tuple[str, 
     yield "@apiSchemas", " ".join(sorted(prim.schemas)).encode()
     referred = prims[prim.reference].attributes if prim.reference is not None else {}
     for name, (kind, value) in {**referred, **prim.attributes}.items():
-        yield name, value_bytes(Gf.Vec2f(value, 0.0)[0] if kind == _FLOAT else value)
+        yield name, value_bytes(stored(kind, value))
     for name, targets in prim.targets.items():
         yield name, " ".join(map(str, targets)).encode()
+
+
+def stored(kind: Any, value: Any) -> Any:
+    """A value as an attribute of this type holds it: a number of single precision is rounded, or becomes 0 or infinite."""
+    return Gf.Vec2f(value, 0.0)[0] if kind == _FLOAT else value
 
 
 def authored_pairs(spec: Any, layer: Any) -> Iterator[tuple[str, bytes]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put
@@ -11,6 +11,7 @@ from hymeko_x.formats import usd as words
 from hymeko_x.ir.parts import Actuator, Coupling, DofKind, Drive, Joint
 
 if TYPE_CHECKING:
+    from hymeko_x.backends.usd.prims import Prim
     from hymeko_x.backends.usd.sheet import Sheet
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Dof
@@ -67,27 +68,65 @@ def dof_of(sheet: Sheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
     return sheet.prims[place[0]], place[1], edge.data.dofs[number]
 
 
+class _Follower(NamedTuple):
+    """A coupling with one leader: the prims and dofs of both ends, and the coefficients."""
+
+    key: Id
+    coupling: Coupling
+    spec: Prim
+    dof: Dof
+    leader: Prim
+    weight: tuple[float, ...]
+
+
 def write_mimics(sheet: Sheet) -> None:
-    """Each coupling with one leader as Newton's mimic; the constant of a hinge in degrees. MuJoCo's schema has powers up to four."""
+    """Each coupling with one leader as Newton's mimic; the constant of a hinge in degrees. MuJoCo's schema has powers up to four.
+
+    Newton refuses a leader that follows another joint itself, so that it is led by the first of its leaders.
+    """
+    followers: dict[Any, _Follower] = {}
     for key, coupling, arcs in sheet.mechanism.edges(Coupling):
-        follower = next((arc for arc in arcs if arc.sign > 0), None)
-        leaders = [arc for arc in arcs if arc.sign < 0]
-        if follower is None or len(leaders) != 1:
-            continue
-        here, there = dof_of(sheet, follower), dof_of(sheet, leaders[0])
-        weight = leaders[0].weight if isinstance(leaders[0].weight, tuple) else (0.0, 1.0)
-        if here is None or there is None or len(weight) > 5 or "newton:mimicJoint" in here[0].targets:
-            continue
-        if sheet.mechanism.notation(key, words.EQUALITY) is None:
-            _write_mimic(here[0], there[0].path, here[2], weight, coupling.active)
-            _write_powers(here[0], weight, 2)
+        found = _follower(sheet, key, coupling, arcs)
+        if found is not None:
+            followers.setdefault(found.spec.path, found)
+    for found in followers.values():
+        spec, weight = found.spec, found.weight
+        if sheet.mechanism.notation(found.key, words.EQUALITY) is None:
+            leader, native = _first_leader(found, followers)
+            _write_mimic(spec, leader.path, found.dof, native, found.coupling.active)
+            _write_powers(spec, weight, 2)
         else:
-            apply(here[0], "MjcEqualityJointAPI")
-            point(here[0], "mjc:target", there[0].path)
-            _write_powers(here[0], weight, 0)
-        if "coupling" not in sheet.carried[here[0].path]:
-            sheet.carried[here[0].path]["coupling"] = key
-            sheet.homes[key] = here[0].path
+            apply(spec, "MjcEqualityJointAPI")
+            point(spec, "mjc:target", found.leader.path)
+            _write_powers(spec, weight, 0)
+        if "coupling" not in sheet.carried[spec.path]:
+            sheet.carried[spec.path]["coupling"] = found.key
+            sheet.homes[found.key] = spec.path
+
+
+def _follower(sheet: Sheet, key: Id, coupling: Coupling, arcs: tuple[RobotArc, ...]) -> _Follower | None:
+    follower = next((arc for arc in arcs if arc.sign > 0), None)
+    leaders = [arc for arc in arcs if arc.sign < 0]
+    if follower is None or len(leaders) != 1:
+        return None
+    here, there = dof_of(sheet, follower), dof_of(sheet, leaders[0])
+    weight = leaders[0].weight if isinstance(leaders[0].weight, tuple) else (0.0, 1.0)
+    if here is None or there is None or len(weight) > 5:
+        return None
+    return _Follower(key, coupling, here[0], here[2], there[0], weight)
+
+
+def _first_leader(found: _Follower, followers: dict[Any, _Follower]) -> tuple[Prim, tuple[float, ...]]:
+    """The leader that follows nobody, and the coefficients with respect to it: a + b (c + d x) = (a + b c) + b d x."""
+    leader, weight = found.leader, found.weight
+    passed = {found.spec.path}
+    while leader.path in followers and leader.path not in passed and len(weight) == 2:
+        above = followers[leader.path]
+        if len(above.weight) != 2:
+            break
+        passed.add(leader.path)
+        leader, weight = above.leader, (weight[0] + weight[1] * above.weight[0], weight[1] * above.weight[1])
+    return (leader, weight) if leader.path not in passed else (found.leader, found.weight)
 
 
 def _write_mimic(spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is_active: bool) -> None:

@@ -13,10 +13,13 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends import urdf
 from hymeko_x.backends.xacro.dialect import DIALECT
 from hymeko_x.backends.xacro.elements import top_level
-from hymeko_x.backends.xacro.printing import print_file
+from hymeko_x.backends.xacro.printing import print_file, print_macros
 from hymeko_x.backends.xacro.remarks import placed
 from hymeko_x.formats import carrier
+from hymeko_x.formats.xacro import macros_file
 from hymeko_x.ir.factor import factor
+from hymeko_x.ir.legalize_xacro import SPLIT
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -33,7 +36,11 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     draft = urdf.draft(mechanism)
     forms, remarks = top_level(draft.root, mechanism)
     factored = factor(forms, DIALECT)
-    return Package(print_file(draft, factored, placed(factored, remarks)).encode(), draft.meshes)
+    if not factored.macros or mechanism.notation(ROOT, SPLIT) is None:
+        return Package(print_file(draft, factored, placed(factored, remarks)).encode(), draft.meshes)
+    beside = macros_file(mechanism.name)
+    main = print_file(draft, factored, placed(factored, remarks), beside)
+    return Package(main.encode(), {**draft.meshes, beside: print_macros(factored, placed(factored, remarks)).encode()})
 
 
 def carry_residue(package: Package, text: str) -> Package:

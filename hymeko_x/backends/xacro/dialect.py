@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-from hymeko_x.formats.xacro import TAKEN
+from hymeko_x.formats.xacro import TAKEN, survives
 from hymeko_x.ir.factor import Dialect
 
 
 def can_be_default(text: str) -> bool:
     """Whether a text can stand as the default of a parameter."""
     return not set(text) & set("'\"$\n\r\t")
+
+
+def can_be_value(text: str) -> bool:
+    """Whether a text can be that of a property, which xacro evaluates again wherever it is used."""
+    return survives(text) and not set(text) & set("'\"$\n\r\t")
 
 
 _LEAVES = {"xyz": "xyz", "rpy": "rpy", "value": "", "name": "", "link": "", "rgba": "rgba", "filename": "mesh"}
@@ -33,4 +38,6 @@ DIALECT = Dialect(
     leaf_name=_leaf_name,
     taken=TAKEN,
     can_be_default=can_be_default,
+    values=True,
+    can_be_value=can_be_value,
 )

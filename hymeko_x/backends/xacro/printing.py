@@ -21,15 +21,26 @@ if TYPE_CHECKING:
 _INDENT = "  "
 
 
-def print_file(draft: Draft, factored: Factored, remarks: Placed) -> str:
-    """The whole file."""
+def print_file(draft: Draft, factored: Factored, remarks: Placed, included: str | None = None) -> str:
+    """The whole file; where macros stand in a file that is ``included``, without them."""
     page = Page(factored, remarks)
     page.lines += ['<?xml version="1.0"?>', *draft.before, root_start(draft)]
-    page.values()
-    page.macros()
+    if included is None:
+        page.definitions()
+    else:
+        page.lines.append(f'{_INDENT}<xacro:include filename="{included}"/>')
     page.heading("The robot", factored.macros and factored.items)
     page.body("", factored.items, 1)
     page.lines += ["</robot>", *draft.after, ""]
+    return "\n".join(page.lines)
+
+
+def print_macros(factored: Factored, remarks: Placed) -> str:
+    """The file that is included: properties and macros."""
+    page = Page(factored, remarks)
+    page.lines += ['<?xml version="1.0"?>', f'<robot xmlns:xacro="{NAMESPACE}">']
+    page.definitions()
+    page.lines += ["</robot>", ""]
     return "\n".join(page.lines)
 
 
@@ -54,18 +65,18 @@ class Page:
         if section and isinstance(section[0], Call) and not self._remarks.get(("", 0)):
             self.lines += ["", f"{_INDENT}<!-- {words} -->"]
 
-    def values(self) -> None:
-        """The properties."""
+    def definitions(self) -> None:
+        """The properties, then the macros."""
+        self._values()
+        for macro in self._factored.macros:
+            self._macro(macro)
+
+    def _values(self) -> None:
         if self._factored.values:
             self.lines += ["", f"{_INDENT}<!-- Values -->"]
         for value in self._factored.values:
             said = escaped(argument(value.text, quoted=False))
             self.lines.append(f'{_INDENT}<xacro:property name="{value.name}" value="{said}"/>')
-
-    def macros(self) -> None:
-        """The definitions of the macros."""
-        for macro in self._factored.macros:
-            self._macro(macro)
 
     def _macro(self, macro: Macro) -> None:
         names = " ".join(map(_parameter, macro.parameters))

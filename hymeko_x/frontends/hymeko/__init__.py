@@ -36,6 +36,8 @@ if TYPE_CHECKING:
     from hymeko_x.language.syntax import Item
     from hymeko_x.source import Source
 
+MAX_BYTES = 2**28
+
 _EDGE_KINDS = frozenset(TARGETS)
 _WITH_SHAPES = frozenset({"body", "world"})  # read first: their shapes have no declaration of their own
 
@@ -44,8 +46,10 @@ def read(source: Source, report: Report) -> Mechanism:
     """The mechanism that a HyMeKo text describes.
 
     Raises: Refusal with the place in the text: HX060 syntax, HX061 types, HX062 values, HX063 templates, HX064 expressions,
-    HX023 duplicate names, HX040 references, HX045 joints without ends.
+    HX023 duplicate names, HX040 references, HX045 joints without ends; HX007 for a text that is too large.
     """
+    if len(source.data) > MAX_BYTES:
+        raise refuse(codes.TOO_LARGE, f"the text has {len(source.data)} bytes, at most {MAX_BYTES} are read", Origin(source.name))
     try:
         text = source.data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -53,7 +57,10 @@ def read(source: Source, report: Report) -> Mechanism:
 
     def fetch(path: str) -> bytes | None:
         found = source.files.find(path)
-        return None if found is None else source.files.read(found)
+        try:
+            return None if found is None else source.files.read(found)
+        except OSError:
+            return None
 
     try:
         return build(expand(parse(text, source.name), source.name, fetch), source.name, report)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import isfinite
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
@@ -11,7 +12,7 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.frontends.hymeko.foreign import is_foreign, read_extras, read_foreign, read_text
 from hymeko_x.ir.mechanism import Extra
-from hymeko_x.ir.values import Pose, Vec3, Written, pose, pose_from_rpy
+from hymeko_x.ir.values import Pose, Vec3, Written, numbers_text, pose, pose_from_rpy
 from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, Quantity, QuotedName, Ref, Value, is_list
 from hymeko_x.language.units import BASE_UNITS, unit_dimension, unit_factor
@@ -140,17 +141,20 @@ class Context:
             plain = (*plain[:3], plain[3] * self.factor("angle"))
         try:
             return pose_as_written(xyz, Written(kind, plain))
-        except ZeroDivisionError as error:
+        except (ZeroDivisionError, ValueError) as error:
             raise self.refuse(item, f"{plain} is no rotation") from error
 
     def _rotated(self, xyz: Vec3, rotation: tuple[Value, ...], item: Item) -> Pose:
         if len(rotation) == 3:
-            return pose_from_rpy(xyz, self.vec3(rotation, "angle", item))
+            rpy = self.vec3(rotation, "angle", item)
+            if not all(map(isfinite, rpy)):
+                raise self.refuse(item, f"{rpy} are no angles of a rotation")
+            return pose_from_rpy(xyz, rpy)
         w, x, y, z = self.numbers(rotation, "", item, 4)
         try:
             return pose(xyz, (w, x, y, z))
         except ZeroDivisionError as error:
-            raise self.refuse(item, "the quaternion [0 0 0 0] is no rotation") from error
+            raise self.refuse(item, f"the quaternion [{numbers_text((w, x, y, z))}] is no rotation") from error
 
 
 class Block:

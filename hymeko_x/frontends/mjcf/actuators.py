@@ -61,7 +61,7 @@ def _check(element: Element, said: dict[str, str], words: list[str], draft: Draf
         raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag}> acts on nothing: it needs {', '.join(TRANSMISSIONS[:6])}", element.origin)
     if "cranksite" in words and "slidersite" not in words:
         raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag} cranksite> needs slidersite", element.origin)
-    for word in ("ctrl", "force", "act"):
+    for word in ("ctrl", "force"):
         flag, numbers = said.get(f"{word}limited", "auto"), read_numbers(said.get(f"{word}range", "")) or (0.0, 0.0)
         forced = word == "ctrl" and element.tag in ("adhesion", "damper")
         if flag == "auto" and any(numbers) and not (draft.settings.autolimits or forced):

@@ -127,6 +127,10 @@ def _check_values(element: Element, path: str) -> None:
             raise refuse(codes.REPEATED, f"<{element.tag}> has {' and '.join(found)}, of which it may have one", element.origin)
 
 
+_LONGEST = 1000
+"""How long a whole number may be: Python reads no longer ones."""
+
+
 def _fits(text: str, kind: Kind) -> bool:
     if kind.words:
         return all(word in kind.words for word in text.split()) if kind.several else text in kind.words
@@ -138,7 +142,7 @@ def _fits(text: str, kind: Kind) -> bool:
 
 
 def _is_whole(word: str) -> bool:
-    return _WHOLE.fullmatch(word) is not None and abs(int(word)) < _GREATEST
+    return len(word) < _LONGEST and _WHOLE.fullmatch(word) is not None and abs(int(word)) < _GREATEST
 
 
 def _is_number(word: str) -> bool:

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.draft import has_api
+from hymeko_x.frontends.usd.places import turn_of
 from hymeko_x.frontends.usd.volumes import Solid, joined, solid_of
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Role, Shape
-from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, rotate_tensor, unit_quat
+from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, rotate_tensor
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
@@ -87,7 +88,7 @@ def _tensor(prim: Any, com: Vec3, unit: float, draft: Draft) -> tuple[Tensor | N
     if diagonal is None or not any(diagonal):
         return None, None
     principal: Tensor = (diagonal[0] * unit, diagonal[1] * unit, diagonal[2] * unit, 0.0, 0.0, 0.0)
-    quat = unit_quat(axes) if axes is not None and any(axes) else NO_ROTATION
+    quat = turn_of(axes) if axes is not None else NO_ROTATION
     if quat == NO_ROTATION:
         return principal, None
     return rotate_tensor(quat, principal), InertialWritten(Pose(com, quat), principal)

@@ -11,9 +11,10 @@ from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.dialects import with_dialect
 from hymeko_x.frontends.usd.draft import has_api
+from hymeko_x.frontends.usd.places import turn_of
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
-from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, X, compose, inverse, unit_quat
+from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, X, compose, inverse
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
@@ -99,7 +100,7 @@ def _end(prim: Any, side: int, draft: Draft) -> End | None:
     """The joint's frame in the body of one side; without a body in the world, in the frame of whatever prim is named."""
     position = draft.get(prim, f"physics:localPos{side}") or ZERO
     quat = draft.get(prim, f"physics:localRot{side}") or NO_ROTATION
-    local = Pose(position, unit_quat(quat) if any(quat) else NO_ROTATION)
+    local = Pose(position, turn_of(quat))
     targets = prim.GetRelationship(f"physics:body{side}").GetTargets()
     if not targets:
         return End(WORLD, _in_world(local, draft))
@@ -231,6 +232,8 @@ def _behaving(prim: Any, dof: Dof, draft: Draft) -> Dof:
     mjc = {name: draft.number(prim, f"mjc:{name}", math.nan) for name in _MJC}
     newton = {name: draft.number(prim, f"newton:{name}", math.nan) for name in _NEWTON}
     speed = newton["velocityLimit"] * angle
+    if math.isfinite(speed):
+        draft.take(prim, "newton:velocityLimit")
     found = replace(
         dof,
         armature=_first(mjc["armature"] * inertia, newton["armature"] * inertia),

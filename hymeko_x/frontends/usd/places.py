@@ -91,7 +91,14 @@ def _scale(lengths: list[float]) -> Vec3:
 
 
 def quat_of(quat: Any) -> Quat:
-    """A quaternion of USD as one of ours; the zero one turns nothing."""
+    """A quaternion of USD as one of ours."""
     x, y, z = map(float, quat.GetImaginary())
-    numbers = (float(quat.GetReal()), x, y, z)
-    return unit_quat(numbers) if any(numbers) else NO_ROTATION
+    return turn_of((float(quat.GetReal()), x, y, z))
+
+
+def turn_of(numbers: Quat) -> Quat:
+    """The rotation of four numbers; those that are no rotation turn nothing."""
+    try:
+        return unit_quat(numbers)
+    except ZeroDivisionError:
+        return NO_ROTATION

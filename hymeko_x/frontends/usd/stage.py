@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import posixpath
+import re
 import tempfile
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -18,6 +19,8 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.frontends.usd.size import check_depth, check_size
+from hymeko_x.frontends.usd.types import drop_unknown_types
 from hymeko_x.frontends.usd.unpack import lay_out
 
 if TYPE_CHECKING:
@@ -29,6 +32,7 @@ if TYPE_CHECKING:
 MOST_PRIMS = 2_000_000
 MOST_LAYERS = 10_000
 MOST_NESTED_INSTANCES = 32
+_FOLDER = re.compile(r"[^\s'<@]*hymeko-usd-[^\s'>@]*/")
 _UP = 8
 """How many folders a reference may lead upwards from the file."""
 _SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
@@ -50,23 +54,36 @@ class Scene:
 def open_scene(source: Source, report: Report) -> Iterator[Scene]:
     """The composed stage of a source, with every instance expanded; everything is gone after the block.
 
-    Raises: Refusal with HX001 (USD cannot read it), HX007 (too large).
+    Raises: Refusal with HX001 (USD cannot read it, which it may find out only in the block), HX007 (too large).
     """
+    try:
+        with _opened(source, report) as scene:
+            yield scene
+    except (Tf.ErrorException, UnicodeDecodeError) as error:
+        raise refuse(codes.CANNOT_READ, f"the file is damaged: {_words(error)}", Origin(source.name)) from error
+
+
+@contextmanager
+def _opened(source: Source, report: Report) -> Iterator[Scene]:
     with tempfile.TemporaryDirectory(prefix="hymeko-usd-", ignore_cleanup_errors=True) as folder:
         base = os.path.join(folder, *["d"] * _UP)
         os.makedirs(base)
         main = lay_out(source, base)
         layers = _gather(main, base, source, report)
+        check_size(layers, MOST_PRIMS, source)
+        drop_unknown_types(layers, source, report)
         stage = _composed(main, source)
         _choose_variants(stage, source)
         _expand_instances(stage, source)
-        _say_composition_errors(stage, source, report)
+        _say_composition_errors(stage, base, source, report)
         metres, up = UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage)
         turn = Gf.Rotation(Gf.Vec3d(1, 0, 0), 90.0 if up == UsdGeom.Tokens.y else 0.0)
         world = Gf.Matrix4d().SetScale(metres) * Gf.Matrix4d().SetRotate(turn)
         flat = stage.GetRootLayer() if _is_plain(stage) else stage.Flatten(False)
         try:
             yield Scene(stage, world, UsdPhysics.GetStageKilogramsPerUnit(stage), metres, base, flat)
+        except Tf.ErrorException as error:  # whatever USD complains of while somebody asks it something
+            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, base)}", Origin(source.name)) from error
         finally:
             del stage, layers, flat
 
@@ -75,14 +92,17 @@ def _composed(main: str, source: Source) -> Any:
     try:
         return Usd.Stage.Open(main, Usd.Stage.LoadAll)
     except Tf.ErrorException as error:
-        raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, os.path.dirname(main))}", Origin(source.name)) from error
+        raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error)}", Origin(source.name)) from error
 
 
-def _words(error: Exception, folder: str) -> str:
+def _words(error: Exception) -> str:
     """The first sentence of what USD says, without its own source files and our temporary folder."""
-    text = str(error)
+    try:
+        text = str(error)
+    except UnicodeDecodeError:  # USD quotes the bytes of the file
+        return "it is not UTF-8"
     said = text.rsplit(" : ", 1)[-1].split(" matching ")[0] if " : " in text else text
-    return " ".join(said.replace(folder + "/", "").strip("' \n\t").split())[:300] or "no reason is given"
+    return " ".join(_FOLDER.sub("", said).strip("' \n\t").split())[:300] or "no reason is given"
 
 
 # ---- layers ------------------------------------------------------------------------------------------------------------------
@@ -109,12 +129,13 @@ def _gather(main: str, base: str, source: Source, report: Report) -> list[Any]:
 
 
 def _layer(path: str, base: str, source: Source, report: Report, *, is_main: bool) -> Any | None:
+    check_depth(path, source)
     try:
         return Sdf.Layer.FindOrOpen(path)
     except Tf.ErrorException as error:
         if is_main:
-            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, base)}", Origin(source.name)) from error
-        said = f"layer '{os.path.relpath(path, base)}' cannot be read: {_words(error, base)}; it is left out"
+            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error)}", Origin(source.name)) from error
+        said = f"layer '{os.path.relpath(path, base)}' cannot be read: {_words(error)}; it is left out"
         report.error(codes.CANNOT_READ, said, Origin(source.name))
         return None
 
@@ -224,6 +245,10 @@ def _expand_instances(stage: Any, source: Source) -> None:
     raise refuse(codes.TOO_LARGE, f"instances are nested deeper than {MOST_NESTED_INSTANCES} levels", Origin(source.name))
 
 
-def _say_composition_errors(stage: Any, source: Source, report: Report) -> None:
+_OURS = re.compile(r",?@anon:0x[0-9a-f]+:[^@]*@")
+
+
+def _say_composition_errors(stage: Any, base: str, source: Source, report: Report) -> None:
     for error in stage.GetCompositionErrors()[:20]:
-        report.error(codes.UNDEFINED_REFERENCE, f"composition: {' '.join(str(error).split())[:300]}", Origin(source.name))
+        said = _OURS.sub("", str(error).replace(base + "/", ""))
+        report.error(codes.UNDEFINED_REFERENCE, f"composition: {' '.join(said.split())[:300]}", Origin(source.name))

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 MOST_FILES = 10_000
 MOST_BYTES = 1 << 30
+MOST_PACKED = 1 << 26
+"""Files in packages are stored as they are; those who compress them anyway have no need for many."""
 _LAYERS = (".usda", ".usdc", ".usd")
 
 
@@ -47,6 +49,8 @@ def _unpack(source: Source, base: str) -> str:
             items = [item for item in package.infolist() if not item.is_dir()]
             if len(items) > MOST_FILES or sum(item.file_size for item in items) > MOST_BYTES:
                 raise refuse(codes.TOO_LARGE, f"the package holds more than {MOST_FILES} files or {MOST_BYTES} bytes", Origin(source.name))
+            if sum(item.file_size for item in items if item.compress_type != zipfile.ZIP_STORED) > MOST_PACKED:
+                raise refuse(codes.TOO_LARGE, f"the package holds more than {MOST_PACKED} bytes of compressed files", Origin(source.name))
             for item in items:
                 _write(item.filename, package.read(item), base)
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError, ValueError) as error:

@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 CHILD = "hymeko_x.frontends.xacro_child"
 MOST_HEADER = 2**28
 MOST_BYTES = 2**30
+MOST_SOURCE = 2**28
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +116,8 @@ def expand(source: Source, report: Report, limits: Limits = LIMITS) -> Expansion
 
     Raises: Refusal HX050 to HX058, HX004 when a file is not XML, HX008 when it defines entities.
     """
+    if len(source.data) > MOST_SOURCE:
+        raise refuse(codes.TOO_LARGE, f"the file has {len(source.data)} bytes, at most {MOST_SOURCE} are read", Origin(source.name))
     talk = Talk(source, limits)
     message, text = talk.last_word()
     if "failed" in message:

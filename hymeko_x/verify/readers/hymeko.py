@@ -1,12 +1,18 @@
-"""HyMeKo text, by this project's own reader: there is no other. The verdict says so."""
+"""HyMeKo text, by this project's own reader: there is no other. The verdict says so.
+
+What came from MJCF may leave inertias to the shapes; they are what MuJoCo computes, as for every export of such a text.
+"""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.frontends import hymeko
+from hymeko_x.frontends.mjcf.weigh import weigh
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Source
 from hymeko_x.verify.readers.mechanism import from_mechanism
 
@@ -20,7 +26,10 @@ if TYPE_CHECKING:
 def read(path: Path, places: Places) -> KinematicModel:
     """The robot that the text describes. Raises: Refusal HX302 when it cannot be read."""
     try:
-        mechanism = hymeko.read(Source(str(path), path.read_bytes(), places.files(path.parent)), Report())
+        files = places.files(path.parent)
+        mechanism = hymeko.read(Source(str(path), path.read_bytes(), files), Report())
     except Refusal as refusal:
         raise refuse(codes.ENGINE_REFUSED, f"the HyMeKo text cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
+    if mechanism.notation(ROOT, "mjcf") is not None:
+        mechanism = weigh(mechanism, mjcf.write(mechanism, Report()).main, files, Report())
     return from_mechanism(mechanism, format="hymeko")

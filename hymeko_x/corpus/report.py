@@ -1,0 +1,172 @@
+"""The report of a run: Markdown with the tables, the tables as CSV and Parquet, and the figures."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x.corpus import statistics
+from hymeko_x.corpus.figures import figures
+from hymeko_x.corpus.statistics import MEASURES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    import polars as pl
+
+    from hymeko_x.corpus.statistics import PairRow, Shortness
+    from hymeko_x.corpus.tables import Tables
+
+BEGIN, END = "<!-- pairs: written by `hymeko-x corpus stats` -->", "<!-- end of pairs -->"
+_WORDS = {"characters": "characters", "code": "characters without comments", "bytes": "bytes", "tokens": "tokens", "gzip": "gzip bytes"}
+
+
+def files_of(tables: Tables) -> Iterator[tuple[str, bytes]]:
+    """Every file of the report as (name, content)."""
+    import polars as pl
+
+    short = statistics.shortness(tables)
+    rows = statistics.pair_rows(tables)
+    frames = {
+        "shortness": pl.DataFrame([asdict(row) for row in short]),
+        "pairs": pl.DataFrame([{**asdict(row), "percent": row.percent} for row in rows]),
+        "lost": statistics.kinds(tables, "lost"),
+        "diagnostics": statistics.kinds(tables, "diagnostics"),
+        "differences": statistics.kinds(tables, "failed"),
+        "failures": statistics.failures(tables),
+        **{f"lengths_{measure}": statistics.lengths_of(tables, measure) for measure in MEASURES},
+    }
+    yield "report.md", _report(tables, short, rows).encode()
+    for name, frame in frames.items():
+        yield f"{name}.csv", frame.write_csv(float_precision=6).encode()
+        yield f"{name}.parquet", _parquet(frame)
+    yield from figures(tables)
+
+
+def with_pairs(text: str, tables: Tables) -> str:
+    """A page with the pair matrix of this run between its two marks. Raises: ValueError when it has none."""
+    before, begin, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not (begin and end):
+        raise ValueError(f"the page has no place for the pairs: {BEGIN} ... {END}")
+    return f"{before}{BEGIN}\n\n{matrix(statistics.pair_rows(tables))}\n\n{END}{after}"
+
+
+def matrix(rows: Sequence[PairRow]) -> str:
+    """The pairs as a Markdown table: of the files that the reference reader accepts, how many are the same robot afterwards."""
+    sources, targets = (sorted({getattr(row, side) for row in rows}) for side in ("source", "target"))
+    cells = {(row.source, row.target): f"{row.same} of {row.accepted} ({row.percent:.0f} %)" for row in rows}
+    lines = [["from \\ into", *targets], ["---"] * (len(targets) + 1)]
+    lines += [[source, *(cells.get((source, target), "") for target in targets)] for source in sources]
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+
+def _parquet(frame: pl.DataFrame) -> bytes:
+    buffer = io.BytesIO()
+    frame.write_parquet(buffer, compression="zstd", statistics=False)
+    return buffer.getvalue()
+
+
+def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow]) -> str:
+    robots = tables.robots
+    accepted = len(robots.filter(robots["engine"] == "done"))
+    same, asked = sum(row.same for row in rows), sum(row.accepted for row in rows)
+    share = f"{100.0 * same / asked:.1f} %" if asked else "none"
+    parts = [
+        "# What a batch run measured",
+        f"{len(robots)} files, {len(robots.filter(robots['status'] == 'done'))} read, "
+        f"{accepted} accepted by the reference reader of their format.",
+        f"Of {asked} conversions of accepted files {same} give the same robot ({share}).",
+        "## Pairs of formats",
+        "Of the files that the reference reader of the source accepts, those that convert into the same robot.",
+        matrix(rows),
+        _table(_PAIR_HEAD, _pair_lines(rows)),
+        "## Lengths (the paper's table 4)",
+        "Characters without white space and comments; mean and standard deviation, of the robots that were found in each format.",
+        _table(["found in", "robots", "HyMeKo", "compared with", "length"], _length_lines(short)),
+        "## Is HyMeKo shorter? (the paper's table 5)",
+        "Reduction in percent of the other format's length: of the sums, and the median over robots with its 95 % bootstrap interval; "
+        "one-sided Wilcoxon signed-rank test; effect: rank-biserial correlation.",
+        *(part for measure in MEASURES for part in (f"### In {_WORDS[measure]}", _table(_SHORT_HEAD, _short_lines(short, measure)))),
+        "## What is lost",
+        _table(["from", "into", "kind", "robots"], _top(statistics.kinds(tables, "lost"), 5)),
+        "## In what results differ",
+        _table(["from", "into", "quantity", "robots"], _top(statistics.kinds(tables, "failed"), 5)),
+        "## Every accepted file that is not the same",
+        _table(["file", "from", "into", "cause"], statistics.failures(tables).rows()),
+        "## Figures",
+        *(f"![{name}]({name}.svg)" for name in ("pairs", "lengths", "ratios", "sizes")),
+    ]
+    return "\n\n".join(parts) + "\n"
+
+
+_PAIR_HEAD = ["from", "into", "accepted", "converted", "same", "different", "not comparable", "no loss", "losses (median)"]
+_SHORT_HEAD = ["found in", "compared with", "robots", "shorter", "sums", "median", "95 %", "p", "effect"]
+
+
+def _table(head: Sequence[str], lines: Sequence[Sequence[Any]]) -> str:
+    rows = [head, ["---"] * len(head), *lines]
+    return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows)
+
+
+def _pair_lines(rows: Sequence[PairRow]) -> list[list[str]]:
+    counts = ("accepted", "converted", "same", "different", "not_comparable", "exact")
+    return [[row.source, row.target, *(str(getattr(row, name)) for name in counts), f"{row.losses:g}"] for row in rows]
+
+
+def _length_lines(short: Sequence[Shortness]) -> list[list[str]]:
+    return [
+        [
+            row.source,
+            str(row.robots),
+            f"{row.hymeko_mean:.0f} ± {row.hymeko_deviation:.0f}",
+            f"{row.format} {row.state}",
+            f"{row.mean:.0f} ± {row.deviation:.0f}",
+        ]
+        for row in short
+        if row.measure == "code"
+    ]
+
+
+def _short_lines(short: Sequence[Shortness], measure: str) -> list[list[str]]:
+    return [
+        [
+            row.source,
+            f"{row.format} {row.state}",
+            str(row.robots),
+            str(row.shorter),
+            f"{row.reduction_of_sums:.1f} %",
+            f"{row.median:.1f} %",
+            f"{row.low:.1f} to {row.high:.1f}",
+            f"{row.p:.2g}",
+            f"{row.effect:.2f}",
+        ]
+        for row in short
+        if row.measure == measure
+    ]
+
+
+def _top(frame: pl.DataFrame, count: int) -> list[tuple[Any, ...]]:
+    """The most frequent kinds of each pair."""
+    return frame.group_by("source", "target", maintain_order=True).head(count).select("source", "target", "kind", "robots").rows()
+
+
+def costs_page(tables: Tables) -> str:
+    """What the run cost, as Markdown: measurements, which no two runs share."""
+    steps = statistics.steps(tables)
+    files = max(1, len(tables.robots))
+    total = float(tables.costs["processor"].sum())
+    return (
+        "\n\n".join(
+            [
+                "# What the run cost",
+                f"{files} files took {total:.0f} s of processor time, {total / files:.2f} s each; "
+                f"the most memory of one process was {float(tables.costs['megabytes'].max() or 0):.0f} MB.",  # type: ignore[arg-type]
+                _table(steps.columns, steps.rows()),
+                "The slowest files:",
+                _table(["file", "processor", "megabytes", "step"], statistics.slowest(tables).rows()),
+            ]
+        )
+        + "\n"
+    )

@@ -1,0 +1,297 @@
+"""Strategies for whole mechanisms."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hypothesis import strategies as st
+
+from hymeko_x.ir import parts
+from hymeko_x.ir.graph import Arc, Edge, Hypergraph
+from hymeko_x.ir.mechanism import (
+    KINDS,
+    ROOT,
+    WORLD,
+    Extra,
+    Id,
+    Mechanism,
+    coupling_edge,
+    joint_edge,
+    layer_edge,
+    mount_edge,
+    shape_edge,
+)
+from hymeko_x.ir.values import Pose
+from hymeko_x.testing.parts import (
+    ACTUATORS,
+    CONTACTS,
+    DATA,
+    DRIVES,
+    LOOPS,
+    LUMPED,
+    MATERIALS,
+    MESHES,
+    POSE_SETS,
+    RELATIONS,
+    SHAPES,
+    TENDONS,
+    TEXTURES,
+    THINGS,
+    dofs,
+    inertials,
+)
+from hymeko_x.testing.values import COLOURS, NAMES, NUMBERS, POSES, TEXTS, maybe
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+
+
+@dataclass(frozen=True)
+class Knobs:
+    """What mechanisms may have. Each knob takes something away; as they stand, everything that the IR can say is in.
+
+    ``dof_kinds`` and ``most_dofs`` are of one joint; ``loose`` allows bodies without a joint above them beside the
+    first; ``names`` gives the names of everything.
+    """
+
+    most_bodies: int = 4
+    loose: bool = True
+    world: bool = True
+    dof_kinds: tuple[parts.DofKind, ...] = tuple(parts.DofKind)
+    most_dofs: int = 2
+    child_poses: bool = True
+    shapes: bool = True
+    materials: bool = True
+    meshes: bool = True
+    couplings: bool = True
+    loops: bool = True
+    tendons: bool = True
+    actuators: bool = True
+    sensors: bool = True
+    poses: bool = True
+    lumped: bool = True
+    relations: bool = True
+    extras: bool = True
+    notations: bool = True
+    names: st.SearchStrategy[str] = NAMES
+
+
+EVERYTHING = Knobs()
+TREES = Knobs(
+    loose=False,
+    couplings=False,
+    loops=False,
+    tendons=False,
+    actuators=False,
+    sensors=False,
+    poses=False,
+    lumped=False,
+    relations=False,
+    extras=False,
+    notations=False,
+)
+"""Bodies, joints and shapes, all of it one tree."""
+
+
+class _Draft:
+    """A mechanism in the making: each element gets a name of its own among its kind."""
+
+    def __init__(self, draw: st.DrawFn, knobs: Knobs) -> None:
+        self.draw = draw
+        self.knobs = knobs
+        self.vertices: dict[Id, parts.VertexPart] = {}
+        self.edges: dict[Id, RobotEdge] = {}
+
+    def id(self, kind: str, name: str | None = None) -> Id:
+        wanted = self.draw(self.knobs.names) if name is None else name
+        key, number = Id(kind, wanted), 2
+        while key in self.vertices or key in self.edges:
+            key, number = Id(kind, f"{wanted}#{number}"), number + 1
+        return key
+
+    def several(self, part: st.SearchStrategy[parts.VertexPart], most: int) -> list[Id]:
+        found = []
+        for value in self.draw(st.lists(part, max_size=most)):
+            key = self.id(KINDS[type(value)])
+            self.vertices[key] = value
+            found.append(key)
+        return found
+
+    def edge(self, kind: str, edge: RobotEdge, name: str | None = None) -> Id:
+        key = self.id(kind, name)
+        self.edges[key] = edge
+        return key
+
+    def of(self, *kinds: str) -> list[Id]:
+        return [key for key in (*self.vertices, *self.edges) if key.kind in kinds]
+
+    def one(self, *kinds: str) -> Id:
+        return self.draw(st.sampled_from(self.of(*kinds)))
+
+    def chance(self, *kinds: str) -> bool:
+        """Whether to add something that needs these kinds of elements."""
+        return all(self.of(kind) for kind in kinds) and self.draw(st.booleans())
+
+    def arcs(self, sign: int, kinds: tuple[str, ...], weight: st.SearchStrategy[parts.Weight]) -> tuple[RobotArc, ...]:
+        """Up to three arcs to elements of these kinds."""
+        found = self.of(*kinds)
+        targets = self.draw(st.lists(st.sampled_from(found), min_size=1, max_size=3)) if found else []
+        roles = st.sampled_from(["", "wrap", "side role"])
+        return tuple(Arc(target, sign, self.draw(maybe(weight)), self.draw(roles)) for target in targets)
+
+
+@st.composite
+def mechanisms(draw: st.DrawFn, knobs: Knobs = EVERYTHING) -> Mechanism:
+    """A mechanism with any of the parts that the IR has, names in any script, extras, notations and a layout.
+
+    ``knobs`` take things away. Extras of the mechanism as a whole come as readers give them: those with a path first,
+    then the others by place. It shrinks to an empty mechanism.
+    """
+    draft = _Draft(draw, knobs)
+    if knobs.world and draw(st.booleans()):
+        draft.vertices[WORLD] = parts.World()
+    draft.several(st.builds(parts.Body, maybe(inertials())), knobs.most_bodies)
+    for part, most, wanted in _vertices(knobs):
+        if wanted:
+            draft.several(part, most)
+    _add_joints(draft)
+    if knobs.shapes:
+        _add_shapes(draft)
+    adders = [add for add, is_wanted in _ADDERS if is_wanted(knobs)]
+    for add in draw(st.lists(st.sampled_from(adders), unique=True)) if adders else ():
+        add(draft)
+    return _finished(draft)
+
+
+def _vertices(knobs: Knobs) -> tuple[tuple[st.SearchStrategy[parts.VertexPart], int, bool], ...]:
+    """What stands beside the bodies: how many at most, and whether it is wanted."""
+    return (
+        (MATERIALS, 2, knobs.materials),
+        (MESHES, 2, knobs.meshes),
+        (TEXTURES, 1, knobs.materials),
+        (THINGS, 2, knobs.sensors),
+        (LUMPED, 2, knobs.lumped),
+        (ACTUATORS, 1, knobs.actuators),
+        (POSE_SETS, 1, knobs.poses),
+        (DATA, 1, knobs.relations),
+    )
+
+
+def _add_joints(draft: _Draft) -> None:
+    knobs = draft.knobs
+    bodies = draft.of("body")
+    for number, child in enumerate(bodies):
+        above = [*draft.of("world"), *bodies[:number]]
+        parent = draft.draw(st.sampled_from([None, *above] if knobs.loose or not above else above))
+        if parent is not None:
+            joint = parts.Joint(tuple(draft.draw(st.lists(dofs(knobs.dof_kinds), max_size=knobs.most_dofs))))
+            child_pose = draft.draw(st.just(Pose()) | POSES) if knobs.child_poses else Pose()
+            draft.edge("joint", joint_edge(joint, parent, child, draft.draw(POSES), child_pose))
+
+
+def _add_shapes(draft: _Draft) -> None:
+    for body in draft.of("body", "world"):
+        for shape in draft.draw(st.lists(SHAPES, max_size=2)):
+            mesh = draft.one("mesh") if draft.chance("mesh") else None
+            if mesh is not None:
+                shape = parts.Shape(parts.MeshShape(), shape.role, shape.name, shape.rgba)
+            material = draft.one("material") if draft.chance("material") else None
+            word = {"visual": "visual", "collision": "collision", "both": "shape"}[shape.role.value]
+            name = draft.draw(st.just(f"{body.name}/{word}") | draft.knobs.names)
+            key = draft.edge("shape", shape_edge(shape, body, draft.draw(POSES), mesh, material), name)
+            if material is None and draft.draw(st.booleans()):
+                _colour(draft, key, shape, body, mesh)
+
+
+def _colour(draft: _Draft, key: Id, shape: parts.Shape, body: Id, mesh: Id | None) -> None:
+    """Give the shape a nameless colour of its own."""
+    material = draft.id("material", f"{key.name}/material")
+    draft.vertices[material] = parts.Material(None, draft.draw(COLOURS))
+    draft.edges[key] = shape_edge(shape, body, draft.draw(POSES), mesh, material)
+
+
+def _add_couplings(draft: _Draft) -> None:
+    if not draft.of("joint"):
+        return
+    follower = draft.one("joint")
+    weights = st.lists(NUMBERS, min_size=1, max_size=3).map(tuple) | st.just((0.0, 1.0))
+    leaders = tuple((draft.one("joint"), draft.draw(weights)) for _ in range(draft.draw(st.integers(1, 2))))
+    name = draft.draw(st.sampled_from([follower.name, "gear"]))
+    draft.edge("coupling", coupling_edge(follower, leaders, active=draft.draw(st.booleans())), name)
+
+
+def _add_mounts(draft: _Draft) -> None:
+    if draft.of("body", "world") and draft.of("frame", "camera", "light", "sensor"):
+        draft.edge("mount", mount_edge(draft.one("body", "world"), draft.one("frame", "camera", "light", "sensor"), draft.draw(POSES)))
+
+
+def _add_layers(draft: _Draft) -> None:
+    if draft.of("texture") and draft.of("material"):
+        draft.edge("layer", layer_edge(draft.one("texture"), draft.one("material"), draft.draw(TEXTS)))
+
+
+def _add_any(
+    kind: str,
+    part: st.SearchStrategy[parts.EdgePart],
+    sign: int,
+    targets: tuple[str, ...],
+    weight: st.SearchStrategy[parts.Weight],
+) -> Callable[[_Draft], None]:
+    """An adder of one edge of this kind with arcs to any of its targets."""
+
+    def add(draft: _Draft) -> None:
+        draft.edge(kind, Edge(draft.draw(part), draft.arcs(sign, targets, weight)))
+
+    return add
+
+
+_LISTS = st.lists(NUMBERS, max_size=3).map(tuple)
+_PLACED = POSES.filter(lambda p: p != Pose() or p.written is not None)
+_ADDERS: tuple[tuple[Callable[[_Draft], None], Callable[[Knobs], bool]], ...] = (
+    (_add_couplings, lambda knobs: knobs.couplings),
+    (_add_mounts, lambda knobs: knobs.sensors),
+    (_add_layers, lambda knobs: knobs.materials),
+    (_add_any("loop", LOOPS, 0, ("body", "frame", "world"), _PLACED), lambda knobs: knobs.loops),
+    (_add_any("tendon", TENDONS, 1, ("frame", "joint", "shape"), _LISTS), lambda knobs: knobs.tendons),
+    (_add_any("drive", DRIVES, -1, ("actuator", "joint", "tendon"), _LISTS), lambda knobs: knobs.actuators),
+    (_add_any("sense", st.just(parts.Sense()), 1, ("sensor", "body", "joint", "shape"), _LISTS), lambda knobs: knobs.sensors),
+    (_add_any("stance", st.just(parts.Stance()), 0, ("pose", "joint"), _LISTS), lambda knobs: knobs.poses),
+    (_add_any("contact", CONTACTS, 0, ("shape", "body"), _LISTS), lambda knobs: knobs.relations),
+    (
+        _add_any("constitutive", st.just(parts.Constitutive()), -1, ("body", "spring", "damper", "mass", "port"), _LISTS),
+        lambda knobs: knobs.lumped,
+    ),
+    (_add_any("relation", RELATIONS, 0, tuple(KINDS.values()), _LISTS), lambda knobs: knobs.relations),
+)
+_EXTRAS = st.builds(
+    Extra,
+    st.sampled_from(["urdf", "mjcf", "hymeko", "comment", "odd format"]),
+    st.sampled_from(["", "limit", "limit/@foo", "a b", "preceding", "following"]),
+    TEXTS,
+    st.integers(0, 5),
+)
+
+
+def _finished(draft: _Draft) -> Mechanism:
+    draw, knobs = draft.draw, draft.knobs
+    keys = [*draft.vertices, *draft.edges]
+    extras = _extras(draw, keys) if knobs.extras else {}
+    noted = draw(st.lists(st.sampled_from([ROOT, *keys]), max_size=2, unique=True)) if knobs.notations else []
+    notations = {key: draw(st.dictionaries(TEXTS, TEXTS, min_size=1, max_size=2)) for key in noted}
+    alone = [key for key in keys if key.kind != "shape"]
+    layout = draw(st.just([]) | st.lists(st.sampled_from(alone), unique=True)) if alone else []
+    graph = Hypergraph(draft.vertices, draft.edges)
+    return Mechanism(draw(knobs.names), graph, extras, {}, notations, {}, tuple(layout))
+
+
+def _extras(draw: st.DrawFn, keys: list[Id]) -> dict[Id, tuple[Extra, ...]]:
+    marked = draw(st.lists(st.sampled_from(keys), max_size=2, unique=True)) if keys else []
+    extras = {key: tuple(draw(st.lists(_EXTRAS, min_size=1, max_size=2))) for key in marked}
+    whole = draw(st.lists(_EXTRAS, max_size=3))
+    if whole:
+        standing = sorted((extra for extra in whole if not extra.path), key=lambda extra: extra.index)
+        extras[ROOT] = (*(extra for extra in whole if extra.path), *standing)
+    return extras

@@ -1,0 +1,229 @@
+"""Damage: texts that were right a moment ago. Cheap enough for a million cases, and the same for the same seed.
+
+A mutator takes bytes and a source of chance and returns bytes. :func:`mutated` picks a few of them, from single bits to
+whole subtrees, so that every layer of a reader gets its share: decoding, lexing, parsing, and what the words mean.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import random
+    from collections.abc import Callable, Sequence
+
+    Mutator = Callable[[bytes, random.Random, "Sequence[bytes]"], bytes]
+
+MOST_BYTES = 60_000
+"""A case never grows larger: what size does is the business of other tests."""
+
+ODD_NUMBERS = (
+    *b"nan -nan inf -inf Infinity 1e999 -1e999 1e-999 1e308 1e154 4.9e-324 0 -0 -1 1e9 2147483648 -9223372036854775809".split(),
+    *b"99999999999999999999 0x10 0x1p-3 1,5 1_000 1e . + --1 1.2.3 \xd9\xa1 True 1d3 1f".split(),
+    *(b"1 2", b"", b" "),
+)
+"""Numbers and what looks like one."""
+
+ODD_WORDS = (
+    *b"/ .. ../../etc/passwd /etc/passwd /dev/zero file:///etc/passwd package:// package://a/../../b ~ - --help".split(),
+    *b"$(id) ${x} `id` %s %n \\ \\u0000 &#0; &#xD800; &lt; &amp; world true none __class__".split(),
+    *b"\xc3\xa9 \xe9 \xf0\x9f\xa4\x96 \xed\xa0\x80 \xef\xbf\xbe \xe2\x80\xae".split(),
+    *(b"", b" ", b"a b", b"$(find a)", b"a" * 300),
+)
+"""Names and paths that lead elsewhere, and texts that are no text."""
+
+ODD_BYTES = (
+    *b"\0 \xff \xfe\xff \xef\xbb\xbf \x1a < > & \" ' ]]> <!-- --> <? <![CDATA[ { } [ ] ( ) @ # // /* \\ = : , ;".split(b" "),
+    *(b"\r", b"\x0b", b"\x85"),
+)
+"""What no text should have, and what means something in one of the formats."""
+
+_TOKEN = re.compile(rb"[\w.+-]+|\s+|.", re.DOTALL)
+_NUMBER = re.compile(rb"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
+_QUOTED = re.compile(rb'"[^"\n]*"')
+_TAG = re.compile(rb"<(/?)([A-Za-z_][\w:.-]*)((?:[^<>\"']|\"[^\"]*\"|'[^']*')*?)(/?)>")
+_ATTRIBUTE = re.compile(rb'\s[\w:.-]+="[^"]*"')
+
+
+def mutated(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """The data after one to four mutations. ``others`` are texts of the same format, from which pieces are taken."""
+    ways = MUTATORS
+    for _ in range(1 + int(chance.random() ** 2 * 4)):
+        data = ways[chance.randrange(len(ways))](data, chance, others)[:MOST_BYTES]
+    return data
+
+
+def _place(data: bytes, chance: random.Random) -> int:
+    return chance.randrange(len(data) + 1)
+
+
+def flip_bits(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """A few bytes become others."""
+    if not data:
+        return b"\0"
+    changed = bytearray(data)
+    for _ in range(chance.randint(1, 4)):
+        changed[chance.randrange(len(changed))] ^= 1 << chance.randrange(8)
+    return bytes(changed)
+
+
+def cut(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """The end is missing."""
+    return data[: _place(data, chance)]
+
+
+def lose(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """A stretch is missing."""
+    at = _place(data, chance)
+    return data[:at] + data[at + chance.randint(1, 40) :]
+
+
+def put_bytes(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """Something stands where nothing should."""
+    at = _place(data, chance)
+    return data[:at] + chance.choice(ODD_BYTES) * chance.choice((1, 1, 1, 2, 50)) + data[at:]
+
+
+def swap_tokens(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """Two pieces of the text change places, or one is lost, or stands twice."""
+    start = _place(data, chance)
+    pieces = _TOKEN.findall(data[start : start + 200])
+    if len(pieces) < 2:
+        return data
+    i, j = chance.randrange(len(pieces)), chance.randrange(len(pieces))
+    match chance.randrange(3):
+        case 0:
+            pieces[i], pieces[j] = pieces[j], pieces[i]
+        case 1:
+            pieces[i] = b""
+        case _:
+            pieces.insert(i, pieces[j])
+    return data[:start] + b"".join(pieces) + data[start + 200 :]
+
+
+def odd_number(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """One of the numbers becomes something else."""
+    return _replaced(data, _NUMBER, chance, chance.choice(ODD_NUMBERS))
+
+
+def odd_word(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """One of the quoted texts becomes something else."""
+    word = chance.choice(ODD_WORDS if chance.random() < 0.7 else ODD_NUMBERS)
+    return _replaced(data, _QUOTED, chance, b'"' + word + b'"')
+
+
+def same_word(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """One of the quoted texts becomes another one of them: names clash, references lead elsewhere, cycles close."""
+    found = _near(data, _QUOTED, chance)
+    other = _near(data, _QUOTED, chance)
+    if found is None or other is None:
+        return data
+    return data[: found.start()] + other[0] + data[found.end() :]
+
+
+def splice(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """A stretch of another text is put in."""
+    other = chance.choice(others)
+    start, at = _place(other, chance), _place(data, chance)
+    return data[:at] + other[start : start + chance.randint(1, 300)] + data[at:]
+
+
+def repeat(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """A stretch stands many times."""
+    at = _place(data, chance)
+    return data[:at] + data[at : at + chance.randint(1, 60)] * chance.randint(2, 30) + data[at:]
+
+
+def move_element(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """An element of an XML text is lost, stands twice, or stands somewhere else."""
+    element = _element(data, chance)
+    if element is None:
+        return data
+    start, end = element
+    piece, way = data[start:end], chance.randrange(3)
+    rest = data if way == 1 else data[:start] + data[end:]
+    if way == 0:
+        return rest
+    tag = _near(rest, _TAG, chance)
+    at = tag.end() if tag is not None else len(rest)
+    return rest[:at] + piece + rest[at:]
+
+
+def take_element(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """An element of another XML text is put in."""
+    other = chance.choice(others)
+    element, tag = _element(other, chance), _near(data, _TAG, chance)
+    if element is None or tag is None:
+        return data
+    return data[: tag.end()] + other[element[0] : element[1]] + data[tag.end() :]
+
+
+def rename_element(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """An element of an XML text gets the name of another one."""
+    tag, other = _near(data, _TAG, chance), _near(chance.choice(others), _TAG, chance)
+    if tag is None or other is None:
+        return data
+    renamed = data[: tag.start(2)] + other[2] + data[tag.end(2) :]
+    closing = b"</" + tag[2] + b">"
+    at = renamed.find(closing, tag.end())
+    if tag[4] or at < 0:
+        return renamed
+    return renamed[:at] + b"</" + other[2] + b">" + renamed[at + len(closing) :]
+
+
+def change_attribute(data: bytes, chance: random.Random, others: Sequence[bytes]) -> bytes:
+    """An attribute of an XML text is lost, or one of another text is put in."""
+    if chance.random() < 0.5:
+        return _replaced(data, _ATTRIBUTE, chance, b"")
+    tag, other = _near(data, _TAG, chance), _near(chance.choice(others), _ATTRIBUTE, chance)
+    if tag is None or other is None or tag[1]:
+        return data
+    return data[: tag.end(2)] + other[0] + data[tag.end(2) :]
+
+
+MUTATORS: tuple[Mutator, ...] = (
+    flip_bits,
+    cut,
+    lose,
+    put_bytes,
+    swap_tokens,
+    swap_tokens,
+    odd_number,
+    odd_number,
+    odd_word,
+    odd_word,
+    same_word,
+    same_word,
+    splice,
+    repeat,
+    move_element,
+    move_element,
+    take_element,
+    rename_element,
+    change_attribute,
+    change_attribute,
+)
+"""Every way to damage a text; those that leave it readable stand twice, because they reach furthest."""
+
+
+def _near(data: bytes, pattern: re.Pattern[bytes], chance: random.Random) -> re.Match[bytes] | None:
+    """The first match behind a place taken at random."""
+    return pattern.search(data, _place(data, chance)) or pattern.search(data)
+
+
+def _replaced(data: bytes, pattern: re.Pattern[bytes], chance: random.Random, new: bytes) -> bytes:
+    found = _near(data, pattern, chance)
+    return data if found is None else data[: found.start()] + new + data[found.end() :]
+
+
+def _element(data: bytes, chance: random.Random) -> tuple[int, int] | None:
+    """Where some element of an XML text starts and ends, roughly: an empty tag, or up to the first closing tag of its name."""
+    tag = _near(data, _TAG, chance)
+    if tag is None or tag[1]:
+        return None
+    if tag[4]:
+        return tag.start(), tag.end()
+    closing = b"</" + tag[2] + b">"
+    at = data.find(closing, tag.end())
+    return (tag.start(), at + len(closing)) if at >= 0 else None

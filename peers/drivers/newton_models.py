@@ -1,0 +1,74 @@
+"""newton: what its ModelBuilder makes of a file in ``source`` (URDF, MJCF or USD): bodies, and joints by their dofs."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import newton
+import numpy as np
+import warp
+from loop import answer_all
+from newton import JointType
+from newton.usd import SchemaResolverMjc, SchemaResolverNewton
+
+warp.config.quiet = True
+
+
+def describe(job: dict[str, Any]) -> dict[str, Any]:
+    """Masses and centres of bodies; type, ends, frames, axes and limits of joints. Names are the last step of a label."""
+    builder = newton.ModelBuilder()
+    source = job["source"]
+    if source.endswith(".urdf"):
+        builder.add_urdf(source, floating=True, collapse_fixed_joints=False, parse_visuals_as_colliders=False)
+    elif source.endswith(".xml"):
+        builder.add_mjcf(source, collapse_fixed_joints=False)
+    else:
+        builder.add_usd(source, collapse_fixed_joints=False, schema_resolvers=[SchemaResolverNewton(), SchemaResolverMjc()])
+    return {"bodies": _bodies(builder), "joints": _joints(builder)}
+
+
+def _bodies(builder: Any) -> list[dict[str, Any]]:
+    rows = zip(builder.body_label, builder.body_mass, builder.body_com, builder.body_inertia, builder.body_q, strict=True)
+    return [
+        {"name": label, "mass": float(mass), "com": _list(com), "tensor": _list(np.array(tensor).ravel()), "at": _list(at)}
+        for label, mass, com, tensor, at in rows
+    ]
+
+
+def _joints(builder: Any) -> list[dict[str, Any]]:
+    starts = [*builder.joint_qd_start, builder.joint_dof_count]
+    found = []
+    for number, label in enumerate(builder.joint_label):
+        dofs = range(starts[number], starts[number + 1])
+        found.append(
+            {
+                "name": label,
+                "type": JointType(builder.joint_type[number]).name,
+                "parent": int(builder.joint_parent[number]),
+                "child": int(builder.joint_child[number]),
+                "above": _list(builder.joint_X_p[number]),
+                "below": _list(builder.joint_X_c[number]),
+                "axes": [_list(builder.joint_axis[dof]) for dof in dofs],
+                "lower": [_finite(builder.joint_limit_lower[dof]) for dof in dofs],
+                "upper": [_finite(builder.joint_limit_upper[dof]) for dof in dofs],
+                "velocity": [_finite(builder.joint_velocity_limit[dof]) for dof in dofs],
+                "effort": [_finite(builder.joint_effort_limit[dof]) for dof in dofs],
+                "armature": [_finite(builder.joint_armature[dof]) for dof in dofs],
+                "friction": [_finite(builder.joint_friction[dof]) for dof in dofs],
+            }
+        )
+    return found
+
+
+def _list(values: Any) -> list[float]:
+    return [float(value) for value in values]
+
+
+def _finite(value: Any) -> float | None:
+    """None stands for no limit, which Newton writes as a very large number."""
+    return float(value) if math.isfinite(value) and abs(value) < 1e9 else None
+
+
+if __name__ == "__main__":
+    answer_all(describe)

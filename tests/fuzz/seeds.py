@@ -1,0 +1,34 @@
+"""The texts that fuzzing starts from: our own robots in every format, and by hand what they do not say."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import hymeko_x as hx
+from hymeko_x.testing import texts
+
+FOLDER = Path(__file__).parents[2] / "corpus"
+LARGEST = 4000
+"""Small texts are read quickly, and a mutation hits something that means something."""
+
+FORMATS = ("hymeko", "urdf", "mjcf", "usd", "xacro", "xml")
+"""The text formats that are fuzzed; ``xml`` is any XML, whose root decides what reads it."""
+
+
+@cache
+def seeds(format: str) -> tuple[bytes, ...]:
+    """The texts of a format, in a fixed order."""
+    if format == "xml":
+        return (*(text.encode() for text in texts.SDF), *seeds("urdf")[:4], *seeds("mjcf")[:4])
+    written = [text.encode() for text in texts.BY_FORMAT.get(format, ())]
+    if format == "xacro":
+        return tuple(written)
+    found = [_converted(path, format) for path in sorted(FOLDER.glob("*/*.hymeko"))]
+    return (*written, *(text for text in found if len(text) <= LARGEST))
+
+
+def _converted(path: Path, format: str) -> bytes:
+    if format == "hymeko":
+        return path.read_bytes()
+    return hx.dumps(hx.load(path), format).encode()

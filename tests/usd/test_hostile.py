@@ -1,0 +1,65 @@
+"""Stages from strangers: damaged, endless, huge. A diagnostic or success, in bounded time, never a traceback."""
+
+from __future__ import annotations
+
+import random
+import time
+
+import pytest
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Refusal, Report
+from hymeko_x.frontends import usd
+from hymeko_x.ir.parts import Body
+from hymeko_x.source import Source
+from tests.usd.stages import HEADER, Texts, written
+from tests.usd.test_read import body, robot
+from tests.usd.test_usd_write import arm
+
+
+def outcome(data: bytes, name: str = "robot.usdc", files: dict[str, str | bytes] | None = None) -> str:
+    """What becomes of a file: the code with which it is refused, or that it was read."""
+    try:
+        usd.read(Source(name, data, Texts(files or {})), Report())
+    except Refusal as refusal:
+        return "a path of ours is said" if "/tmp" in refusal.diagnostic.message else refusal.diagnostic.code.id
+    return "read"
+
+
+@pytest.mark.parametrize("part", [0.0, 0.1, 0.5, 0.9, 0.999])
+@pytest.mark.parametrize("format", ["usd", "usdc", "usdz"])
+def test_a_stage_that_ends_too_early_is_refused(format: str, part: float) -> None:
+    data = written(arm(), format)
+    assert outcome(data[: int(len(data) * part)], f"robot.{format}".replace(".usd", ".usda", format == "usd")) == codes.CANNOT_READ.id
+
+
+def test_a_stage_with_flipped_bits_is_read_or_refused() -> None:
+    whole, dice = written(arm(), "usdc"), random.Random(0)
+    for _ in range(25):
+        data = bytearray(whole)
+        for _ in range(4):
+            data[dice.randrange(len(data))] ^= 1 << dice.randrange(8)
+        assert outcome(bytes(data)) in ("read", codes.CANNOT_READ.id)
+
+
+def test_a_layer_that_is_its_own_sublayer_or_payload_ends() -> None:
+    text = HEADER.replace("(\n", "(\n    subLayers = [@robot.usda@]\n", 1) + 'def "robot" (\n    payload = @robot.usda@</robot>\n)\n{\n}\n'
+    assert outcome(text.encode(), "robot.usda", {"robot.usda": text}) in ("read", codes.CANNOT_READ.id)
+
+
+def test_a_missing_payload_is_a_warning() -> None:
+    report = Report()
+    text = robot(body("a"), 'def "b" (\n    payload = @../../../../../../../../../../etc/passwd@\n)\n{\n}\n')
+    mechanism = usd.read(Source("robot.usda", text.encode()), report)
+    assert [item.code for item in report] == [codes.ASSET_NOT_FOUND]
+    assert [key.name for key, _ in mechanism.vertices(Body)] == ["a"]
+
+
+@pytest.mark.slow
+def test_a_hundred_thousand_prims_are_read_in_bounded_time() -> None:
+    group = "".join(f'    def Xform "p{number}"\n    {{\n        int count = {number}\n    }}\n' for number in range(100_000))
+    start = time.process_time()
+    mechanism = usd.read(Source("robot.usda", robot(body("a"), group).encode()), Report())
+    assert [key.name for key, _ in mechanism.vertices(Body)] == ["a"]
+    assert sum(len(found) for found in mechanism.extras.values()) >= 100_000
+    assert time.process_time() - start < 300.0
