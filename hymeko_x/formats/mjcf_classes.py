@@ -39,7 +39,25 @@ ACTUATORS = frozenset(
 says which kind it is, so that gains of another tag before it are gone."""
 
 _SHARED = frozenset(
-    ("ctrllimited", "ctrlrange", "forcelimited", "forcerange", "actlimited", "actrange", "gear", "group", "user", "lengthrange", "armature", "damping", "cranklength", "inheritrange", "delay", "nsample", "interp")
+    (
+        "ctrllimited",
+        "ctrlrange",
+        "forcelimited",
+        "forcerange",
+        "actlimited",
+        "actrange",
+        "gear",
+        "group",
+        "user",
+        "lengthrange",
+        "armature",
+        "damping",
+        "cranklength",
+        "inheritrange",
+        "delay",
+        "nsample",
+        "interp",
+    )
 )
 _ANY_ACTUATOR = "actuator"
 
