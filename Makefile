@@ -5,7 +5,7 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 JOBS ?= 2
 
-.PHONY: demo test lint types pytest bench peers fuzz clean help
+.PHONY: demo test lint types pytest bench peers fuzz corpus clean help
 
 help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
@@ -13,6 +13,7 @@ help:
 	@echo "make bench  speed as ratios against yardsticks timed in the same run"
 	@echo "make peers  other people's programs that tests and benchmarks compare with, each into .peers/"
 	@echo "make fuzz   damage texts of every format and read them; PROFILE=ci (minutes) or nightly (hours)"
+	@echo "make corpus every robot of the catalogue through every format, verified; renews corpus/results and README"
 	@echo "make clean  remove .venv and everything that was built"
 
 $(STAMP): pyproject.toml
@@ -51,6 +52,11 @@ fuzz: $(STAMP)
 	$(BIN)/python -m tests.fuzz --profile $(PROFILE)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --only-binary :all: atheris || echo "atheris has no wheel for this Python; the guided part is left out"
 	@for format in hymeko urdf mjcf usd; do $(BIN)/python -m tests.fuzz.guided $$format -max_total_time=$(GUIDED_SECONDS) -verbosity=0 || failed=1; done; exit $${failed:-0}
+
+corpus: $(STAMP)
+	$(BIN)/hymeko-x corpus fetch
+	$(BIN)/hymeko-x corpus run --verify --resume --jobs $(JOBS) -o corpus-run
+	$(BIN)/hymeko-x corpus stats corpus-run -o corpus/results --page README.md
 
 clean:
 	rm -rf .venv .peers build dist demo .mypy_cache .pytest_cache .ruff_cache
