@@ -83,7 +83,7 @@ def _opened(source: Source, report: Report) -> Iterator[Scene]:
         try:
             yield Scene(stage, world, UsdPhysics.GetStageKilogramsPerUnit(stage), metres, base, flat)
         except Tf.ErrorException as error:  # whatever USD complains of while somebody asks it something
-            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error, base)}", Origin(source.name)) from error
+            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error)}", Origin(source.name)) from error
         finally:
             del stage, layers, flat
 
