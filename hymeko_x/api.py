@@ -81,8 +81,8 @@ def dump(
     report = Report()
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
     files = _files_of(robot, packages)
-    options = Options(base, actuators, layout, nested)
-    result = pipeline.convert(robot, target, options, files, report, _place(path, assets), pure=pure)
+    options = Options(base, actuators, layout, nested, pure=pure)
+    result = pipeline.convert(robot, target, options, files, report, _place(path, assets))
     disk.write_package(result.package, os.fspath(path), files)
     return report
 
@@ -102,9 +102,9 @@ def dumps(
     Raises: Refusal when the format cannot be written.
     """
     said = Report() if report is None else report
-    options = Options(base, actuators, nested=nested)
+    options = Options(base, actuators, nested=nested, pure=pure)
     place = pipeline.Place(assets="reference")
-    result = pipeline.convert(robot, formats.by_name(format), options, _files_of(robot, None), said, place, pure=pure)
+    result = pipeline.convert(robot, formats.by_name(format), options, _files_of(robot, None), said, place)
     return result.package.main.decode()
 
 
@@ -136,8 +136,8 @@ def convert(
     given = replace(given, arguments=dict(arguments or {}), environment=dict(environment or {}), variants=dict(variants or {}))
     robot = pipeline.read(given, _input_format(given, from_format), report)
     form = formats.by_name(to_format) if to_format else formats.of_output(os.fspath(target))
-    options = Options(base, actuators, layout, nested)
-    result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets), pure=pure)
+    options = Options(base, actuators, layout, nested, pure=pure)
+    result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets))
     disk.write_package(result.package, os.fspath(target), given.files)
     return result
 

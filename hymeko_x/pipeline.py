@@ -153,12 +153,10 @@ def write(mechanism: Mechanism, format: Format, options: Options, files: Files, 
     return _written(mechanism, format, options, files, report, place)[0]
 
 
-def convert(
-    mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE, *, pure: bool = False
-) -> Result:
+def convert(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
     """Write a mechanism, read the result back if the format has a reader, measure what got lost, and let the file carry that.
 
-    ``pure`` leaves out what the format cannot say itself.
+    With the option ``pure`` it carries nothing.
 
     Raises: Refusal when the format cannot be written; HX901 when our own reader refuses what we wrote.
     """
@@ -168,7 +166,7 @@ def convert(
     image = read_back(package, format, files)
     bridge = bridge_between(image, mechanism)
     losses = ledger(with_references_of(packed, mechanism), image, bridge, format)
-    carry = None if pure else carrier_of(format)
+    carry = None if options.pure else carrier_of(format)
     if carry is None:
         return Result(mechanism, package, report, losses)
     residue = residue_of(mechanism, image, bridge)

@@ -53,9 +53,9 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
 
     With ``measured`` the result is read back and its losses are listed.
     """
-    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split)
+    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure)
     what = (given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
-    result = pipeline.convert(*what, pure=chosen.pure) if measured else pipeline.write_unmeasured(*what)
+    result = pipeline.convert(*what) if measured else pipeline.write_unmeasured(*what)
     beside = [*result.package.files, *result.package.copies]
     if output.path == "-" and beside:
         names = ", ".join(beside[:3]) + (f" and {len(beside) - 3} more" if len(beside) > 3 else "")

@@ -40,7 +40,7 @@ class Options:
     ``base``: what becomes of an open base (None = the target's own default). ``actuators``: which kind to give every
     driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows. ``layout`` and
     ``nested``: how a stage of USD is laid out (None = as it was, else one file with flat bodies). ``split``: whether the
-    macros of xacro go into a file of their own.
+    macros of xacro go into a file of their own. ``pure``: whether the output carries nothing but what its format says.
     """
 
     base: Literal["fixed", "free"] | None = None
@@ -48,6 +48,7 @@ class Options:
     layout: Literal["single", "layered"] | None = None
     nested: bool | None = None
     split: bool = False
+    pure: bool = False
 
 
 Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]

@@ -22,7 +22,7 @@ from hymeko_x.backends.usd.relations import write_drives, write_mimics
 from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
 from hymeko_x.formats import usd as words
-from hymeko_x.ir.legalize_usd import LAYOUT
+from hymeko_x.ir.legalize_usd import LAYOUT, PURE
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 
@@ -72,7 +72,8 @@ def write_layer(mechanism: Mechanism, report: Report) -> Any:
         _write_articulations(sheet)
         author(sheet.prims.values(), layer)
         restore_extras(sheet, report)
-        carry_elements(sheet)
+        if mechanism.notation(ROOT, PURE) is None:
+            carry_elements(sheet)
     return layer
 
 
