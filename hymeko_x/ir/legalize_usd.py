@@ -16,8 +16,6 @@ LAYOUT = "usd.layout"
 """The notation of the mechanism that says ``layered`` where the stage has a file for each of its aspects."""
 NESTED = "usd.nested"
 """The notation of the mechanism that says ``true`` where each body is inside of its parent."""
-PURE = "usd.pure"
-"""The notation of the mechanism that says ``true`` where the stage carries nothing but what USD says."""
 
 
 def choose_layout(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
@@ -29,6 +27,4 @@ def choose_layout(mechanism: Mechanism, options: Options, report: Report) -> Mec
         wanted[LAYOUT] = options.layout
     if options.nested is not None:
         wanted[NESTED] = "true" if options.nested else "false"
-    if options.pure:
-        wanted[PURE] = "true"
     return replace(mechanism, notations={**mechanism.notations, ROOT: wanted}) if wanted != own else mechanism

@@ -1,6 +1,6 @@
 """USD out: one stage in metres and kilograms with z up, flat bodies, joint frames on both sides, drives and materials.
 
-What USD has no word for, and every number that it holds in single precision only, stands in ``hymeko:`` attributes.
+What USD has no word for, and the digits that single precision cuts off, travel in the residue of the root layer.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from pxr import Kind, Sdf, UsdGeom
 
 from hymeko_x.backends.usd.actuators import write_actuators
 from hymeko_x.backends.usd.bodies import write_bodies, write_mounts
-from hymeko_x.backends.usd.carry import carry_elements
+from hymeko_x.backends.usd.carrier import carry_in_text as carry_residue
 from hymeko_x.backends.usd.contacts import write_contacts, write_frictions
 from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
@@ -22,13 +22,15 @@ from hymeko_x.backends.usd.relations import write_drives, write_mimics
 from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
 from hymeko_x.formats import usd as words
-from hymeko_x.ir.legalize_usd import LAYOUT, PURE
+from hymeko_x.ir.legalize_usd import LAYOUT
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
+
+__all__ = ["carry_residue", "write"]
 
 _ARTICULATION = "PhysicsArticulationRootAPI"
 _SECTIONS = (
@@ -72,8 +74,6 @@ def write_layer(mechanism: Mechanism, report: Report) -> Any:
         _write_articulations(sheet)
         author(sheet.prims.values(), layer)
         restore_extras(sheet, report)
-        if mechanism.notation(ROOT, PURE) is None:
-            carry_elements(sheet)
     return layer
 
 

@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING
 
 from pxr import Sdf
 
+from hymeko_x.backends.usd.carrier import carry_in_zip as carry_residue
 from hymeko_x.backends.usd.crate import write as write_crate
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
+
+__all__ = ["carry_residue", "write"]
 
 _MAIN = "stage.usdc"
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.usd import write_layers
+from hymeko_x.backends.usd.carrier import carry_in_crate as carry_residue
 from hymeko_x.backends.usd.layers import encoded
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
+
+__all__ = ["carry_residue", "write"]
 
 
 def write(mechanism: Mechanism, report: Report) -> Package:

@@ -8,12 +8,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from pxr import Gf, Sdf
-
-from hymeko_x.formats.usd import value_bytes
+from pxr import Sdf
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable
 
 T = Sdf.ValueTypeNames
 _UNIFORM = frozenset(("physics:axis", "axis", "purpose", "xformOpOrder", "physics:approximation", "subdivisionScheme", "info:id"))
@@ -79,37 +77,3 @@ def add_attribute(spec: Any, name: str, kind: Any, value: Any) -> Any:
 def set_schemas(spec: Any, schemas: list[str]) -> None:
     """Say which API schemas a prim has."""
     spec.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=schemas))
-
-
-# ---- native values, for digests ------------------------------------------------------------------------------------------------
-
-
-def drafted_pairs(prim: Prim, prims: Mapping[Any, Prim]) -> Iterator[tuple[str, bytes]]:
-    """Type, schemas and every property of a prim, as the reader will see them through a reference within the layer."""
-    yield "@type", prim.kind.encode()
-    yield "@apiSchemas", " ".join(sorted(prim.schemas)).encode()
-    referred = prims[prim.reference].attributes if prim.reference is not None else {}
-    for name, (kind, value) in {**referred, **prim.attributes}.items():
-        yield name, value_bytes(stored(kind, value))
-    for name, targets in prim.targets.items():
-        yield name, " ".join(map(str, targets)).encode()
-
-
-def stored(kind: Any, value: Any) -> Any:
-    """A value as an attribute of this type holds it: a number of single precision is rounded, or becomes 0 or infinite."""
-    return Gf.Vec2f(value, 0.0)[0] if kind == _FLOAT else value
-
-
-def authored_pairs(spec: Any, layer: Any) -> Iterator[tuple[str, bytes]]:
-    """The same of a prim that extras may have changed after it was authored; our own attributes are left out."""
-    yield "@type", str(spec.typeName).encode()
-    schemas = spec.GetInfo("apiSchemas").GetAppliedItems() if spec.HasInfo("apiSchemas") else []
-    yield "@apiSchemas", " ".join(sorted(schemas)).encode()
-    said: dict[str, Any] = {}
-    for reference in spec.referenceList.prependedItems:
-        said |= {item.name: item for item in layer.GetPrimAtPath(reference.primPath).properties}
-    said |= {item.name: item for item in spec.properties}
-    for name, item in said.items():
-        targets = getattr(item, "targetPathList", None)
-        value = None if targets is not None or isinstance(item.default, Sdf.ValueBlock) else item.default
-        yield name, " ".join(map(str, targets.GetAppliedItems())).encode() if targets is not None else value_bytes(value)

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
+from hymeko_x.formats import carrier
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd_actuators import PRIM as ACTUATOR
 from hymeko_x.frontends.usd.actuators import read_actuator
 from hymeko_x.frontends.usd.bare_links import hang_bare_links, read_bare_links
 from hymeko_x.frontends.usd.bodies import BODY, read_body, read_mass
-from hymeko_x.frontends.usd.carried import put_carried
 from hymeko_x.frontends.usd.contacts import read_filtered_pairs
 from hymeko_x.frontends.usd.dialects import is_passive_drive, is_world, read_named_mimic
 from hymeko_x.frontends.usd.draft import Draft, api_schemas
@@ -30,9 +30,10 @@ from hymeko_x.frontends.usd.stage import Scene, open_scene
 from hymeko_x.frontends.usd.structure import build_trees, note_poses
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism
-from hymeko_x.ir.parts import Mesh
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
 
@@ -45,6 +46,7 @@ def read(source: Source, report: Report) -> Mechanism:
     Raises: Refusal with HX001 (USD cannot read it), HX007 (too large).
     """
     with open_scene(source, report) as scene:
+        residue = list(_take_residue(scene))
         draft = Draft(source, report, scene)
         prims = _prims(scene)
         for prim in prims:
@@ -57,25 +59,23 @@ def read(source: Source, report: Report) -> Mechanism:
         _read_shapes(prims, draft)
         _read_things(prims, _read_joints(prims, bare, draft), draft)
         note_poses(draft)
-        draft.native_meshes = _native_meshes(draft)
-        carried = put_carried(draft)
         gather_leftovers(draft)
-        return _finished(scene, carried, draft)
+        return carrier.with_residue(_finished(scene, draft), residue)
+
+
+def _take_residue(scene: Scene) -> Iterator[str]:
+    """The residue that the root layer carries, out of its custom data."""
+    text = scene.stage.GetRootLayer().customLayerData.get(carrier.USD_KEY)
+    if not isinstance(text, str):
+        return
+    for layer in (scene.stage.GetRootLayer(), scene.layer):  # the same, or one that everything was flattened into
+        layer.customLayerData = {key: value for key, value in layer.customLayerData.items() if key != carrier.USD_KEY}
+    yield text
 
 
 def _prims(scene: Scene) -> list[Any]:
-    """All prims in stage order, without what only carries our own residue."""
-    found = []
-    hidden = ""
-    for prim in scene.stage.Traverse():
-        path = str(prim.GetPath())
-        if hidden and path.startswith(hidden):
-            continue
-        if prim.HasAttribute(f"{words.PREFIX}scope"):
-            hidden = path + "/"
-            continue
-        found.append(prim)
-    return found
+    """All prims in stage order, without the groups that only hold prims of ours."""
+    return [prim for prim in scene.stage.Traverse() if not prim.HasAttribute(f"{words.PREFIX}scope")]
 
 
 def _read_shapes(prims: list[Any], draft: Draft) -> None:
@@ -144,28 +144,15 @@ def _stands_still(prim: Any) -> bool:
     return is_off or prim.GetAttribute("physics:kinematicEnabled").Get() is True
 
 
-def _native_meshes(draft: Draft) -> dict[str, Mesh]:
-    """The mesh that was read at each path, also where it is shared."""
-    found: dict[str, Mesh] = {}
-    for path, keys in draft.elements.items():
-        for key in keys:
-            edge = draft.edges.get(key)
-            for arc in edge.arcs if edge is not None and key.kind == "shape" else ():
-                part = draft.vertices.get(arc.target)
-                if isinstance(part, Mesh):
-                    found[path] = part
-    return found
-
-
-def _finished(scene: Scene, carried: str | None, draft: Draft) -> Mechanism:
+def _finished(scene: Scene, draft: Draft) -> Mechanism:
     default = scene.stage.GetDefaultPrim()
     first = next(iter(draft.bodies), "")
     root = default or scene.stage.GetPrimAtPath("/" + first.split("/")[1] if first else "/")
     stem = PurePath(draft.source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
-    name = carried if carried is not None else str(default.GetName()) if default else stem
-    if carried is None and root and not root.IsPseudoRoot():
+    name = str(default.GetName()) if default else stem
+    if root and not root.IsPseudoRoot():
         draft.note(ROOT, words.ROOT_PRIM, str(root.GetPath()))
-    if not draft.bodies and carried is None:
+    if not draft.bodies:
         draft.report.error(codes.MISSING_PART, "the stage has no rigid bodies; the result has no bodies", Origin(draft.source.name))
     graph = Hypergraph(draft.vertices, draft.edges)
     extras = {key: tuple(found) for key, found in draft.extras.items()}

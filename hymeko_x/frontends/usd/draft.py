@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.frontends.usd.stage import Scene
     from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
-    from hymeko_x.ir.parts import Mesh, VertexPart
+    from hymeko_x.ir.parts import VertexPart
     from hymeko_x.source import Source
 
 _SINGLE = frozenset(("float", "float2", "float3", "float4", "point3f", "vector3f", "normal3f", "color3f", "color4f", "quatf", "half"))
@@ -51,7 +51,6 @@ class Draft:
     taken: dict[str, set[str]] = field(default_factory=dict)
     meshes: dict[str, Id] = field(default_factory=dict)
     materials: dict[str, Id] = field(default_factory=dict)
-    native_meshes: dict[str, Mesh] = field(default_factory=dict)
     stereotypes: dict[Id, tuple[str, ...]] = field(default_factory=dict)
     layout: list[Id] = field(default_factory=list)
 
@@ -65,7 +64,7 @@ class Draft:
 
     def own(self, prim: Any, kind: str, fallback: str | None = None) -> Id:
         """A fresh id for the element that a prim stands for, after the name that it carries."""
-        key = self.names.take(kind, self._name(prim, kind, fallback))
+        key = self.names.take(kind, self._name(prim, fallback))
         path = str(prim.GetPath())
         self.elements.setdefault(path, []).append(key)
         self.origins[key] = self.origin
@@ -73,11 +72,7 @@ class Draft:
             self.note(key, words.PATH, path)
         return key
 
-    def _name(self, prim: Any, kind: str, fallback: str | None) -> str:
-        carried = prim.GetAttribute(words.PREFIX + kind)
-        name = words.id_in(carried.Get()) if carried else None
-        if name is not None:
-            return name
+    def _name(self, prim: Any, fallback: str | None) -> str:
         if fallback is not None:
             return fallback
         own = prim.GetAttribute(ORIGINAL_NAME)

@@ -1,0 +1,57 @@
+"""Where USD carries a residue: a string in the custom data of the root layer."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pxr import Sdf
+
+from hymeko_x.formats import carrier
+
+if TYPE_CHECKING:
+    from hymeko_x.source import Package
+
+
+def carry_in_text(package: Package, text: str) -> Package:
+    """The package with a residue in its text layer."""
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    layer.ImportFromString(package.main.decode())
+    _put(layer, text)
+    return replace(package, main=layer.ExportToString().encode())
+
+
+def carry_in_crate(package: Package, text: str) -> Package:
+    """The package with a residue in its crate file."""
+    return replace(package, main=_rewritten(package.main, text))
+
+
+def carry_in_zip(package: Package, text: str) -> Package:
+    """The package with a residue in the first layer of its zip file; everything else in it stays."""
+    with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
+        old, new = Path(folder) / "old.usdz", Path(folder) / "new.usdz"
+        old.write_bytes(package.main)
+        inside = Sdf.ZipFile.Open(str(old))
+        with Sdf.ZipFileWriter.CreateNew(str(new)) as writer:
+            for number, name in enumerate(inside.GetFileNames()):
+                data = inside.GetFile(name)
+                part = Path(folder) / f"{number}{Path(name).suffix}"
+                part.write_bytes(data if number else _rewritten(data, text))
+                writer.AddFile(str(part), name)
+        return replace(package, main=new.read_bytes())
+
+
+def _rewritten(crate: bytes, text: str) -> bytes:
+    with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
+        old, new = Path(folder) / "old.usdc", Path(folder) / "new.usdc"
+        old.write_bytes(crate)
+        layer = Sdf.Layer.OpenAsAnonymous(str(old))
+        _put(layer, text)
+        layer.Export(str(new))
+        return new.read_bytes()
+
+
+def _put(layer: Any, text: str) -> None:
+    layer.customLayerData = {**layer.customLayerData, carrier.USD_KEY: text}
