@@ -49,10 +49,13 @@ def carry_elements(sheet: Sheet) -> None:
 
 
 def _zeros(sheet: Sheet, path: Any) -> list[str]:
-    """The numbers of a prim that say nothing by themselves, so that the reader would keep them as they are."""
-    drafted = sheet.prims[path].attributes if path in sheet.prims else {}
-    numbers = {name: stored(kind, value) for name, (kind, value) in drafted.items() if isinstance(value, float)}
-    return [name for name, value in numbers.items() if value == 0.0 or math.isinf(value)]
+    """The numbers of a prim that say nothing by themselves, with its schemas: the reader would keep them as they are."""
+    prim = sheet.prims.get(path)
+    if prim is None:
+        return []
+    numbers = {name: stored(kind, value) for name, (kind, value) in prim.attributes.items() if isinstance(value, float)}
+    found = [name for name, value in numbers.items() if value == 0.0 or math.isinf(value)]
+    return [*found, *(f"@{schema}" for schema in prim.schemas)] if found else []
 
 
 def _native_pairs(sheet: Sheet, path: Any, spec: Any) -> Iterator[tuple[str, bytes]]:
