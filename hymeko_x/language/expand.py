@@ -347,7 +347,7 @@ class _Expansion:
 
     def _item(self, item: Item, environment: Environment) -> Item:
         """The item with every expression replaced by its value."""
-        if not environment and not _calculates(item):
+        if not environment and not _has_work(item):
             return item
         match item:
             case Field(value=None) | Import() | Comment():
@@ -357,10 +357,20 @@ class _Expansion:
                 return item._replace(value=self._value(item.value, environment, item))
             case ArcItem():
                 return self._arc(item, environment)
+            case Node() if self._is_refined(item):
+                return self._item(self._refined(item, environment), environment)
             case Node():
                 items = tuple(self._item(inner, environment) for inner in item.items)
                 types = tuple(self._arguments(stereotype, environment, item) for stereotype in item.stereotypes)
                 return item._replace(name=self._text(item.name, environment, item), items=items, stereotypes=types)
+
+    def _is_refined(self, node: Node) -> bool:
+        """Whether a node inside an element has a type of the text's own, as a shape may have."""
+        return any(kind.ref.dotted in self._templates and kind.ref.dotted not in standard_templates() for kind in node.stereotypes)
+
+    def _refined(self, node: Node, environment: Environment) -> Node:
+        """Such a node with what its types say of it."""
+        return node._replace(items=_merge(self.type_of(node, environment).items, node.items), stereotypes=())
 
     def _arguments(self, stereotype: Stereotype, environment: Environment, node: Node) -> Stereotype:
         if not stereotype.arguments:
@@ -415,6 +425,11 @@ class _Expansion:
         return Origin(self._file, item.line or None, item.column or None)
 
 
+def _has_work(item: Item) -> bool:
+    """Whether there is an expression in it, or a node with a type."""
+    return _calculates(item) or (isinstance(item, Node) and bool(item.stereotypes))
+
+
 def _calculates(item: Item | Value | None) -> bool:
     """Whether there is an expression in it."""
     match item:
@@ -439,11 +454,14 @@ def _combined(strong: _Type, weak: _Type) -> _Type:
 
 
 def _merge(base: tuple[Item, ...], own: tuple[Item, ...]) -> tuple[Item, ...]:
-    """The items of a type with those of its instance: a field given again replaces the preset, all else is added."""
+    """The items of a type with those of its instance: a field given again takes the place of the preset, all else is added."""
     if not base:
         return own
-    said = {_slot(item) for item in own} - {None}
-    return (*(item for item in base if _slot(item) not in said), *own)
+    said = {slot: item for item in own if (slot := _slot(item)) is not None}
+    replaced = [(_slot(item), item) for item in base]
+    used = {slot for slot, _ in replaced} & set(said)
+    merged = [said[slot] if slot is not None and slot in said else item for slot, item in replaced]
+    return (*merged, *(item for item in own if _slot(item) not in used))
 
 
 def _slot(item: Item) -> str | None:

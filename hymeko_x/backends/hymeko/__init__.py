@@ -13,6 +13,7 @@ from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_name
 from hymeko_x.backends.hymeko.foreign import foreign_items, sound_comment, standing_items
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.parts import Context, name_of, part_items, written_items
+from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -47,7 +48,7 @@ def document(mechanism: Mechanism) -> Document:
         attached_arcs(mechanism),
         shortest(mechanism),
     )
-    items = [*_settings(context, plain), *_elements(context)]
+    items = [*_settings(context, plain), *(_elements(context) if plain else with_stereotypes(_elements(context)))]
     root = mechanism.notation(ROOT, "hymeko.root")
     name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""

@@ -1,0 +1,365 @@
+"""Says once what many elements share: equal fields become a stereotype, ``drive() { effort 87 velocity 2.2 }``.
+
+Works on the finished syntax tree. Elements of one kind are compared field by field; the set of fields that saves most
+letters becomes a stereotype of its own, named after the default class or after what the names of its elements share, and so
+on with the elements that are left. Reading merges the fields again, in the same order.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
+from hymeko_x.language.expand import standard_templates
+from hymeko_x.language.printer import print_item
+from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, Stereotype
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+_SHAPES = frozenset({"visual", "collision", "shape"})
+_WHOLE = frozenset({"safety", "calibration", "written"})
+_ONE_OF_A_KIND = _SHAPES | {"id", "mesh_id", "files"}
+_LEAST = 16
+"""Letters that a stereotype must save to be worth a name."""
+_MOST = 16
+"""Stereotypes of one kind of element."""
+_SEEDS = 24
+_NAMES = {
+    "visual": "look",
+    "collision": "hull",
+    "shape": "solid",
+    "@": "axle",
+    "": "part",
+    "motor": "drive",
+    "servo": "drive",
+    "actuator": "drive",
+    "drive": "gear",
+    "material": "paint",
+    "frame": "mark",
+    "sensor": "probe",
+    "tendon": "cable",
+    "texture": "image",
+    "prismatic": "slider",
+    "fixed": "mount",
+    "dof": "turn",
+}
+"""What a stereotype is called where nothing better is known, by what its elements are."""
+
+
+class _Unit(NamedTuple):
+    """Something of an element that a stereotype can say: its place among such things, text, and what it is made of."""
+
+    slot: str
+    text: str
+    item: Item
+    form: str = ""
+
+    @property
+    def cost(self) -> int:
+        """Letters."""
+        return len("".join(self.text.split()))
+
+
+@dataclass(slots=True)
+class _Carrier:
+    """An element that may be given a stereotype: where it stands, and its units in order."""
+
+    path: tuple[int, ...]
+    node: Node
+    units: dict[str, _Unit]
+    stereotype: str = ""
+    taken: frozenset[str] = frozenset()
+
+
+@dataclass(slots=True)
+class _Definition:
+    """A stereotype: its units in order, and the type that it refines."""
+
+    name: str
+    units: list[_Unit]
+    base: tuple[Stereotype, ...]
+
+
+@dataclass(slots=True)
+class _Names:
+    """Names that are taken."""
+
+    taken: set[str] = field(default_factory=lambda: {*standard_templates(), *RESERVED})
+
+    def free(self, wanted: str) -> str:
+        """The name, with a number behind it when somebody has it."""
+        name, number = wanted, 2
+        while name in self.taken:
+            name, number = f"{wanted}{number}", number + 1
+        self.taken.add(name)
+        return name
+
+
+def with_stereotypes(items: Sequence[Item]) -> list[Item]:
+    """The items of a robot, behind the stereotypes that say what several of them share."""
+    groups: dict[tuple[str, str], list[_Carrier]] = {}
+    for carrier in _carriers(items):
+        groups.setdefault(_group(carrier), []).append(carrier)
+    names = _Names()
+    definitions: list[_Definition] = []
+    for (kind, _), carriers in groups.items():
+        definitions.extend(_stereotypes(kind, carriers, names))
+    if not definitions:
+        return list(items)
+    changed = {carrier.path: _applied(carrier) for group in groups.values() for carrier in group if carrier.stereotype}
+    return [*map(_definition, definitions), *(_rebuilt(number, item, changed) for number, item in enumerate(items))]
+
+
+# ---- what elements are made of -------------------------------------------------------------------------------------------
+
+
+def _carriers(items: Sequence[Item]) -> Iterable[_Carrier]:
+    """The elements, and the shapes and dofs in them."""
+    for number, item in enumerate(items):
+        if not isinstance(item, Node) or item.parameters is not None or (item.name in FOREIGN and not isinstance(item.name, QuotedName)):
+            continue
+        if item.name in ("units", "written", "world") and not isinstance(item.name, QuotedName) and not item.edge:
+            continue
+        yield _Carrier((number,), item, _units(item))
+        for place, inner in enumerate(item.items):
+            if isinstance(inner, Node) and (inner.name in _SHAPES or inner.name == "dof"):
+                yield _Carrier((number, place), inner, _units(inner))
+
+
+def _group(carrier: _Carrier) -> tuple[str, str]:
+    """Elements of one group may share a stereotype: what they are, and the type that they are written with."""
+    node = carrier.node
+    if len(carrier.path) > 1:
+        return node.name, ""
+    types = ".".join(node.stereotypes[0].ref.path) if node.stereotypes else ""
+    return (node.stereotypes[0].ref.path[0] if node.stereotypes else node.edge), f"{node.edge}{types}"
+
+
+def _units(node: Node) -> dict[str, _Unit]:
+    """What a stereotype could say of a node, by slot, in order."""
+    found: dict[str, _Unit] = {}
+    for item in node.items:
+        for unit in _units_of(item):
+            found[unit.slot] = unit
+    return found
+
+
+def _units_of(item: Item) -> Iterable[_Unit]:
+    if isinstance(item, Field) and item.name not in _ONE_OF_A_KIND and item.name not in FOREIGN:
+        yield _Unit(f"`{item.name}" if isinstance(item.name, QuotedName) else item.name, print_item(item), item)
+    elif isinstance(item, Node) and not isinstance(item.name, QuotedName) and item.name in FOREIGN | _WHOLE:
+        if item.name in FOREIGN and item.parameters is None and all(isinstance(inner, Field) for inner in item.items):
+            for inner in item.items:
+                yield _Unit(f"{item.name}/{getattr(inner, 'name', '')}", print_item(inner), inner, item.name)
+        else:
+            yield _Unit(f"{item.name}{{}}" if item.parameters is None else f"{item.name}()", print_item(item), item)
+
+
+# ---- finding -------------------------------------------------------------------------------------------------------------
+
+
+def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_Definition]:
+    """The stereotypes of one group, the one that saves most first; their elements are told."""
+    found: list[_Definition] = []
+    left = carriers
+    while len(left) > 1 and len(found) < _MOST:
+        best = _best(kind, left)
+        if best is None:
+            break
+        units, members = best
+        base = members[0].node.stereotypes if len(members[0].path) == 1 else ()
+        definition = _Definition(names.free(_name(kind, units, members)), units, base)
+        said = {unit.slot: unit.text for unit in units}
+        for member in members:
+            member.stereotype = definition.name
+            member.taken = frozenset(slot for slot, unit in member.units.items() if said.get(slot) == unit.text)
+        found.append(definition)
+        left = [carrier for carrier in left if not carrier.stereotype]
+    return found
+
+
+def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carrier]] | None:
+    """The set of units that saves most, and the elements that it serves."""
+    masks = _masks(carriers)
+    for _, shared in _candidates(carriers, masks):
+        members = [carrier for carrier in carriers if all(_has(carrier, pair) for pair in shared)]
+        units = _in_order(kind, shared, members)
+        members = [carrier for carrier in members if _keeps_order(kind, units, carrier)]
+        if len(members) > 1 and _saving(units, members) >= _LEAST:
+            return units, members
+    return None
+
+
+_Pair = tuple[str, str]
+
+
+def _has(carrier: _Carrier, pair: _Pair) -> bool:
+    unit = carrier.units.get(pair[0])
+    return unit is not None and unit.text == pair[1]
+
+
+def _masks(carriers: list[_Carrier]) -> dict[_Pair, int]:
+    """For every unit that occurs more than once the elements that have it, as bits."""
+    found: dict[_Pair, int] = {}
+    for number, carrier in enumerate(carriers):
+        for unit in carrier.units.values():
+            pair = (unit.slot, unit.text)
+            found[pair] = found.get(pair, 0) | (1 << number)
+    return {pair: mask for pair, mask in found.items() if mask & (mask - 1)}
+
+
+def _candidates(carriers: list[_Carrier], masks: Mapping[_Pair, int]) -> list[tuple[int, frozenset[_Pair]]]:
+    """Sets of units that elements share, by what they would save, the best first."""
+    sharing: dict[int, set[_Pair]] = {}
+    for pair, mask in masks.items():
+        sharing.setdefault(mask, set()).add(pair)
+    ranked = sorted(sharing.items(), key=lambda entry: (-_worth(entry[0], entry[1]), sorted(entry[1])))[: 8 * _SEEDS]
+    closed = {mask: frozenset(pair for pair, other in masks.items() if other & mask == mask) for mask, _ in ranked}
+    seeds = sorted(closed, key=lambda mask: (-_worth(mask, closed[mask]), sorted(closed[mask])))[:_SEEDS]
+    for first, second in combinations(seeds, 2):
+        both = first & second
+        if both & (both - 1) and both not in closed:
+            closed[both] = frozenset(pair for pair, other in masks.items() if other & both == both)
+    scored = [(_worth(mask, shared), shared) for mask, shared in closed.items()]
+    del carriers
+    return sorted((entry for entry in scored if entry[0] >= _LEAST), key=lambda entry: (-entry[0], sorted(entry[1])))[:_SEEDS]
+
+
+def _worth(mask: int, shared: Iterable[_Pair]) -> int:
+    """About how many letters a stereotype of these units saves."""
+    cost = sum(len(text) for _, text in shared)
+    return (mask.bit_count() - 1) * cost - 7 * mask.bit_count() - 10
+
+
+def _in_order(kind: str, shared: frozenset[_Pair], members: list[_Carrier]) -> list[_Unit]:
+    """The units of a stereotype in the order of its first element.
+
+    Where order counts, what stands between them and differs is said as well, as it is mostly; elements then say their own.
+    """
+    first = members[0]
+    slots = {slot for slot, _ in shared}
+    last = max(number for number, slot in enumerate(first.units) if slot in slots)
+    found: list[_Unit] = []
+    for slot, unit in list(first.units.items())[: last + 1]:
+        if slot in slots:
+            found.append(unit)
+        elif _is_ordered(kind, unit):
+            texts = Counter(member.units[slot].text for member in members if slot in member.units)
+            common = max(texts, key=lambda text: (texts[text], text))
+            found.append(next(member.units[slot] for member in members if slot in member.units and member.units[slot].text == common))
+    return found
+
+
+def _is_ordered(kind: str, unit: _Unit) -> bool:
+    """Whether the order of such units counts: parameters of open kinds."""
+    return not unit.form and isinstance(unit.item, Field) and unit.item.value is not None and _is_open(kind)
+
+
+def _is_open(kind: str) -> bool:
+    words = PARTS.get({"motor": "actuator", "servo": "actuator", "pair": "contact", "connect": "loop", "weld": "loop"}.get(kind, kind))
+    return words is not None and words.open
+
+
+def _keeps_order(kind: str, units: list[_Unit], carrier: _Carrier) -> bool:
+    """Whether an element has all that the stereotype says, and merging both gives its units in their order."""
+    if not all(unit.slot in carrier.units for unit in units):
+        return False
+    ordered = _is_open(kind)
+    if not all(carrier.units[unit.slot].text == unit.text or (ordered and _is_ordered(kind, unit)) for unit in units):
+        return False
+    base = [unit.slot for unit in units]
+    said = set(base)
+    own = [slot for slot in carrier.units if slot not in said]
+    by_form: dict[str, list[str]] = {}
+    for slot in (*base, *own):
+        by_form.setdefault(_form(carrier, slot), []).append(slot)
+    for slot in carrier.units:
+        form = _form(carrier, slot)
+        if (form or ordered) and by_form[form].pop(0) != slot:
+            return False
+    return True
+
+
+def _form(carrier: _Carrier, slot: str) -> str:
+    return carrier.units[slot].form
+
+
+def _saving(units: list[_Unit], members: list[_Carrier]) -> int:
+    """Letters that a stereotype saves, its definition and its name counted."""
+    said = {unit.slot: unit.text for unit in units}
+    saved = 0
+    for member in members:
+        saved += sum(unit.cost for slot, unit in member.units.items() if said.get(slot) == unit.text) - 6
+    return saved - sum(unit.cost for unit in units) - 12
+
+
+# ---- naming --------------------------------------------------------------------------------------------------------------
+
+
+def _name(kind: str, units: list[_Unit], members: list[_Carrier]) -> str:
+    """The default class, or what the elements' names have in common, or a word for what they are."""
+    for unit in units:
+        if unit.slot == "class" and isinstance(unit.item, Field):
+            value = unit.item.value
+            name = value.path[0] if isinstance(value, Ref) else value
+            if isinstance(name, str) and name:
+                return name
+    if len(members[0].path) == 1:
+        common = _common_words([member.node.name for member in members])
+        if common and kind:
+            return common
+    return _NAMES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
+
+
+def _common_words(names: list[str]) -> str:
+    """The words that all names share, in the order of the first: ``hip_joint`` of ``left_hip_joint`` and ``right_hip_joint``."""
+    split = [[word for word in re.split(r"[\W_\d]+", name) if word] for name in names]
+    shared = set(split[0]).intersection(*split[1:])
+    kept = [word for word in dict.fromkeys(split[0]) if word in shared]
+    return "_".join(kept) if any(len(word) > 2 for word in kept) else ""
+
+
+# ---- applying ------------------------------------------------------------------------------------------------------------
+
+
+def _definition(definition: _Definition) -> Node:
+    items: list[Item] = []
+    blocks: dict[str, list[Item]] = {}
+    for unit in definition.units:
+        if unit.form:
+            blocks.setdefault(unit.form, []).append(unit.item)
+        else:
+            items.append(unit.item)
+    items.extend(Node(form, tuple(inner)) for form, inner in blocks.items())
+    return Node(definition.name, tuple(items), definition.base, ())
+
+
+def _applied(carrier: _Carrier) -> Node:
+    """The element with its stereotype, without what that says."""
+    items: list[Item] = []
+    for item in carrier.node.items:
+        units = list(_units_of(item))
+        left = [unit for unit in units if unit.slot not in carrier.taken]
+        if not units or (units[0].form == "" and left):
+            items.append(item)
+        elif left and isinstance(item, Node):
+            items.append(item._replace(items=tuple(unit.item for unit in left)))
+    return carrier.node._replace(items=tuple(items), stereotypes=(Stereotype(Ref((carrier.stereotype,))),))
+
+
+def _rebuilt(number: int, item: Item, changed: Mapping[tuple[int, ...], Node]) -> Item:
+    """The item with its stereotypes, and with those of the shapes in it."""
+    if not isinstance(item, Node):
+        return item
+    outer = changed.get((number,))
+    inner = {place: node for place in range(len(item.items)) if (node := changed.get((number, place))) is not None}
+    if inner:
+        by_identity = {id(item.items[place]): node for place, node in inner.items()}
+        base = outer or item
+        return base._replace(items=tuple(by_identity.get(id(part), part) for part in base.items))
+    return outer or item
