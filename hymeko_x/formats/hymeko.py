@@ -124,6 +124,9 @@ SHORT_TYPES: Mapping[tuple[str, str], str] = MappingProxyType(
 )
 """Types of the standard vocabulary that say an element's kind and its ``type`` in one word."""
 
+CHILD_CLASS = "childclass"
+"""The field of a body that names the default class of MJCF for everything in it; a notation."""
+
 NAMED_AFTER_ID = frozenset({"material"})
 """Parts whose ``name`` is that of the element unless something else is said: another name, or ``unnamed``."""
 

@@ -292,7 +292,7 @@ class _Expansion:
         for parent in template.stereotypes:
             kind = self._stereotype(parent, inner, node, (*chain, name))
             base = _combined(base, kind)
-        own = tuple(self._item(item, inner) for item in template.items)
+        own = tuple(self._item(_named_class(item, name), inner) for item in template.items)
         return _Type((name, *base.names), (*_merge(base.items, own), *preset))
 
     def _find(self, ref: Ref, node: Node) -> tuple[str, tuple[Item, ...]]:
@@ -423,6 +423,11 @@ class _Expansion:
 
     def _origin(self, item: Item) -> Origin:
         return Origin(self._file, item.line or None, item.column or None)
+
+
+def _named_class(item: Item, name: str) -> Item:
+    """The field ``class`` without a value means the template's own name."""
+    return item._replace(value=name) if isinstance(item, Field) and item.name == "class" and item.value is None else item
 
 
 def _has_work(item: Item) -> bool:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.hymeko.angles import shortest
 from hymeko_x.backends.hymeko.attached import attached_arcs
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
-from hymeko_x.backends.hymeko.foreign import foreign_items, sound_comment, standing_items
+from hymeko_x.backends.hymeko.foreign import foreign_items, is_standing, sound_comment, standing_items
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.parts import Context, name_of, part_items, written_items
 from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
@@ -87,14 +87,14 @@ def _settings(context: Context, plain: bool) -> list[Item]:
     notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key != "hymeko.root"}
     if notations:
         items.extend(written_items(notations, flags=False))
-    about = [extra for extra in context.mechanism.extras.get(ROOT, ()) if extra.path and not _is_outer(extra)]
+    about = [extra for extra in context.mechanism.extras.get(ROOT, ()) if not _is_in_place(extra) and not _is_outer(extra)]
     items.extend(foreign_items(about, at_root=True))
     return items
 
 
 def _elements(context: Context) -> list[Item]:
     """The elements in layout order, with what a format said about the whole mechanism in its place among them."""
-    standing = sorted((extra for extra in context.mechanism.extras.get(ROOT, ()) if not extra.path), key=lambda extra: extra.index)
+    standing = sorted(filter(_is_in_place, context.mechanism.extras.get(ROOT, ())), key=lambda extra: extra.index)
     items: list[Item] = []
     place = 0
     queue = list(reversed(standing))
@@ -102,12 +102,17 @@ def _elements(context: Context) -> list[Item]:
         here = []
         while queue and queue[-1].index <= place:
             here.append(queue.pop())
-            place += 1
+            place += not here[-1].path
         items.extend(standing_items(here))
         items.append(_element(context, key))
         place += 2 if key in context.attached else 1
     items.extend(standing_items(queue[::-1]))
     return items
+
+
+def _is_in_place(extra: Extra) -> bool:
+    """Whether what is said of the whole stands among the elements."""
+    return not extra.path or (is_standing(extra) and not _is_outer(extra))
 
 
 def _order(context: Context) -> list[Id]:

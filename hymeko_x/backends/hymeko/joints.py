@@ -38,7 +38,8 @@ def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
     view = context.mechanism.joints[key]
     items: list[Item] = [_end(context, view.parent, "+", view.parent_pose, "")]
     framed = view.child_pose != IDENTITY or view.child_pose.written is not None
-    items.append(_end(context, view.child, "-", view.child_pose, "at" if framed else ""))
+    if framed or view.child != Id("body", key.name):  # a joint without a child leads to the body of its name
+        items.append(_end(context, view.child, "-", view.child_pose, "at" if framed else ""))
     dofs = view.joint.dofs
     kind = JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
     if kind == "compound":

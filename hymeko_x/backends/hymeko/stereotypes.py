@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
+from hymeko_x.backends.hymeko.parts import value_of
 from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
 from hymeko_x.language.expand import standard_templates
 from hymeko_x.language.printer import print_item
@@ -24,9 +25,11 @@ if TYPE_CHECKING:
 _SHAPES = frozenset({"visual", "collision", "shape"})
 _WHOLE = frozenset({"safety", "calibration", "written"})
 _ONE_OF_A_KIND = _SHAPES | {"id", "mesh_id", "files"}
-_LEAST = 16
+_AGAIN = "\0"
+"""Between the name and the number of a field that is there several times."""
+_LEAST = 12
 """Letters that a stereotype must save to be worth a name."""
-_MOST = 16
+_MOST = 32
 """Stereotypes of one kind of element."""
 _SEEDS = 24
 _NAMES = {
@@ -73,7 +76,17 @@ class _Carrier:
     node: Node
     units: dict[str, _Unit]
     stereotype: str = ""
-    taken: frozenset[str] = frozenset()
+    said: dict[str, _Unit] = field(default_factory=dict)
+
+    def is_said(self, slot: str) -> bool:
+        """Whether its stereotype says this unit as it is."""
+        told = self.said.get(slot)
+        return told is not None and told.text == self.units[slot].text
+
+    @property
+    def left(self) -> list[_Unit]:
+        """The units that the element says itself."""
+        return [unit for slot, unit in self.units.items() if not self.is_said(slot)]
 
 
 @dataclass(slots=True)
@@ -142,11 +155,19 @@ def _group(carrier: _Carrier) -> tuple[str, str]:
 
 def _units(node: Node) -> dict[str, _Unit]:
     """What a stereotype could say of a node, by slot, in order."""
-    found: dict[str, _Unit] = {}
+    return {unit.slot: unit for _, units in _by_item(node) for unit in units}
+
+
+def _by_item(node: Node) -> Iterable[tuple[Item, list[_Unit]]]:
+    """The items of a node with their units; the slots of fields that are there several times are numbered."""
+    count: Counter[str] = Counter()
     for item in node.items:
+        units: list[_Unit] = []
         for unit in _units_of(item):
-            found[unit.slot] = unit
-    return found
+            count[unit.slot] += 1
+            number = count[unit.slot]
+            units.append(unit if number == 1 else unit._replace(slot=f"{unit.slot}{_AGAIN}{number}"))
+        yield item, units
 
 
 def _units_of(item: Item) -> Iterable[_Unit]:
@@ -164,33 +185,34 @@ def _units_of(item: Item) -> Iterable[_Unit]:
 
 
 def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_Definition]:
-    """The stereotypes of one group, the one that saves most first; their elements are told."""
+    """The stereotypes of one group, the one that saves most first, then those that refine it."""
     found: list[_Definition] = []
-    left = carriers
-    while len(left) > 1 and len(found) < _MOST:
-        best = _best(kind, left)
-        if best is None:
-            break
-        units, members = best
-        base = members[0].node.stereotypes if len(members[0].path) == 1 else ()
-        definition = _Definition(names.free(_name(kind, units, members)), units, base)
-        said = {unit.slot: unit.text for unit in units}
-        for member in members:
-            member.stereotype = definition.name
-            member.taken = frozenset(slot for slot, unit in member.units.items() if said.get(slot) == unit.text)
-        found.append(definition)
-        left = [carrier for carrier in left if not carrier.stereotype]
+    queue = [(carriers, carriers[0].node.stereotypes if len(carriers[0].path) == 1 else ())]
+    for left, base in queue:
+        while len(left) > 1 and len(found) < _MOST:
+            best = _best(kind, left)
+            if best is None:
+                break
+            units, members = best
+            definition = _Definition(names.free(_name(kind, units, members)), units, base)
+            for member in members:
+                member.stereotype = definition.name
+                member.said = {**member.said, **{unit.slot: unit for unit in units}}
+            found.append(definition)
+            queue.append((members, (Stereotype(Ref((definition.name,))),)))
+            gone = {member.path for member in members}
+            left = [carrier for carrier in left if carrier.path not in gone]
     return found
 
 
 def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carrier]] | None:
     """The set of units that saves most, and the elements that it serves."""
     masks = _masks(carriers)
-    for _, shared in _candidates(carriers, masks):
+    for shared in _candidates(masks):
         members = [carrier for carrier in carriers if all(_has(carrier, pair) for pair in shared)]
         units = _in_order(kind, shared, members)
         members = [carrier for carrier in members if _keeps_order(kind, units, carrier)]
-        if len(members) > 1 and _saving(units, members) >= _LEAST:
+        if len(members) > 1 and _saving(kind, units, members) >= _LEAST:
             return units, members
     return None
 
@@ -207,13 +229,13 @@ def _masks(carriers: list[_Carrier]) -> dict[_Pair, int]:
     """For every unit that occurs more than once the elements that have it, as bits."""
     found: dict[_Pair, int] = {}
     for number, carrier in enumerate(carriers):
-        for unit in carrier.units.values():
+        for unit in carrier.left:
             pair = (unit.slot, unit.text)
             found[pair] = found.get(pair, 0) | (1 << number)
     return {pair: mask for pair, mask in found.items() if mask & (mask - 1)}
 
 
-def _candidates(carriers: list[_Carrier], masks: Mapping[_Pair, int]) -> list[tuple[int, frozenset[_Pair]]]:
+def _candidates(masks: Mapping[_Pair, int]) -> list[frozenset[_Pair]]:
     """Sets of units that elements share, by what they would save, the best first."""
     sharing: dict[int, set[_Pair]] = {}
     for pair, mask in masks.items():
@@ -226,14 +248,14 @@ def _candidates(carriers: list[_Carrier], masks: Mapping[_Pair, int]) -> list[tu
         if both & (both - 1) and both not in closed:
             closed[both] = frozenset(pair for pair, other in masks.items() if other & both == both)
     scored = [(_worth(mask, shared), shared) for mask, shared in closed.items()]
-    del carriers
-    return sorted((entry for entry in scored if entry[0] >= _LEAST), key=lambda entry: (-entry[0], sorted(entry[1])))[:_SEEDS]
+    ranked_sets = sorted((entry for entry in scored if entry[0] >= _LEAST), key=lambda entry: (-entry[0], sorted(entry[1])))
+    return [shared for _, shared in ranked_sets[:_SEEDS]]
 
 
 def _worth(mask: int, shared: Iterable[_Pair]) -> int:
     """About how many letters a stereotype of these units saves."""
     cost = sum(len(text) for _, text in shared)
-    return (mask.bit_count() - 1) * cost - 7 * mask.bit_count() - 10
+    return (mask.bit_count() - 1) * cost - 10
 
 
 def _in_order(kind: str, shared: frozenset[_Pair], members: list[_Carrier]) -> list[_Unit]:
@@ -248,7 +270,7 @@ def _in_order(kind: str, shared: frozenset[_Pair], members: list[_Carrier]) -> l
     for slot, unit in list(first.units.items())[: last + 1]:
         if slot in slots:
             found.append(unit)
-        elif _is_ordered(kind, unit):
+        elif _is_ordered(kind, unit) and slot not in first.said:
             texts = Counter(member.units[slot].text for member in members if slot in member.units)
             common = max(texts, key=lambda text: (texts[text], text))
             found.append(next(member.units[slot] for member in members if slot in member.units and member.units[slot].text == common))
@@ -267,35 +289,40 @@ def _is_open(kind: str) -> bool:
 
 def _keeps_order(kind: str, units: list[_Unit], carrier: _Carrier) -> bool:
     """Whether an element has all that the stereotype says, and merging both gives its units in their order."""
-    if not all(unit.slot in carrier.units for unit in units):
+    said = {**carrier.said, **{unit.slot: unit for unit in units}}
+    if not said.keys() <= carrier.units.keys():
         return False
-    ordered = _is_open(kind)
-    if not all(carrier.units[unit.slot].text == unit.text or (ordered and _is_ordered(kind, unit)) for unit in units):
-        return False
-    base = [unit.slot for unit in units]
-    said = set(base)
     own = [slot for slot in carrier.units if slot not in said]
+    differing = [slot for slot, unit in said.items() if carrier.units[slot].text != unit.text]
+    if not all(_is_ordered(kind, carrier.units[slot]) for slot in differing) or _tears_apart(carrier, said, differing):
+        return False
     by_form: dict[str, list[str]] = {}
-    for slot in (*base, *own):
-        by_form.setdefault(_form(carrier, slot), []).append(slot)
-    for slot in carrier.units:
-        form = _form(carrier, slot)
-        if (form or ordered) and by_form[form].pop(0) != slot:
-            return False
-    return True
+    for slot in (*said, *own):
+        by_form.setdefault(carrier.units[slot].form, []).append(slot)
+    merged = {form: iter(slots) for form, slots in by_form.items()}
+    ordered = _is_open(kind)
+    return all(next(merged[unit.form]) == slot for slot, unit in carrier.units.items() if unit.form or ordered)
 
 
-def _form(carrier: _Carrier, slot: str) -> str:
-    return carrier.units[slot].form
+def _tears_apart(carrier: _Carrier, said: Mapping[str, _Unit], differing: list[str]) -> bool:
+    """Whether some of several fields of one name would be said by the stereotype and some by the element."""
+    repeated = {slot.split(_AGAIN)[0] for slot in carrier.units if _AGAIN in slot}
+    names = Counter(slot.split(_AGAIN)[0] for slot in carrier.units)
+    told = Counter(slot.split(_AGAIN)[0] for slot in said if slot not in differing)
+    return any(told[name] not in (0, names[name]) for name in repeated) or any(slot.split(_AGAIN)[0] in repeated for slot in differing)
 
 
-def _saving(units: list[_Unit], members: list[_Carrier]) -> int:
+def _saving(kind: str, units: list[_Unit], members: list[_Carrier]) -> int:
     """Letters that a stereotype saves, its definition and its name counted."""
+    name = len(_name(kind, units, members)) + 1
     said = {unit.slot: unit.text for unit in units}
     saved = 0
     for member in members:
-        saved += sum(unit.cost for slot, unit in member.units.items() if said.get(slot) == unit.text) - 6
-    return saved - sum(unit.cost for unit in units) - 12
+        types = member.node.stereotypes
+        before = sum(len(step) for step in types[0].ref.path) + 1 if types else 0
+        saved += sum(unit.cost for unit in member.left if said.get(unit.slot) == unit.text)
+        saved -= 0 if member.stereotype else max(name - before, 0)
+    return saved - sum(unit.cost for unit in units) - name - 10
 
 
 # ---- naming --------------------------------------------------------------------------------------------------------------
@@ -333,6 +360,8 @@ def _definition(definition: _Definition) -> Node:
     for unit in definition.units:
         if unit.form:
             blocks.setdefault(unit.form, []).append(unit.item)
+        elif unit.slot == "class" and unit.item == Field("class", value_of(definition.name)):
+            items.append(Field("class"))
         else:
             items.append(unit.item)
     items.extend(Node(form, tuple(inner)) for form, inner in blocks.items())
@@ -342,10 +371,9 @@ def _definition(definition: _Definition) -> Node:
 def _applied(carrier: _Carrier) -> Node:
     """The element with its stereotype, without what that says."""
     items: list[Item] = []
-    for item in carrier.node.items:
-        units = list(_units_of(item))
-        left = [unit for unit in units if unit.slot not in carrier.taken]
-        if not units or (units[0].form == "" and left):
+    for item, units in _by_item(carrier.node):
+        left = [unit for unit in units if not carrier.is_said(unit.slot)]
+        if not units or (not units[0].form and left):
             items.append(item)
         elif left and isinstance(item, Node):
             items.append(item._replace(items=tuple(unit.item for unit in left)))

@@ -24,6 +24,7 @@ from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
 from hymeko_x.language.excerpts import with_excerpt
 from hymeko_x.language.expand import Element, Expanded, expand
+from hymeko_x.language.foreign import SECTION_COMMENT
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, QuotedName, Ref
@@ -109,8 +110,9 @@ def _read_settings(build: Build, expanded: Expanded, kinds: list[str]) -> None:
         elif isinstance(item.item, Field):
             place += _read_setting(build, item.item, place)
         else:
-            _keep(build, _loose_extra(build, item.item, place, is_robot="robot" in expanded.types))
-            place += 1
+            extra = _loose_extra(build, item.item, place, is_robot="robot" in expanded.types)
+            _keep(build, extra)
+            place += not extra.path
     for number, comment in enumerate(expanded.preceding):
         _keep(build, Extra("comment", "preceding", comment.text, number))
     for number, comment in enumerate(expanded.following):
@@ -144,7 +146,8 @@ def _loose_extra(build: Build, item: ArcItem | Comment, place: int, *, is_robot:
     Raises: Refusal (HX062) for such an arc in a robot, where it is a mistake.
     """
     if isinstance(item, Comment):
-        return Extra("comment", "", item.text, place)
+        section = SECTION_COMMENT.fullmatch(item.text)
+        return Extra("comment", section[1], section[2], place) if section else Extra("comment", "", item.text, place)
     message = f"the arc to '{item.ref.dotted}' stands in no edge"
     hint = f"as one name it is written in backticks: `{item.role}{item.ref.direction}{item.ref.dotted}`" if item.role else ""
     if is_robot:

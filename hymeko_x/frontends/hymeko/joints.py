@@ -12,13 +12,13 @@ from hymeko_x.frontends.hymeko.build import sign_of
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
 from hymeko_x.ir.values import IDENTITY, Pose, Vec3, Written, rotate, scaled, unit
-from hymeko_x.language.syntax import Field, Ref
+from hymeko_x.language.syntax import ArcItem, Field, Ref
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.build import Build
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.language.expand import Element, Scope
-    from hymeko_x.language.syntax import ArcItem, Item
+    from hymeko_x.language.syntax import Item
 
 _BODIES = ("body", "world")
 _CHILD_ROLES = ("", "child", "at")
@@ -32,6 +32,8 @@ def read_joint(build: Build, key: Id, element: Element, moves: str | None) -> No
     block.take("kind"), block.take("moves")
     mimic = _take_all(block, "mimic")
     axis_arc = _take_axis_arc(build, block, scope)
+    if _has_own_child(build, key, block):
+        block.arcs.append(ArcItem(Ref(("body", key.name), "-"), line=element.node.line, column=element.node.column))
     parent, child, told = _ends(build, key, block, scope, element.node)
     pose, child_pose = _poses(build, parent, child, key)
     target = build.target(child.ref, scope, _BODIES, child)
@@ -43,6 +45,11 @@ def read_joint(build: Build, key: Id, element: Element, moves: str | None) -> No
         build.edges[build.reserve("coupling", key.name, element.node)] = coupling_edge(key, leaders)
     block.rest(str(key))
     build.keep(key, block)
+
+
+def _has_own_child(build: Build, key: Id, block: Block) -> bool:
+    """Whether a joint names no child, and there is a body of its name."""
+    return "body" in build.kinds.get(key.name, ()) and not any(sign_of(arc) < 0 and arc.role not in ("mimic", "axis") for arc in block.arcs)
 
 
 def _take_all(block: Block, role: str) -> list[ArcItem]:
