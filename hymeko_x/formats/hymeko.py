@@ -269,5 +269,8 @@ FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro", "hymeko"})
 SETTINGS = FOREIGN | {"extra", "written", "files", "scope"}
 """Fields that stand in the root and say something about the whole."""
 
+DOF_BLOCKS = SETTINGS | {"dof", "safety", "calibration"}
+"""Names of blocks in a joint that are no names of dofs."""
+
 RESERVED = SETTINGS | {"units", "world", "style"}
 """Names that must be quoted to be names of elements; the printer quotes the words of the grammar by itself."""

@@ -9,6 +9,7 @@ from hymeko_x.backends.hymeko.parts import Context, limit_items, pose_value, wor
 from hymeko_x.formats.hymeko import (
     AXES,
     CALIBRATION_WORDS,
+    DOF_BLOCKS,
     DOF_WORDS,
     JOINT_TYPES,
     MOVES,
@@ -19,7 +20,7 @@ from hymeko_x.formats.hymeko import (
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, numbers_weight
 from hymeko_x.ir.values import IDENTITY, Pose
-from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Ref
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -80,8 +81,10 @@ def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
 
 
 def dof_node(dof: parts.Dof, angles: Angles) -> Node:
-    """The block of one of several dofs."""
-    return Node("dof", (Field("moves", Ref((_MOVE_NAMES[dof.kind],))), *_dof_items(dof, angles)))
+    """The block of one of several dofs: ``roll : hinge { .. }``, and ``dof : hinge { .. }`` for one without a name."""
+    name = "dof" if dof.name is None else QuotedName(dof.name) if dof.name in DOF_BLOCKS else dof.name
+    items = [item for item in _dof_items(dof, angles) if not (isinstance(item, Field) and item.name == "dof_name")]
+    return Node(name, tuple(items), (Stereotype(Ref((_MOVE_NAMES[dof.kind],))),))
 
 
 def _dof_items(dof: parts.Dof, angles: Angles) -> list[Item]:

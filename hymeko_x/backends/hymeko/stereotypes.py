@@ -140,15 +140,17 @@ def _carriers(items: Sequence[Item]) -> Iterable[_Carrier]:
             continue
         yield _Carrier((number,), item, _units(item))
         for place, inner in enumerate(item.items):
-            if isinstance(inner, Node) and (inner.name in _SHAPES or inner.name == "dof"):
+            if isinstance(inner, Node) and (inner.name in _SHAPES or (item.edge and inner.stereotypes)):
                 yield _Carrier((number, place), inner, _units(inner))
 
 
 def _group(carrier: _Carrier) -> tuple[str, str]:
     """Elements of one group may share a stereotype: what they are, and the type that they are written with."""
     node = carrier.node
-    if len(carrier.path) > 1:
+    if len(carrier.path) > 1 and not node.stereotypes:
         return node.name, ""
+    if len(carrier.path) > 1:
+        return "dof", node.stereotypes[0].ref.dotted
     types = ".".join(node.stereotypes[0].ref.path) if node.stereotypes else ""
     return (node.stereotypes[0].ref.path[0] if node.stereotypes else node.edge), f"{node.edge}{types}"
 
@@ -187,7 +189,7 @@ def _units_of(item: Item) -> Iterable[_Unit]:
 def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_Definition]:
     """The stereotypes of one group, the one that saves most first, then those that refine it."""
     found: list[_Definition] = []
-    queue = [(carriers, carriers[0].node.stereotypes if len(carriers[0].path) == 1 else ())]
+    queue = [(carriers, carriers[0].node.stereotypes)]
     for left, base in queue:
         while len(left) > 1 and len(found) < _MOST:
             best = _best(kind, left)
