@@ -107,9 +107,12 @@ ATTACHED: Mapping[str, str] = MappingProxyType(
         "sensor": "sense",
         "pose": "stance",
         "material": "layer",
+        "body": "joint",
     }
 )
-"""Vertices whose block may hold the arcs of the one edge that puts them to use: ``tip : frame { [0 0 1] + arm }``."""
+"""Vertices whose block may hold the arcs of the one edge that puts them to use: ``tip : frame { [0 0 1] + arm }``.
+
+For a body that is a joint without freedom: ``hand { [0 0 1] + arm mass 2 }``."""
 
 SHORT_TYPES: Mapping[tuple[str, str], str] = MappingProxyType(
     {

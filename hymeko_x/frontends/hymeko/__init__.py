@@ -14,7 +14,7 @@ from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.formats.attached import TEXTURE, attached_edge, attached_key
 from hymeko_x.formats.hymeko import ALIASES, ATTACHED, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
 from hymeko_x.frontends.hymeko.block import Block, Context, is_written, read_units, read_written, read_written_block
-from hymeko_x.frontends.hymeko.bodies import build_uri, read_body
+from hymeko_x.frontends.hymeko.bodies import build_uri, is_base_arc, read_body, read_fixed
 from hymeko_x.frontends.hymeko.build import Build
 from hymeko_x.frontends.hymeko.foreign import is_foreign, read_extra, read_foreign
 from hymeko_x.frontends.hymeko.infer import infer_kinds
@@ -212,8 +212,11 @@ def _declare(build: Build, expanded: Expanded, kinds: list[str]) -> list[tuple[I
             build.layout.append(WORLD)
             declared.append((WORLD, element))
             continue
-        declared.append((build.declare(kind, element), element))
-        _declare_attached(build, declared[-1][0], element)
+        key = build.declare(kind, element)
+        declared.append((key, element))
+        _declare_attached(build, key, element)
+        if kind == "body" and _has_attached(kind, element.node):
+            declared.append((Id("joint", key.name), element))
     return declared
 
 
@@ -226,6 +229,8 @@ def _declare_attached(build: Build, key: Id, element: Element) -> None:
 
 def _has_attached(kind: str, node: Node) -> bool:
     """Whether a vertex's block says the edge that puts it to use."""
+    if kind == "body":
+        return any(map(is_base_arc, node.items))
     return kind in ATTACHED and any(isinstance(item, ArcItem) or _is_texture(kind, item) for item in node.items)
 
 
@@ -244,6 +249,8 @@ def _direction(build: Build, element: Element) -> tuple[float, float, float]:
 def _read_element(build: Build, key: Id, element: Element) -> None:
     if key.kind in ("body", "world"):
         read_body(build, key, _without(element, "kind"))
+    elif key.kind == "joint" and not element.node.edge:
+        read_fixed(build, key, element)
     elif key.kind == "joint":
         moves = _preset(element, "moves")
         read_joint(build, key, element, moves)
