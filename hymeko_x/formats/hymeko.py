@@ -272,6 +272,17 @@ FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro", "hymeko"})
 SETTINGS = FOREIGN | {"extra", "written", "files", "scope"}
 """Fields that stand in the root and say something about the whole."""
 
+DOF_TYPES: Mapping[parts.DofKind, str] = MappingProxyType(
+    {
+        parts.DofKind.HINGE: "hinge",
+        parts.DofKind.SLIDE: "slide",
+        parts.DofKind.SCREW: "screw",
+        parts.DofKind.BALL: "ball",
+        parts.DofKind.FREE: "floating",
+    }
+)
+"""The type that one of several dofs is printed with."""
+
 DOF_BLOCKS = SETTINGS | {"dof", "safety", "calibration"}
 """Names of blocks in a joint that are no names of dofs."""
 

@@ -251,7 +251,7 @@ class _Expansion:
         if "assembly" in kind.names:
             return self._assembly(node, name, merged, environment, scope, depth)
         scope.elements.add(name)
-        plain = tuple(self._plain(item, environment) for item in merged if not isinstance(item, Import))
+        plain = tuple(self._plain(self._refined(item, environment), environment) for item in merged if not isinstance(item, Import))
         return [Element(scope.full(name), node._replace(name=name, items=plain, stereotypes=()), kind.names, scope)]
 
     def _assembly(
@@ -347,7 +347,7 @@ class _Expansion:
 
     def _item(self, item: Item, environment: Environment) -> Item:
         """The item with every expression replaced by its value."""
-        if not environment and not _has_work(item):
+        if not environment and not _calculates(item):
             return item
         match item:
             case Field(value=None) | Import() | Comment():
@@ -357,20 +357,17 @@ class _Expansion:
                 return item._replace(value=self._value(item.value, environment, item))
             case ArcItem():
                 return self._arc(item, environment)
-            case Node() if self._is_refined(item):
-                return self._item(self._refined(item, environment), environment)
             case Node():
                 items = tuple(self._item(inner, environment) for inner in item.items)
                 types = tuple(self._arguments(stereotype, environment, item) for stereotype in item.stereotypes)
                 return item._replace(name=self._text(item.name, environment, item), items=items, stereotypes=types)
 
-    def _is_refined(self, node: Node) -> bool:
-        """Whether a node inside an element has a type of the text's own, as a shape may have."""
-        return any(kind.ref.dotted in self._templates and kind.ref.dotted not in standard_templates() for kind in node.stereotypes)
-
-    def _refined(self, node: Node, environment: Environment) -> Node:
-        """Such a node with what its types say of it."""
-        return node._replace(items=_merge(self.type_of(node, environment).items, node.items), stereotypes=())
+    def _refined(self, item: Item, environment: Environment) -> Item:
+        """A node inside an element, such as a shape, with what types of the text's own say of it."""
+        standard = standard_templates()
+        if not isinstance(item, Node) or all(kind.ref.dotted in standard or kind.ref.dotted not in self._templates for kind in item.stereotypes):
+            return item
+        return item._replace(items=_merge(self.type_of(item, environment).items, item.items), stereotypes=())
 
     def _arguments(self, stereotype: Stereotype, environment: Environment, node: Node) -> Stereotype:
         if not stereotype.arguments:
@@ -428,11 +425,6 @@ class _Expansion:
 def _named_class(item: Item, name: str) -> Item:
     """The field ``class`` without a value means the template's own name."""
     return item._replace(value=name) if isinstance(item, Field) and item.name == "class" and item.value is None else item
-
-
-def _has_work(item: Item) -> bool:
-    """Whether there is an expression in it, or a node with a type."""
-    return _calculates(item) or (isinstance(item, Node) and bool(item.stereotypes))
 
 
 def _calculates(item: Item | Value | None) -> bool:

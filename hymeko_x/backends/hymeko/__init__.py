@@ -87,14 +87,13 @@ def _settings(context: Context, plain: bool) -> list[Item]:
     notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key != "hymeko.root"}
     if notations:
         items.extend(written_items(notations, flags=False))
-    about = [extra for extra in context.mechanism.extras.get(ROOT, ()) if not _is_in_place(extra) and not _is_outer(extra)]
-    items.extend(foreign_items(about, at_root=True))
+    items.extend(foreign_items(_in_place(context.mechanism)[1], at_root=True))
     return items
 
 
 def _elements(context: Context) -> list[Item]:
     """The elements in layout order, with what a format said about the whole mechanism in its place among them."""
-    standing = sorted(filter(_is_in_place, context.mechanism.extras.get(ROOT, ())), key=lambda extra: extra.index)
+    standing, _ = _in_place(context.mechanism)
     items: list[Item] = []
     place = 0
     queue = list(reversed(standing))
@@ -110,9 +109,16 @@ def _elements(context: Context) -> list[Item]:
     return items
 
 
-def _is_in_place(extra: Extra) -> bool:
-    """Whether what is said of the whole stands among the elements."""
-    return not extra.path or (is_standing(extra) and not _is_outer(extra))
+def _in_place(mechanism: Mechanism) -> tuple[list[Extra], list[Extra]]:
+    """What is said of the whole: what stands among the elements, by place, and the rest as it comes."""
+    extras = [extra for extra in mechanism.extras.get(ROOT, ()) if not _is_outer(extra)]
+    places: dict[str, list[int]] = {}
+    for extra in extras:
+        places.setdefault(extra.path, []).append(extra.index)
+    backwards = {path for path, found in places.items() if found != sorted(found)}
+    standing = [extra for extra in extras if not extra.path or (is_standing(extra) and extra.path not in backwards)]
+    about = [extra for extra in extras if extra.path and not (is_standing(extra) and extra.path not in backwards)]
+    return sorted(standing, key=lambda extra: extra.index), about
 
 
 def _order(context: Context) -> list[Id]:

@@ -10,7 +10,7 @@ from hymeko_x.language.markup import COMMENT, TEXT, block_of, markup_of, value_o
 from hymeko_x.language.syntax import Comment, Field, Item, Node, QuotedName, Ref, Value
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
     from hymeko_x.ir.mechanism import Extra
     from hymeko_x.language.markup import Spacing

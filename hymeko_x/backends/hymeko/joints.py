@@ -10,9 +10,9 @@ from hymeko_x.formats.hymeko import (
     AXES,
     CALIBRATION_WORDS,
     DOF_BLOCKS,
+    DOF_TYPES,
     DOF_WORDS,
     JOINT_TYPES,
-    MOVES,
     SAFETY_WORDS,
     TARGETS,
     default_axis,
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 _BODIES = TARGETS["joint"]
 _SHORT_AXES = {str(direction): (name, "") for name, direction in AXES.items() if len(name) == 1}
 _SHORT_AXES |= {str((-x + 0.0, -y + 0.0, -z + 0.0)): (name, "-") for name, (x, y, z) in AXES.items() if len(name) == 1}
-_MOVE_NAMES = {kinds[0]: name for name, kinds in MOVES.items() if kinds}
 
 
 def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
@@ -84,7 +83,7 @@ def dof_node(dof: parts.Dof, angles: Angles) -> Node:
     """The block of one of several dofs: ``roll : hinge { .. }``, and ``dof : hinge { .. }`` for one without a name."""
     name = "dof" if dof.name is None else QuotedName(dof.name) if dof.name in DOF_BLOCKS else dof.name
     items = [item for item in _dof_items(dof, angles) if not (isinstance(item, Field) and item.name == "dof_name")]
-    return Node(name, tuple(items), (Stereotype(Ref((_MOVE_NAMES[dof.kind],))),))
+    return Node(name, tuple(items), (Stereotype(Ref((DOF_TYPES[dof.kind],))),))
 
 
 def _dof_items(dof: parts.Dof, angles: Angles) -> list[Item]:

@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING, cast
 
 from hymeko_x.backends.hymeko.foreign import foreign_items
 from hymeko_x.formats.attached import TEXTURE, attached_key
-from hymeko_x.formats.hymeko import ATTACHED, CHILD_CLASS, LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, SHORT_TYPES, TARGETS, Word
+from hymeko_x.formats.hymeko import (
+    ATTACHED,
+    CHILD_CLASS,
+    LIMIT_WORDS,
+    NAMED_AFTER_ID,
+    PARTS,
+    POSED_EDGES,
+    RESERVED,
+    SHORT_TYPES,
+    TARGETS,
+    Word,
+)
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
@@ -27,7 +38,8 @@ _ALL_KINDS = tuple(KINDS.values())
 _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
 _FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
 _FLAGS = frozenset({"unnamed", "kind", "moves", "scope"})
-_SETTINGS = _FOREIGN | _FLAGS | {"hymeko", "extra", "class", CHILD_CLASS, "written", "limit", "limits", "range"} | {word.word for word in LIMIT_WORDS}
+_SETTINGS = _FOREIGN | _FLAGS | {"hymeko", "extra", "class", CHILD_CLASS, "written"}
+_SPANS = frozenset({"limit", "limits", "range"}) | {word.word for word in LIMIT_WORDS}
 
 
 @dataclass(frozen=True)
@@ -193,7 +205,7 @@ def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePar
     if isinstance(part, parts.Tendon):
         items.extend(limit_items(part.limits, context.angles, "length"))
     if words.open:
-        taken = {word.word for word in words.words} | _SETTINGS
+        taken = {word.word for word in words.words} | _SETTINGS | _SPANS
         items.extend(
             Field(QuotedName(name) if name in taken else name, value_of(value))
             for name, value in part.parameters  # type: ignore[union-attr]

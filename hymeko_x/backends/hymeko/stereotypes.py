@@ -138,7 +138,9 @@ def _carriers(items: Sequence[Item]) -> Iterable[_Carrier]:
             continue
         if item.name in ("units", "written", "world") and not isinstance(item.name, QuotedName) and not item.edge:
             continue
-        yield _Carrier((number,), item, _units(item))
+        outer = _Carrier((number,), item, _units(item))
+        if not (_is_open(_group(outer)[0]) and any(isinstance(inner, Field) and inner.name in _ONE_OF_A_KIND for inner in item.items)):
+            yield outer  # parameters are in order, also those that no stereotype may say
         for place, inner in enumerate(item.items):
             if isinstance(inner, Node) and (inner.name in _SHAPES or (item.edge and inner.stereotypes)):
                 yield _Carrier((number, place), inner, _units(inner))
