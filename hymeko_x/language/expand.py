@@ -365,7 +365,9 @@ class _Expansion:
     def _refined(self, item: Item, environment: Environment) -> Item:
         """A node inside an element, such as a shape, with what types of the text's own say of it."""
         standard = standard_templates()
-        if not isinstance(item, Node) or all(kind.ref.dotted in standard or kind.ref.dotted not in self._templates for kind in item.stereotypes):
+        if not isinstance(item, Node) or all(
+            kind.ref.dotted in standard or kind.ref.dotted not in self._templates for kind in item.stereotypes
+        ):
             return item
         return item._replace(items=_merge(self.type_of(item, environment).items, item.items), stereotypes=())
 

@@ -138,7 +138,7 @@ class Context:
             raise self.refuse(item, f"'{kind}' is not a notation of rotations; there are {', '.join(NOTATIONS)}")
         plain = self.numbers(value, "length" if kind == "fromto" else "angle" if kind.startswith("euler") else "", item, count)
         if kind == "axisangle":
-            plain = (*plain[:3], plain[3] * self.factor("angle"))
+            plain = (*plain[:3], self.number(cast("tuple[Value, ...]", value)[3], "angle", item))
         try:
             return pose_as_written(xyz, Written(kind, plain))
         except (ZeroDivisionError, ValueError) as error:
