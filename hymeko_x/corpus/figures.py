@@ -132,7 +132,7 @@ def _scatter(frame: pl.DataFrame) -> Figure:
     axis.plot(ends, ends / 2, color="black", linewidth=0.8, linestyle=":")
     axis.set_xscale("log")
     axis.set_yscale("log")
-    axis.set_xlabel("the robot's own format, as printed: characters without white space and comments")
+    axis.set_xlabel("characters in the robot's own format, as printed")
     axis.set_ylabel("HyMeKo (line: equal, dotted: half)")
     axis.legend(loc="upper left")
     return figure

@@ -50,7 +50,8 @@ def with_pairs(text: str, tables: Tables) -> str:
     _, end, after = rest.partition(END)
     if not (begin and end):
         raise ValueError(f"the page has no place for the pairs: {BEGIN} ... {END}")
-    return f"{before}{BEGIN}\n\n{matrix(statistics.pair_rows(tables))}\n\n{END}{after}"
+    pairs = matrix(statistics.pair_rows(tables))
+    return f"{before}{BEGIN}\n\n{pairs}\n\nMeasured on {len(tables.robots)} files.\n\n{END}{after}"
 
 
 def matrix(rows: Sequence[PairRow]) -> str:

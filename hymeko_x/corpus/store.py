@@ -79,6 +79,10 @@ class Store:
         """Keep a file beside the parts. It is there whole or not at all."""
         self._write_bytes(f"{self.root}/{name}", data)
 
+    def has(self, name: str) -> bool:
+        """Whether there is such a file beside the parts."""
+        return bool(self.files.exists(f"{self.root}/{name}"))
+
     def get(self, name: str) -> bytes:
         """A file beside the parts.
 

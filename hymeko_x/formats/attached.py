@@ -37,5 +37,7 @@ def attached_edge(vertex: Id, arcs: tuple[RobotArc, ...]) -> RobotEdge:
             return Edge(parts.Sense(), (*arcs, Arc(vertex, -1)))
         case "material":
             return Edge(parts.Layer(), (*arcs, Arc(vertex, -1)))
+        case "body":
+            return Edge(parts.Joint(()), (*arcs, Arc(vertex, -1)))
         case _:
             return Edge(parts.Mount(), (*arcs, Arc(vertex, -1)))

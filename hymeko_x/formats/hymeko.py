@@ -107,9 +107,12 @@ ATTACHED: Mapping[str, str] = MappingProxyType(
         "sensor": "sense",
         "pose": "stance",
         "material": "layer",
+        "body": "joint",
     }
 )
-"""Vertices whose block may hold the arcs of the one edge that puts them to use: ``tip : frame { [0 0 1] + arm }``."""
+"""Vertices whose block may hold the arcs of the one edge that puts them to use: ``tip : frame { [0 0 1] + arm }``.
+
+For a body that is a joint without freedom: ``hand { [0 0 1] + arm mass 2 }``."""
 
 SHORT_TYPES: Mapping[tuple[str, str], str] = MappingProxyType(
     {
@@ -123,6 +126,9 @@ SHORT_TYPES: Mapping[tuple[str, str], str] = MappingProxyType(
     }
 )
 """Types of the standard vocabulary that say an element's kind and its ``type`` in one word."""
+
+CHILD_CLASS = "childclass"
+"""The field of a body that names the default class of MJCF for everything in it; a notation."""
 
 NAMED_AFTER_ID = frozenset({"material"})
 """Parts whose ``name`` is that of the element unless something else is said: another name, or ``unnamed``."""
@@ -265,6 +271,20 @@ FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro", "hymeko"})
 
 SETTINGS = FOREIGN | {"extra", "written", "files", "scope"}
 """Fields that stand in the root and say something about the whole."""
+
+DOF_TYPES: Mapping[parts.DofKind, str] = MappingProxyType(
+    {
+        parts.DofKind.HINGE: "hinge",
+        parts.DofKind.SLIDE: "slide",
+        parts.DofKind.SCREW: "screw",
+        parts.DofKind.BALL: "ball",
+        parts.DofKind.FREE: "floating",
+    }
+)
+"""The type that one of several dofs is printed with."""
+
+DOF_BLOCKS = SETTINGS | {"dof", "safety", "calibration"}
+"""Names of blocks in a joint that are no names of dofs."""
 
 RESERVED = SETTINGS | {"units", "world", "style"}
 """Names that must be quoted to be names of elements; the printer quotes the words of the grammar by itself."""

@@ -39,12 +39,12 @@ def hold_or_free_open_bases(mechanism: Mechanism, options: Options, report: Repo
         return mechanism
     joint = Joint((Dof(DofKind.FREE),)) if options.base == "free" else Joint()
     names = names_in_use(mechanism)
-    open_bases = [root for root in mechanism.roots if root not in mechanism.parent_joint and not _stands_for_world(root, mechanism)]
+    open_bases = [root for root in mechanism.roots if root not in mechanism.parent_joint and not stands_for_world(root, mechanism)]
     edges = {names.take("joint", f"{root.name}_base"): joint_edge(joint, WORLD, root) for root in open_bases}
     return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
 
 
-def _stands_for_world(root: Id, mechanism: Mechanism) -> bool:
+def stands_for_world(root: Id, mechanism: Mechanism) -> bool:
     """Whether a root is the link without mass that stands for the world."""
     return root.name.partition("#")[0] == WORLD.name and mechanism.vertex(root, Body).inertial is None
 

@@ -251,7 +251,7 @@ class _Expansion:
         if "assembly" in kind.names:
             return self._assembly(node, name, merged, environment, scope, depth)
         scope.elements.add(name)
-        plain = tuple(self._plain(item, environment) for item in merged if not isinstance(item, Import))
+        plain = tuple(self._plain(self._refined(item, environment), environment) for item in merged if not isinstance(item, Import))
         return [Element(scope.full(name), node._replace(name=name, items=plain, stereotypes=()), kind.names, scope)]
 
     def _assembly(
@@ -292,7 +292,7 @@ class _Expansion:
         for parent in template.stereotypes:
             kind = self._stereotype(parent, inner, node, (*chain, name))
             base = _combined(base, kind)
-        own = tuple(self._item(item, inner) for item in template.items)
+        own = tuple(self._item(_named_class(item, name), inner) for item in template.items)
         return _Type((name, *base.names), (*_merge(base.items, own), *preset))
 
     def _find(self, ref: Ref, node: Node) -> tuple[str, tuple[Item, ...]]:
@@ -362,6 +362,15 @@ class _Expansion:
                 types = tuple(self._arguments(stereotype, environment, item) for stereotype in item.stereotypes)
                 return item._replace(name=self._text(item.name, environment, item), items=items, stereotypes=types)
 
+    def _refined(self, item: Item, environment: Environment) -> Item:
+        """A node inside an element, such as a shape, with what types of the text's own say of it."""
+        standard = standard_templates()
+        if not isinstance(item, Node) or all(
+            kind.ref.dotted in standard or kind.ref.dotted not in self._templates for kind in item.stereotypes
+        ):
+            return item
+        return item._replace(items=_merge(self.type_of(item, environment).items, item.items), stereotypes=())
+
     def _arguments(self, stereotype: Stereotype, environment: Environment, node: Node) -> Stereotype:
         if not stereotype.arguments:
             return stereotype
@@ -415,6 +424,11 @@ class _Expansion:
         return Origin(self._file, item.line or None, item.column or None)
 
 
+def _named_class(item: Item, name: str) -> Item:
+    """The field ``class`` without a value means the template's own name."""
+    return item._replace(value=name) if isinstance(item, Field) and item.name == "class" and item.value is None else item
+
+
 def _calculates(item: Item | Value | None) -> bool:
     """Whether there is an expression in it."""
     match item:
@@ -439,11 +453,14 @@ def _combined(strong: _Type, weak: _Type) -> _Type:
 
 
 def _merge(base: tuple[Item, ...], own: tuple[Item, ...]) -> tuple[Item, ...]:
-    """The items of a type with those of its instance: a field given again replaces the preset, all else is added."""
+    """The items of a type with those of its instance: a field given again takes the place of the preset, all else is added."""
     if not base:
         return own
-    said = {_slot(item) for item in own} - {None}
-    return (*(item for item in base if _slot(item) not in said), *own)
+    said = {slot: item for item in own if (slot := _slot(item)) is not None}
+    replaced = [(_slot(item), item) for item in base]
+    used = {slot for slot, _ in replaced} & set(said)
+    merged = [said[slot] if slot is not None and slot in said else item for slot, item in replaced]
+    return (*merged, *(item for item in own if _slot(item) not in used))
 
 
 def _slot(item: Item) -> str | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 from hymeko_x.language.markup import Spacing
 
 PLACE = "place"
@@ -10,6 +12,10 @@ INDENT = "indent"
 """``indent [4 2]``: blanks before the closing tag of the children that follow, and more for every level; also as texts."""
 ONE_LINE = "none"
 """``indent=none``: no white space between the tags."""
+
+SECTION = re.compile(r"(?!preceding\b|following\b)\w+")
+SECTION_COMMENT = re.compile(rf"\[({SECTION.pattern})\] (.+)", re.DOTALL)
+"""A comment between the elements that stood in a section of its format: ``// [asset] meshes``."""
 
 _COMPACT = frozenset({"mjcf"})
 _NESTED = Spacing("    ", "  ")

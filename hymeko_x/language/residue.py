@@ -71,7 +71,7 @@ def parse_residue(text: str) -> Residue:
     document = parse(text, "<residue>")
     try:
         return _residue(document)
-    except (ValueError, LookupError, TypeError, AttributeError, ZeroDivisionError) as error:
+    except (ValueError, LookupError, TypeError, AttributeError, AssertionError, ZeroDivisionError) as error:
         raise BadResidue(f"{type(error).__name__}: {error}") from error
 
 
@@ -103,12 +103,14 @@ class _Sections:
 
     def fields(self, name: str) -> Iterator[Field]:
         for item in self._sections.get(name, ()):
-            assert isinstance(item, Field)
+            if not isinstance(item, Field):
+                raise TypeError(f"{name} holds something else")
             yield item
 
     def nodes(self, name: str) -> Iterator[Node]:
         for item in self._sections.get(name, ()):
-            assert isinstance(item, Node)
+            if not isinstance(item, Node):
+                raise TypeError(f"{name} holds something else")
             yield item
 
     def grouped(self, name: str) -> Iterator[tuple[Id, Field]]:
@@ -118,7 +120,8 @@ class _Sections:
             assert isinstance(names, Field)
             for element in _refs(names.value):
                 for item in rest:
-                    assert isinstance(item, Field)
+                    if not isinstance(item, Field):
+                        raise TypeError(f"{name} holds something else")
                     yield Id(str(node.name), element), item
 
     def marks(self, name: str) -> Iterator[tuple[Id, str]]:

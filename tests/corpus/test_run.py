@@ -88,6 +88,7 @@ def test_a_killed_runner_goes_on_where_it_was(robots: Path, undisturbed: Path, t
             runner.send_signal(signal.SIGKILL)
         assert runner.returncode == -signal.SIGKILL
     assert not (results / "legs.parquet").exists()
+    corpus("stats", str(results), "-o", str(tmp_path / "so_far"))
     before = {path: path.stat().st_mtime_ns for path in results.glob("parts/*/*.json")}
     assert 5 <= len(before) < 9
     corpus(*words[4:], "--resume")

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import mujoco
 import numpy as np
 import pytest
 
+import hymeko_x as hx
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends import hymeko, urdf
 from hymeko_x.ir.graph import Hypergraph
@@ -90,3 +93,11 @@ def test_what_urdf_leaves_out_stays_out() -> None:
     shape = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
     text = f'<robot name="r"><link name="a"><inertial><mass value="2"/></inertial>{shape}</link></robot>'
     assert tensor_of(urdf.read(Source("r.urdf", text.encode(), MemoryFiles()), Report())) is None
+
+
+@pytest.mark.parametrize("name", ["robot.urdf", "robot.xml"])
+def test_what_nobody_said_is_unsaid_again_after_the_way_back(name: str, tmp_path: Path) -> None:
+    source, target = tmp_path / "robot.hymeko", tmp_path / name
+    source.write_text("robot { base { mass 2 shape { box [0.1 0.2 0.3] } } }")
+    hx.convert(source, target)
+    assert hx.load(target) == hx.load(source)

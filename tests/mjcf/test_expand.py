@@ -134,6 +134,19 @@ def test_a_sub_model_that_is_missing_or_attaches_itself_is_refused() -> None:
     assert refused(main, c_xml=main) == "c.xml:1: error[HX047]: the model 'c.xml' attaches itself"
 
 
+class Forgetful(MemoryFiles):
+    """Files that are found, and gone when they are read."""
+
+    def read(self, path: str) -> bytes:
+        raise FileNotFoundError(path)
+
+
+def test_a_file_that_vanishes_is_missing() -> None:
+    main = b'<mujoco><worldbody><flexcomp name="f" type="mesh" file="no.obj" mass="1"/></worldbody></mujoco>'
+    with pytest.raises(Refusal, match="Error opening file 'no.obj'"):
+        mjcf.read(Source("main.xml", main, Forgetful({"no.obj": b""})), Report())
+
+
 def test_what_mujoco_says_names_the_files_as_the_author_did() -> None:
     main = '<mujoco><worldbody><flexcomp name="f" type="mesh" file="no.obj" mass="1"/></worldbody></mujoco>'
     said = "MuJoCo refuses to expand <flexcomp>: XML Error: Error: Error opening file 'no.obj' Element 'flexcomp', line 1"

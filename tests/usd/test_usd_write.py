@@ -98,6 +98,18 @@ def test_what_a_shape_is_for_is_its_purpose(tmp_path: Path) -> None:
     assert (UsdGeom.Imageable(shown).ComputePurpose(), UsdGeom.Imageable(felt).ComputePurpose()) == ("default", "guide")
 
 
+def test_a_root_link_that_stands_for_the_world_does_not_fall(tmp_path: Path) -> None:
+    text = """<robot name="r"><link name="world"/><link name="a"/>
+      <joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint></robot>"""
+    mechanism = urdf.read(Source("r.urdf", text.encode()), Report())
+    joints = parsed(opened(written(mechanism), tmp_path)).joints
+    assert {path: said[:2] for path, said in joints.items()} == {
+        "/r/joints/world_base": ("FixedJoint", ""),
+        "/r/joints/j": ("FixedJoint", "/r/world"),
+    }
+    assert diff(mechanism, again(mechanism)) == ()
+
+
 # ---- edits win -----------------------------------------------------------------------------------------------------------------
 
 

@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.hymeko.angles import shortest
 from hymeko_x.backends.hymeko.attached import attached_arcs
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
-from hymeko_x.backends.hymeko.foreign import foreign_items, sound_comment, standing_items
+from hymeko_x.backends.hymeko.foreign import foreign_items, is_standing, sound_comment, standing_items
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.parts import Context, name_of, part_items, written_items
+from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -47,7 +48,7 @@ def document(mechanism: Mechanism) -> Document:
         attached_arcs(mechanism),
         shortest(mechanism),
     )
-    items = [*_settings(context, plain), *_elements(context)]
+    items = [*_settings(context, plain), *(_elements(context) if plain else with_stereotypes(_elements(context)))]
     root = mechanism.notation(ROOT, "hymeko.root")
     name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""
@@ -86,14 +87,13 @@ def _settings(context: Context, plain: bool) -> list[Item]:
     notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key != "hymeko.root"}
     if notations:
         items.extend(written_items(notations, flags=False))
-    about = [extra for extra in context.mechanism.extras.get(ROOT, ()) if extra.path and not _is_outer(extra)]
-    items.extend(foreign_items(about, at_root=True))
+    items.extend(foreign_items(_in_place(context.mechanism)[1], at_root=True))
     return items
 
 
 def _elements(context: Context) -> list[Item]:
     """The elements in layout order, with what a format said about the whole mechanism in its place among them."""
-    standing = sorted((extra for extra in context.mechanism.extras.get(ROOT, ()) if not extra.path), key=lambda extra: extra.index)
+    standing, _ = _in_place(context.mechanism)
     items: list[Item] = []
     place = 0
     queue = list(reversed(standing))
@@ -101,12 +101,24 @@ def _elements(context: Context) -> list[Item]:
         here = []
         while queue and queue[-1].index <= place:
             here.append(queue.pop())
-            place += 1
+            place += not here[-1].path
         items.extend(standing_items(here))
         items.append(_element(context, key))
         place += 2 if key in context.attached else 1
     items.extend(standing_items(queue[::-1]))
     return items
+
+
+def _in_place(mechanism: Mechanism) -> tuple[list[Extra], list[Extra]]:
+    """What is said of the whole: what stands among the elements, by place, and the rest as it comes."""
+    extras = [extra for extra in mechanism.extras.get(ROOT, ()) if not _is_outer(extra)]
+    places: dict[str, list[int]] = {}
+    for extra in extras:
+        places.setdefault(extra.path, []).append(extra.index)
+    backwards = {path for path, found in places.items() if found != sorted(found)}
+    standing = [extra for extra in extras if not extra.path or (is_standing(extra) and extra.path not in backwards)]
+    about = [extra for extra in extras if extra.path and not (is_standing(extra) and extra.path not in backwards)]
+    return sorted(standing, key=lambda extra: extra.index), about
 
 
 def _order(context: Context) -> list[Id]:

@@ -26,7 +26,14 @@ def attached_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
             continue
         near = follower.get(vertex) == key if vertex in placed else key not in placed
         arcs = tuple(arc for arc in edge.arcs if arc.target != vertex)
-        sound = bool(arcs) and (vertex.kind != "material" or arcs == (Arc(arcs[0].target, 1),))
+        sound = bool(arcs) and _reads_back(vertex, arcs)
         if near and sound and edge == attached_edge(vertex, arcs):
             found[vertex] = arcs
     return found
+
+
+def _reads_back(vertex: Id, arcs: tuple[RobotArc, ...]) -> bool:
+    """Whether the vertex's block has room for these arcs: a material names one texture, a body what it is fixed to."""
+    if vertex.kind == "material":
+        return arcs == (Arc(arcs[0].target, 1),)
+    return vertex.kind != "body" or (len(arcs) == 1 and arcs[0].sign > 0 and not arcs[0].role)

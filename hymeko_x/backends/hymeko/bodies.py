@@ -25,7 +25,9 @@ _PLACES = {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts
 
 def body_items(context: Context, key: Id, part: parts.Body | parts.World) -> list[Item]:
     """The block of a body or of the world: inertial, then shapes in order."""
-    items = _inertial_items(part.inertial, context.angles) if isinstance(part, parts.Body) and part.inertial is not None else []
+    items: list[Item] = [context.arc("joint", arc) for arc in context.attached.get(key, ())]
+    if isinstance(part, parts.Body) and part.inertial is not None:
+        items.extend(_inertial_items(part.inertial, context.angles))
     names = Names()
     for view in context.mechanism.shapes.get(key, ()):
         items.append(_shape(context, view, names))

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import FOREIGN
-from hymeko_x.language.foreign import INDENT, ONE_LINE, PLACE, usual_spacing
+from hymeko_x.language.foreign import INDENT, ONE_LINE, PLACE, SECTION, SECTION_COMMENT, usual_spacing
 from hymeko_x.language.markup import COMMENT, TEXT, block_of, markup_of, value_of_text
 from hymeko_x.language.syntax import Comment, Field, Item, Node, QuotedName, Ref, Value
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
     from hymeko_x.ir.mechanism import Extra
     from hymeko_x.language.markup import Spacing
@@ -42,11 +42,20 @@ def standing_items(extras: list[Extra]) -> list[Item]:
             run, form = [], extra.format
         if node is not None:
             run.append(node)
-        elif extra.format == "comment" and not extra.path and sound_comment(extra.text):
-            items.append(Comment(extra.text))
+        elif extra.format == "comment" and is_standing(extra):
+            items.append(Comment(f"[{extra.path}] {extra.text}" if extra.path else extra.text))
         else:
             items.append(verbatim(extra, at_root=True))
     return [*items, *_block(form, run)]
+
+
+def is_standing(extra: Extra) -> bool:
+    """Whether what a format said of the whole has its place among the elements: also comments in a section, ``// [asset] text``."""
+    if extra.format != "comment":
+        return not extra.path
+    if not sound_comment(extra.text):
+        return False
+    return bool(extra.text and SECTION.fullmatch(extra.path)) if extra.path else SECTION_COMMENT.match(extra.text) is None
 
 
 def _standing(extra: Extra) -> Node | None:
@@ -176,10 +185,3 @@ def verbatim(extra: Extra, *, at_root: bool = False) -> Field:
     values.append(extra.text)
     name = extra.format if named else "extra"
     return Field(name, values[0] if len(values) == 1 else tuple(values))
-
-
-def section_comments(extras: Iterable[Extra]) -> Iterator[Extra]:
-    """The comments that stand in a section of a format, which its elements do not tell."""
-    for extra in extras:
-        if extra.format == "comment" and extra.path not in ("", "preceding", "following"):
-            yield extra

@@ -9,9 +9,10 @@ from hymeko_x.backends.hymeko.parts import Context, limit_items, pose_value, wor
 from hymeko_x.formats.hymeko import (
     AXES,
     CALIBRATION_WORDS,
+    DOF_BLOCKS,
+    DOF_TYPES,
     DOF_WORDS,
     JOINT_TYPES,
-    MOVES,
     SAFETY_WORDS,
     TARGETS,
     default_axis,
@@ -19,7 +20,7 @@ from hymeko_x.formats.hymeko import (
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, numbers_weight
 from hymeko_x.ir.values import IDENTITY, Pose
-from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Ref
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
 _BODIES = TARGETS["joint"]
 _SHORT_AXES = {str(direction): (name, "") for name, direction in AXES.items() if len(name) == 1}
 _SHORT_AXES |= {str((-x + 0.0, -y + 0.0, -z + 0.0)): (name, "-") for name, (x, y, z) in AXES.items() if len(name) == 1}
-_MOVE_NAMES = {kinds[0]: name for name, kinds in MOVES.items() if kinds}
 
 
 def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
@@ -38,7 +38,8 @@ def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
     view = context.mechanism.joints[key]
     items: list[Item] = [_end(context, view.parent, "+", view.parent_pose, "")]
     framed = view.child_pose != IDENTITY or view.child_pose.written is not None
-    items.append(_end(context, view.child, "-", view.child_pose, "at" if framed else ""))
+    if framed or view.child != Id("body", key.name):  # a joint without a child leads to the body of its name
+        items.append(_end(context, view.child, "-", view.child_pose, "at" if framed else ""))
     dofs = view.joint.dofs
     kind = JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
     if kind == "compound":
@@ -79,8 +80,10 @@ def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
 
 
 def dof_node(dof: parts.Dof, angles: Angles) -> Node:
-    """The block of one of several dofs."""
-    return Node("dof", (Field("moves", Ref((_MOVE_NAMES[dof.kind],))), *_dof_items(dof, angles)))
+    """The block of one of several dofs: ``roll : hinge { .. }``, and ``dof : hinge { .. }`` for one without a name."""
+    name = "dof" if dof.name is None else QuotedName(dof.name) if dof.name in DOF_BLOCKS else dof.name
+    items = [item for item in _dof_items(dof, angles) if not (isinstance(item, Field) and item.name == "dof_name")]
+    return Node(name, tuple(items), (Stereotype(Ref((DOF_TYPES[dof.kind],))),))
 
 
 def _dof_items(dof: parts.Dof, angles: Angles) -> list[Item]:

@@ -8,7 +8,18 @@ from typing import TYPE_CHECKING, cast
 
 from hymeko_x.backends.hymeko.foreign import foreign_items
 from hymeko_x.formats.attached import TEXTURE, attached_key
-from hymeko_x.formats.hymeko import ATTACHED, LIMIT_WORDS, NAMED_AFTER_ID, PARTS, POSED_EDGES, RESERVED, SHORT_TYPES, TARGETS, Word
+from hymeko_x.formats.hymeko import (
+    ATTACHED,
+    CHILD_CLASS,
+    LIMIT_WORDS,
+    NAMED_AFTER_ID,
+    PARTS,
+    POSED_EDGES,
+    RESERVED,
+    SHORT_TYPES,
+    TARGETS,
+    Word,
+)
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
@@ -27,7 +38,8 @@ _ALL_KINDS = tuple(KINDS.values())
 _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
 _FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
 _FLAGS = frozenset({"unnamed", "kind", "moves", "scope"})
-_SETTINGS = _FOREIGN | _FLAGS | {"hymeko", "extra", "class", "written", "limit", "limits", "range"} | {word.word for word in LIMIT_WORDS}
+_SETTINGS = _FOREIGN | _FLAGS | {"hymeko", "extra", "class", CHILD_CLASS, "written"}
+_SPANS = frozenset({"limit", "limits", "range"}) | {word.word for word in LIMIT_WORDS}
 
 
 @dataclass(frozen=True)
@@ -134,6 +146,8 @@ def word_fields(part: object, words: Iterable[Word], angles: Angles, motion: str
         dimension = motion if word.dimension == "motion" else word.dimension
         if word.form == "rgba" and value[3] == 1.0:
             value = value[:3]
+        if word.form == "numbers" and len(value) == 1:
+            value = value[0]
         found.append(Field(word.word, angles.value(value) if dimension == "angle" else value_of(value)))
     return found
 
@@ -191,7 +205,7 @@ def part_items(context: Context, key: Id, part: parts.VertexPart | parts.EdgePar
     if isinstance(part, parts.Tendon):
         items.extend(limit_items(part.limits, context.angles, "length"))
     if words.open:
-        taken = {word.word for word in words.words} | _SETTINGS
+        taken = {word.word for word in words.words} | _SETTINGS | _SPANS
         items.extend(
             Field(QuotedName(name) if name in taken else name, value_of(value))
             for name, value in part.parameters  # type: ignore[union-attr]
@@ -236,5 +250,10 @@ def short_uri(context: Context, uri: str) -> str:
 def written_items(notations: Mapping[str, str], *, flags: bool = True) -> list[Item]:
     """``written { key text .. }``, and the flag ``unnamed`` for what its author gave no name."""
     unnamed = flags and notations.get("unnamed") == "yes"
-    said = [Field(key, value_of_text(text)) for key, text in notations.items() if not (unnamed and key == "unnamed")]
-    return [*([Field("unnamed")] if unnamed else []), *([Node("written", tuple(said))] if said else [])]
+    apart = {"unnamed"} if unnamed else set()
+    items: list[Item] = [Field("unnamed")] if unnamed else []
+    if flags and CHILD_CLASS in notations:
+        items.append(Field(CHILD_CLASS, value_of(notations[CHILD_CLASS])))
+        apart.add(CHILD_CLASS)
+    said = [Field(key, value_of_text(text)) for key, text in notations.items() if key not in apart]
+    return [*items, *([Node("written", tuple(said))] if said else [])]

@@ -10,6 +10,7 @@ from pxr import Gf, Sdf
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put, quatf
 from hymeko_x.formats import usd as words
+from hymeko_x.ir.legalize_urdf import stands_for_world
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, scaled, unit_quat
@@ -32,6 +33,17 @@ def write_joints(sheet: Sheet) -> None:
             _carry_on_body(sheet, view)
         else:
             write_joint(sheet, view)
+    for root in sheet.mechanism.roots:
+        if root not in sheet.mechanism.parent_joint and stands_for_world(root, sheet.mechanism):
+            _hold(sheet, root)
+
+
+def _hold(sheet: Sheet, root: Id) -> None:
+    """Fix a root that stands for the world to it, as UsdPhysics has to be told. No element says that, so the reader overlooks it."""
+    path = sheet.free_path(sheet.scope("joints"), f"{root.name}_base")
+    prim = sheet.define(path, "PhysicsFixedJoint")
+    point(prim, "physics:body1", sheet.homes[root])
+    put(prim, f"{words.PREFIX}scope", T.Bool, True)
 
 
 def _floats(view: JointView) -> bool:

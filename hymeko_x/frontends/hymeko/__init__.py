@@ -14,7 +14,7 @@ from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.formats.attached import TEXTURE, attached_edge, attached_key
 from hymeko_x.formats.hymeko import ALIASES, ATTACHED, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
 from hymeko_x.frontends.hymeko.block import Block, Context, is_written, read_units, read_written, read_written_block
-from hymeko_x.frontends.hymeko.bodies import build_uri, read_body
+from hymeko_x.frontends.hymeko.bodies import build_uri, is_base_arc, read_body, read_fixed
 from hymeko_x.frontends.hymeko.build import Build
 from hymeko_x.frontends.hymeko.foreign import is_foreign, read_extra, read_foreign
 from hymeko_x.frontends.hymeko.infer import infer_kinds
@@ -24,6 +24,7 @@ from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
 from hymeko_x.language.excerpts import with_excerpt
 from hymeko_x.language.expand import Element, Expanded, expand
+from hymeko_x.language.foreign import SECTION_COMMENT
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Node, QuotedName, Ref
@@ -109,8 +110,9 @@ def _read_settings(build: Build, expanded: Expanded, kinds: list[str]) -> None:
         elif isinstance(item.item, Field):
             place += _read_setting(build, item.item, place)
         else:
-            _keep(build, _loose_extra(build, item.item, place, is_robot="robot" in expanded.types))
-            place += 1
+            extra = _loose_extra(build, item.item, place, is_robot="robot" in expanded.types)
+            _keep(build, extra)
+            place += not extra.path
     for number, comment in enumerate(expanded.preceding):
         _keep(build, Extra("comment", "preceding", comment.text, number))
     for number, comment in enumerate(expanded.following):
@@ -144,7 +146,8 @@ def _loose_extra(build: Build, item: ArcItem | Comment, place: int, *, is_robot:
     Raises: Refusal (HX062) for such an arc in a robot, where it is a mistake.
     """
     if isinstance(item, Comment):
-        return Extra("comment", "", item.text, place)
+        section = SECTION_COMMENT.fullmatch(item.text)
+        return Extra("comment", section[1], section[2], place) if section else Extra("comment", "", item.text, place)
     message = f"the arc to '{item.ref.dotted}' stands in no edge"
     hint = f"as one name it is written in backticks: `{item.role}{item.ref.direction}{item.ref.dotted}`" if item.role else ""
     if is_robot:
@@ -209,8 +212,11 @@ def _declare(build: Build, expanded: Expanded, kinds: list[str]) -> list[tuple[I
             build.layout.append(WORLD)
             declared.append((WORLD, element))
             continue
-        declared.append((build.declare(kind, element), element))
-        _declare_attached(build, declared[-1][0], element)
+        key = build.declare(kind, element)
+        declared.append((key, element))
+        _declare_attached(build, key, element)
+        if kind == "body" and _has_attached(kind, element.node):
+            declared.append((Id("joint", key.name), element))
     return declared
 
 
@@ -223,6 +229,8 @@ def _declare_attached(build: Build, key: Id, element: Element) -> None:
 
 def _has_attached(kind: str, node: Node) -> bool:
     """Whether a vertex's block says the edge that puts it to use."""
+    if kind == "body":
+        return any(map(is_base_arc, node.items))
     return kind in ATTACHED and any(isinstance(item, ArcItem) or _is_texture(kind, item) for item in node.items)
 
 
@@ -241,6 +249,8 @@ def _direction(build: Build, element: Element) -> tuple[float, float, float]:
 def _read_element(build: Build, key: Id, element: Element) -> None:
     if key.kind in ("body", "world"):
         read_body(build, key, _without(element, "kind"))
+    elif key.kind == "joint" and not element.node.edge:
+        read_fixed(build, key, element)
     elif key.kind == "joint":
         moves = _preset(element, "moves")
         read_joint(build, key, element, moves)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, cast
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
-from hymeko_x.formats.hymeko import FOREIGN
+from hymeko_x.formats.hymeko import CHILD_CLASS, FOREIGN
 from hymeko_x.frontends.hymeko.foreign import is_foreign, read_extras, read_foreign, read_text
 from hymeko_x.ir.mechanism import Extra
 from hymeko_x.ir.values import Pose, Vec3, Written, numbers_text, pose, pose_from_rpy
@@ -138,7 +138,7 @@ class Context:
             raise self.refuse(item, f"'{kind}' is not a notation of rotations; there are {', '.join(NOTATIONS)}")
         plain = self.numbers(value, "length" if kind == "fromto" else "angle" if kind.startswith("euler") else "", item, count)
         if kind == "axisangle":
-            plain = (*plain[:3], plain[3] * self.factor("angle"))
+            plain = (*plain[:3], self.number(cast("tuple[Value, ...]", value)[3], "angle", item))
         try:
             return pose_as_written(xyz, Written(kind, plain))
         except (ZeroDivisionError, ValueError) as error:
@@ -204,6 +204,8 @@ class Block:
             self.classes = read_classes(item, self.context)
         elif item.name == "written":
             self.written.update(read_written(item, self.context))
+        elif item.name == CHILD_CLASS:
+            self.written[CHILD_CLASS] = self.context.text(item.value, item)
         elif item.name == "unnamed" and item.value is None:
             self.unnamed = True
         elif item.name in self.fields and self.free is None:
@@ -263,7 +265,7 @@ class Block:
             case "vec3":
                 return context.vec3(value, dimension, item)
             case "numbers":
-                return context.numbers(value, dimension, item)
+                return (context.number(value, dimension, item),) if type(value) is float else context.numbers(value, dimension, item)
             case "rgba":
                 return context.rgba(value, item)
             case "integers" | "pixels":

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
+from hymeko_x.formats.attached import attached_edge
 from hymeko_x.formats.hymeko import SHAPE_WORDS
 from hymeko_x.frontends.hymeko.block import Block
+from hymeko_x.frontends.hymeko.build import sign_of
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, file_stem, shape_edge
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Tensor, Vec3, rotate_tensor
@@ -27,7 +29,7 @@ SHAPE_PLACES = {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", 
 
 def read_body(build: Build, key: Id, element: Element) -> None:
     """A body, or the world's geometry, with everything in its block."""
-    plain = tuple(item for item in element.node.items if not _is_shape(item))
+    plain = tuple(item for item in element.node.items if not _is_shape(item) and not is_base_arc(item))
     block = Block(plain, build.context)
     place = _place(block)
     inertial = _inertial(block, place)
@@ -40,6 +42,20 @@ def read_body(build: Build, key: Id, element: Element) -> None:
         block.nodes.remove(node)
     block.rest(str(key))
     build.keep(key, block)
+
+
+def is_base_arc(item: object) -> bool:
+    """Whether an item of a body's block says what the body is fixed to: ``[0 0 1] + arm``."""
+    return isinstance(item, ArcItem) and not item.role and sign_of(item) > 0
+
+
+def read_fixed(build: Build, key: Id, element: Element) -> None:
+    """The joint without freedom that holds a body to what its block names."""
+    arcs = [item for item in element.node.items if isinstance(item, ArcItem) and is_base_arc(item)]
+    if len(arcs) > 1:
+        raise build.context.refuse(arcs[1], f"body '{key.name}' is fixed to several others; joints say that")
+    body = Id("body", key.name)
+    build.edges[key] = attached_edge(body, (build.arc("joint", arcs[0], element.scope),))
 
 
 def _is_shape(item: object) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
@@ -12,16 +13,17 @@ from hymeko_x.frontends.hymeko.build import sign_of
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
 from hymeko_x.ir.values import IDENTITY, Pose, Vec3, Written, rotate, scaled, unit
-from hymeko_x.language.syntax import Field, Ref
+from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, Ref
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.build import Build
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.language.expand import Element, Scope
-    from hymeko_x.language.syntax import ArcItem, Item
+    from hymeko_x.language.syntax import Item
 
 _BODIES = ("body", "world")
 _CHILD_ROLES = ("", "child", "at")
+_MOVES_OF = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide", "spherical": "ball", "floating": "free"}
 _TURNING = frozenset({parts.DofKind.HINGE, parts.DofKind.BALL, parts.DofKind.SCREW})
 
 
@@ -32,6 +34,8 @@ def read_joint(build: Build, key: Id, element: Element, moves: str | None) -> No
     block.take("kind"), block.take("moves")
     mimic = _take_all(block, "mimic")
     axis_arc = _take_axis_arc(build, block, scope)
+    if _has_own_child(build, key, block):
+        block.arcs.append(ArcItem(Ref(("body", key.name), "-"), line=element.node.line, column=element.node.column))
     parent, child, told = _ends(build, key, block, scope, element.node)
     pose, child_pose = _poses(build, parent, child, key)
     target = build.target(child.ref, scope, _BODIES, child)
@@ -43,6 +47,11 @@ def read_joint(build: Build, key: Id, element: Element, moves: str | None) -> No
         build.edges[build.reserve("coupling", key.name, element.node)] = coupling_edge(key, leaders)
     block.rest(str(key))
     build.keep(key, block)
+
+
+def _has_own_child(build: Build, key: Id, block: Block) -> bool:
+    """Whether a joint names no child, and there is a body of its name."""
+    return "body" in build.kinds.get(key.name, ()) and not any(sign_of(arc) < 0 and arc.role not in ("mimic", "axis") for arc in block.arcs)
 
 
 def _take_all(block: Block, role: str) -> list[ArcItem]:
@@ -111,19 +120,29 @@ def _dofs(
 
 
 def read_dofs(build: Build, block: Block, scope: Scope) -> tuple[parts.Dof, ...]:
-    """What the `dof` blocks say, in order."""
-    nodes = [node for node in block.nodes if node.name == "dof"]
-    block.nodes = [node for node in block.nodes if node.name != "dof"]
-    return tuple(_dof_block(build, Block(node.items, build.context), scope, node) for node in nodes)
+    """What the blocks of dofs say, in order: ``dof { moves=slide }``, ``dof : slide {}``, or with a name ``lift : slide {}``."""
+    nodes = [node for node in block.nodes if _is_dof(node)]
+    block.nodes = [node for node in block.nodes if not _is_dof(node)]
+    return tuple(_dof_block(build, node, scope) for node in nodes)
 
 
-def _dof_block(build: Build, block: Block, scope: Scope, item: Item) -> parts.Dof:
-    moves = block.take_text("moves") or "hinge"
+def _is_dof(node: Node) -> bool:
+    if node.name == "dof" and not isinstance(node.name, QuotedName):
+        return True
+    return bool(node.stereotypes) or any(isinstance(item, Field) and item.name == "moves" for item in node.items)
+
+
+def _dof_block(build: Build, node: Node, scope: Scope) -> parts.Dof:
+    block = Block(node.items, build.context)
+    block.take("kind")
+    typed = node.stereotypes[0].ref.dotted if node.stereotypes else "hinge"
+    moves = block.take_text("moves") or _MOVES_OF.get(typed, typed)
     if moves not in MOVES or not MOVES[moves]:
-        raise build.context.refuse(item, f"a dof moves as {', '.join(name for name in MOVES if name != 'none')}, not as '{moves}'")
-    dof = _dof(build, block, scope, MOVES[moves][0], None, item)
+        raise build.context.refuse(node, f"a dof moves as {', '.join(name for name in MOVES if name != 'none')}, not as '{moves}'")
+    dof = _dof(build, block, scope, MOVES[moves][0], None, node)
     block.rest("a dof")
-    return dof
+    named = node.name != "dof" or isinstance(node.name, QuotedName)
+    return replace(dof, name=str(node.name)) if named else dof
 
 
 def _dof(

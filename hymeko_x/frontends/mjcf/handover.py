@@ -5,6 +5,7 @@ MuJoCo writes the files of a sub-model without the folder that they are in, so t
 
 from __future__ import annotations
 
+import contextlib
 import posixpath
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -119,8 +120,9 @@ def _rename_files(element: Element, folder: str, settings: Settings, handover: H
             element.attributes.setdefault("name", file_stem(said))
         path = source.files.find(uri)
         if path is not None and token not in handover.assets:
-            handover.assets[token] = source.files.read(path)
-        if path is not None and element.tag == "flexcomp":
+            with contextlib.suppress(OSError):  # to MuJoCo it is missing, which it says where it needs it
+                handover.assets[token] = source.files.read(path)
+        if token in handover.assets and element.tag == "flexcomp":
             handover.models[token] = handover.assets[token]  # it is read where models are, before assets
 
 

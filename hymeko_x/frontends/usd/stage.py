@@ -82,8 +82,6 @@ def _opened(source: Source, report: Report) -> Iterator[Scene]:
         flat = stage.GetRootLayer() if _is_plain(stage) else stage.Flatten(False)
         try:
             yield Scene(stage, world, UsdPhysics.GetStageKilogramsPerUnit(stage), metres, base, flat)
-        except Tf.ErrorException as error:  # whatever USD complains of while somebody asks it something
-            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error)}", Origin(source.name)) from error
         finally:
             del stage, layers, flat
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 from hymeko_x import codes
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Drive, Mount, Plane, Sense
+from hymeko_x.ir.parts import Body, Drive, Mount, Plane, Sense
 from hymeko_x.ir.residue.bridge import cross
 from hymeko_x.ir.residue.follow import renamed_since, with_new_names, with_old_names
 from hymeko_x.ir.residue.order import by_kind, laid_out, moved
@@ -99,7 +99,7 @@ class _Merge:
         return part
 
     def _still_holds(self, key: Id, part: object, change: Change) -> bool:
-        if change.path == ("inertial",) and change.value is None:
+        if change.path[0] == "inertial" and change.value is None and isinstance(part, Body):
             return change.guard == weight_print(self.image, key)
         try:
             value = get(part, change.path)

@@ -1,0 +1,64 @@
+"""How long HyMeKo text is: letters without white space and comments, against URDF and MJCF as their authors wrote them.
+
+python benchmarks/size.py
+"""
+
+from __future__ import annotations
+
+import re
+import statistics
+import sys
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends.hymeko import write
+from hymeko_x.diagnostics import Report
+from hymeko_x.disk import open_source
+from hymeko_x.frontends import mjcf, urdf
+from hymeko_x.language.comments import TOKENS
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+BOUNDS = {"urdf": 0.40, "mjcf": 0.75}
+"""HyMeKo against each format, median over the development files."""
+
+_READERS = {"urdf": urdf.read, "mjcf": mjcf.read}
+_XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+_INCLUDE = re.compile(r'<include\s+file="([^"]*)"')
+
+
+def letters(text: str) -> int:
+    """Characters that are no white space."""
+    return len("".join(text.split()))
+
+
+def ratio(robot: Path, form: str) -> float:
+    """The letters of the robot's HyMeKo text for one letter of its source; included files count as well."""
+    said = write(_READERS[form](open_source(str(robot)), Report()), Report()).main.decode()
+    plain = TOKENS.sub(lambda token: "" if token[0].startswith(("#", "//", "/*")) else token[0], said)
+    return letters(plain) / _source_letters(robot)
+
+
+def _source_letters(robot: Path) -> int:
+    text = _XML_COMMENT.sub("", robot.read_text("utf-8", "replace"))
+    included = (robot.parent / name for name in _INCLUDE.findall(text))
+    return letters(text) + sum(_source_letters(path) for path in included if path.is_file())
+
+
+def main() -> int:
+    """Every development file of both formats; the bounds are on the medians."""
+    from robots import robots
+    from yardstick import verdict
+
+    good = True
+    for form, bound in BOUNDS.items():
+        ratios = []
+        for robot in robots(form):
+            ratios.append(ratio(robot, form))
+            print(f"{ratios[-1]:6.3f}  {robot.name}")
+        good &= verdict(f"letters of HyMeKo / {form}, median of {len(ratios)}", statistics.median(ratios), bound, at_least=False)
+    return 0 if good else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,397 @@
+"""Says once what many elements share: equal fields become a stereotype, ``drive() { effort 87 velocity 2.2 }``.
+
+Works on the finished syntax tree. Elements of one kind are compared field by field; the set of fields that saves most
+letters becomes a stereotype of its own, named after the default class or after what the names of its elements share, and so
+on with the elements that are left. Reading merges the fields again, in the same order.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from dataclasses import dataclass, field
+from itertools import combinations
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.backends.hymeko.parts import value_of
+from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
+from hymeko_x.language.expand import standard_templates
+from hymeko_x.language.printer import print_item
+from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, Stereotype
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+_SHAPES = frozenset({"visual", "collision", "shape"})
+_WHOLE = frozenset({"safety", "calibration", "written"})
+_ONE_OF_A_KIND = _SHAPES | {"id", "mesh_id", "files"}
+_AGAIN = "\0"
+"""Between the name and the number of a field that is there several times."""
+_LEAST = 12
+"""Letters that a stereotype must save to be worth a name."""
+_MOST = 32
+"""Stereotypes of one kind of element."""
+_SEEDS = 24
+_NAMES = {
+    "visual": "look",
+    "collision": "hull",
+    "shape": "solid",
+    "@": "axle",
+    "": "part",
+    "motor": "drive",
+    "servo": "drive",
+    "actuator": "drive",
+    "drive": "gear",
+    "material": "paint",
+    "frame": "mark",
+    "sensor": "probe",
+    "tendon": "cable",
+    "texture": "image",
+    "prismatic": "slider",
+    "fixed": "mount",
+    "dof": "turn",
+}
+"""What a stereotype is called where nothing better is known, by what its elements are."""
+
+
+class _Unit(NamedTuple):
+    """Something of an element that a stereotype can say: its place among such things, text, and what it is made of."""
+
+    slot: str
+    text: str
+    item: Item
+    form: str = ""
+
+    @property
+    def cost(self) -> int:
+        """Letters."""
+        return len("".join(self.text.split()))
+
+
+@dataclass(slots=True)
+class _Carrier:
+    """An element that may be given a stereotype: where it stands, and its units in order."""
+
+    path: tuple[int, ...]
+    node: Node
+    units: dict[str, _Unit]
+    stereotype: str = ""
+    said: dict[str, _Unit] = field(default_factory=dict)
+
+    def is_said(self, slot: str) -> bool:
+        """Whether its stereotype says this unit as it is."""
+        told = self.said.get(slot)
+        return told is not None and told.text == self.units[slot].text
+
+    @property
+    def left(self) -> list[_Unit]:
+        """The units that the element says itself."""
+        return [unit for slot, unit in self.units.items() if not self.is_said(slot)]
+
+
+@dataclass(slots=True)
+class _Definition:
+    """A stereotype: its units in order, and the type that it refines."""
+
+    name: str
+    units: list[_Unit]
+    base: tuple[Stereotype, ...]
+
+
+@dataclass(slots=True)
+class _Names:
+    """Names that are taken."""
+
+    taken: set[str] = field(default_factory=lambda: {*standard_templates(), *RESERVED})
+
+    def free(self, wanted: str) -> str:
+        """The name, with a number behind it when somebody has it."""
+        name, number = wanted, 2
+        while name in self.taken:
+            name, number = f"{wanted}{number}", number + 1
+        self.taken.add(name)
+        return name
+
+
+def with_stereotypes(items: Sequence[Item]) -> list[Item]:
+    """The items of a robot, behind the stereotypes that say what several of them share."""
+    groups: dict[tuple[str, str], list[_Carrier]] = {}
+    for carrier in _carriers(items):
+        groups.setdefault(_group(carrier), []).append(carrier)
+    names = _Names()
+    definitions: list[_Definition] = []
+    for (kind, _), carriers in groups.items():
+        definitions.extend(_stereotypes(kind, carriers, names))
+    if not definitions:
+        return list(items)
+    changed = {carrier.path: _applied(carrier) for group in groups.values() for carrier in group if carrier.stereotype}
+    return [*map(_definition, definitions), *(_rebuilt(number, item, changed) for number, item in enumerate(items))]
+
+
+# ---- what elements are made of -------------------------------------------------------------------------------------------
+
+
+def _carriers(items: Sequence[Item]) -> Iterable[_Carrier]:
+    """The elements, and the shapes and dofs in them."""
+    for number, item in enumerate(items):
+        if not isinstance(item, Node) or item.parameters is not None or (item.name in FOREIGN and not isinstance(item.name, QuotedName)):
+            continue
+        if item.name in ("units", "written", "world") and not isinstance(item.name, QuotedName) and not item.edge:
+            continue
+        outer = _Carrier((number,), item, _units(item))
+        if not (_is_open(_group(outer)[0]) and any(isinstance(inner, Field) and inner.name in _ONE_OF_A_KIND for inner in item.items)):
+            yield outer  # parameters are in order, also those that no stereotype may say
+        for place, inner in enumerate(item.items):
+            if isinstance(inner, Node) and (inner.name in _SHAPES or (item.edge and inner.stereotypes)):
+                yield _Carrier((number, place), inner, _units(inner))
+
+
+def _group(carrier: _Carrier) -> tuple[str, str]:
+    """Elements of one group may share a stereotype: what they are, and the type that they are written with."""
+    node = carrier.node
+    if len(carrier.path) > 1 and not node.stereotypes:
+        return node.name, ""
+    if len(carrier.path) > 1:
+        return "dof", node.stereotypes[0].ref.dotted
+    types = ".".join(node.stereotypes[0].ref.path) if node.stereotypes else ""
+    return (node.stereotypes[0].ref.path[0] if node.stereotypes else node.edge), f"{node.edge}{types}"
+
+
+def _units(node: Node) -> dict[str, _Unit]:
+    """What a stereotype could say of a node, by slot, in order."""
+    return {unit.slot: unit for _, units in _by_item(node) for unit in units}
+
+
+def _by_item(node: Node) -> Iterable[tuple[Item, list[_Unit]]]:
+    """The items of a node with their units; the slots of fields that are there several times are numbered."""
+    count: Counter[str] = Counter()
+    for item in node.items:
+        units: list[_Unit] = []
+        for unit in _units_of(item):
+            count[unit.slot] += 1
+            number = count[unit.slot]
+            units.append(unit if number == 1 else unit._replace(slot=f"{unit.slot}{_AGAIN}{number}"))
+        yield item, units
+
+
+def _units_of(item: Item) -> Iterable[_Unit]:
+    if isinstance(item, Field) and item.name not in _ONE_OF_A_KIND and item.name not in FOREIGN:
+        yield _Unit(f"`{item.name}" if isinstance(item.name, QuotedName) else item.name, print_item(item), item)
+    elif isinstance(item, Node) and not isinstance(item.name, QuotedName) and item.name in FOREIGN | _WHOLE:
+        if item.name in FOREIGN and item.parameters is None and all(isinstance(inner, Field) for inner in item.items):
+            for inner in item.items:
+                yield _Unit(f"{item.name}/{getattr(inner, 'name', '')}", print_item(inner), inner, item.name)
+        else:
+            yield _Unit(f"{item.name}{{}}" if item.parameters is None else f"{item.name}()", print_item(item), item)
+
+
+# ---- finding -------------------------------------------------------------------------------------------------------------
+
+
+def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_Definition]:
+    """The stereotypes of one group, the one that saves most first, then those that refine it."""
+    found: list[_Definition] = []
+    queue = [(carriers, carriers[0].node.stereotypes)]
+    for left, base in queue:
+        while len(left) > 1 and len(found) < _MOST:
+            best = _best(kind, left)
+            if best is None:
+                break
+            units, members = best
+            definition = _Definition(names.free(_name(kind, units, members)), units, base)
+            for member in members:
+                member.stereotype = definition.name
+                member.said = {**member.said, **{unit.slot: unit for unit in units}}
+            found.append(definition)
+            queue.append((members, (Stereotype(Ref((definition.name,))),)))
+            gone = {member.path for member in members}
+            left = [carrier for carrier in left if carrier.path not in gone]
+    return found
+
+
+def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carrier]] | None:
+    """The set of units that saves most, and the elements that it serves."""
+    masks = _masks(carriers)
+    for shared in _candidates(masks):
+        members = [carrier for carrier in carriers if all(_has(carrier, pair) for pair in shared)]
+        units = _in_order(kind, shared, members)
+        members = [carrier for carrier in members if _keeps_order(kind, units, carrier)]
+        if len(members) > 1 and _saving(kind, units, members) >= _LEAST:
+            return units, members
+    return None
+
+
+_Pair = tuple[str, str]
+
+
+def _has(carrier: _Carrier, pair: _Pair) -> bool:
+    unit = carrier.units.get(pair[0])
+    return unit is not None and unit.text == pair[1]
+
+
+def _masks(carriers: list[_Carrier]) -> dict[_Pair, int]:
+    """For every unit that occurs more than once the elements that have it, as bits."""
+    found: dict[_Pair, int] = {}
+    for number, carrier in enumerate(carriers):
+        for unit in carrier.left:
+            pair = (unit.slot, unit.text)
+            found[pair] = found.get(pair, 0) | (1 << number)
+    return {pair: mask for pair, mask in found.items() if mask & (mask - 1)}
+
+
+def _candidates(masks: Mapping[_Pair, int]) -> list[frozenset[_Pair]]:
+    """Sets of units that elements share, by what they would save, the best first."""
+    sharing: dict[int, set[_Pair]] = {}
+    for pair, mask in masks.items():
+        sharing.setdefault(mask, set()).add(pair)
+    ranked = sorted(sharing.items(), key=lambda entry: (-_worth(entry[0], entry[1]), sorted(entry[1])))[: 8 * _SEEDS]
+    closed = {mask: frozenset(pair for pair, other in masks.items() if other & mask == mask) for mask, _ in ranked}
+    seeds = sorted(closed, key=lambda mask: (-_worth(mask, closed[mask]), sorted(closed[mask])))[:_SEEDS]
+    for first, second in combinations(seeds, 2):
+        both = first & second
+        if both & (both - 1) and both not in closed:
+            closed[both] = frozenset(pair for pair, other in masks.items() if other & both == both)
+    scored = [(_worth(mask, shared), shared) for mask, shared in closed.items()]
+    ranked_sets = sorted((entry for entry in scored if entry[0] >= _LEAST), key=lambda entry: (-entry[0], sorted(entry[1])))
+    return [shared for _, shared in ranked_sets[:_SEEDS]]
+
+
+def _worth(mask: int, shared: Iterable[_Pair]) -> int:
+    """About how many letters a stereotype of these units saves."""
+    cost = sum(len(text) for _, text in shared)
+    return (mask.bit_count() - 1) * cost - 10
+
+
+def _in_order(kind: str, shared: frozenset[_Pair], members: list[_Carrier]) -> list[_Unit]:
+    """The units of a stereotype in the order of its first element.
+
+    Where order counts, what stands between them and differs is said as well, as it is mostly; elements then say their own.
+    """
+    first = members[0]
+    slots = {slot for slot, _ in shared}
+    last = max(number for number, slot in enumerate(first.units) if slot in slots)
+    found: list[_Unit] = []
+    for slot, unit in list(first.units.items())[: last + 1]:
+        if slot in slots:
+            found.append(unit)
+        elif _is_ordered(kind, unit) and slot not in first.said:
+            texts = Counter(member.units[slot].text for member in members if slot in member.units)
+            common = max(texts, key=lambda text: (texts[text], text))
+            found.append(next(member.units[slot] for member in members if slot in member.units and member.units[slot].text == common))
+    return found
+
+
+def _is_ordered(kind: str, unit: _Unit) -> bool:
+    """Whether the order of such units counts: parameters of open kinds."""
+    return not unit.form and isinstance(unit.item, Field) and unit.item.value is not None and _is_open(kind)
+
+
+def _is_open(kind: str) -> bool:
+    words = PARTS.get({"motor": "actuator", "servo": "actuator", "pair": "contact", "connect": "loop", "weld": "loop"}.get(kind, kind))
+    return words is not None and words.open
+
+
+def _keeps_order(kind: str, units: list[_Unit], carrier: _Carrier) -> bool:
+    """Whether an element has all that the stereotype says, and merging both gives its units in their order."""
+    said = {**carrier.said, **{unit.slot: unit for unit in units}}
+    if not said.keys() <= carrier.units.keys():
+        return False
+    own = [slot for slot in carrier.units if slot not in said]
+    differing = [slot for slot, unit in said.items() if carrier.units[slot].text != unit.text]
+    if not all(_is_ordered(kind, carrier.units[slot]) for slot in differing) or _tears_apart(carrier, said, differing):
+        return False
+    by_form: dict[str, list[str]] = {}
+    for slot in (*said, *own):
+        by_form.setdefault(carrier.units[slot].form, []).append(slot)
+    merged = {form: iter(slots) for form, slots in by_form.items()}
+    ordered = _is_open(kind)
+    return all(next(merged[unit.form]) == slot for slot, unit in carrier.units.items() if unit.form or ordered)
+
+
+def _tears_apart(carrier: _Carrier, said: Mapping[str, _Unit], differing: list[str]) -> bool:
+    """Whether some of several fields of one name would be said by the stereotype and some by the element."""
+    repeated = {slot.split(_AGAIN)[0] for slot in carrier.units if _AGAIN in slot}
+    names = Counter(slot.split(_AGAIN)[0] for slot in carrier.units)
+    told = Counter(slot.split(_AGAIN)[0] for slot in said if slot not in differing)
+    return any(told[name] not in (0, names[name]) for name in repeated) or any(slot.split(_AGAIN)[0] in repeated for slot in differing)
+
+
+def _saving(kind: str, units: list[_Unit], members: list[_Carrier]) -> int:
+    """Letters that a stereotype saves, its definition and its name counted."""
+    name = len(_name(kind, units, members)) + 1
+    said = {unit.slot: unit.text for unit in units}
+    saved = 0
+    for member in members:
+        types = member.node.stereotypes
+        before = sum(len(step) for step in types[0].ref.path) + 1 if types else 0
+        saved += sum(unit.cost for unit in member.left if said.get(unit.slot) == unit.text)
+        saved -= 0 if member.stereotype else max(name - before, 0)
+    return saved - sum(unit.cost for unit in units) - name - 10
+
+
+# ---- naming --------------------------------------------------------------------------------------------------------------
+
+
+def _name(kind: str, units: list[_Unit], members: list[_Carrier]) -> str:
+    """The default class, or what the elements' names have in common, or a word for what they are."""
+    for unit in units:
+        if unit.slot == "class" and isinstance(unit.item, Field):
+            value = unit.item.value
+            name = value.path[0] if isinstance(value, Ref) else value
+            if isinstance(name, str) and name:
+                return name
+    if len(members[0].path) == 1:
+        common = _common_words([member.node.name for member in members])
+        if common and kind:
+            return common
+    return _NAMES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
+
+
+def _common_words(names: list[str]) -> str:
+    """The words that all names share, in the order of the first: ``hip_joint`` of ``left_hip_joint`` and ``right_hip_joint``."""
+    split = [[word for word in re.split(r"[\W_\d]+", name) if word] for name in names]
+    shared = set(split[0]).intersection(*split[1:])
+    kept = [word for word in dict.fromkeys(split[0]) if word in shared]
+    return "_".join(kept) if any(len(word) > 2 for word in kept) else ""
+
+
+# ---- applying ------------------------------------------------------------------------------------------------------------
+
+
+def _definition(definition: _Definition) -> Node:
+    items: list[Item] = []
+    blocks: dict[str, list[Item]] = {}
+    for unit in definition.units:
+        if unit.form:
+            blocks.setdefault(unit.form, []).append(unit.item)
+        elif unit.slot == "class" and unit.item == Field("class", value_of(definition.name)):
+            items.append(Field("class"))
+        else:
+            items.append(unit.item)
+    items.extend(Node(form, tuple(inner)) for form, inner in blocks.items())
+    return Node(definition.name, tuple(items), definition.base, ())
+
+
+def _applied(carrier: _Carrier) -> Node:
+    """The element with its stereotype, without what that says."""
+    items: list[Item] = []
+    for item, units in _by_item(carrier.node):
+        left = [unit for unit in units if not carrier.is_said(unit.slot)]
+        if not units or (not units[0].form and left):
+            items.append(item)
+        elif left and isinstance(item, Node):
+            items.append(item._replace(items=tuple(unit.item for unit in left)))
+    return carrier.node._replace(items=tuple(items), stereotypes=(Stereotype(Ref((carrier.stereotype,))),))
+
+
+def _rebuilt(number: int, item: Item, changed: Mapping[tuple[int, ...], Node]) -> Item:
+    """The item with its stereotypes, and with those of the shapes in it."""
+    if not isinstance(item, Node):
+        return item
+    outer = changed.get((number,))
+    inner = {place: node for place in range(len(item.items)) if (node := changed.get((number, place))) is not None}
+    if inner:
+        by_identity = {id(item.items[place]): node for place, node in inner.items()}
+        base = outer or item
+        return base._replace(items=tuple(by_identity.get(id(part), part) for part in base.items))
+    return outer or item

@@ -1,0 +1,93 @@
+"""Laws over formats: renaming and reordering change nothing else, and what a backend loses is in the ledger."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from hymeko_x import formats, pipeline
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir import parts
+from hymeko_x.ir.diff import diff
+from hymeko_x.ir.graph import Hypergraph
+from hymeko_x.ir.legalize import Options
+from hymeko_x.ir.mechanism import Id, Mechanism
+from hymeko_x.ir.rename import rename
+from hymeko_x.source import NoFiles, Source
+from hymeko_x.testing import TREES, mechanisms, urdf_mechanisms
+
+FEW = settings(max_examples=settings.default.max_examples // 10, deadline=None, suppress_health_check=list(HealthCheck))
+EXACT = ("hymeko", "urdf")
+
+
+def through(mechanism: Mechanism, format: str) -> Mechanism:
+    """What comes back from a format."""
+    found = formats.by_name(format)
+    package = pipeline.write(mechanism, found, Options(), NoFiles(), Report(), pipeline.Place(assets="reference"))
+    return pipeline.read(Source(f"r.{format}", package.main), found, Report())
+
+
+def turned(mechanism: Mechanism) -> Mechanism:
+    """The same mechanism, said in another order. Shapes, whose ids tell their place on a body, stay in theirs."""
+    graph = mechanism.graph
+    vertices = dict(reversed(graph.vertices.items()))
+    shapes = {key: edge for key, edge in graph.edges.items() if key.kind == "shape"}
+    edges = {key: edge for key, edge in reversed(graph.edges.items()) if key not in shapes} | shapes
+    return replace(mechanism, graph=Hypergraph(vertices, edges), layout=tuple(reversed(mechanism.layout)))
+
+
+@pytest.mark.parametrize("format", EXACT)
+@FEW
+@given(mechanism=urdf_mechanisms())
+def test_the_order_of_elements_does_not_matter(format: str, mechanism: Mechanism) -> None:
+    assert diff(through(mechanism, format), through(turned(mechanism), format)) == ()
+
+
+@pytest.mark.parametrize("format", EXACT)
+@FEW
+@given(mechanism=urdf_mechanisms())
+def test_converting_what_was_renamed_is_renaming_what_was_converted(format: str, mechanism: Mechanism) -> None:
+    names = {key: Id(key.kind, f"new name of {key.name}") for key, _ in mechanism.vertices(parts.Body)}
+    names |= {key: Id(key.kind, f"new name of {key.name}") for key in mechanism.joints}
+    before, after = (rename(robot, names) for robot in (mechanism, through(mechanism, format)))
+    assert diff(_named_by_place(through(before, format)), _named_by_place(after)) == ()
+
+
+def _named_by_place(mechanism: Mechanism) -> Mechanism:
+    """Ids that readers derive from those of bodies and joints (of shapes and mimics), by their place instead."""
+    edges = [key for key in mechanism.graph.edges if key.kind in ("shape", "coupling")]
+    return rename(mechanism, {key: Id(key.kind, str(number)) for number, key in enumerate(edges)})
+
+
+@pytest.mark.parametrize("format", [*EXACT, "mjcf"])
+@FEW
+@given(mechanism=mechanisms(TREES))
+def test_a_second_way_through_a_format_changes_nothing_more(format: str, mechanism: Mechanism) -> None:
+    once = through(mechanism, format)
+    assert diff(once, through(once, format)) == ()
+
+
+@pytest.mark.parametrize("format", [*EXACT, "mjcf"])
+@FEW
+@given(mechanism=urdf_mechanisms(), data=st.data())
+def test_what_is_taken_out_of_the_result_is_in_the_ledger(format: str, mechanism: Mechanism, data: st.DataObject) -> None:
+    """A backend that loses a body, planted here, cannot hide."""
+    found = formats.by_name(format)
+    place = pipeline.Place(assets="reference")
+    victim = data.draw(st.sampled_from([key for key, _ in mechanism.vertices(parts.Body)]))
+    package = pipeline.write(_without(mechanism, victim), found, Options(), NoFiles(), Report(), place)
+    assert str(victim) in {loss.element for loss in pipeline.ledger(mechanism, package, found, NoFiles())}
+
+
+def _without(mechanism: Mechanism, victim: Id) -> Mechanism:
+    """The mechanism without a body and everything that hangs on it."""
+    graph = mechanism.graph
+    gone = {victim}
+    while more := {key for key, edge in graph.edges.items() if key not in gone and any(arc.target in gone for arc in edge.arcs)}:
+        gone |= more
+    vertices = {key: part for key, part in graph.vertices.items() if key not in gone}
+    edges = {key: edge for key, edge in graph.edges.items() if key not in gone}
+    return replace(mechanism, graph=Hypergraph(vertices, edges), layout=tuple(key for key in mechanism.layout if key not in gone))
