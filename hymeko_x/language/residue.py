@@ -57,6 +57,7 @@ def print_residue(residue: Residue) -> str:
         ("known", _marks(residue.known)),
     )
     items: list[Item] = [Field("version", VERSION)]
+    items += [Field("plain")] if residue.sides.is_plain else []
     items += [Node(name, tuple(content)) for name, content in sections if content]
     if residue.layout is not None:
         items += [Field("layout", tuple(map(id_ref, residue.layout))), Field("unplaced", tuple(map(id_ref, residue.unplaced)))]
@@ -87,7 +88,7 @@ def _residue(document: Document) -> Residue:
         tuple(Change(key, _path(key, item.name), _changed(item), item.type) for key, item in read.grouped("changes")),
         tuple(_added(item) for item in read.nodes("additions")),
         tuple(read.removals()),
-        read.sides(),
+        read.sides("plain" in fields),
         tuple(_run(item) for item in read.fields("order")),
         tuple(decoded(fields["layout"])) if "layout" in fields else None,
         tuple(decoded(fields.get("unplaced", ()))),
@@ -141,11 +142,12 @@ class _Sections:
         joins = [Join(Id("shape", item.name), Id("shape", _refs((item.value,))[0])) for item in self.fields("joins")]
         return Bridge(tuple(names), tuple(map(_folded, self.nodes("folds"))), tuple(joins), tuple(frames))
 
-    def sides(self) -> Sides:
+    def sides(self, is_plain: bool) -> Sides:
         return Sides(
             tuple((key, item.name, decoded(item.value)) for key, item in self.grouped("notations")),
             tuple(item.name for item in self.fields("forgotten")),
             tuple((key, decoded(item.value)) for key, item in self.grouped("stereotypes")),
+            is_plain,
             tuple((key, _read_extra(item)) for key, item in self.grouped("extras")),
             tuple((key, mark) for key, item in self.grouped("strangers") for mark in _refs(item.value)),
         )

@@ -108,7 +108,7 @@ def _remove(root: Any, value: float, place: int) -> str:
 
 
 def _rename_link(root: Any, value: float, place: int) -> str:
-    link = _chosen(root.findall("link"), place)
+    link = _chosen([link for link in root.findall("link") if link.get("name") != "world"], place)  # which stands for the world
     old, new = link.get("name"), f"new_{link.get('name')}"
     link.set("name", new)
     for end in (*root.findall("joint/parent"), *root.findall("joint/child")):

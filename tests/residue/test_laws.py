@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from hypothesis import given, settings
-from tests.strategies import mechanisms
 
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.ir.residue.delta import residue_of
 from hymeko_x.ir.residue.merge import restore
 from hymeko_x.language.residue import parse_residue, print_residue
+from hymeko_x.testing import mechanisms
 from tests.residue.exactness import unequal
 
 

@@ -53,12 +53,12 @@ def read_file(path: Path) -> Mechanism:
 
 def written(mechanism: Mechanism, format: str = "usd") -> bytes:
     """The mechanism as USD."""
-    return pipeline.write(mechanism, formats.by_name(format), Options(), NoFiles(), Report()).main
+    return pipeline.convert(mechanism, formats.by_name(format), Options(), NoFiles(), Report()).package.main
 
 
 def again(mechanism: Mechanism) -> Mechanism:
     """The mechanism written and read back."""
-    return usd.read(Source("robot.usda", written(mechanism), NoFiles()), Report())
+    return pipeline.read(Source("robot.usda", written(mechanism), NoFiles()), formats.USD, Report())
 
 
 # ---- UsdPhysics' own parser ------------------------------------------------------------------------------------------------------

@@ -68,7 +68,7 @@ def _gather_prim(spec: Any, owner: tuple[Id, Any], folded: set[str], scratch: An
         copy.typeName = spec.typeName
         copy.specifier = spec.specifier
     is_worth_it = _copy_metadata(spec, copy, taken, owner[0] if is_typed else None)
-    for item in spec.properties:
+    for item in filter(None, spec.properties):  # a damaged crate may list properties that it does not have
         name = item.name
         if name in taken or name.startswith(words.PREFIX) or (moved is not None and name.startswith("xformOp")):
             continue

@@ -91,12 +91,13 @@ class Run(NamedTuple):
 class Sides:
     """The side tables of the source where they differ: None takes an entry away.
 
-    ``forgotten`` are keys of notations that only the image uses.
+    ``forgotten`` are keys of notations that only the image uses; ``is_plain`` says that only the image has stereotypes.
     """
 
     notations: tuple[tuple[Id, str, str | None], ...] = ()
     forgotten: tuple[str, ...] = ()
     stereotypes: tuple[tuple[Id, tuple[str, ...]], ...] = ()
+    is_plain: bool = False
     extras: tuple[tuple[Id, Extra], ...] = ()
     strangers: tuple[tuple[Id, str], ...] = ()
     """Extras that only the image has, by digest."""

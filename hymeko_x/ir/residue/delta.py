@@ -110,7 +110,8 @@ def sides_between(image: Mechanism, source: Mechanism) -> Sides:
     return Sides(
         tuple(_notations(image, source, forgotten)),
         tuple(sorted(forgotten)),
-        tuple(_stereotypes(image, source)),
+        tuple(_stereotypes(image, source)) if source.stereotypes else (),
+        bool(image.stereotypes) and not source.stereotypes,
         tuple((key, extra) for key, extra, new in extras if new),
         tuple((key, digest(extra.format, extra.path, extra.text)) for key, extra, new in extras if not new),
     )

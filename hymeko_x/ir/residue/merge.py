@@ -280,7 +280,7 @@ def _with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mec
             notations.get(key, {}).pop(name, None)
         elif key in there:
             notations.setdefault(key, {})[name] = text
-    stereotypes = {**image.stereotypes, **dict(sides.stereotypes)}
+    stereotypes = {} if sides.is_plain else {**image.stereotypes, **dict(sides.stereotypes)}
     layout = image.layout if residue.layout is None else laid_out(image.layout, residue.layout, set(residue.unplaced))
     return replace(
         mechanism,
