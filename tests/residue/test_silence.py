@@ -1,0 +1,33 @@
+"""Nothing is lost silently: every change of a source shows in the output or in the ledger."""
+
+from __future__ import annotations
+
+import pytest
+
+from hymeko_x import formats, pipeline
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.legalize import Options
+from hymeko_x.source import NoFiles, Package
+from tests.residue import silence
+from tests.residue.samples import MJCF, URDF
+
+
+@pytest.mark.parametrize("target", ["mjcf", "urdf", "hymeko", "xacro"])
+@pytest.mark.parametrize(("text", "own"), [(URDF, "urdf"), (MJCF, "mjcf")])
+def test_every_change_is_seen(text: str, own: str, target: str) -> None:
+    assert silence.silent_changes(text.encode(), own, target, most=60) == []
+
+
+def test_a_writer_that_drops_something_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The ledger is measured: to be silent, a reader has to overlook something."""
+    frozen = pipeline.convert(
+        pipeline.read(silence.Source("robot", URDF.encode(), NoFiles()), formats.URDF, Report()),
+        formats.URDF,
+        Options(pure=True),
+        NoFiles(),
+        Report(),
+    )
+    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: Package(frozen.package.main))
+    assert silence.silent_changes(URDF.encode(), "urdf", "urdf", most=20) == []
+    monkeypatch.setattr(pipeline, "ledger", lambda *_: ())
+    assert len(silence.silent_changes(URDF.encode(), "urdf", "urdf", most=20)) > 10
