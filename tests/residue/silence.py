@@ -59,9 +59,14 @@ def _places(root: Any) -> Iterator[tuple[str, str]]:
     tree = root.getroottree()
     for element in root.iter():
         path = tree.getpath(element)
-        if element is not root:
+        if element is not root and not _says_nothing(element):
             yield path, ""
         yield from ((path, name) for name in element.attrib)
+
+
+def _says_nothing(element: Any) -> bool:
+    """Whether an element only says zeros, which mean the same as leaving it out."""
+    return len(element) == 0 and bool(element.attrib) and all(re.fullmatch(r"[-+0.\s]+", text) for text in element.attrib.values())
 
 
 def _changed(root: Any, path: str, name: str) -> tuple[str, bytes]:
@@ -81,7 +86,8 @@ def perturbed(text: str) -> str:
     opposite = {"true": "false", "false": "true"}.get(text)
     if opposite:
         return opposite
-    found = _NUMBER.search(text)
+    numbers = list(_NUMBER.finditer(text))
+    found = numbers[min(1, len(numbers) - 1)] if numbers else None  # the second one: a direction of another length is the same
     if found is None or not re.fullmatch(r"[-+.\deE\s]+", text):
         return f"{text}_other"
     value = float(found[0])
@@ -97,4 +103,4 @@ if __name__ == "__main__":
         path = Path(name)
         own = formats.of_input(name, path.read_bytes()).name
         for silent in silent_changes(path.read_bytes(), own, target, DiskFiles(path.parent)):
-            print(f"{path.name} -> {target}: {silent}")
+            sys.stdout.write(f"{path.name} -> {target}: {silent}\n")
