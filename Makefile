@@ -5,11 +5,12 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 JOBS ?= 2
 
-.PHONY: demo test lint types pytest bench peers fuzz corpus clean help
+.PHONY: demo test test-full lint types pytest bench peers fuzz corpus clean help
 
 help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
 	@echo "make test   ruff, mypy --strict, pytest"
+	@echo "make test-full  the same with the tests that take minutes: every robot, every size"
 	@echo "make bench  speed as ratios against yardsticks timed in the same run"
 	@echo "make peers  other people's programs that tests and benchmarks compare with, each into .peers/"
 	@echo "make fuzz   damage texts of every format and read them; PROFILE=ci (minutes) or nightly (hours)"
@@ -36,6 +37,9 @@ types: $(STAMP)
 	$(BIN)/mypy
 
 pytest: $(STAMP)
+	$(BIN)/python -m pytest -W error -n $(JOBS) -m "not full" tests
+
+test-full: lint types
 	$(BIN)/python -m pytest -W error -n $(JOBS) tests
 
 bench: $(STAMP)
@@ -48,7 +52,7 @@ PROFILE ?= ci
 GUIDED_SECONDS := $(if $(filter nightly,$(PROFILE)),3600,30)
 
 fuzz: $(STAMP)
-	HYPOTHESIS_PROFILE=$(PROFILE) $(BIN)/python -m pytest -q -n $(JOBS) tests/test_laws.py tests/urdf/test_laws.py tests/language/test_laws.py
+	HYPOTHESIS_PROFILE=$(PROFILE) $(BIN)/python -m pytest -q -n $(JOBS) tests/test_pipeline_laws.py tests/urdf/test_laws.py tests/language/test_laws.py
 	$(BIN)/python -m tests.fuzz --profile $(PROFILE)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --only-binary :all: atheris || echo "atheris has no wheel for this Python; the guided part is left out"
 	@for format in hymeko urdf mjcf usd; do $(BIN)/python -m tests.fuzz.guided $$format -max_total_time=$(GUIDED_SECONDS) -verbosity=0 || failed=1; done; exit $${failed:-0}

@@ -1,6 +1,6 @@
 """What the values of MJCF's attributes may be, which attributes an element needs, and which ones exclude each other. Data only.
 
-Source: MuJoCo 4.0 itself, asked about every attribute; `tests/mjcf/test_values.py` asks it again.
+Source: MuJoCo 4.0 itself, asked about every attribute; `tests/mjcf/test_mjcf_values.py` asks it again.
 """
 
 from __future__ import annotations

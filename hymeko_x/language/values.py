@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from dataclasses import MISSING, is_dataclass
 from enum import Enum
-from functools import cache
-from types import MappingProxyType, UnionType
-from typing import TYPE_CHECKING, Any, Union, get_args, get_origin, get_type_hints
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
-from hymeko_x.ir import mechanism, parts, values
+from hymeko_x.ir import parts, values
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.residue.paths import attributes_of, identical
+from hymeko_x.ir.residue.types import is_sound
 from hymeko_x.ir.values import ZERO, Written
 from hymeko_x.ir.written import pose_as_written
 from hymeko_x.language.syntax import Ref, is_list
@@ -112,10 +112,9 @@ def _part(kind: type, words: tuple[Value, ...]) -> object:
     for name in made:
         if (kind, name) in _INTEGERS and made[name] is not None:
             made[name] = tuple(map(int, made[name]))
-    part = kind(**made)
-    for name, value in made.items():
-        if not fits(value, hints_of(kind).get(name, Any)):
-            raise ValueError(f"{kind.__name__}.{name} cannot be {value!r}")
+    part: object = kind(**made)
+    if kind is not Arc and not is_sound(part):
+        raise ValueError(f"no {kind.__name__}: {made!r}")
     return part
 
 
@@ -149,32 +148,3 @@ def _name(value: Value) -> str:
     if not isinstance(value, Ref) or len(value.path) != 1:
         raise ValueError(f"{value!r} is no name")
     return str(value.path[0])
-
-
-# ---- types ---------------------------------------------------------------------------------------------------------------
-
-
-@cache
-def hints_of(kind: type) -> dict[str, Any]:
-    """The types of a part's fields."""
-    names = {**vars(mechanism), **vars(parts), **vars(values)}
-    return get_type_hints(kind, names) if kind is not Arc else {}
-
-
-def fits(value: object, hint: Any) -> bool:
-    """Whether a value is of a field's type."""
-    if hint is Any:
-        return True
-    if hint is float:
-        return isinstance(value, float | int) and not isinstance(value, bool)
-    origin = get_origin(hint)
-    if origin in (Union, UnionType):
-        return any(fits(value, choice) for choice in get_args(hint))
-    if origin is tuple:
-        kinds = get_args(hint)
-        if not isinstance(value, tuple):
-            return False
-        if kinds[-1:] == (Ellipsis,):
-            return all(fits(item, kinds[0]) for item in value)
-        return len(kinds) == len(value) and all(fits(item, kind) for item, kind in zip(value, kinds, strict=True))
-    return isinstance(value, hint)

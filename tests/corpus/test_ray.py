@@ -69,7 +69,7 @@ def wait_for(address: str) -> None:
     raise TimeoutError(address)
 
 
-@pytest.mark.slow
+@pytest.mark.full
 def test_a_node_that_dies_changes_nothing(cluster: tuple[str, subprocess.Popen[bytes]], tmp_path: Path) -> None:
     address, victim = cluster
     robots = fill(tmp_path / "toys", robots=8)

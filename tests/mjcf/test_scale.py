@@ -58,7 +58,7 @@ def test_ten_times_as_many_take_ten_times_as_long(make: Callable[[int], str], co
     assert many / few < 2.2 * 10
 
 
-@pytest.mark.slow
+@pytest.mark.full
 @pytest.mark.parametrize(
     ("make", "count"),
     [

@@ -34,7 +34,7 @@ def test_a_real_robot_is_the_same_in_urdf(robot: Path, tmp_path: Path) -> None:
     assert_same_in_urdf(robot, tmp_path, meshes=True)
 
 
-@pytest.mark.slow
+@pytest.mark.full
 @pytest.mark.parametrize("robot", [file for file in FILES if file not in FEW], ids=lambda file: file.id, indirect=True)
 def test_every_real_robot_is_the_same_in_urdf(robot: Path, tmp_path: Path) -> None:
     assert_same_in_urdf(robot, tmp_path, meshes=False)

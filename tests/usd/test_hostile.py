@@ -55,7 +55,7 @@ def test_a_missing_payload_is_a_warning() -> None:
     assert [key.name for key, _ in mechanism.vertices(Body)] == ["a"]
 
 
-@pytest.mark.slow
+@pytest.mark.full
 def test_a_hundred_thousand_prims_are_read_in_bounded_time() -> None:
     group = "".join(f'    def Xform "p{number}"\n    {{\n        int count = {number}\n    }}\n' for number in range(100_000))
     start = time.process_time()

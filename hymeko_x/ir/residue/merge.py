@@ -16,6 +16,7 @@ from hymeko_x.ir.residue.follow import renamed_since, with_new_names, with_old_n
 from hymeko_x.ir.residue.order import by_kind, laid_out, moved
 from hymeko_x.ir.residue.paths import default_at, digest, get, guard_of, put
 from hymeko_x.ir.residue.prints import print_of, shape_group, weight_print
+from hymeko_x.ir.residue.types import is_sound
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -93,9 +94,10 @@ class _Merge:
         if edited:
             self._say(key, f"was edited: {', '.join(dict.fromkeys(_path_text(change.path) for change in edited))} stays as it is now")
         barred = _barred(part, changes, edited) if edited else set()
-        for change in changes:
-            if change.path not in barred:
-                part = put(part, change.path, change.value)
+        changed = _with_changes(part, [change for change in changes if change.path not in barred])
+        if changed is not None:
+            return changed
+        self._say(key, "stays as it is: what was carried for it is damaged")
         return part
 
     def _still_holds(self, key: Id, part: object, change: Change) -> bool:
@@ -211,6 +213,16 @@ class _Merge:
 
 def _sorted(table: dict[Id, P], runs: Mapping[str, list]) -> dict[Id, P]:  # type: ignore[type-arg]
     return {key: table[key] for kind, keys in by_kind(table).items() for key in moved(keys, runs.get(kind, ()))}
+
+
+def _with_changes(part: P, changes: list[Change]) -> P | None:
+    """The part with all changes; None where they are of no part that there is, as in a damaged residue."""
+    try:
+        for change in changes:
+            part = put(part, change.path, change.value)
+    except LookupError:
+        return None
+    return part if is_sound(part) else None
 
 
 # ---- fields that hold together ---------------------------------------------------------------------------------------------

@@ -104,16 +104,19 @@ def get(part: object, path: Path) -> object:
 
 
 def put(part: Any, path: Path, value: object) -> Any:
-    """The part with another value at a path that it has."""
+    """The part with another value at a path.
+
+    Raises: LookupError when the part has no such place.
+    """
     if not path:
         return value
     step, rest = path[0], path[1:]
     if isinstance(step, int):
-        return (*part[:step], put(part[step], rest, value), *part[step + 1 :])
+        return (*part[:step], put(get(part, (step,)), rest, value), *part[step + 1 :])
     if isinstance(part, Pose) and step == TURN:
         turn: Any = value
         return replace(part, quat=turn[0], written=turn[1])
-    return replace(part, **{step: put(getattr(part, step), rest, value)})
+    return replace(part, **{step: put(get(part, (step,)), rest, value)})
 
 
 def default_at(part: object, path: Path) -> object:

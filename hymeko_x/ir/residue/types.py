@@ -1,0 +1,58 @@
+"""Whether values are of the types that the fields of parts have: what a file carries may be damaged, or made up."""
+
+from __future__ import annotations
+
+from dataclasses import is_dataclass
+from functools import cache
+from types import UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
+
+from hymeko_x.ir import mechanism, parts, values
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.residue.paths import attributes_of
+from hymeko_x.ir.values import Pose
+
+
+def is_sound(part: object) -> bool:
+    """Whether a part, or an edge with its arcs, holds nothing but what its fields may hold. Depth is that of the parts."""
+    if isinstance(part, Edge):
+        return is_sound(part.data) and isinstance(part.arcs, tuple) and all(map(_is_sound_arc, part.arcs))
+    kind: Any = type(part)
+    hints = hints_of(kind)
+    fields = ((getattr(part, item.name), hints.get(item.name, Any)) for item in attributes_of(part))
+    return all(fits(value, hint) for value, hint in fields)
+
+
+def _is_sound_arc(arc: object) -> bool:
+    if not isinstance(arc, Arc) or not isinstance(arc.target, Id) or arc.sign not in (-1, 0, 1) or not isinstance(arc.role, str):
+        return False
+    return arc.weight is None or fits(arc.weight, tuple[float, ...]) or (isinstance(arc.weight, Pose) and is_sound(arc.weight))
+
+
+@cache
+def hints_of(kind: Any) -> dict[str, Any]:
+    """The types of a part's fields."""
+    return get_type_hints(kind, {**vars(mechanism), **vars(parts), **vars(values)})
+
+
+def fits(value: object, hint: Any) -> bool:
+    """Whether a value, with all that is in it, is of a field's type."""
+    if hint is Any:
+        return True
+    if hint is float:
+        return isinstance(value, float | int) and not isinstance(value, bool)
+    origin = get_origin(hint)
+    if origin in (Union, UnionType):
+        return any(fits(value, choice) for choice in get_args(hint))
+    if origin is tuple:
+        return _fits_tuple(value, get_args(hint))
+    return isinstance(value, hint) and (not is_dataclass(value) or is_sound(value))
+
+
+def _fits_tuple(value: object, kinds: tuple[Any, ...]) -> bool:
+    if not isinstance(value, tuple):
+        return False
+    if kinds[-1:] == (Ellipsis,):
+        return all(fits(item, kinds[0]) for item in value)
+    return len(kinds) == len(value) and all(fits(item, kind) for item, kind in zip(value, kinds, strict=True))
