@@ -23,6 +23,8 @@ from hymeko_x.language.residue import BadResidue, parse_residue, print_residue
 from hymeko_x.source import Package, Source
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import VertexPart
@@ -188,6 +190,7 @@ def _written(
 ) -> tuple[Package, Mechanism]:
     """The package, and the mechanism as it was printed."""
     backend = writer(format)
+    files = PlacedFiles(mechanism.places, files) if mechanism.places else files
     mechanism = _explicit(mechanism, format, files, report)
     legal = legalize(mechanism, format.name, options, report)
     packed, new, copies = pack(legal, format.name, files, place.assets, report, out_dir=place.folder)
@@ -295,3 +298,19 @@ class PackageFiles:
         if path in self.package.files:
             return self.package.files[path]
         return self.behind.read(self.package.copies.get(path, path))
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedFiles:
+    """The files of a mechanism that another file carried: what is not where it was lies where that file has it."""
+
+    places: Mapping[str, str]
+    behind: Files = field(repr=False)
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file, first by its own name."""
+        return self.behind.find(uri) or (self.behind.find(self.places[uri]) if uri in self.places else None)
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        return self.behind.read(path)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import mujoco
 import pytest
 from hypothesis import given, settings
@@ -14,6 +16,7 @@ from hymeko_x.formats.carrier import taken_off
 from hymeko_x.ir.diff import Tolerance, diff
 from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Id, Mechanism
+from hymeko_x.ir.parts import Mesh
 from hymeko_x.source import NoFiles, Source
 from tests.residue.edits import Edit, applied, mjcf_edits, urdf_edits
 from tests.residue.exactness import unequal
@@ -161,3 +164,20 @@ def test_pure_files_carry_nothing() -> None:
 def test_there_and_back_is_the_same_to_the_last_bit(text: str, own: str, other: str) -> None:
     robot = hx.loads(text, own)
     assert unequal(robot, hx.loads(hx.dumps(robot, other), other)) == []
+
+
+def test_a_file_that_was_copied_is_found_on_the_way_back(tmp_path: Path) -> None:
+    """The source calls its mesh by a name that means nothing beside the file that carries it."""
+    stl = b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n"
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "plate.stl").write_bytes(stl)
+    (tmp_path / "a").mkdir()
+    mesh = '<visual><geometry><mesh filename="../parts/plate.stl"/></geometry></visual>'
+    (tmp_path / "a" / "robot.urdf").write_text(f'<robot name="r"><link name="base">{mesh}</link></robot>')
+    (tmp_path / "b" / "c").mkdir(parents=True)
+    hx.convert(tmp_path / "a" / "robot.urdf", tmp_path / "b" / "c" / "robot.xml")
+    back = hx.load(tmp_path / "b" / "c" / "robot.xml")
+    assert [mesh.uri for _, mesh in back.vertices(Mesh)] == ["../parts/plate.stl"]
+    result = hx.convert(tmp_path / "b" / "c" / "robot.xml", tmp_path / "b" / "home.urdf")
+    assert list(result.report) == []
+    assert [(tmp_path / "b" / name).is_file() for name in (*result.package.files, *result.package.copies)] == [True]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, TypeVar
 from hymeko_x import codes
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Body, Drive, Mount, Plane, Sense
+from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Texture
 from hymeko_x.ir.residue.bridge import cross
 from hymeko_x.ir.residue.follow import renamed_since, with_new_names, with_old_names
 from hymeko_x.ir.residue.order import by_kind, laid_out, moved
@@ -67,7 +67,7 @@ class _Merge:
         self._add(withheld)
         removed = self._remove(kept)
         self._let_nothing_dangle(removed)
-        merged = replace(self.image, name=name, graph=self._ordered())
+        merged = replace(self.image, name=name, graph=self._ordered(), places=dict(self._places()))
         return _with_sides(merged, self.residue, self.image)
 
     # ---- fields ------------------------------------------------------------------------------------------------------------
@@ -198,6 +198,19 @@ class _Merge:
         for arc in part.arcs:
             users[arc.target].append(key)
         return [arc.target for arc in part.arcs]
+
+    def _places(self) -> Iterator[tuple[str, str]]:
+        """How the image calls the files that the source calls otherwise."""
+        for key, part in self.vertices.items():
+            before = self.image.graph.vertices.get(key)
+            if (
+                isinstance(part, Mesh | Texture)
+                and isinstance(before, Mesh | Texture)
+                and part.uri
+                and before.uri
+                and part.uri != before.uri
+            ):
+                yield part.uri, before.uri
 
     def _ordered(self) -> Hypergraph:  # type: ignore[type-arg]
         if not self.residue.order:
