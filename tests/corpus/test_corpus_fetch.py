@@ -61,7 +61,7 @@ def test_every_development_file_is_something_that_the_cache_keeps() -> None:
     assert [f for package in catalog.load() for paths in package.files.values() for f in paths if not package.wants(f)] == []
 
 
-def test_the_development_files_are_those_that_the_issue_of_each_format_counts_on() -> None:
+def test_the_development_files_are_as_many_of_each_format_as_the_bounds_count_on() -> None:
     counts = {format: len(catalog.development_files(format)) for format in ("urdf", "mjcf", "xacro", "usd", "sdf")}
     assert counts == {"urdf": 60, "mjcf": 80, "xacro": 30, "usd": 30, "sdf": 9}
 
