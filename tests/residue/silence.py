@@ -65,7 +65,9 @@ def _places(root: Any) -> Iterator[tuple[str, str]]:
 
 
 def _says_nothing(element: Any) -> bool:
-    """Whether an element only says zeros, which mean the same as leaving it out."""
+    """Whether an element only says zeros, or the axis that joints have anyway, which mean the same as leaving it out."""
+    if element.tag == "axis" and [float(number) for number in _NUMBER.findall(element.get("xyz", ""))] == [1.0, 0.0, 0.0]:
+        return True
     return len(element) == 0 and bool(element.attrib) and all(re.fullmatch(r"[-+0.\s]+", text) for text in element.attrib.values())
 
 
@@ -87,7 +89,8 @@ def perturbed(text: str) -> str:
     if opposite:
         return opposite
     numbers = list(_NUMBER.finditer(text))
-    found = numbers[min(1, len(numbers) - 1)] if numbers else None  # the second one: a direction of another length is the same
+    # a direction of another length is the same: the second number of most, and the angle of an axis and an angle
+    found = numbers[-1 if len(numbers) == 4 else min(1, len(numbers) - 1)] if numbers else None
     if found is None or not re.fullmatch(r"[-+.\deE\s]+", text):
         return f"{text}_other"
     value = float(found[0])
