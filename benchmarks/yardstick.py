@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import statistics
 import time
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,15 @@ def best_of(work: Callable[[], object], yardstick: Callable[[], object], repeats
         ours.append(_time(work))
         theirs.append(_time(yardstick))
     return min(ours), min(theirs)
+
+
+def in_turns(*works: Callable[[], object], rounds: int = 5) -> tuple[float, ...]:
+    """The median processor time in s of each, run in turns; one round to warm up is not counted."""
+    times: list[list[float]] = [[] for _ in works]
+    for _ in range(rounds + 1):
+        for own, work in zip(times, works, strict=True):
+            own.append(_time(work))
+    return tuple(statistics.median(own[1:]) for own in times)
 
 
 def _time(work: Callable[[], object]) -> float:

@@ -15,9 +15,9 @@ from hymeko_x.ir.diff import Difference, Tolerance, diff
 from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Mesh, Texture
-from hymeko_x.ir.residue.align import bridge_between
-from hymeko_x.ir.residue.bridge import cross, other_words
-from hymeko_x.ir.residue.delta import residue_of
+from hymeko_x.ir.residue.align import aligned
+from hymeko_x.ir.residue.bridge import other_words
+from hymeko_x.ir.residue.delta import residue_behind
 from hymeko_x.ir.residue.merge import restore
 from hymeko_x.language.residue import BadResidue, parse_residue, print_residue
 from hymeko_x.source import Package, Source
@@ -166,12 +166,12 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
     if format.frontend is None:
         return Result(mechanism, package, report, None)
     image = read_back(package, format, files)
-    bridge = bridge_between(image, mechanism)
-    losses = ledger(with_references_of(packed, mechanism), image, bridge, format)
+    bridge, crossed = aligned(image, mechanism)
+    losses = ledger(with_references_of(packed, mechanism), crossed, bridge, format)
     carry = None if options.pure else carrier_of(format)
     if carry is None:
         return Result(mechanism, package, report, losses)
-    residue = residue_of(mechanism, image, bridge)
+    residue = residue_behind(mechanism, image, bridge, crossed)
     if not residue.is_empty:
         package = carry(package, print_residue(residue))
     return Result(mechanism, package, report, tuple(replace(loss, fate="carried") for loss in losses))
@@ -221,9 +221,12 @@ def read_back(package: Package, format: Format, files: Files) -> Mechanism:
         raise refuse(codes.BUG, f"what was written as {format.name} cannot be read back: {error}") from error
 
 
-def ledger(mechanism: Mechanism, image: Mechanism, bridge: Bridge, format: Format) -> tuple[Loss, ...]:
-    """Everything in which what was written and read back differs from the mechanism; what it only says in other words, once."""
-    found = (*other_words(bridge), *diff(mechanism, cross(image, bridge), LEDGER_TOLERANCE))
+def ledger(mechanism: Mechanism, crossed: Mechanism, bridge: Bridge, format: Format) -> tuple[Loss, ...]:
+    """Everything in which what was written and read back differs from the mechanism; what it only says in other words, once.
+
+    ``crossed`` is what was read back, behind the bridge that leads to the mechanism.
+    """
+    found = (*other_words(bridge), *diff(mechanism, crossed, LEDGER_TOLERANCE))
     return tuple(_loss(difference, mechanism) for difference in found if not _is_dress(difference, format))
 
 

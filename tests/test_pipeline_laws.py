@@ -16,7 +16,7 @@ from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.rename import rename
-from hymeko_x.ir.residue.align import bridge_between
+from hymeko_x.ir.residue.align import aligned
 from hymeko_x.source import NoFiles, Source
 from hymeko_x.testing import TREES, mechanisms, urdf_mechanisms
 
@@ -87,7 +87,8 @@ def test_what_is_taken_out_of_the_result_is_in_the_ledger(format: str, mechanism
     victim = data.draw(st.sampled_from([key for key, _ in mechanism.vertices(parts.Body)]))
     package = pipeline.write(_without(mechanism, victim), found, Options(), NoFiles(), Report(), place)
     image = pipeline.read_back(package, found, NoFiles())
-    losses = pipeline.ledger(mechanism, image, bridge_between(image, mechanism), found)
+    bridge, crossed = aligned(image, mechanism)
+    losses = pipeline.ledger(mechanism, crossed, bridge, found)
     assert str(victim) in {loss.element for loss in losses}
 
 

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import dataclass, is_dataclass, replace
 from enum import Enum
-from typing import TYPE_CHECKING
-from xml.etree.ElementTree import ParseError, canonicalize
+from typing import TYPE_CHECKING, TypeVar
 
+from hymeko_x.ir.fields import attributes_of, layout_of
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
 from hymeko_x.ir.values import Pose, number_text, rotation_angle
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
+    from hymeko_x.ir.fields import Layout
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+
+P = TypeVar("P")
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,60 +75,67 @@ def _differences(a: Mechanism, b: Mechanism, tolerance: Tolerance) -> Iterator[D
         yield from _extras(key, a.extras.get(key, ()), b.extras.get(key, ()))
 
 
-def _elements(a: object, b: object, tolerance: Tolerance) -> Iterator[Difference]:
-    from collections.abc import Mapping
-
-    assert isinstance(a, Mapping)
-    assert isinstance(b, Mapping)
-    for key in _union(a, b):
-        if key not in b:
-            yield Difference(key, "", _short(a[key]), None)
-        elif key not in a:
-            yield Difference(key, "", None, _short(b[key]))
-        elif a[key] != b[key]:
-            yield from (Difference(key, where, before, after) for where, before, after in _values("", a[key], b[key], tolerance))
+def _elements(a: Mapping[Id, P], b: Mapping[Id, P], tolerance: Tolerance) -> Iterator[Difference]:
+    for key, before in a.items():
+        after = b.get(key)
+        if after is None:
+            yield Difference(key, "", _short(before), None)
+        elif before is not after:
+            found: list[Found] = []
+            _values("", before, after, tolerance, found)
+            yield from (Difference(key, *leaf) for leaf in found)
+    for key, after in b.items():
+        if key not in a:
+            yield Difference(key, "", None, _short(after))
 
 
 Found = tuple[str, str | None, str | None]
 
 
-def _values(where: str, a: object, b: object, tolerance: Tolerance) -> Iterator[Found]:
+def _values(where: str, a: object, b: object, tolerance: Tolerance, found: list[Found]) -> None:
     """The differing leaves of two values, with the path to each. Depth is that of the parts, which is small."""
+    kind = type(a)
+    layout = layout_of(kind) if kind is type(b) else None
     if isinstance(a, float | int) and isinstance(b, float | int) and not isinstance(a, bool):
         if not tolerance.accepts(a, b):
-            yield where, number_text(a), number_text(b)
+            found.append((where, number_text(a), number_text(b)))
     elif isinstance(a, Pose) and isinstance(b, Pose):
-        yield from _poses(where, a, b, tolerance)
-    elif is_dataclass(a) and type(a) is type(b):
-        for item in fields(a):
-            if item.compare:
-                name = item.name if item.name not in ("data", "arcs") else ""
-                yield from _values(_join(where, name), getattr(a, item.name), getattr(b, item.name), tolerance)
+        _poses(where, a, b, tolerance, found)
+    elif layout is not None:
+        _fields(where, layout, a, b, tolerance, found)
     elif isinstance(a, tuple) and isinstance(b, tuple) and not isinstance(a, Id):
-        yield from _tuples(where, a, b, tolerance)
+        _tuples(where, a, b, tolerance, found)
     elif a != b:
-        yield where, _short(a), _short(b)
+        found.append((where, _short(a), _short(b)))
 
 
-def _poses(where: str, a: Pose, b: Pose, tolerance: Tolerance) -> Iterator[Found]:
-    yield from _values(_join(where, "xyz"), a.xyz, b.xyz, tolerance)
+def _fields(where: str, layout: Layout, a: object, b: object, tolerance: Tolerance, found: list[Found]) -> None:
+    for item, before, after in zip(layout.attributes, layout.values(a), layout.values(b), strict=True):
+        if before is not after and item.compare and before != after:
+            name = item.name if item.name not in ("data", "arcs") else ""
+            _values(_join(where, name), before, after, tolerance, found)
+
+
+def _poses(where: str, a: Pose, b: Pose, tolerance: Tolerance, found: list[Found]) -> None:
+    if a.xyz != b.xyz:
+        _values(_join(where, "xyz"), a.xyz, b.xyz, tolerance, found)
     if a.quat != b.quat and rotation_angle(a.quat, b.quat) > tolerance.absolute + tolerance.relative:
-        yield _join(where, "rotation"), _short(a.quat), _short(b.quat)
+        found.append((_join(where, "rotation"), _short(a.quat), _short(b.quat)))
 
 
-def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance: Tolerance) -> Iterator[Found]:
+def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance: Tolerance, found: list[Found]) -> None:
     if all(isinstance(x, float | int) for x in (*a, *b)):
         if len(a) != len(b) or not all(tolerance.accepts(x, y) for x, y in zip(a, b, strict=True)):  # type: ignore[arg-type]
-            yield where, _short(a), _short(b)
+            found.append((where, _short(a), _short(b)))
         return
     for number in range(max(len(a), len(b))):
         path = f"{where}[{number}]"
         if number >= len(a):
-            yield path, None, _short(b[number])
+            found.append((path, None, _short(b[number])))
         elif number >= len(b):
-            yield path, _short(a[number]), None
-        else:
-            yield from _values(path, a[number], b[number], tolerance)
+            found.append((path, _short(a[number]), None))
+        elif a[number] is not b[number]:
+            _values(path, a[number], b[number], tolerance, found)
 
 
 def _extras(key: Id, a: tuple[Extra, ...], b: tuple[Extra, ...]) -> Iterator[Difference]:
@@ -137,9 +147,9 @@ def _extras(key: Id, a: tuple[Extra, ...], b: tuple[Extra, ...]) -> Iterator[Dif
             rest.remove(extra)
         else:
             left.append(extra)
-    essences = [_essence(extra) for extra in rest]
+    essences = [_essence(extra) for extra in rest] if left else []
     for extra in left:
-        if (essence := _essence(extra)) in essences:
+        if essences and (essence := _essence(extra)) in essences:
             place = essences.index(essence)
             del essences[place], rest[place]
         else:
@@ -152,6 +162,8 @@ def _essence(extra: Extra) -> Extra:
     """An extra that is an XML element without its comments, the blanks between its elements and the order of its attributes."""
     if not extra.text.startswith("<"):
         return extra
+    from xml.etree.ElementTree import ParseError, canonicalize
+
     try:
         return replace(extra, text=canonicalize(extra.text, strip_text=True))
     except ParseError:
@@ -193,7 +205,7 @@ def _short_part(value: object) -> str:
         case Arc():
             return _short_arc(value)
         case _:
-            said = [f"{f.name} {_short(getattr(value, f.name))}" for f in fields(value) if f.compare]  # type: ignore[arg-type]
+            said = [f"{item.name} {_short(getattr(value, item.name))}" for item in attributes_of(value) if item.compare]
             return f"{type(value).__name__.lower()}({', '.join(said)})"
 
 

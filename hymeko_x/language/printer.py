@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from itertools import zip_longest
 
 from hymeko_x.ir.values import number_text
@@ -27,7 +28,8 @@ WIDTH = 120
 INDENT = "  "
 _PLAIN_NAME = re.compile(r"[^\W\d]\w*")
 _WORDS = frozenset({"rel", "seq", "concurrent", "use", "import", "as", "inf", "nan"})
-_ESCAPES = {"\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\0": "\\0"}
+_ESCAPES = str.maketrans({"\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\0": "\\0"})
+_FEW_ESCAPES = str.maketrans({"\\": "\\\\", "\r": "\\r", "\0": "\\0"})
 
 
 def print_document(document: Document) -> str:
@@ -60,11 +62,12 @@ def print_item(item: Item) -> str:
             return f"{_signature(item)} {{ {inner} }}" if inner else f"{_signature(item)} {{}}"
 
 
+@lru_cache(8192, typed=True)
 def print_name(name: str) -> str:
     """A name, in backticks unless it is a plain word (or was quoted by its author)."""
     if _PLAIN_NAME.fullmatch(name) and name not in _WORDS and not isinstance(name, QuotedName):
         return name
-    escaped = "".join(_ESCAPES.get(character, character) for character in name).replace("`", "\\`")
+    escaped = name.translate(_ESCAPES).replace("`", "\\`")
     return f"`{escaped}`"
 
 
@@ -73,7 +76,7 @@ def print_text(text: str) -> str:
     if '"' in text and "\\" not in text and '"""' not in text and not text.endswith('"'):
         return f"'{text}'" if "'" not in text else f'"""{text}"""'
     quote = "'" if '"' in text and "'" not in text else '"'
-    escaped = "".join(_ESCAPES.get(character, character) if character in "\\\0\r" else character for character in text)
+    escaped = text.translate(_FEW_ESCAPES)
     return f"{quote}{escaped.replace(quote, chr(92) + quote)}{quote}"
 
 
@@ -81,6 +84,8 @@ def print_value(value: Value) -> str:
     """A value as it stands behind a field's name."""
     if type(value) is float:
         return number_text(value)
+    if type(value) is tuple:
+        return "[" + " ".join(map(print_value, value)) + "]"
     if isinstance(value, str):
         return print_text(value)
     match value:
@@ -115,13 +120,32 @@ def _lines(item: Item) -> list[str]:
         if not isinstance(part, Node) or not part.items:
             lines.append(indent + print_item(part))
             continue
-        if not _is_long(part) and len(text := print_item(part)) + len(indent) <= WIDTH and "\n" not in text:
+        text = None if _is_long(part) else _in_line(part, WIDTH - len(indent))
+        if text is not None:
             lines.append(indent + text)
             continue
         lines.append(f"{indent}{_signature(part)} {{")
         stack.append((depth, "}"))
         stack.extend(reversed([(depth + 1, inner) for inner in _broken(part.items, WIDTH - len(indent) - len(INDENT))]))
     return lines
+
+
+def _in_line(node: Node, room: int) -> str | None:
+    """A node with items in one line; None as soon as it is clear that it is longer than ``room`` or has line breaks."""
+    head = _signature(node)
+    used = len(head) + 4
+    texts = []
+    for item, following in zip_longest(node.items, node.items[1:]):
+        text = _in_line(item, room - used - 1) if isinstance(item, Node) and item.items else print_item(item)
+        if text is None or "\n" in text:
+            return None
+        if following is not None and _needs_comma(item, following):
+            text += ","
+        used += len(text) + 1
+        if used > room:
+            return None
+        texts.append(text)
+    return f"{head} {{ {' '.join(texts)} }}"
 
 
 def _is_long(node: Node) -> bool:
@@ -232,6 +256,6 @@ def _arc(arc: ArcItem) -> str:
 
 
 def _ref(ref: Ref, between: str = " ") -> str:
-    path = ".".join(map(print_name, ref.path))
+    path = print_name(ref.path[0]) if len(ref.path) == 1 else ".".join(map(print_name, ref.path))
     modifier = f"{ref.modifier} " if ref.modifier else ""
     return f"{modifier}{ref.direction}{between}{path}" if ref.direction else path

@@ -7,8 +7,9 @@ a value with this digest; without a mark the file says nothing there.
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, get_args
 
+from hymeko_x.ir.fields import identical
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id
 from hymeko_x.ir.parts import EdgePart, Weight
@@ -36,6 +37,14 @@ _CLASSES = {kind: part for part, kind in KINDS.items()}
 _NO_GROUP = "alone"
 
 T = TypeVar("T")
+
+
+class _Group(NamedTuple):
+    """Elements of a kind that have the same fields."""
+
+    kind: str
+    fields: tuple[Field, ...]
+    names: list[Value]
 
 
 class BadResidue(Exception):
@@ -161,10 +170,18 @@ def _grouped(entries: Iterable[tuple[Id, Field]]) -> list[Item]:
     fields: dict[Id, list[Field]] = defaultdict(list)
     for key, item in entries:
         fields[key].append(item)
-    groups: dict[str, list[Id]] = defaultdict(list)
+    groups: dict[tuple[str, tuple[Field, ...]], list[_Group]] = defaultdict(list)
+    ordered: list[_Group] = []
     for key, found in fields.items():
-        groups[f"{key.kind} {found!r}"].append(key)  # as text, since numbers of either sign of zero are equal
-    return [Node(keys[0].kind, (Field("of", tuple(name_ref(key.name) for key in keys)), *fields[keys[0]])) for keys in groups.values()]
+        said = tuple(found)
+        alike = groups[key.kind, said]
+        group = next((group for group in alike if identical(group.fields, said)), None)  # numbers of either sign of zero are equal
+        if group is None:
+            group = _Group(key.kind, said, [])
+            alike.append(group)
+            ordered.append(group)
+        group.names.append(name_ref(key.name))
+    return [Node(group.kind, (Field("of", tuple(group.names)), *group.fields)) for group in ordered]
 
 
 def _marks(entries: Iterable[tuple[Id, str]]) -> list[Item]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.parts import DofKind, Joint, Role, Shape
 from hymeko_x.ir.residue import Bridge, Fold, Join
-from hymeko_x.ir.residue.bridge import are_twins, cross, fold_chains, join_twins
+from hymeko_x.ir.residue.bridge import are_twins, cross, fold_chains, join_twins, move_frames
 from hymeko_x.ir.residue.paths import digest
 from hymeko_x.ir.values import IDENTITY, Pose, add, compose, inverse, quat_about, rotate, rotation_angle, scaled
 
@@ -28,13 +28,19 @@ _SCALAR = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 
 def bridge_between(image: Mechanism, source: Mechanism) -> Bridge:
     """The bridge that leads from the image to the source. Linear in both."""
+    return aligned(image, source)[0]
+
+
+def aligned(image: Mechanism, source: Mechanism) -> tuple[Bridge, Mechanism]:
+    """The bridge that leads from the image to the source, and the image behind it. Linear in both."""
     names = _other_names(image, source)
     renamed = cross(image, Bridge(tuple(names.items())))
     folds = tuple(_folds(renamed, source))
     folded = fold_chains(renamed, folds)
     joins = tuple(_joins(folded, source))
     joined = join_twins(folded, joins)
-    return Bridge(tuple(names.items()), folds, joins, tuple(_frames(joined, source)))
+    frames = {} if _stand_alike(joined, source) else dict(_frames(joined, source))
+    return Bridge(tuple(names.items()), folds, joins, tuple(frames.items())), move_frames(joined, frames)
 
 
 # ---- names -----------------------------------------------------------------------------------------------------------------
@@ -180,6 +186,18 @@ def _joins(image: Mechanism, source: Mechanism) -> Iterable[Join]:
 
 
 # ---- frames and coordinates --------------------------------------------------------------------------------------------------
+
+
+def _stand_alike(image: Mechanism, source: Mechanism) -> bool:
+    """Whether all bodies hang on the same bodies in the same places, so that no frame can be another one."""
+    below = image.parent_joint
+    for body, view in source.parent_joint.items():
+        other = below.get(body)
+        if other is None or view.parent != other.parent or view.parent_pose != other.parent_pose or view.child_pose != other.child_pose:
+            return False
+        if list(map(_moved_to_zero, view.joint.dofs)) != list(map(_moved_to_zero, other.joint.dofs)):
+            return False
+    return True
 
 
 def _frames(image: Mechanism, source: Mechanism) -> Iterable[tuple[Id, Pose]]:

@@ -9,10 +9,10 @@ from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import ROOT, Id
 from hymeko_x.ir.parts import Body
 from hymeko_x.ir.residue import Addition, Change, Removal, Residue, Sides
-from hymeko_x.ir.residue.align import bridge_between
-from hymeko_x.ir.residue.bridge import cross
+from hymeko_x.ir.residue.align import aligned
 from hymeko_x.ir.residue.order import by_kind, moves
-from hymeko_x.ir.residue.paths import differing, digest, identical
+from hymeko_x.ir.fields import identical
+from hymeko_x.ir.residue.paths import differing, digest
 from hymeko_x.ir.residue.prints import print_of, shape_group, weight_print
 
 if TYPE_CHECKING:
@@ -25,10 +25,13 @@ _NAMED = frozenset({"body", "joint", "frame", "material", "actuator", "sensor", 
 """Kinds of elements that people give names to."""
 
 
-def residue_of(source: Mechanism, image: Mechanism, bridge: Bridge | None = None) -> Residue:
-    """What restores the source from its image, whose bridge is found here unless it is known. Linear but for sorting."""
-    bridge = bridge_between(image, source) if bridge is None else bridge
-    crossed = cross(image, bridge)
+def residue_of(source: Mechanism, image: Mechanism) -> Residue:
+    """What restores the source from its image. Linear but for sorting."""
+    return residue_behind(source, image, *aligned(image, source))
+
+
+def residue_behind(source: Mechanism, image: Mechanism, bridge: Bridge, crossed: Mechanism) -> Residue:
+    """The same where the bridge is known, and the image behind it."""
     changes = tuple(_changes(crossed, source))
     additions = tuple(_additions(crossed, source))
     removals = tuple(_removals(crossed, source))
@@ -48,12 +51,15 @@ def _changes(image: Mechanism, source: Mechanism) -> Iterator[Change]:
     if image.name != source.name:
         yield Change(ROOT, ("name",), source.name, digest(image.name))
     for key, part in source.graph.vertices.items():
-        if key in image.graph.vertices:
-            for path, value, guard in differing(image.graph.vertices[key], part):
+        mine = image.graph.vertices.get(key)
+        if mine is not None:
+            for path, value, guard in differing(mine, part):
                 yield Change(key, path, value, _with_reasons(image, key, path, value, guard))
     for key, edge in source.graph.edges.items():
-        if key in image.graph.edges:
-            yield from (Change(key, *found) for found in differing(image.graph.edges[key], edge))
+        other = image.graph.edges.get(key)
+        if other is not None:
+            for path, value, guard in differing(other, edge):
+                yield Change(key, path, value, guard)
 
 
 def _with_reasons(image: Mechanism, key: Id, path: tuple[str | int, ...], value: object, guard: str) -> str:

@@ -2,85 +2,56 @@
 
 from __future__ import annotations
 
-import math
 from array import array
-from dataclasses import MISSING, fields, is_dataclass, replace
+from dataclasses import MISSING, is_dataclass, replace
 from enum import Enum
-from functools import cache
 from hashlib import blake2b
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.fields import attributes_of, identical, layout_of
 from hymeko_x.ir.values import Pose
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from hymeko_x.ir.residue import Path
 
 TURN = "turn"
 """The last step to a pose's rotation: its quaternion together with the notation that it was written in."""
 
 
-class Attribute(NamedTuple):
-    """A field of a part."""
-
-    name: str
-    default: object
-    compare: bool
-
-
-def attributes_of(part: object) -> tuple[Attribute, ...]:
-    """The fields of a part, with their defaults (MISSING for those that have none)."""
-    kind: Any = type(part)
-    return _attributes(kind)
-
-
-@cache
-def _attributes(kind: Any) -> tuple[Attribute, ...]:
-    return tuple(Attribute(f.name, f.default, f.compare) for f in fields(kind))
-
-
-def identical(a: object, b: object) -> bool:
-    """Whether two values are the same to the last bit, notations and the sign of zero included."""
-    if a is b:
-        return True
-    if isinstance(a, float | int) and isinstance(b, float | int):
-        return (a == b and math.copysign(1.0, a) == math.copysign(1.0, b)) or (a != a and b != b)
-    if isinstance(a, str) or type(a) is not type(b):
-        return a == b
-    if isinstance(a, tuple):
-        assert isinstance(b, tuple)
-        return len(a) == len(b) and all(identical(x, y) for x, y in zip(a, b, strict=True))
-    if is_dataclass(a):
-        return all(identical(getattr(a, f.name), getattr(b, f.name)) for f in attributes_of(a))
-    return a == b
-
-
-def differing(image: object, source: object, path: Path = (), default: object = MISSING) -> Iterator[tuple[Path, object, str]]:
+def differing(image: object, source: object) -> list[tuple[Path, object, str]]:
     """The path, the source's value and the guard of every field in which two parts differ. Depth is that of the parts."""
-    if identical(image, source):
-        return
+    found: list[tuple[Path, object, str]] = []
+    if image is not source:
+        _collect(image, source, (), MISSING, found)
+    return found
+
+
+def _collect(image: object, source: object, path: Path, default: object, found: list[tuple[Path, object, str]]) -> None:
+    """What differs between two values that are two objects."""
+    kind = type(image)
+    layout = layout_of(kind) if kind is type(source) else None
     if isinstance(image, Pose) and isinstance(source, Pose):
         if not identical(image.xyz, source.xyz):
-            yield (*path, "xyz"), source.xyz, digest(image.xyz)
+            found.append(((*path, "xyz"), source.xyz, digest(image.xyz)))
         if not identical(turn_of(image), turn_of(source)):
-            yield (*path, TURN), turn_of(source), digest(image.quat)
-    elif is_dataclass(image) and type(image) is type(source):
-        for item in attributes_of(image):
-            yield from differing(getattr(image, item.name), getattr(source, item.name), (*path, item.name), item.default)
+            found.append(((*path, TURN), turn_of(source), digest(image.quat)))
+    elif layout is not None:
+        for item, before, after in zip(layout.attributes, layout.values(image), layout.values(source), strict=True):
+            if before is not after:
+                _collect(before, after, (*path, item.name), item.default, found)
     elif _are_alike(image, source):
         for place, (before, after) in enumerate(zip(image, source, strict=True)):  # type: ignore[call-overload]
-            yield from differing(before, after, (*path, place))
-    else:
-        yield path, source, guard_of(image, default)
+            if before is not after:
+                _collect(before, after, (*path, place), MISSING, found)
+    elif not identical(image, source):
+        found.append((path, source, guard_of(image, default)))
 
 
 def _are_alike(a: object, b: object) -> bool:
     """Whether two tuples hold parts of the same types, so that they can be compared part by part."""
-    if not isinstance(a, tuple) or not isinstance(b, tuple) or isinstance(a, Id) or len(a) != len(b):
+    if type(a) is not tuple or type(b) is not tuple or len(a) != len(b):
         return False
-    return all(is_dataclass(x) and type(x) is type(y) for x, y in zip(a, b, strict=True))
+    return all(type(x) is type(y) and layout_of(type(x)) is not None for x, y in zip(a, b, strict=True))
 
 
 def turn_of(pose: Pose) -> tuple[object, object]:
@@ -140,6 +111,11 @@ def guard_of(value: object, default: object = MISSING) -> str:
     return "" if default is not MISSING and value == default else digest(value)
 
 
+_DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
+_PAIRS = tuple(second + first for first in _DIGITS for second in _DIGITS)
+"""The texts of the numbers below 36 * 36, lowest digit first."""
+
+
 def digest(*values: object) -> str:
     """Six letters and digits, the first a letter, that tell one value from another. Notations do not count."""
     number = int.from_bytes(blake2b("\0".join(map(_canonical, values)).encode("utf-8", "surrogatepass"), digest_size=5).digest())
@@ -148,26 +124,29 @@ def digest(*values: object) -> str:
 
 def _base36(number: int) -> str:
     digits = ""
-    for _ in range(6):
-        number, rest = divmod(number, 36)
-        digits += "0123456789abcdefghijklmnopqrstuvwxyz"[rest]
+    for _ in range(3):
+        number, rest = divmod(number, 1296)
+        digits += _PAIRS[rest]
     return digits
 
 
 def _canonical(value: object) -> str:
     """A text that is equal exactly for equal values."""
+    kind = type(value)
+    if kind is float:
+        return repr(value + 0.0)  # type: ignore[operator]
+    if kind is str:
+        return repr(value)
+    if isinstance(value, tuple):
+        return _array(value) if len(value) > _LONG and isinstance(value[0], float | int) else f"({','.join(map(_canonical, value))})"
+    layout = layout_of(kind)
+    if layout is not None:
+        return f"{kind.__name__}({','.join(map(_canonical, layout.compared(value)))})"
     if isinstance(value, bool) or value is None:
         return str(value)
     if isinstance(value, float | int):
         return repr(float(value) + 0.0)
-    if isinstance(value, Enum):
-        return str(value.value)
-    if isinstance(value, str):
-        return repr(value)
-    if isinstance(value, tuple):
-        return _array(value) if len(value) > _LONG and isinstance(value[0], float | int) else f"({','.join(map(_canonical, value))})"
-    inner = (_canonical(getattr(value, item.name)) for item in attributes_of(value) if item.compare)
-    return f"{type(value).__name__}({','.join(inner)})"
+    return str(value.value) if isinstance(value, Enum) else repr(value)
 
 
 def _array(numbers: tuple[float, ...]) -> str:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import is_dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.parts import Body, Joint, Shape
-from hymeko_x.ir.residue.paths import attributes_of, digest
+from hymeko_x.ir.residue.paths import digest
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
@@ -45,8 +45,10 @@ def _edge_values(edge: RobotEdge) -> list[object]:
 def _nameless(part: object) -> object:
     """A part without the names that it may carry."""
     if isinstance(part, Joint):
+        if all(dof.name is None for dof in part.dofs):
+            return part
         return replace(part, dofs=tuple(replace(dof, name=None) for dof in part.dofs))
-    if is_dataclass(part) and any(item.name == "name" for item in attributes_of(part)):
+    if getattr(part, "name", None) is not None:
         return replace(part, name=None)  # type: ignore[type-var]
     return part
 

@@ -1,0 +1,115 @@
+"""URDF -> MJCF and MJCF -> URDF in process, against MuJoCo's own parse + compile + write of the same text without meshes.
+
+python benchmarks/speed.py [NAME ...]
+
+Both run in turns, and every figure is a ratio of processor times. ``write`` is reading and writing alone, ``measured`` is all
+that `convert` does: the ledger and the residue too. The bounds are on the medians over the robots.
+"""
+
+from __future__ import annotations
+
+import statistics
+import sys
+from typing import TYPE_CHECKING, NamedTuple
+
+import mujoco
+from lxml import etree
+from robots import robots
+from yardstick import in_turns, verdict
+
+from hymeko_x import formats, pipeline
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.legalize import Options
+from hymeko_x.source import NoFiles, Source
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from pathlib import Path
+
+    from hymeko_x.formats import Format
+
+class Way(NamedTuple):
+    """A direction, and how many times MuJoCo's time it may take to write, and to measure as well."""
+
+    own: Format
+    target: Format
+    write: float
+    measured: float
+    every: int
+
+
+WAYS = (Way(formats.URDF, formats.MJCF, 2.0, 4.0, 3), Way(formats.MJCF, formats.URDF, 4.0, 4.0, 4))
+
+
+def main(names: tuple[str, ...]) -> int:
+    """Both directions; the exit code is 1 when a bound is missed."""
+    kept = [_compare(way, names) for way in WAYS]
+    return 0 if all(kept) else 1
+
+
+def _compare(way: Way, names: tuple[str, ...]) -> bool:
+    writes, measures = [], []
+    paths = robots(way.own.name, names)
+    for path in paths if names else paths[:: way.every]:
+        text = without_meshes(path)
+        if text is None or not _mujoco_takes(text):
+            print(f"{path.name}: MuJoCo does not take it without meshes")
+            continue
+        theirs, write, measured = in_turns(lambda: _mujoco(text), lambda: _write(text, way), lambda: _measure(text, way))  # noqa: B023
+        writes.append(write / theirs)
+        measures.append(measured / theirs)
+        print(f"{theirs * 1e3:8.2f} ms, write {write / theirs:5.2f}, measured {measured / theirs:5.2f}  {path.name}", flush=True)
+    if not writes:
+        return True
+    name = f"{way.own.name} -> {way.target.name} / MuJoCo, median of {len(writes)}"
+    written = verdict(f"{name}, reading and writing", statistics.median(writes), way.write, at_least=False)
+    return verdict(f"{name}, with ledger and residue", statistics.median(measures), way.measured, at_least=False) and written
+
+
+def without_meshes(path: Path) -> str | None:
+    """The text of a URDF or MJCF file without its meshes and pictures and what uses them; None when it is of several files."""
+    tree = etree.parse(str(path), etree.XMLParser(recover=True, remove_comments=True))
+    root = tree.getroot()
+    if root is None or root.find(".//include") is not None:
+        return None
+    _drop([mesh.getparent().getparent() for mesh in root.iterfind(".//geometry/mesh")])
+    _drop([geom for geom in root.iter("geom") if geom.get("mesh") or geom.get("hfield")])
+    _drop([*root.iterfind("asset/mesh"), *root.iterfind("asset/hfield"), *root.iterfind("asset/texture"), *root.iterfind("asset/skin")])
+    for material in root.iterfind("asset/material"):
+        material.attrib.pop("texture", None)
+    return str(etree.tostring(root, encoding="unicode"))
+
+
+def _drop(elements: list[etree._Element]) -> None:
+    for element in elements:
+        above = element.getparent()
+        if above is not None:
+            above.remove(element)
+
+
+def _mujoco(text: str) -> str:
+    spec = mujoco.MjSpec.from_string(text)
+    spec.compile()
+    return str(spec.to_xml())
+
+
+def _mujoco_takes(text: str) -> bool:
+    try:
+        _mujoco(text)
+    except (ValueError, mujoco.FatalError):
+        return False
+    return True
+
+
+def _write(text: str, way: Way) -> object:
+    robot = pipeline.read(Source("robot", text.encode(), NoFiles()), way.own, Report())
+    return pipeline.write(robot, way.target, Options(), NoFiles(), Report())
+
+
+def _measure(text: str, way: Way) -> object:
+    robot = pipeline.read(Source("robot", text.encode(), NoFiles()), way.own, Report())
+    return pipeline.convert(robot, way.target, Options(), NoFiles(), Report())
+
+
+if __name__ == "__main__":
+    sys.exit(main(tuple(sys.argv[1:])))

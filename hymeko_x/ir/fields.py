@@ -1,0 +1,79 @@
+"""The fields of parts, and whether values are the same to the last bit. Looked up once per class: every comparison goes through here."""
+
+from __future__ import annotations
+
+from dataclasses import fields, is_dataclass
+from functools import cache
+from math import copysign
+from operator import attrgetter
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+class Attribute(NamedTuple):
+    """A field of a part."""
+
+    name: str
+    default: object
+    compare: bool
+
+
+class Layout(NamedTuple):
+    """The fields of a class, with what gets all their values at once, and those that count in comparisons."""
+
+    attributes: tuple[Attribute, ...]
+    values: Callable[[object], tuple[Any, ...]]
+    compared: Callable[[object], tuple[Any, ...]]
+
+
+def attributes_of(part: object) -> tuple[Attribute, ...]:
+    """The fields of a part, with their defaults (MISSING for those that have none)."""
+    layout = layout_of(type(part))
+    assert layout is not None, f"{type(part).__name__} is no part"
+    return layout.attributes
+
+
+@cache
+def layout_of(kind: Any) -> Layout | None:
+    """The fields of a dataclass; None for every other type."""
+    if not is_dataclass(kind):
+        return None
+    attributes = tuple(Attribute(f.name, f.default, f.compare) for f in fields(kind))
+    return Layout(attributes, _getter([f.name for f in attributes]), _getter([f.name for f in attributes if f.compare]))
+
+
+def _getter(names: list[str]) -> Callable[[object], tuple[Any, ...]]:
+    """What gets these attributes of an object, as a tuple however many there are."""
+    if len(names) > 1:
+        return attrgetter(*names)
+    return lambda part: tuple([getattr(part, name) for name in names])
+
+
+def identical(a: object, b: object) -> bool:
+    """Whether two values are the same to the last bit, notations and the sign of zero included."""
+    if a is b:
+        return True
+    kind = type(a)
+    if isinstance(a, float | int) and isinstance(b, float | int):
+        return (a == b and (a != 0.0 or copysign(1.0, a) == copysign(1.0, b))) or (a != a and b != b)
+    if kind is str or isinstance(a, str) or kind is not type(b):
+        return a == b
+    if isinstance(a, tuple):
+        assert isinstance(b, tuple)
+        return len(a) == len(b) and _are_identical(a, b)
+    layout = layout_of(kind)
+    return a == b if layout is None else _are_identical(layout.values(a), layout.values(b))
+
+
+def _are_identical(a: tuple[object, ...], b: tuple[object, ...]) -> bool:
+    for x, y in zip(a, b, strict=True):
+        if x is y:
+            continue
+        if type(x) is float and x and type(y) is float:
+            if x != y and (x == x or y == y):
+                return False
+        elif not identical(x, y):
+            return False
+    return True
