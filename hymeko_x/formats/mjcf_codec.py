@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.formats.mjcf_classes import TURNS
@@ -25,7 +26,7 @@ from hymeko_x.ir.values import (
 from hymeko_x.ir.written import pose_as_written
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from hymeko_x.ir.values import Vec3
 
@@ -69,6 +70,42 @@ class Group:
     seen: Callable[[Mapping[str, str], Settings], Any]
     needs: tuple[str, ...] = ()
     exact: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """How to read all groups of an element without asking each of them: most elements say few of their attributes.
+
+    ``silent`` are the values of the groups of which nothing is said; ``places`` are, by attribute, the groups that look at it,
+    and ``always`` those that have to be asked anyway.
+    """
+
+    groups: tuple[Group, ...]
+    silent: dict[str, Any]
+    places: Mapping[str, tuple[int, ...]]
+    always: frozenset[int]
+
+    def said_in(self, attributes: Iterable[str]) -> list[Group]:
+        """The groups that these attributes are for, in order."""
+        found = set(self.always)
+        for name in attributes:
+            found.update(self.places.get(name, ()))
+        return [self.groups[place] for place in sorted(found)]
+
+
+def plan_of(groups: tuple[Group, ...], settings: Settings) -> Plan:
+    """The plan of a file with these settings."""
+    silent: dict[str, Any] = {}
+    places: dict[str, tuple[int, ...]] = {}
+    always: set[int] = set()
+    for place, group in enumerate(groups):
+        try:
+            silent[group.key] = group.read({}, settings)
+        except BadAttribute:
+            always.add(place)
+        for name in (*group.names, *group.needs):
+            places[name] = (*places.get(name, ()), place)
+    return Plan(groups, silent, places, frozenset(always))
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------
@@ -121,15 +158,19 @@ def plain(said: Mapping[str, str], names: tuple[str, ...]) -> tuple[Any, ...]:
     return tuple([None if (text := said.get(name)) is None else read_numbers(text) or text for name in names])
 
 
+_TURN_COUNTS = MappingProxyType({"quat": 4, "axisangle": 4, "xyaxes": 6})
+
 # ---- orientations -----------------------------------------------------------------------------------------------------------
 
 
 def written_turn(said: Mapping[str, str], settings: Settings) -> Written | None:
     """The orientation as it is written; angles in rad. None for none, or for no rotation. Raises: BadAttribute."""
-    turn = next((name for name in TURNS if name in said), None)
-    if turn is None:
+    for turn in TURNS:
+        if turn in said:
+            break
+    else:
         return None
-    count = {"quat": 4, "axisangle": 4, "xyaxes": 6}.get(turn, 3)
+    count = _TURN_COUNTS.get(turn, 3)
     numbers = numbers_of(said, turn, count, count)
     assert numbers is not None
     if turn == "euler":

@@ -48,7 +48,10 @@ def _getter(names: list[str]) -> Callable[[object], tuple[Any, ...]]:
     """What gets these attributes of an object, as a tuple however many there are."""
     if len(names) > 1:
         return attrgetter(*names)
-    return lambda part: tuple([getattr(part, name) for name in names])
+    if not names:
+        return lambda part: ()
+    one = attrgetter(names[0])
+    return lambda part: (one(part),)
 
 
 def identical(a: object, b: object) -> bool:
@@ -71,8 +74,11 @@ def _are_identical(a: tuple[object, ...], b: tuple[object, ...]) -> bool:
     for x, y in zip(a, b, strict=True):
         if x is y:
             continue
-        if type(x) is float and x and type(y) is float:
-            if x != y and (x == x or y == y):
+        if type(x) is float and type(y) is float:
+            if x != y:
+                if x == x or y == y:
+                    return False
+            elif x == 0.0 and copysign(1.0, x) != copysign(1.0, y):
                 return False
         elif not identical(x, y):
             return False

@@ -312,7 +312,9 @@ def coupling_edge(follower: Id, leaders: tuple[tuple[Id, tuple[float, ...]], ...
 
 
 def _posed(target: Id, sign: int, pose: Pose) -> RobotArc:
-    return Arc(target, sign, None if pose == IDENTITY and pose.written is None else pose)
+    if pose is IDENTITY or (pose.written is None and pose.quat == IDENTITY.quat and pose.xyz == IDENTITY.xyz):
+        return Arc(target, sign)
+    return Arc(target, sign, pose)
 
 
 class Names:
@@ -324,7 +326,8 @@ class Names:
 
     def take(self, kind: str, name: str) -> Id:
         """An id of this kind that nobody has, as close to the name as possible."""
-        free = self.free(kind, name)
+        wanted = Id(kind, name)
+        free = self.free(kind, name) if wanted in self._taken else wanted
         self._taken.add(free)
         return free
 

@@ -275,8 +275,8 @@ def rotation_angle(a: Quat, b: Quat) -> float:
 
 def number_text(value: float) -> str:
     """The shortest decimal text that reads back to the same double: ``0.1``, ``2``, ``-1e-7``."""
-    text = repr(float(value))
-    if text.endswith(".0"):
+    text = repr(value) if type(value) is float else repr(float(value))
+    if text[-2:] == ".0":
         return text[:-2]
     if "e" not in text:
         return text
@@ -286,4 +286,4 @@ def number_text(value: float) -> str:
 
 def numbers_text(values: tuple[float, ...]) -> str:
     """Numbers separated by blanks, each as :func:`number_text` writes it."""
-    return " ".join(map(number_text, values))
+    return " ".join([number_text(value) for value in values])

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from xml.sax.saxutils import quoteattr
 
 from hymeko_x.formats.mjcf_tree import COMMENT
-from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, numbers_text
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, number_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -31,15 +31,18 @@ class Text:
     def __init__(self) -> None:
         self._lines: list[str] = []
         self._open: list[str] = []
+        self._indent = ""
 
     def open(self, tag: str, attributes: Mapping[str, str | None]) -> None:
         """Start an element that has children."""
         self._line(f"<{tag}{_attributes_text(attributes)}>")
         self._open.append(tag)
+        self._indent = "  " * min(len(self._open), _DEEPEST)
 
     def close(self) -> None:
         """End the innermost open element."""
         tag = self._open.pop()
+        self._indent = "  " * min(len(self._open), _DEEPEST)
         self._line(f"</{tag}>")
 
     def leaf(self, tag: str, attributes: Mapping[str, str | None]) -> None:
@@ -77,25 +80,29 @@ class Text:
         return ("\n".join(self._lines) + "\n").encode()
 
     def _line(self, text: str) -> None:
-        self._lines.append("  " * min(len(self._open), _DEEPEST) + text)
+        self._lines.append(self._indent + text)
 
 
 _ESCAPES = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+_PLAIN = re.compile("[ !#-%'-;=?-~]*")
+"""Texts that stand in quotes as they are, as nearly all do."""
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def _attributes_text(attributes: Mapping[str, str | None]) -> str:
-    return "".join(f" {name}={_quoted(value)}" for name, value in attributes.items() if value is not None)
+    return "".join([f" {name}={_quoted(value)}" for name, value in attributes.items() if value is not None])
 
 
 def _quoted(value: str) -> str:
     """The value in quotes; a character that XML cannot hold in any spelling becomes ``_``."""
+    if _PLAIN.fullmatch(value):
+        return f'"{value}"'
     return quoteattr(_NOT_XML.sub("_", value), _ESCAPES)
 
 
 def numbers(*values: float) -> str:
     """Numbers separated by blanks, each the shortest that reads back to the same double; no negative zero."""
-    return numbers_text(tuple(value + 0.0 for value in values))
+    return " ".join([number_text(value + 0.0) for value in values])
 
 
 def number(value: float | None, default: float | None = None) -> str | None:
@@ -105,7 +112,7 @@ def number(value: float | None, default: float | None = None) -> str | None:
 
 def pose_attributes(pose: Pose) -> Attributes:
     """``pos`` in m and ``quat`` (w, x, y, z), each only where it is not the default."""
-    if pose == IDENTITY:
+    if pose is IDENTITY:
         return {}
     return {
         "pos": None if pose.xyz == ZERO else numbers(*pose.xyz),

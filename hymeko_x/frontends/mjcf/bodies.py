@@ -35,13 +35,18 @@ _READERS: dict[str, Callable[[Element, Spot, Draft], None]] = {
 }
 
 
+_PLACE = (POSE,)
+_WEIGHT = (INERTIAL,)
+
+
 def reserve_names(root: Element, draft: Draft) -> None:
     """Names that authors gave come before those that we make up."""
     for section in root.children:
         for element in section.walk():
-            kind = kind_of(element.tag, section.tag)
-            if kind and element.attributes.get("name"):
-                draft.names.take(kind, element.attributes["name"])
+            name = element.attributes.get("name")
+            kind = kind_of(element.tag, section.tag) if name else None
+            if name and kind:
+                draft.names.take(kind, name)
 
 
 def read_worldbody(sections: list[Element], draft: Draft) -> None:
@@ -71,7 +76,7 @@ def _read_body(element: Element, spot: Spot, draft: Draft) -> list[tuple[Element
     if spot.frame:
         draft.note(key, "frame", spot.frame)
     _check_mocap(element, spot)
-    pose = placed(draft.values(element, (POSE,), {}, key, always=bool(spot.frame))["pose"], spot)
+    pose = placed(draft.values(element, _PLACE, {}, key, always=bool(spot.frame))["pose"], spot)
     draft.vertices[key] = Body(_read_inertial(element, key, draft))
     draft.show(key)
     here = Spot(key, stem, childclass=childclass or spot.childclass)
@@ -97,7 +102,7 @@ def _read_inertial(element: Element, key: Id, draft: Draft) -> Inertial | None:
         return None
     node = found[0]
     element.children[:0] = found[1:]
-    inertial: Inertial = draft.values(node, (INERTIAL,), {}, key, "inertial/")["inertial"]
+    inertial: Inertial = draft.values(node, _WEIGHT, {}, key, "inertial/")["inertial"]
     draft.keep(node, key, "inertial")
     return inertial
 
@@ -121,7 +126,8 @@ def _read_content(element: Element, here: Spot, draft: Draft, joined: tuple[Id, 
     joints: list[tuple[Element, Spot]] = []
     content: list[tuple[Element, Spot]] = []
     left: list[Element] = []
-    for child, spot in _unframed(element, here, draft):
+    framed = any(child.tag == "frame" for child in element.children)
+    for child, spot in _unframed(element, here, draft) if framed else [(child, here) for child in element.children]:
         if child.tag == "body":
             below.append((child, spot))
         elif child.tag in ("joint", "freejoint"):

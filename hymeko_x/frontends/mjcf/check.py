@@ -52,6 +52,9 @@ _NAMED_APART: Mapping[str, str] = MappingProxyType(
 """Elements of which the IR has no part, and those that share their names with such: what their names must not be twice among."""
 
 
+_TURNS = frozenset(TURNS)
+
+
 @dataclass(frozen=True, slots=True)
 class Words:
     """The ``names`` of elements of which the IR has no part, by kind, with their places; and ``references`` that have no arc."""
@@ -94,35 +97,36 @@ def check_words(root: Element) -> Words:
 
 def _check_attributes(element: Element, path: str) -> None:
     known = attributes_of(path)
-    turns = 0
-    for name in element.attributes:
-        turns += name in TURNS
-        if name not in known and (path != "mujoco" or not (":" in name or name.startswith("xmlns"))):
-            changed = REMOVED.get(f"{element.tag}@{name}")
-            raise _unknown(element, f"<{element.tag}> has no attribute '{name}'", name, sorted(known), changed)
-    if turns > 1:
-        found = ", ".join(name for name in element.attributes if name in TURNS)
+    said = element.attributes.keys()
+    if not said <= known:
+        for name in said:
+            if name not in known and (path != "mujoco" or not (":" in name or name.startswith("xmlns"))):
+                changed = REMOVED.get(f"{element.tag}@{name}")
+                raise _unknown(element, f"<{element.tag}> has no attribute '{name}'", name, sorted(known), changed)
+    if len(said) > 1 and len(turns := _TURNS & said) > 1:
+        found = ", ".join(name for name in said if name in turns)
         raise refuse(codes.REPEATED, f"<{element.tag}> has more than one orientation: {found}", element.origin)
 
 
 def _check_values(element: Element, path: str) -> None:
     kinds = kinds_of(path)
-    plugin = element.attributes.get("plugin", "")
-    if plugin in REMOVED:
+    attributes = element.attributes
+    if attributes.get("plugin", "") in REMOVED:
+        plugin = attributes["plugin"]
         raise refuse(codes.UNKNOWN_WORD, f"there is no plugin '{plugin}'", element.origin, hint=REMOVED[plugin])
-    for name, text in list(element.attributes.items()):
+    for name, text in list(attributes.items()):
         kind = kinds.get(name)
         if kind is None or name in _READ_ELSEWHERE:
             continue
         if not kind.words and not text.strip():
-            del element.attributes[name]
+            del attributes[name]
         elif not _fits(text, kind):
             raise refuse(codes.BAD_NUMBER, f"<{element.tag} {name}> is '{_short(text)}', expected {kind}", element.origin)
     for name in REQUIRED.get(path, ()):
-        if name not in element.attributes:
+        if name not in attributes:
             raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag}> needs {name}", element.origin)
     for names in EXCLUSIVE.get(path, ()):
-        found = [name for name in names if name in element.attributes]
+        found = [name for name in names if name in attributes]
         if len(found) > 1:
             raise refuse(codes.REPEATED, f"<{element.tag}> has {' and '.join(found)}, of which it may have one", element.origin)
 

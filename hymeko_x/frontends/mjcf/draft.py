@@ -9,18 +9,18 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import mjcf_words as words
 from hymeko_x.formats.mjcf_classes import merge
-from hymeko_x.formats.mjcf_codec import BadAttribute
+from hymeko_x.formats.mjcf_codec import BadAttribute, plan_of
 from hymeko_x.formats.mjcf_tree import COMMENT, verbatim
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Mechanism, Names
 from hymeko_x.ir.parts import World
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from hymeko_x.diagnostics import Origin, Refusal, Report
     from hymeko_x.formats.mjcf_classes import Classes
-    from hymeko_x.formats.mjcf_codec import Group, Settings
+    from hymeko_x.formats.mjcf_codec import Group, Plan, Settings
     from hymeko_x.formats.mjcf_tree import Element
     from hymeko_x.ir.mechanism import RobotEdge
     from hymeko_x.ir.parts import VertexPart
@@ -49,6 +49,8 @@ class Draft:
     named: dict[tuple[str, str], Id] = field(default_factory=dict)
     roles: dict[Id, dict[str, str]] = field(default_factory=dict)
     place: int = 0
+    plans: dict[int, Plan] = field(default_factory=dict)
+    """How to read the attributes of each kind of element, by the identity of its groups."""
 
     # ---- names -----------------------------------------------------------------------------------------------------------
 
@@ -106,7 +108,7 @@ class Draft:
             raise refuse(codes.UNDEFINED_REFERENCE, f"<{element.tag}> has the class '{name}', which is not defined", element.origin)
 
     def values(
-        self, element: Element, groups: Iterable[Group], base: Mapping[str, str], key: Id, prefix: str = "", *, always: bool = False
+        self, element: Element, groups: tuple[Group, ...], base: Mapping[str, str], key: Id, prefix: str = "", *, always: bool = False
     ) -> Values:
         """What the attributes mean, with what the class gives.
 
@@ -114,10 +116,11 @@ class Draft:
         """
         own = element.attributes
         merged = merge(base, own)
-        found: Values = {}
+        plan = self._plan_of(groups)
+        found = plan.silent.copy()
         taken: list[str] = []
         try:
-            for group in groups:
+            for group in plan.said_in(merged):
                 value = found[group.key] = group.read(merged, self.settings)
                 touched = [name for name in group.names if name in own]
                 if not touched:
@@ -125,9 +128,7 @@ class Draft:
                 taken += touched
                 if group.exact and not always:
                     continue
-                context = {name: merged[name] for name in group.needs if name in merged}
-                said = merge({**base, **context}, group.write(value, self.settings))
-                if always or group.seen(said, self.settings) != group.seen(merged, self.settings):
+                if always or not self._says_again(group, value, base, merged):
                     for name in touched:
                         self.note(key, f"{prefix}@{name}", own[name])
         except BadAttribute as error:
@@ -135,6 +136,21 @@ class Draft:
         for name in taken:
             own.pop(name, None)
         return found
+
+    def _plan_of(self, groups: tuple[Group, ...]) -> Plan:
+        plan = self.plans.get(id(groups))
+        if plan is None:
+            plan = self.plans[id(groups)] = plan_of(groups, self.settings)
+        return plan
+
+    def _says_again(self, group: Group, value: Any, base: Mapping[str, str], merged: Mapping[str, str]) -> bool:
+        """Whether printing a value would say the same as the attributes that it was read from."""
+        written = group.write(value, self.settings)
+        context = {name: merged[name] for name in group.needs if name in merged}
+        said = merge({**base, **context}, written)
+        if all(said.get(name) == merged.get(name) for name in group.names):
+            return True
+        return bool(group.seen(said, self.settings) == group.seen(merged, self.settings))
 
     def bad(self, element: Element, error: BadAttribute) -> Refusal:
         """The refusal of an attribute that MuJoCo refuses."""

@@ -40,12 +40,10 @@ class Reference:
     name: str
 
 
-def references_of(element: Element, path: str) -> Iterable[Reference]:
+def references_of(element: Element, path: str) -> list[Reference]:
     """What the element refers to without an arc."""
-    for attribute, kind in _REFERENCES.get(path, ()):
-        name = element.attributes.get(attribute)
-        if name:
-            yield Reference(element, kind, name)
+    said = [(kind, element.attributes.get(attribute)) for attribute, kind in _REFERENCES.get(path, ())]
+    return [Reference(element, kind, name) for kind, name in said if name]
 
 
 def check_references(found: Iterable[Reference], draft: Draft) -> None:

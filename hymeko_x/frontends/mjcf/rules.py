@@ -5,6 +5,7 @@ Each rule gets an element and says what is wrong with it, or None. Numbers and w
 
 from __future__ import annotations
 
+from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -221,9 +222,16 @@ _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
 
 def complaint(element: Element, path: str) -> str | None:
     """What MuJoCo would refuse in this element, which stands at this place of the schema; None when it is fine."""
+    for rule in _rules_of(path):
+        said = rule(element)
+        if said is not None:
+            return said
+    return None
+
+
+@lru_cache(512)
+def _rules_of(path: str) -> tuple[Rule, ...]:
     rules = _RULES.get(path, ())
     if path.startswith("sensor/"):
-        rules = (*rules, _NOT_NEGATIVE, *((_together("reftype", "refname"),) if path.startswith("sensor/frame") else ()))
-    elif path.startswith("actuator/"):
-        rules = (*rules, *_TRANSMITS)
-    return next((said for rule in rules if (said := rule(element)) is not None), None)
+        return (*rules, _NOT_NEGATIVE, *((_together("reftype", "refname"),) if path.startswith("sensor/frame") else ()))
+    return (*rules, *_TRANSMITS) if path.startswith("actuator/") else rules

@@ -13,7 +13,7 @@ from hymeko_x.ir.residue.align import aligned
 from hymeko_x.ir.residue.order import by_kind, moves
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.residue.paths import differing, digest
-from hymeko_x.ir.residue.prints import print_of, shape_group, weight_print
+from hymeko_x.ir.residue.prints import Prints, shape_group, weight_print
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -79,10 +79,11 @@ def _additions(image: Mechanism, source: Mechanism) -> Iterator[Addition]:
 
 
 def _removals(image: Mechanism, source: Mechanism) -> Iterator[Removal]:
+    prints = Prints(image)
     for key in (*image.graph.vertices, *image.graph.edges):
         if key not in source.graph.vertices and key not in source.graph.edges:
             edge = image.graph.edges.get(key)
-            yield Removal(key, print_of(image, key), "" if edge is None else shape_group(edge))
+            yield Removal(key, prints.of(key), "" if edge is None else shape_group(edge))
 
 
 # ---- order -----------------------------------------------------------------------------------------------------------------
@@ -163,7 +164,8 @@ def _known(image: Mechanism, residue: Residue) -> Iterator[tuple[Id, str]]:
     """The elements of the image with names of their own that the residue speaks of, with their digests."""
     names = {new: old for old, new in residue.bridge.names}
     spoken = dict.fromkeys(names.get(key, key) for key in map(_named, _spoken_of(residue)) if key.kind in _NAMED)
-    yield from ((key, print_of(image, key)) for key in spoken if key in image.graph.vertices or key in image.graph.edges)
+    prints = Prints(image)
+    yield from ((key, prints.of(key)) for key in spoken if key in image.graph.vertices or key in image.graph.edges)
 
 
 def _named(key: Id) -> Id:

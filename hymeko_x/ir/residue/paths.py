@@ -12,6 +12,8 @@ from hymeko_x.ir.fields import attributes_of, identical, layout_of
 from hymeko_x.ir.values import Pose
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from hymeko_x.ir.residue import Path
 
 TURN = "turn"
@@ -30,26 +32,30 @@ def _collect(image: object, source: object, path: Path, default: object, found: 
     """What differs between two values that are two objects."""
     kind = type(image)
     layout = layout_of(kind) if kind is type(source) else None
-    if isinstance(image, Pose) and isinstance(source, Pose):
+    if layout is None:
+        if _are_alike(image, source):
+            for place, (before, after) in enumerate(zip(image, source, strict=True)):  # type: ignore[call-overload]
+                if before is not after:
+                    _collect(before, after, (*path, place), MISSING, found)
+        elif not identical(image, source):
+            found.append((path, source, guard_of(image, default)))
+    elif isinstance(image, Pose):
+        assert isinstance(source, Pose)
         if not identical(image.xyz, source.xyz):
             found.append(((*path, "xyz"), source.xyz, digest(image.xyz)))
-        if not identical(turn_of(image), turn_of(source)):
+        if not (image.written is source.written and identical(image.quat, source.quat)) and not identical(turn_of(image), turn_of(source)):
             found.append(((*path, TURN), turn_of(source), digest(image.quat)))
-    elif layout is not None:
+    else:
         for item, before, after in zip(layout.attributes, layout.values(image), layout.values(source), strict=True):
             if before is not after:
                 _collect(before, after, (*path, item.name), item.default, found)
-    elif _are_alike(image, source):
-        for place, (before, after) in enumerate(zip(image, source, strict=True)):  # type: ignore[call-overload]
-            if before is not after:
-                _collect(before, after, (*path, place), MISSING, found)
-    elif not identical(image, source):
-        found.append((path, source, guard_of(image, default)))
 
 
 def _are_alike(a: object, b: object) -> bool:
     """Whether two tuples hold parts of the same types, so that they can be compared part by part."""
     if type(a) is not tuple or type(b) is not tuple or len(a) != len(b):
+        return False
+    if a and layout_of(type(a[0])) is None:
         return False
     return all(type(x) is type(y) and layout_of(type(x)) is not None for x, y in zip(a, b, strict=True))
 
@@ -118,7 +124,12 @@ _PAIRS = tuple(second + first for first in _DIGITS for second in _DIGITS)
 
 def digest(*values: object) -> str:
     """Six letters and digits, the first a letter, that tell one value from another. Notations do not count."""
-    number = int.from_bytes(blake2b("\0".join(map(_canonical, values)).encode("utf-8", "surrogatepass"), digest_size=5).digest())
+    return digest_of_texts(map(canonical, values))
+
+
+def digest_of_texts(texts: Iterable[str]) -> str:
+    """The digest of values whose canonical texts these are."""
+    number = int.from_bytes(blake2b("\0".join(texts).encode("utf-8", "surrogatepass"), digest_size=5).digest())
     return chr(97 + number % 26) + _base36(number // 26)
 
 
@@ -130,23 +141,27 @@ def _base36(number: int) -> str:
     return digits
 
 
-def _canonical(value: object) -> str:
-    """A text that is equal exactly for equal values."""
+def canonical(value: object) -> str:
+    """A text that is equal exactly for equal values; notations do not count, nor does the sign of zero."""
     kind = type(value)
     if kind is float:
         return repr(value + 0.0)  # type: ignore[operator]
     if kind is str:
         return repr(value)
     if isinstance(value, tuple):
-        return _array(value) if len(value) > _LONG and isinstance(value[0], float | int) else f"({','.join(map(_canonical, value))})"
+        return _array(value) if len(value) > _LONG and isinstance(value[0], float | int) else f"({_joined(value)})"
     layout = layout_of(kind)
     if layout is not None:
-        return f"{kind.__name__}({','.join(map(_canonical, layout.compared(value)))})"
+        return f"{kind.__name__}({_joined(layout.compared(value))})"
     if isinstance(value, bool) or value is None:
         return str(value)
     if isinstance(value, float | int):
         return repr(float(value) + 0.0)
     return str(value.value) if isinstance(value, Enum) else repr(value)
+
+
+def _joined(values: tuple[object, ...]) -> str:
+    return ",".join([repr(value + 0.0) if type(value) is float else "None" if value is None else canonical(value) for value in values])
 
 
 def _array(numbers: tuple[float, ...]) -> str:

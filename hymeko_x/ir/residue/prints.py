@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.parts import Body, Joint, Shape
-from hymeko_x.ir.residue.paths import digest
+from hymeko_x.ir.residue.paths import canonical, digest, digest_of_texts
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
@@ -14,32 +14,55 @@ if TYPE_CHECKING:
 
 def print_of(mechanism: Mechanism, key: Id) -> str:
     """The digest of an element with what it is on, or of a body with what is on it."""
-    edge = mechanism.graph.edges.get(key)
-    if edge is not None:
-        return digest(*_edge_values(edge))
-    part = mechanism.graph.vertices[key]
-    if not isinstance(part, Body):
-        return digest(_nameless(part))
-    above = mechanism.parent_joint.get(key)
-    joint = () if above is None else (above.joint, above.parent_pose, above.child_pose)
-    return digest(part, *map(_nameless, joint), *_shape_values(mechanism, key))
+    return Prints(mechanism).of(key)
 
 
 def weight_print(mechanism: Mechanism, body: Id) -> str:
     """The digest of everything that a body's mass may follow from."""
-    part = mechanism.graph.vertices[body]
-    return digest(part, *_shape_values(mechanism, body))
+    prints = Prints(mechanism)
+    return digest_of_texts([prints.text(mechanism.graph.vertices[body]), *prints.shapes(body)])
 
 
-def _shape_values(mechanism: Mechanism, body: Id) -> list[object]:
-    return [value for view in mechanism.shapes.get(body, ()) for value in (_nameless(view.shape), view.pose)]
+class Prints:
+    """The digests of the elements of a mechanism; what several of them are made from is put into words once."""
 
+    def __init__(self, mechanism: Mechanism) -> None:
+        self._mechanism = mechanism
+        self._texts: dict[int, str] = {}
 
-def _edge_values(edge: RobotEdge) -> list[object]:
-    values: list[object] = [_nameless(edge.data)]
-    for arc in edge.arcs:
-        values += [arc.sign, arc.role, arc.target.kind, arc.weight]
-    return values
+    def of(self, key: Id) -> str:
+        """The digest of an element with what it is on, or of a body with what is on it."""
+        edge = self._mechanism.graph.edges.get(key)
+        if edge is not None:
+            return digest_of_texts(self._edge(edge))
+        part = self._mechanism.graph.vertices[key]
+        if not isinstance(part, Body):
+            return digest(_nameless(part))
+        above = self._mechanism.parent_joint.get(key)
+        joint = () if above is None else (self.nameless(above.joint), self.text(above.parent_pose), self.text(above.child_pose))
+        return digest_of_texts([self.text(part), *joint, *self.shapes(key)])
+
+    def text(self, value: object) -> str:
+        """The canonical text of a value that the mechanism holds."""
+        found = self._texts.get(id(value))
+        if found is None:
+            found = self._texts[id(value)] = canonical(value)
+        return found
+
+    def nameless(self, part: object) -> str:
+        """The canonical text of a part of the mechanism, without the names that it may carry."""
+        bare = _nameless(part)
+        return self.text(bare) if bare is part else canonical(bare)
+
+    def shapes(self, body: Id) -> list[str]:
+        """The texts of the shapes on a body."""
+        return [text for view in self._mechanism.shapes.get(body, ()) for text in (self.nameless(view.shape), self.text(view.pose))]
+
+    def _edge(self, edge: RobotEdge) -> list[str]:
+        texts = [self.nameless(edge.data)]
+        for arc in edge.arcs:
+            texts += [canonical(arc.sign), repr(arc.role), repr(arc.target.kind), self.text(arc.weight)]
+        return texts
 
 
 def _nameless(part: object) -> object:
