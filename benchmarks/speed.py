@@ -23,10 +23,10 @@ from hymeko_x.ir.legalize import Options
 from hymeko_x.source import NoFiles, Source
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
     from pathlib import Path
 
     from hymeko_x.formats import Format
+
 
 class Way(NamedTuple):
     """A direction, and how many times MuJoCo's time it may take to write, and to measure as well."""

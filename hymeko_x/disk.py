@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
-import secrets
-import shutil
+import stat
 from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
@@ -120,12 +119,12 @@ def _stage(final: Path, data: bytes) -> tuple[Path, Path]:
     real = final.resolve() if final.is_symlink() else final
     if real.is_dir():
         raise IsADirectoryError(errno.EISDIR, f"'{final}' is a folder")
-    temporary = real.with_name(f".{real.name[:100]}.{secrets.token_hex(6)}.part")
+    temporary = real.with_name(f".{real.name[:100]}.{os.urandom(6).hex()}.part")
     try:
         with temporary.open("xb") as file:
             file.write(data)
         if real.exists():
-            shutil.copymode(real, temporary)
+            temporary.chmod(stat.S_IMODE(real.stat().st_mode))
     except OSError:
         temporary.unlink(missing_ok=True)
         raise

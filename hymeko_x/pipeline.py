@@ -18,7 +18,6 @@ from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.ir.residue.align import aligned
 from hymeko_x.ir.residue.bridge import other_words
 from hymeko_x.ir.residue.delta import residue_behind
-from hymeko_x.ir.residue.merge import restore
 from hymeko_x.language.residue import BadResidue, parse_residue, print_residue
 from hymeko_x.source import Package, Source
 
@@ -139,6 +138,8 @@ def restored(image: Mechanism, origin: Origin, report: Report) -> Mechanism:
     image, text = taken_off(image)
     if not text:
         return image
+    from hymeko_x.ir.residue.merge import restore
+
     try:
         residue = parse_residue(text)
     except (BadResidue, Refusal) as error:

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.assets.native import is_native, pack_native
 from hymeko_x.assets.shelf import Shelf, read_file, stem_of, suffix_of
 from hymeko_x.assets.texture import UnreadableImage, png_bytes
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
+from hymeko_x.formats.mjcf_words import is_native
 from hymeko_x.ir.mechanism import Extra, Id, layer_edge, shape_edge
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.ir.rename import names_in_use
@@ -70,6 +70,8 @@ class _Packing:
 def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """The mechanism with meshes and textures that MuJoCo reads; shapes whose mesh cannot be read are left out."""
     if is_native(mechanism):
+        from hymeko_x.assets.native import pack_native
+
         return pack_native(mechanism, shelf, files, report)
     run = _Packing(mechanism, shelf, files, report, names_in_use(mechanism))
     _pack_textures(run)

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import unescape
 
 from hymeko_x.assets.refer import Keep, keep_references, new_uri
 from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.formats.mjcf_words import NAME, below, joined, settings_of
 from hymeko_x.formats.xml_print import escaped
+from hymeko_x.formats.xml_text import unescape
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
 from hymeko_x.ir.parts import Mesh, Texture
 
@@ -23,11 +23,6 @@ if TYPE_CHECKING:
 _FILE = re.compile(r'(?<=\s)(file\w*)="([^"]*)"')
 _FOLDERS = re.compile(r'\s(?:meshdir|texturedir|assetdir|strippath)="[^"]*"')
 _KEPT = ("asset", "deformable")
-
-
-def is_native(mechanism: Mechanism) -> bool:
-    """Whether the mechanism came from MJCF, directly or through HyMeKo text."""
-    return mechanism.notation(ROOT, NAME) is not None
 
 
 def pack_native(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from hymeko_x.assets.mujoco import pack_for_mujoco
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import Shelf
-from hymeko_x.assets.usd import pack_for_usd
+from hymeko_x.formats.mjcf_words import is_native
+from hymeko_x.ir.parts import Mesh, Texture
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -41,14 +41,28 @@ def _keeping(keep: Keep) -> Packer:
     return lambda mechanism, shelf, files, report: keep_references(mechanism, shelf, files, report, keep)
 
 
+def _for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
+    if not is_native(mechanism) and not any(isinstance(part, Mesh | Texture) for part in mechanism.graph.vertices.values()):
+        return mechanism
+    from hymeko_x.assets.mujoco import pack_for_mujoco
+
+    return pack_for_mujoco(mechanism, shelf, files, report)
+
+
+def _for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
+    from hymeko_x.assets.usd import pack_for_usd
+
+    return pack_for_usd(mechanism, shelf, files, report)
+
+
 _TEXT = Policy("reference", copy=_keeping(Keep.NOTHING), reference=_keeping(Keep.PACKAGES))
 _ROS = Policy("copy", copy=_keeping(Keep.PACKAGES_AND_PATHS), reference=_keeping(Keep.PACKAGES))
-_USD = Policy("copy", copy=pack_for_usd, reference=pack_for_usd)
+_USD = Policy("copy", copy=_for_usd, reference=_for_usd)
 
 POLICIES: Mapping[str, Policy] = MappingProxyType(
     {
         "hymeko": _TEXT,
-        "mjcf": Policy("copy", copy=pack_for_mujoco, reference=pack_for_mujoco),
+        "mjcf": Policy("copy", copy=_for_mujoco, reference=_for_mujoco),
         "urdf": _ROS,
         "usd": _USD,
         "usdc": _USD,

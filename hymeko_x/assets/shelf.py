@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
 import posixpath
 import re
@@ -64,7 +63,9 @@ class Shelf:
 
     def _name(self, folder: str, stem: str, suffix: str, data: bytes) -> tuple[str, bool]:
         """The path for this content, and whether the content is new."""
-        key = (suffix, hashlib.sha256(data).hexdigest())
+        from hashlib import sha256
+
+        key = (suffix, sha256(data).hexdigest())
         if key in self._by_content:
             return self._by_content[key], False
         path, number = f"{folder}/{safe_name(stem)}{suffix}", 1

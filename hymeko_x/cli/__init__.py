@@ -49,7 +49,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _run_verb(verb: str, words: list[str]) -> int:
     import argparse
+    import gc
 
+    gc.set_threshold(100_000, 50, 50)  # a robot is many objects of which nearly all stay to the end: looking for garbage finds none
     module_name, summary = VERBS[verb]
     module = import_module(module_name)
     parser = argparse.ArgumentParser(f"hymeko-x {verb}", description=f"{summary[0].upper()}{summary[1:]}.", allow_abbrev=False)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -60,15 +59,16 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
     if output.path == "-" and beside:
         names = ", ".join(beside[:3]) + (f" and {len(beside) - 3} more" if len(beside) > 3 else "")
         report.warn(codes.ASSET_NOT_WRITTEN, f"standard output cannot carry {names}", hint="-o FILE writes them beside the file")
-    document = as_json(given, output, report, result.losses)
     failed = is_reached(chosen.fail_on, report, result.losses)
     if not failed:
         _write(result.package, output.path, given)
     show(report)
     _show_losses(result.losses or ())
+    wants_json = getattr(chosen, "json", False)
+    document = as_json(given, output, report, result.losses) if chosen.report or wants_json else ""
     if chosen.report:
         disk.write_package(Package(f"{document}\n".encode()), chosen.report, NoFiles())
-    if getattr(chosen, "json", False):
+    if wants_json:
         print(document)
     return exits.FAIL_ON if failed else exits.DONE
 
@@ -89,6 +89,8 @@ def _write(package: Package, path: str, given: Input) -> None:
 
 def as_json(given: Input, output: Output, report: Report, losses: Iterable[Loss] | None) -> str:
     """The document of `--report` and of `convert --json`."""
+    import json
+
     document = {
         "source": {"path": given.source.name, "format": given.format.name},
         "target": {"path": output.path, "format": output.format.name},

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import sys
 from typing import TYPE_CHECKING
@@ -43,6 +42,8 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
 def run(chosen: argparse.Namespace) -> int:
     """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared."""
     verdict = verdict_of(chosen.a, chosen.b, chosen, structure=chosen.match == "structure")
+    import json
+
     print(json.dumps(verdict.as_json(), indent=2, ensure_ascii=False) if chosen.json else "\n".join(lines(verdict)))
     return CODES[verdict.verdict]
 

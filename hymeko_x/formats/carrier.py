@@ -10,8 +10,8 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import escape
 
+from hymeko_x.formats.xml_text import escape
 from hymeko_x.ir.mechanism import ROOT, Extra
 
 if TYPE_CHECKING:

@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.mjcf import NAME as NAME
 from hymeko_x.formats.mjcf_codec import Settings
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Role
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+
+    from hymeko_x.ir.mechanism import Mechanism
 
 VERSION = "4.0"
 """The version of MuJoCo whose MJCF is read; a mechanism that came from MJCF has it as its notation ``mjcf``."""
@@ -69,6 +72,15 @@ KINDS: Mapping[str, str] = MappingProxyType(
     }
 )
 """The kind of id that the name of an element is, for elements whose ids are their names."""
+
+
+DELEGATED = frozenset(("replicate", "attach", "flexcomp"))
+"""Elements that only MuJoCo can expand."""
+
+
+def is_native(mechanism: Mechanism) -> bool:
+    """Whether a mechanism came from MJCF, directly or through HyMeKo text."""
+    return mechanism.notation(ROOT, NAME) is not None
 
 
 def kind_of(tag: str, section: str) -> str | None:

@@ -9,8 +9,6 @@ import re
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from lxml import etree
-
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, refuse
 from hymeko_x.formats.xml import COMMENT
@@ -82,6 +80,8 @@ def foreign_text(extra: Extra, declared: Mapping[str, str]) -> str:
     """
     if extra.format == COMMENT:
         return comment_markup(extra.text)
+    from lxml import etree
+
     spaces = attributes_text({name: uri for name, uri in declared.items() if _SPACE.fullmatch(name)})
     parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
     try:

@@ -147,9 +147,10 @@ def _extras(key: Id, a: tuple[Extra, ...], b: tuple[Extra, ...]) -> Iterator[Dif
             rest.remove(extra)
         else:
             left.append(extra)
-    essences = [_essence(extra) for extra in rest] if left else []
+    places = {(extra.format, extra.path) for extra in left} & {(extra.format, extra.path) for extra in rest}
+    essences = [_essence(extra) if (extra.format, extra.path) in places else extra for extra in rest]
     for extra in left:
-        if essences and (essence := _essence(extra)) in essences:
+        if (extra.format, extra.path) in places and (essence := _essence(extra)) in essences:
             place = essences.index(essence)
             del essences[place], rest[place]
         else:

@@ -35,13 +35,15 @@ def attributes_of(part: object) -> tuple[Attribute, ...]:
     return layout.attributes
 
 
-@cache
-def layout_of(kind: Any) -> Layout | None:
-    """The fields of a dataclass; None for every other type."""
+def _layout_of(kind: Any) -> Layout | None:
     if not is_dataclass(kind):
         return None
     attributes = tuple(Attribute(f.name, f.default, f.compare) for f in fields(kind))
     return Layout(attributes, _getter([f.name for f in attributes]), _getter([f.name for f in attributes if f.compare]))
+
+
+layout_of: Callable[[Any], Layout | None] = cache(_layout_of)
+"""The fields of a dataclass; None for every other type."""
 
 
 def _getter(names: list[str]) -> Callable[[object], tuple[Any, ...]]:

@@ -16,7 +16,6 @@ from hymeko_x.ir.parts import EdgePart, Weight
 from hymeko_x.ir.residue import Addition, Bridge, Change, Fold, Join, Removal, Residue, Run, Sides
 from hymeko_x.ir.residue.paths import TURN
 from hymeko_x.ir.values import Pose
-from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Document, Field, Node, Ref, Stereotype
 from hymeko_x.language.values import decoded, decoded_turn, encoded, encoded_turn, id_ref, name_ref, said
@@ -78,6 +77,8 @@ def parse_residue(text: str) -> Residue:
 
     Raises: BadResidue; Refusal when the text is not even HyMeKo.
     """
+    from hymeko_x.language.parser import parse
+
     document = parse(text, "<residue>")
     try:
         return _residue(document)

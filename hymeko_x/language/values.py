@@ -12,9 +12,9 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.ir import parts, values
+from hymeko_x.ir.fields import attributes_of, identical
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import Id
-from hymeko_x.ir.fields import attributes_of, identical
 from hymeko_x.ir.residue.types import is_sound
 from hymeko_x.ir.values import ZERO, Written
 from hymeko_x.ir.written import pose_as_written

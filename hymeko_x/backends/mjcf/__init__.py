@@ -14,10 +14,10 @@ from hymeko_x.backends.mjcf.assets import write_assets
 from hymeko_x.backends.mjcf.bodies import write_worldbody
 from hymeko_x.backends.mjcf.geoms import write_defaults
 from hymeko_x.backends.mjcf.names import printed_names
-from hymeko_x.backends.mjcf.native import is_native, write_native
 from hymeko_x.backends.mjcf.relations import write_actuators, write_contacts, write_equalities
 from hymeko_x.backends.mjcf.text import Text
 from hymeko_x.formats import carrier
+from hymeko_x.formats.mjcf_words import is_native
 from hymeko_x.formats.xml_print import escaped
 from hymeko_x.source import Package
 
@@ -30,6 +30,8 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     """The MJCF of the mechanism. Files that it refers to are not part of it: `assets.pack` returns them."""
     del report
     if is_native(mechanism):
+        from hymeko_x.backends.mjcf.native import write_native
+
         return write_native(mechanism)
     names = printed_names(mechanism)
     text = Text()

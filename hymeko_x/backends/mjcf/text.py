@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
-from xml.sax.saxutils import quoteattr
 
 from hymeko_x.formats.mjcf_tree import COMMENT
+from hymeko_x.formats.xml_text import quoted
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, number_text
 
 if TYPE_CHECKING:
@@ -97,7 +97,7 @@ def _quoted(value: str) -> str:
     """The value in quotes; a character that XML cannot hold in any spelling becomes ``_``."""
     if _PLAIN.fullmatch(value):
         return f'"{value}"'
-    return quoteattr(_NOT_XML.sub("_", value), _ESCAPES)
+    return quoted(_NOT_XML.sub("_", value), _ESCAPES)
 
 
 def numbers(*values: float) -> str:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 from xml.parsers import expat
-from xml.sax.saxutils import unescape
 
 from hymeko_x.formats.xacro import PREFIX
+from hymeko_x.formats.xml_text import unescape
 from hymeko_x.ir.forms import Element
 
 if TYPE_CHECKING:

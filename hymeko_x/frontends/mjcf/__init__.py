@@ -13,12 +13,12 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import carrier
 from hymeko_x.formats.mjcf_classes import Classes
 from hymeko_x.formats.mjcf_tree import parse
+from hymeko_x.formats.mjcf_words import DELEGATED
 from hymeko_x.frontends.mjcf.actuators import read_actuators
 from hymeko_x.frontends.mjcf.assets import read_assets
 from hymeko_x.frontends.mjcf.bodies import read_worldbody, reserve_names
 from hymeko_x.frontends.mjcf.check import check_words
 from hymeko_x.frontends.mjcf.contacts import read_contacts
-from hymeko_x.frontends.mjcf.delegate import expand_by_mujoco
 from hymeko_x.frontends.mjcf.draft import Draft
 from hymeko_x.frontends.mjcf.equalities import read_equalities
 from hymeko_x.frontends.mjcf.include import expand_includes
@@ -47,9 +47,11 @@ def read(source: Source, report: Report) -> Mechanism:
     carried = list(_take_carried(root))
     root = expand_includes(root, source, report)
     words = check_words(root)
-    expanded = expand_by_mujoco(root, source, report)
-    if expanded is not root:
-        root, words = expanded, check_words(expanded)
+    if any(element.tag in DELEGATED for element in root.walk()):
+        from hymeko_x.frontends.mjcf.delegate import expand_by_mujoco
+
+        root = expand_by_mujoco(root, source, report)
+        words = check_words(root)
     _warn_of_ignored(root, report)
     draft = Draft(report, read_settings(root), Classes(root_sections(root, "default")), source.name, source.files)
     name = _read_name(root, source, draft)

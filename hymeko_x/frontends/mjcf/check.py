@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from difflib import get_close_matches
 from math import isinf
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -172,6 +171,8 @@ def _check_name(element: Element, kind: str, names: dict[tuple[str, str], Origin
 
 def _unknown(element: Element, message: str, word: str, known: list[str], changed: str | None) -> Refusal:
     """The refusal of a word; the hint says what changed since it was one, or what was meant."""
+    from difflib import get_close_matches
+
     near = get_close_matches(word, known, n=2)
     hint = changed or (f"did you mean {' or '.join(near)}?" if near else "")
     return refuse(codes.UNKNOWN_WORD, message, element.origin, hint=hint)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf_tree import parse_text, verbatim
+from hymeko_x.formats.mjcf_words import DELEGATED
 from hymeko_x.frontends.mjcf.handover import hand_over
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.mjcf.handover import Handover
     from hymeko_x.source import Source
 
-_DELEGATED = ("replicate", "attach", "flexcomp")
 _CHILD = "hymeko_x.frontends.mjcf_child"
 _REFUSED = 3
 """The exit code of the process when MuJoCo refuses the model, in the words that it wrote."""
@@ -41,7 +41,7 @@ def expand_by_mujoco(root: Element, source: Source, report: Report) -> Element:
 
     Raises: Refusal when MuJoCo refuses the file, or is not there; HX007 when the expansion exceeds a limit.
     """
-    found = next((element for element in root.walk() if element.tag in _DELEGATED), None)
+    found = next((element for element in root.walk() if element.tag in DELEGATED), None)
     if found is None:
         return root
     _check_size(root)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from hymeko_x.ir.fields import identical
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import ROOT, Id
 from hymeko_x.ir.parts import Body
 from hymeko_x.ir.residue import Addition, Change, Removal, Residue, Sides
 from hymeko_x.ir.residue.align import aligned
 from hymeko_x.ir.residue.order import by_kind, moves
-from hymeko_x.ir.fields import identical
 from hymeko_x.ir.residue.paths import differing, digest
 from hymeko_x.ir.residue.prints import Prints, shape_group, weight_print
 

@@ -8,9 +8,9 @@ from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from hymeko_x.ir import mechanism, parts, values
+from hymeko_x.ir.fields import attributes_of
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id
-from hymeko_x.ir.fields import attributes_of
 from hymeko_x.ir.values import Pose
 
 

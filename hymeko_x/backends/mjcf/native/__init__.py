@@ -32,11 +32,6 @@ _WRITERS: Mapping[str, Callable[[Sheet], None]] = {
 }
 
 
-def is_native(mechanism: Mechanism) -> bool:
-    """Whether the mechanism came from MJCF, directly or through HyMeKo text."""
-    return mechanism.notation(ROOT, words.NAME) is not None
-
-
 def write_native(mechanism: Mechanism) -> Package:
     """The MJCF of a mechanism that came from MJCF."""
     sheet = Sheet(mechanism)

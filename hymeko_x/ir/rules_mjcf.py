@@ -1,0 +1,48 @@
+"""What makes a mechanism legal in MJCF."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.legalize_actuators import choose_actuators
+from hymeko_x.ir.legalize_base import choose_base, put_world_link_into_world
+from hymeko_x.ir.legalize_couplings import make_couplings_scalar
+from hymeko_x.ir.legalize_inertia import give_moving_bodies_mass, make_tensors_physical
+from hymeko_x.ir.legalize_joints import expand_screws, lower_inner_free_joints, name_dofs, split_overfull_joints
+from hymeko_x.ir.legalize_limits import make_limits_intervals
+from hymeko_x.ir.legalize_loops import anchor_closures, close_by_points, open_second_parents
+from hymeko_x.ir.legalize_names import make_names_usable, name_assets_once
+from hymeko_x.ir.legalize_native import drop_stale_keyframes
+from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
+from hymeko_x.ir.legalize_solids import fill_tensors
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.legalize import Rule
+
+RULES: tuple[Rule, ...] = (
+    make_names_usable,
+    name_assets_once,
+    open_second_parents,
+    close_by_points,
+    anchor_closures,
+    put_world_link_into_world,
+    choose_base,
+    expand_screws,
+    lower_inner_free_joints,
+    name_dofs,
+    split_overfull_joints,
+    make_limits_intervals,
+    make_couplings_scalar,
+    fill_tensors,
+    make_tensors_physical,
+    give_moving_bodies_mass,
+    drop_empty_shapes,
+    keep_planes_static,
+    make_sizes_positive,
+    name_shapes_once,
+    choose_actuators,
+    make_names_usable,  # once more, for what the rules have added
+)
+
+NATIVE: tuple[Rule, ...] = (name_shapes_once, drop_stale_keyframes)
+"""The rules for what came from MJCF."""
