@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from dataclasses import dataclass, field
+from heapq import nsmallest
 from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -32,6 +33,7 @@ _LEAST = 12
 _MOST = 32
 """Stereotypes of one kind of element."""
 _SEEDS = 24
+_NOBODY: frozenset[int] = frozenset()
 _NAMES = {
     "visual": "look",
     "collision": "hull",
@@ -68,6 +70,10 @@ class _Unit(NamedTuple):
         return len("".join(self.text.split()))
 
 
+_Pair = tuple[str, str]
+"""The slot and the text of a unit."""
+
+
 @dataclass(slots=True)
 class _Carrier:
     """An element that may be given a stereotype: where it stands, and its units in order."""
@@ -77,16 +83,28 @@ class _Carrier:
     units: dict[str, _Unit]
     stereotype: str = ""
     said: dict[str, _Unit] = field(default_factory=dict)
+    left: list[_Unit] = field(init=False)
+    """The units that the element says itself."""
+    pairs: list[_Pair] = field(init=False)
+    """The slots and texts of those."""
+
+    def __post_init__(self) -> None:
+        self._keep(list(self.units.values()))
 
     def is_said(self, slot: str) -> bool:
         """Whether its stereotype says this unit as it is."""
         told = self.said.get(slot)
         return told is not None and told.text == self.units[slot].text
 
-    @property
-    def left(self) -> list[_Unit]:
-        """The units that the element says itself."""
-        return [unit for slot, unit in self.units.items() if not self.is_said(slot)]
+    def refine(self, definition: _Definition) -> None:
+        """Give the element a stereotype; what was said by another one is said by that, too."""
+        self.stereotype = definition.name
+        self.said = {**self.said, **{unit.slot: unit for unit in definition.units}}
+        self._keep([unit for slot, unit in self.units.items() if not self.is_said(slot)])
+
+    def _keep(self, left: list[_Unit]) -> None:
+        self.left = left
+        self.pairs = [(unit.slot, unit.text) for unit in left]
 
 
 @dataclass(slots=True)
@@ -200,8 +218,7 @@ def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_De
             units, members = best
             definition = _Definition(names.free(_name(kind, units, members)), units, base)
             for member in members:
-                member.stereotype = definition.name
-                member.said = {**member.said, **{unit.slot: unit for unit in units}}
+                member.refine(definition)
             found.append(definition)
             queue.append((members, (Stereotype(Ref((definition.name,))),)))
             gone = {member.path for member in members}
@@ -211,8 +228,7 @@ def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_De
 
 def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carrier]] | None:
     """The set of units that saves most, and the elements that it serves."""
-    masks = _masks(carriers)
-    for shared in _candidates(masks):
+    for shared in _candidates(carriers):
         members = [carrier for carrier in carriers if all(_has(carrier, pair) for pair in shared)]
         units = _in_order(kind, shared, members)
         members = [carrier for carrier in members if _keeps_order(kind, units, carrier)]
@@ -221,7 +237,8 @@ def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carri
     return None
 
 
-_Pair = tuple[str, str]
+_Members = frozenset[int]
+"""Which elements of a group have something, by their numbers."""
 
 
 def _has(carrier: _Carrier, pair: _Pair) -> bool:
@@ -229,37 +246,42 @@ def _has(carrier: _Carrier, pair: _Pair) -> bool:
     return unit is not None and unit.text == pair[1]
 
 
-def _masks(carriers: list[_Carrier]) -> dict[_Pair, int]:
-    """For every unit that occurs more than once the elements that have it, as bits."""
-    found: dict[_Pair, int] = {}
+def _owners(carriers: list[_Carrier]) -> dict[_Pair, _Members]:
+    """For every unit that occurs more than once the elements that have it."""
+    found: dict[_Pair, list[int]] = {}
     for number, carrier in enumerate(carriers):
-        for unit in carrier.left:
-            pair = (unit.slot, unit.text)
-            found[pair] = found.get(pair, 0) | (1 << number)
-    return {pair: mask for pair, mask in found.items() if mask & (mask - 1)}
+        for pair in carrier.pairs:
+            found.setdefault(pair, []).append(number)
+    return {pair: frozenset(members) for pair, members in found.items() if len(members) > 1}
 
 
-def _candidates(masks: Mapping[_Pair, int]) -> list[frozenset[_Pair]]:
+def _candidates(carriers: list[_Carrier]) -> list[frozenset[_Pair]]:
     """Sets of units that elements share, by what they would save, the best first."""
-    sharing: dict[int, set[_Pair]] = {}
-    for pair, mask in masks.items():
-        sharing.setdefault(mask, set()).add(pair)
-    ranked = sorted(sharing.items(), key=lambda entry: (-_worth(entry[0], entry[1]), sorted(entry[1])))[: 8 * _SEEDS]
-    closed = {mask: frozenset(pair for pair, other in masks.items() if other & mask == mask) for mask, _ in ranked}
-    seeds = sorted(closed, key=lambda mask: (-_worth(mask, closed[mask]), sorted(closed[mask])))[:_SEEDS]
+    owners = _owners(carriers)
+
+    def common(members: _Members) -> frozenset[_Pair]:
+        """All units that these elements share: some of those of any one of them, so that nothing else is looked at."""
+        return frozenset(pair for pair in carriers[min(members)].pairs if members <= owners.get(pair, _NOBODY))
+
+    sharing: dict[_Members, list[_Pair]] = {}
+    for pair, members in owners.items():
+        sharing.setdefault(members, []).append(pair)
+    ranked = nsmallest(8 * _SEEDS, sharing.items(), key=lambda entry: (-_worth(*entry), sorted(entry[1])))
+    closed = {members: common(members) for members, _ in ranked}
+    seeds = sorted(closed, key=lambda members: (-_worth(members, closed[members]), sorted(closed[members])))[:_SEEDS]
     for first, second in combinations(seeds, 2):
         both = first & second
-        if both & (both - 1) and both not in closed:
-            closed[both] = frozenset(pair for pair, other in masks.items() if other & both == both)
-    scored = [(_worth(mask, shared), shared) for mask, shared in closed.items()]
+        if len(both) > 1 and both not in closed:
+            closed[both] = common(both)
+    scored = [(_worth(members, shared), shared) for members, shared in closed.items()]
     ranked_sets = sorted((entry for entry in scored if entry[0] >= _LEAST), key=lambda entry: (-entry[0], sorted(entry[1])))
     return [shared for _, shared in ranked_sets[:_SEEDS]]
 
 
-def _worth(mask: int, shared: Iterable[_Pair]) -> int:
+def _worth(members: _Members, shared: Iterable[_Pair]) -> int:
     """About how many letters a stereotype of these units saves."""
     cost = sum(len(text) for _, text in shared)
-    return (mask.bit_count() - 1) * cost - 10
+    return (len(members) - 1) * cost - 10
 
 
 def _in_order(kind: str, shared: frozenset[_Pair], members: list[_Carrier]) -> list[_Unit]:
