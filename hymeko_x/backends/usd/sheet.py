@@ -25,8 +25,7 @@ class Sheet:
     """The layer, and where each element's prim is: ``homes`` by id, ``dofs`` the prim of each dof of a joint.
 
     ``carried`` holds by prim the elements that it carries, by their kinds; ``made`` what we added to a prim that no element
-    says, which the reader overlooks; ``restored`` what extras say about it. ``skins`` is the shape of each body whose own prim
-    is its geometry, ``scales`` the scale of such a prim.
+    says. ``skins`` is the shape of each body whose own prim is its geometry, ``scales`` the scale of such a prim.
     """
 
     mechanism: Mechanism
@@ -37,7 +36,6 @@ class Sheet:
     carried: dict[Any, dict[str, Id]] = field(default_factory=dict)
     made: dict[Any, list[str]] = field(default_factory=dict)
     prims: dict[Any, Prim] = field(default_factory=dict)
-    restored: dict[Any, set[str]] = field(default_factory=dict)
     skins: dict[Id, Id] = field(default_factory=dict)
     scales: dict[Id, Vec3] = field(default_factory=dict)
     surfaces: dict[Id, Surface | None] = field(default_factory=dict)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 def cross(image: Mechanism, bridge: Bridge) -> Mechanism:
     """The same robot as the source describes it; what an editor has taken apart stays as it is."""
     names = {old: new for old, new in bridge.names if old != new}
-    mechanism = _with_world(rename(image, {old: new for old, new in names.items() if _is_there(image, old)}))
+    mechanism = _with_world(rename(image, {old: new for old, new in names.items() if old in image.graph}))
     mechanism = fold_chains(mechanism, bridge.folds)
     mechanism = join_twins(mechanism, bridge.joins)
     return move_frames(mechanism, dict(bridge.frames))
@@ -48,10 +48,6 @@ def other_words(bridge: Bridge) -> Iterator[Difference]:
         yield Difference(shape, "role", "both", f"visual, and collision as '{twin.name}'")
     for body, pose in bridge.frames:
         yield Difference(body, "frame", "its own", f"{numbers_text(pose.xyz)}, {numbers_text(pose.quat)} from there")
-
-
-def _is_there(mechanism: Mechanism, key: Id) -> bool:
-    return key in mechanism.graph.vertices or key in mechanism.graph.edges
 
 
 # ---- chains of joints ------------------------------------------------------------------------------------------------------

@@ -74,7 +74,7 @@ def _additions(image: Mechanism, source: Mechanism) -> Iterator[Addition]:
 
 def _removals(image: Mechanism, source: Mechanism) -> Iterator[Removal]:
     for key in (*image.graph.vertices, *image.graph.edges):
-        if key not in source.graph.vertices and key not in source.graph.edges:
+        if key not in source.graph:
             edge = image.graph.edges.get(key)
             yield Removal(key, print_of(image, key), "" if edge is None else shape_group(edge))
 
@@ -95,7 +95,7 @@ def _layout(image: Mechanism, source: Mechanism) -> tuple[tuple[Id, ...] | None,
     if image.layout == source.layout:
         return None, ()
     placed = set(source.layout)
-    there = (key for key in image.layout if key in source.graph.vertices or key in source.graph.edges)
+    there = (key for key in image.layout if key in source.graph)
     return source.layout, tuple(key for key in there if key not in placed)
 
 
@@ -157,7 +157,7 @@ def _known(image: Mechanism, residue: Residue) -> Iterator[tuple[Id, str]]:
     """The elements of the image with names of their own that the residue speaks of, with their digests."""
     names = {new: old for old, new in residue.bridge.names}
     spoken = dict.fromkeys(names.get(key, key) for key in map(_named, _spoken_of(residue)) if key.kind in _NAMED)
-    yield from ((key, print_of(image, key)) for key in spoken if key in image.graph.vertices or key in image.graph.edges)
+    yield from ((key, print_of(image, key)) for key in spoken if key in image.graph)
 
 
 def _named(key: Id) -> Id:
