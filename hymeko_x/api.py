@@ -135,7 +135,7 @@ def convert(
     given = disk.open_source(os.fspath(source), packages=_folders(packages))
     given = replace(given, arguments=dict(arguments or {}), environment=dict(environment or {}), variants=dict(variants or {}))
     robot = pipeline.read(given, _input_format(given, from_format), report)
-    form = formats.by_name(to_format) if to_format else formats.of_output(os.fspath(target))
+    form = formats.of_output(os.fspath(target), to_format)
     options = Options(base, actuators, layout, nested, pure=pure)
     result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets))
     disk.write_package(result.package, os.fspath(target), given.files)

@@ -16,7 +16,7 @@ from hymeko_x.ir.residue.follow import renamed_since, with_new_names, with_old_n
 from hymeko_x.ir.residue.order import by_kind, laid_out, moved
 from hymeko_x.ir.residue.paths import TURN, default_at, digest, get, guard_of, put
 from hymeko_x.ir.residue.prints import print_of, shape_group, weight_print
-from hymeko_x.ir.residue.types import is_sound
+from hymeko_x.ir.residue.types import is_sound, settled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -228,7 +228,8 @@ def _with_changes(part: P, changes: list[Change]) -> P | None:
     """The part with all changes; None where they are of no part that there is, as in a damaged residue."""
     try:
         for change in changes:
-            part = put(part, change.path, change.value)
+            owner = type(get(part, change.path[:-1]))
+            part = put(part, change.path, settled(owner, change.path[-1], change.value))
     except LookupError:
         return None
     return part if is_sound(part) else None
