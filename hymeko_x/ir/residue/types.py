@@ -7,7 +7,7 @@ from functools import cache
 from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
-from hymeko_x.ir import mechanism, parts, values
+from hymeko_x.ir import graph, mechanism, parts, values
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.residue.paths import attributes_of
@@ -33,7 +33,7 @@ def _is_sound_arc(arc: object) -> bool:
 @cache
 def hints_of(kind: Any) -> dict[str, Any]:
     """The types of a part's fields."""
-    return get_type_hints(kind, {**vars(mechanism), **vars(parts), **vars(values)})
+    return get_type_hints(kind, {**vars(graph), **vars(mechanism), **vars(parts), **vars(values)})
 
 
 _WHOLE = frozenset({tuple[int, ...], tuple[int, int] | None})
