@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from array import array
 from dataclasses import MISSING, fields, is_dataclass, replace
 from enum import Enum
 from functools import cache
@@ -172,4 +171,6 @@ def _canonical(value: object) -> str:
 
 def _array(numbers: tuple[float, ...]) -> str:
     """Many numbers at once; adding zero makes its two signs one."""
-    return blake2b(array("d", [number + 0.0 for number in numbers]).tobytes(), digest_size=16).hexdigest()
+    import numpy as np
+
+    return blake2b((np.fromiter(numbers, np.float64, len(numbers)) + 0.0).tobytes(), digest_size=16).hexdigest()
