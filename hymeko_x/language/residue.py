@@ -72,7 +72,7 @@ def parse_residue(text: str) -> Residue:
     document = parse(text, "<residue>")
     try:
         return _residue(document)
-    except (ValueError, LookupError, TypeError, AttributeError, AssertionError, ZeroDivisionError) as error:
+    except (ValueError, LookupError, TypeError, AttributeError, AssertionError, ArithmeticError) as error:
         raise BadResidue(f"{type(error).__name__}: {error}") from error
 
 
@@ -306,6 +306,8 @@ def _after(run: Run) -> Value:
 def _run(item: Field) -> Run:
     assert isinstance(item.value, tuple)
     after, *names = item.value
+    if not names:
+        raise ValueError(f"an order of no {item.name}")
     first = None if isinstance(after, float) else Id(item.name, _refs((after,))[0])
     return Run(first, tuple(Id(item.name, name) for name in _refs(tuple(names))))
 
