@@ -14,6 +14,7 @@ from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id
 from hymeko_x.ir.parts import EdgePart, Weight
 from hymeko_x.ir.residue import Addition, Bridge, Change, Fold, Join, Removal, Residue, Run, Sides
 from hymeko_x.ir.residue.paths import TURN
+from hymeko_x.ir.residue.types import fits, is_sound
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
@@ -83,7 +84,7 @@ def _residue(document: Document) -> Residue:
     if fields["version"] != VERSION:
         raise BadResidue(f"version {fields['version']}, and this program reads version {VERSION:g}")
     read = _Sections(sections)
-    return Residue(
+    residue = Residue(
         read.bridge(),
         tuple(Change(key, _path(key, item.name), _changed(item), item.type) for key, item in read.grouped("changes")),
         tuple(_added(item) for item in read.nodes("additions")),
@@ -94,6 +95,24 @@ def _residue(document: Document) -> Residue:
         tuple(decoded(fields.get("unplaced", ()))),
         tuple(read.marks("known")),
     )
+    _check(residue)
+    return residue
+
+
+def _check(residue: Residue) -> None:
+    """Whether the side tables hold what they may hold; parts are checked as they are read.
+
+    Raises: TypeError.
+    """
+    sides = residue.sides
+    for name, value, hint in (
+        ("notations", sides.notations, tuple[tuple[Id, str, str | None], ...]),
+        ("stereotypes", sides.stereotypes, tuple[tuple[Id, tuple[str, ...]], ...]),
+        ("extras", sides.extras, tuple[tuple[Id, Extra], ...]),
+        ("layout", (*(residue.layout or ()), *residue.unplaced), tuple[Id, ...]),
+    ):
+        if not fits(value, hint):
+            raise TypeError(f"{name} holds something else")
 
 
 class _Sections:
@@ -208,6 +227,8 @@ def _names(names: Iterable[tuple[Id, Id]]) -> list[Item]:
 
 def _renamed(kind: str, old: str, new: str) -> tuple[Id, Id]:
     """What was renamed is of the same kind, but for a body that stands for the world."""
+    if kind == WORLD.kind and new != WORLD.name:
+        raise ValueError(f"there is no other world '{new}'")
     return Id("body" if kind == WORLD.kind else kind, old), Id(kind, new)
 
 
@@ -226,7 +247,10 @@ def _folded(node: Node) -> Fold:
 def _pose(numbers: tuple[float, ...]) -> Pose:
     x, y, z, *quat = numbers
     a, b, c, d = quat
-    return Pose((x, y, z), (a, b, c, d))
+    found = Pose((x, y, z), (a, b, c, d))
+    if not is_sound(found):
+        raise ValueError(f"{numbers!r} is no pose")
+    return found
 
 
 # ---- fields --------------------------------------------------------------------------------------------------------------
@@ -281,6 +305,8 @@ def _added(node: Node) -> Addition:
         return Addition(key, _vertex(data))
     arcs = tuple(_arc(item) for item in node.items if isinstance(item, ArcItem))
     edge: RobotEdge = Edge(_edge_part(data), arcs)
+    if not is_sound(edge):
+        raise ValueError(f"no {key.kind}: {node.name}")
     return Addition(key, edge)
 
 

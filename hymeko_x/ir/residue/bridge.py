@@ -23,11 +23,23 @@ if TYPE_CHECKING:
 
 def cross(image: Mechanism, bridge: Bridge) -> Mechanism:
     """The same robot as the source describes it; what an editor has taken apart stays as it is."""
-    names = {old: new for old, new in bridge.names if old != new}
-    mechanism = _with_world(rename(image, {old: new for old, new in names.items() if old in image.graph}))
+    mechanism = _with_world(rename(image, _free_names(image, bridge)))
     mechanism = fold_chains(mechanism, bridge.folds)
     mechanism = join_twins(mechanism, bridge.joins)
     return move_frames(mechanism, dict(bridge.frames))
+
+
+def _free_names(image: Mechanism, bridge: Bridge) -> dict[Id, Id]:
+    """The source's name of each of the image's elements, where no other element has come to be called so; a world may be there."""
+    names = {old: new for old, new in bridge.names if old != new and old in image.graph}
+    given: dict[Id, Id] = {}
+    for old, new in names.items():
+        given.setdefault(new, old)
+    names = {old: new for old, new in names.items() if given[new] == old or new == WORLD}
+    while taken := [old for old, new in names.items() if new != WORLD and new not in names and new in image.graph]:
+        for old in taken:
+            del names[old]
+    return names
 
 
 def _with_world(mechanism: Mechanism) -> Mechanism:
