@@ -165,7 +165,7 @@ def _collada_parts(data: bytes, fetch: Callable[[str], bytes]) -> list[Part]:
     import trimesh
     from trimesh.exchange.dae import load_collada
 
-    loaded = load_collada(io.BytesIO(data), resolver=_resolver(fetch))
+    loaded = load_collada(io.BytesIO(data), resolver=_resolver(fetch))  # type: ignore[no-untyped-call]
     meshes = {
         name: trimesh.Trimesh(**{**said, "vertex_normals": None}, process=False, validate=False)
         for name, said in loaded["geometry"].items()
