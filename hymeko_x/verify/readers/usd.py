@@ -1,8 +1,8 @@
 """USD as Pixar's UsdPhysics parser sees it: bodies, joints with both local frames, limits, collision shapes.
 
-Masses come from MassAPI, poses at rest and visual shapes from UsdGeom. Couplings are what NewtonMimicAPI and
-MjcEqualityJointAPI say, since UsdPhysics has no word for them. Physics is float32 and degrees in USD; lengths are in stage
-units. Everything is converted to SI, and to z up.
+Masses come from MassAPI, tensors that have no principal moments from NewtonMassAPI, poses at rest and visual shapes from
+UsdGeom. Couplings are what NewtonMimicAPI and MjcEqualityJointAPI say, since UsdPhysics has no word for them. Physics is
+float32 and degrees in USD; lengths are in stage units. Everything is converted to SI, and to z up.
 Source: UsdPhysics schema and parseDesc.h (OpenUSD); newton-usd-schemas for NewtonMimicAPI.
 """
 
@@ -31,6 +31,8 @@ if TYPE_CHECKING:
 SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
 SINGLE = 1.2e-7
 """The relative precision of what UsdPhysics stores."""
+NEAR = 1e-6
+WORLD_NAME = "world"
 
 _JOINTS = ("FixedJoint", "RevoluteJoint", "PrismaticJoint", "SphericalJoint", "D6Joint", "DistanceJoint", "CustomJoint")
 
@@ -79,10 +81,12 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     joints.sort(key=lambda desc: ranks.get(str(desc.primPath), len(ranks)))
     edges = [read_joint(scene, desc) for desc in joints]
     order, tree, closing = _spanning_tree(list(rigid_bodies), edges)
-    places = {path: index for index, path in enumerate(order, start=1)} | {"": WORLD}
     names = _names(scene.stage, order)
+    ground = [path for path in order if names[path] == WORLD_NAME and _is_ground(scene, path, tree.get(path))]
+    order = [path for path in order if path not in ground]
+    places = {path: index for index, path in enumerate(order, start=1)} | dict.fromkeys(("", *ground), WORLD)
     shapes = read_shapes(scene, found, set(rigid_bodies))
-    bodies = [grounded(shapes=shapes.get("", ()))]
+    bodies = [grounded(shapes=tuple(shape for path in ("", *ground) for shape in shapes.get(path, ())))]
     for path in order:
         bodies.append(_body(scene, path, names[path], tree.get(path), places, rigid_bodies[path].kinematicBody, shapes))
     default = scene.stage.GetDefaultPrim()
@@ -96,6 +100,13 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
         precision=SINGLE,
     )
     return read_couplings(scene, model, tree)
+
+
+def _is_ground(scene: Scene, path: str, edge: JointEdge | None) -> bool:
+    """Whether a body called ``world`` is the world itself, as in a URDF: it has no mass and is fixed where the world is."""
+    if edge is None or edge.parent or edge.dofs or edge.more or scene.stage.GetPrimAtPath(path).GetAttribute("physics:mass").Get():
+        return False
+    return bool(np.abs(edge.joint().placement - np.eye(4)).max() < NEAR)
 
 
 def _names(stage: Any, paths: Sequence[str]) -> dict[str, str]:
@@ -225,8 +236,19 @@ def _inertia(scene: Scene, prim: Any, has_shapes: bool) -> tuple[bool, float, Ar
     axes = api.GetPrincipalAxesAttr().Get() or Gf.Quatf(0)
     quat = np.array([axes.GetReal(), *axes.GetImaginary()], dtype=float)
     turn = rotation_from_quat(quat) if quat.any() else np.eye(3)
-    known = bool(mass and moments.any()) or not has_shapes
-    return known, mass, com, turn @ np.diag(moments) @ turn.T
+    tensor = turn @ np.diag(moments) @ turn.T if moments.any() else _newton_tensor(prim) * scene.kilograms * scene.metres**2
+    known = bool(mass and tensor.any()) or not has_shapes
+    return known, mass, com, tensor
+
+
+def _newton_tensor(prim: Any) -> Array:
+    """The tensor by NewtonMassAPI, for what no principal moments can say, like moments of zero; without one nothing."""
+    attribute = prim.GetAttribute("newton:inertia")
+    said = attribute.Get() if attribute else None
+    if said is None or len(said) != 6:
+        return np.zeros((3, 3))
+    xx, yy, zz, xy, xz, yz = map(float, said)
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
 def relative(scene: Scene, body: str, prim: Any) -> tuple[Array, Array]:
