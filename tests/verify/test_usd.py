@@ -201,3 +201,28 @@ def test_a_body_called_world_without_mass_that_is_fixed_there_is_the_world(writt
 def test_a_tensor_without_principal_moments_is_that_of_newton(written: Write) -> None:
     assert failed(written, WORLD_AND_ARM.replace("0.01, 0, 0.01", "0.01, 0.001, 0.01")) == ["inertia tensor"]
     assert "inertia tensor" in failed(written, WORLD_AND_ARM.replace("double[] newton:inertia", "double[] other:inertia"))
+
+
+LOOP = """    def PhysicsRevoluteJoint "again"
+    {
+        rel physics:body0 = </robot/world>
+        rel physics:body1 = </robot/arm>
+        point3f physics:localPos0 = (0.1, 0, 0)
+        point3f physics:localPos1 = (0.1, 0, 0)
+        bool physics:excludeFromArticulation = true
+    }
+"""
+POINTS = """<mujoco><worldbody><body name="arm"><joint name="turn" axis="1 0 0"/>
+  <inertial mass="1" pos="0 0 0" fullinertia="0.01 0.01 0.01 0 0.002 0"/></body></worldbody>
+  <equality><connect name="again" body1="arm" anchor="0.1 0 0"/><connect body1="arm" anchor="0.3 0 0"/></equality></mujoco>"""
+
+
+def test_two_points_that_stay_together_are_a_hinge(written: Write) -> None:
+    stage = written("usd", (WORLD_AND_ARM.rstrip()[:-1] + LOOP + "}\n").replace("0.01, 0, 0.01", "0.01, 0.01, 0.01"))
+    points = written("mjcf", POINTS)
+    for pair in ((stage, points), (points, stage)):
+        assert [f"{check.quantity} at {check.at}" for check in verify(*pair).failed] == []
+    skew = written("mjcf", POINTS.replace("0.3 0 0", "0.3 0.1 0"))
+    assert [check.quantity for check in verify(stage, skew).failed] == ["loop closure, rotation"]
+    alone = written("mjcf", POINTS.replace('<connect body1="arm" anchor="0.3 0 0"/>', ""))
+    assert [check.quantity for check in verify(stage, alone).failed] == ["loops"]
