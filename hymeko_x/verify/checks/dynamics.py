@@ -77,7 +77,8 @@ def _largest_torque(model: KinematicModel) -> float:
     reach = np.zeros(len(model.bodies))
     for i, body in enumerate(model.bodies[1:], start=1):
         reach[i] = 0.0 if body.parent == WORLD else reach[body.parent] + np.linalg.norm(body.joint.placement[:3, 3])
-    levers = reach + np.array([float(np.linalg.norm(body.com)) for body in model.bodies])
+    anchors = [max((float(np.linalg.norm(dof.anchor)) for dof in body.joint.dofs), default=0.0) for body in model.bodies]
+    levers = reach + np.array([float(np.linalg.norm(body.com)) for body in model.bodies]) + anchors
     return 9.81 * float(levers @ np.array([abs(body.mass) for body in model.bodies]))
 
 
