@@ -80,7 +80,9 @@ class Sheet:
         if noted is not None and below and not (noted != parent and noted.HasPrefix(parent)):
             noted = None
         path = noted or self.free_path(self.scope(parent) if isinstance(parent, str) else parent, name or key.name)
-        return self.put_prim(key, path, kind, name)
+        own = name or key.name
+        is_numbered = noted is not None and own.partition("#")[0] == noted.name  # the second prim of that name
+        return self.put_prim(key, path, kind, noted.name if is_numbered else own)
 
     def put_prim(self, key: Id, path: Any, kind: str, name: str | None = None) -> Prim:
         """A new prim at this path for an element."""

@@ -8,6 +8,7 @@ Source: UsdPhysics schema and parseDesc.h (OpenUSD); newton-usd-schemas for Newt
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +24,7 @@ from hymeko_x.verify.readers.words import overheard
 from hymeko_x.verify.spatial import inverse, rigid, rotation_from_quat
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from hymeko_x.verify.readers import Places
@@ -79,9 +80,10 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     joints = [desc for word in _JOINTS for desc in found.get(getattr(kinds, word), ((), ()))[1] if desc.jointEnabled and desc.isValid]
     ranks: dict[str, int] = {str(prim.GetPath()): rank for rank, prim in enumerate(scene.stage.Traverse(Usd.TraverseInstanceProxies()))}
     joints.sort(key=lambda desc: ranks.get(str(desc.primPath), len(ranks)))
-    edges = [read_joint(scene, desc) for desc in joints]
+    called = _names(scene.stage, [str(desc.primPath) for desc in joints])
+    edges = [read_joint(scene, desc, called[str(desc.primPath)]) for desc in joints]
     order, tree, closing = _spanning_tree(list(rigid_bodies), edges)
-    names = _names(scene.stage, order)
+    names = _names(scene.stage, sorted(order, key=lambda path: ranks.get(path, len(ranks))))
     ground = [path for path in order if names[path] == WORLD_NAME and _is_ground(scene, path, tree.get(path))]
     order = [path for path in order if path not in ground]
     places = {path: index for index, path in enumerate(order, start=1)} | dict.fromkeys(("", *ground), WORLD)
@@ -109,13 +111,17 @@ def _is_ground(scene: Scene, path: str, edge: JointEdge | None) -> bool:
     return bool(np.abs(edge.joint().placement - np.eye(4)).max() < NEAR)
 
 
-def _names(stage: Any, paths: Sequence[str]) -> dict[str, str]:
-    """Display names where there are any, else prim names; a path where two bodies would have one name."""
+def _names(stage: Any, paths: Iterable[str]) -> dict[str, str]:
+    """Display names where there are any, else prim names; in the order of the stage the second of a name is ``name#2``."""
     names = {path: stage.GetPrimAtPath(path).GetDisplayName() or path.rpartition("/")[2] for path in paths}
-    counts: dict[str, int] = {}
-    for name in names.values():
-        counts[name] = counts.get(name, 0) + 1
-    return {path: name if counts[name] == 1 else path for path, name in names.items()}
+    taken, counts = set(names.values()), Counter[str]()
+    for path, name in names.items():
+        counts[name] += 1
+        while counts[name] > 1 and f"{name}#{counts[name]}" in taken:
+            counts[name] += 1
+        if counts[name] > 1:
+            names[path] = f"{name}#{counts[name]}"
+    return names
 
 
 # ---- the tree --------------------------------------------------------------------------------------------------------

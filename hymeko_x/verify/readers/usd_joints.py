@@ -81,10 +81,8 @@ def _reversed(dof: Dof) -> Dof:
     return replace(dof, axis=-dof.axis)
 
 
-def read_joint(scene: Scene, desc: Any) -> JointEdge:
+def read_joint(scene: Scene, desc: Any, name: str) -> JointEdge:
     """A joint of the parser, in SI units."""
-    prim = scene.stage.GetPrimAtPath(desc.primPath)
-    name = prim.GetDisplayName() or prim.GetName()
     parent, child = _path(desc.body0), _path(desc.body1)
     above, below = (
         _local(scene, desc.localPose0Position, desc.localPose0Orientation, not parent),
