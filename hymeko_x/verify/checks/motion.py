@@ -10,7 +10,7 @@ import numpy as np
 from hymeko_x.verify.checks.pair import POSITION, ROTATION, Pair, counted, worst
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import Array, Feature, Index, KinematicModel, Loop
-from hymeko_x.verify.spatial import angle_between, frame_with_z
+from hymeko_x.verify.spatial import angle_between, frame_with_z, inverse
 from hymeko_x.verify.verdict import Check
 
 if TYPE_CHECKING:
@@ -166,6 +166,8 @@ def _compare_loop(poses_a: Array, poses_b: Array, loop_a: Loop, loop_b: Loop, *,
     """By how much the residuals of two closures differ: in m for what must coincide, in rad for what must align, (n,) each."""
     first_a, second_a = _ends(poses_a, loop_a, swapped=False)
     first_b, second_b = _ends(poses_b, loop_b, swapped=swapped)
+    if loop_a.kind == "weld":  # the same wherever on the two bodies its frames are
+        first_b, second_b = first_a, second_b @ inverse(first_b) @ first_a
     gap = _gap(first_a, second_a, loop_a.kind) - _gap(first_b, second_b, loop_a.kind)
     distance: Array = np.linalg.norm(gap, axis=-1)
     match loop_a.kind:
