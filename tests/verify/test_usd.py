@@ -159,7 +159,7 @@ def test_several_joints_between_two_bodies_are_the_joints_of_one_body(written: W
 
 WORLD_AND_ARM = (
     HEADER
-    + '''def Xform "robot"
+    + """def Xform "robot"
 {
     def Xform "world" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])
     {
@@ -179,7 +179,7 @@ WORLD_AND_ARM = (
         rel physics:body1 = </robot/arm>
     }
 }
-'''
+"""
 )
 WORLD_AND_ARM_URDF = """<robot name="robot"><link name="world"/>
   <link name="arm"><inertial><mass value="1"/><inertia ixx="0.01" ixy="0" ixz="0.002" iyy="0" iyz="0" izz="0.01"/></inertial></link>

@@ -81,8 +81,9 @@ class Sheet:
             noted = None
         path = noted or self.free_path(self.scope(parent) if isinstance(parent, str) else parent, name or key.name)
         own = name or key.name
-        is_numbered = noted is not None and own.partition("#")[0] == noted.name  # the second prim of that name
-        return self.put_prim(key, path, kind, noted.name if is_numbered else own)
+        if noted is not None and own.partition("#")[0] == noted.name:  # the second prim of that name
+            own = noted.name
+        return self.put_prim(key, path, kind, own)
 
     def put_prim(self, key: Id, path: Any, kind: str, name: str | None = None) -> Prim:
         """A new prim at this path for an element."""

@@ -50,12 +50,17 @@ class Pair:
         return zero_poses(self.a)
 
     @cached_property
-    def zero_b(self) -> Array:
-        """World poses of the second robot in the same pose."""
+    def rest_b(self) -> Array:
+        """The coordinates of the second robot where all of the first's are 0."""
         coordinates = np.zeros(self.b.width)
         for (_, e), shift in zip(self.match.dofs, self.shifts, strict=True):
             coordinates[self.b.columns[e]] = shift
-        return zero_poses(self.b, coordinates)
+        return coordinates
+
+    @cached_property
+    def zero_b(self) -> Array:
+        """World poses of the second robot in the same pose."""
+        return zero_poses(self.b, self.rest_b)
 
     @property
     def precision(self) -> float:
