@@ -7,21 +7,21 @@ on with the elements that are left. Reading merges the fields again, in the same
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from dataclasses import dataclass, field
-from heapq import nsmallest
-from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.backends.hymeko.parts import value_of
 from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
+from hymeko_x.ir.factor_sets import candidates, common_words
 from hymeko_x.language.expand import standard_templates
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, Stereotype
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+
+    from hymeko_x.ir.factor_sets import Pair, Row
 
 _SHAPES = frozenset({"visual", "collision", "shape"})
 _WHOLE = frozenset({"safety", "calibration", "written"})
@@ -32,8 +32,6 @@ _LEAST = 12
 """Letters that a stereotype must save to be worth a name."""
 _MOST = 32
 """Stereotypes of one kind of element."""
-_SEEDS = 24
-_NOBODY: frozenset[int] = frozenset()
 _NAMES = {
     "visual": "look",
     "collision": "hull",
@@ -70,10 +68,6 @@ class _Unit(NamedTuple):
         return len("".join(self.text.split()))
 
 
-_Pair = tuple[str, str]
-"""The slot and the text of a unit."""
-
-
 @dataclass(slots=True)
 class _Carrier:
     """An element that may be given a stereotype: where it stands, and its units in order."""
@@ -85,7 +79,7 @@ class _Carrier:
     said: dict[str, _Unit] = field(default_factory=dict)
     left: list[_Unit] = field(init=False)
     """The units that the element says itself."""
-    pairs: list[_Pair] = field(init=False)
+    pairs: Row = field(init=False)
     """The slots and texts of those."""
 
     def __post_init__(self) -> None:
@@ -228,7 +222,7 @@ def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_De
 
 def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carrier]] | None:
     """The set of units that saves most, and the elements that it serves."""
-    for shared in _candidates(carriers):
+    for shared in candidates([carrier.pairs for carrier in carriers]):
         members = [carrier for carrier in carriers if all(_has(carrier, pair) for pair in shared)]
         units = _in_order(kind, shared, members)
         members = [carrier for carrier in members if _keeps_order(kind, units, carrier)]
@@ -237,54 +231,12 @@ def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carri
     return None
 
 
-_Members = frozenset[int]
-"""Which elements of a group have something, by their numbers."""
-
-
-def _has(carrier: _Carrier, pair: _Pair) -> bool:
+def _has(carrier: _Carrier, pair: Pair) -> bool:
     unit = carrier.units.get(pair[0])
     return unit is not None and unit.text == pair[1]
 
 
-def _owners(carriers: list[_Carrier]) -> dict[_Pair, _Members]:
-    """For every unit that occurs more than once the elements that have it."""
-    found: dict[_Pair, list[int]] = {}
-    for number, carrier in enumerate(carriers):
-        for pair in carrier.pairs:
-            found.setdefault(pair, []).append(number)
-    return {pair: frozenset(members) for pair, members in found.items() if len(members) > 1}
-
-
-def _candidates(carriers: list[_Carrier]) -> list[frozenset[_Pair]]:
-    """Sets of units that elements share, by what they would save, the best first."""
-    owners = _owners(carriers)
-
-    def common(members: _Members) -> frozenset[_Pair]:
-        """All units that these elements share: some of those of any one of them, so that nothing else is looked at."""
-        return frozenset(pair for pair in carriers[min(members)].pairs if members <= owners.get(pair, _NOBODY))
-
-    sharing: dict[_Members, list[_Pair]] = {}
-    for pair, members in owners.items():
-        sharing.setdefault(members, []).append(pair)
-    ranked = nsmallest(8 * _SEEDS, sharing.items(), key=lambda entry: (-_worth(*entry), sorted(entry[1])))
-    closed = {members: common(members) for members, _ in ranked}
-    seeds = sorted(closed, key=lambda members: (-_worth(members, closed[members]), sorted(closed[members])))[:_SEEDS]
-    for first, second in combinations(seeds, 2):
-        both = first & second
-        if len(both) > 1 and both not in closed:
-            closed[both] = common(both)
-    scored = [(_worth(members, shared), shared) for members, shared in closed.items()]
-    ranked_sets = sorted((entry for entry in scored if entry[0] >= _LEAST), key=lambda entry: (-entry[0], sorted(entry[1])))
-    return [shared for _, shared in ranked_sets[:_SEEDS]]
-
-
-def _worth(members: _Members, shared: Iterable[_Pair]) -> int:
-    """About how many letters a stereotype of these units saves."""
-    cost = sum(len(text) for _, text in shared)
-    return (len(members) - 1) * cost - 10
-
-
-def _in_order(kind: str, shared: frozenset[_Pair], members: list[_Carrier]) -> list[_Unit]:
+def _in_order(kind: str, shared: frozenset[Pair], members: list[_Carrier]) -> list[_Unit]:
     """The units of a stereotype in the order of its first element.
 
     Where order counts, what stands between them and differs is said as well, as it is mostly; elements then say their own.
@@ -363,18 +315,10 @@ def _name(kind: str, units: list[_Unit], members: list[_Carrier]) -> str:
             if isinstance(name, str) and name:
                 return name
     if len(members[0].path) == 1:
-        common = _common_words([member.node.name for member in members])
+        common = common_words([member.node.name for member in members])
         if common and kind:
             return common
     return _NAMES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
-
-
-def _common_words(names: list[str]) -> str:
-    """The words that all names share, in the order of the first: ``hip_joint`` of ``left_hip_joint`` and ``right_hip_joint``."""
-    split = [[word for word in re.split(r"[\W_\d]+", name) if word] for name in names]
-    shared = set(split[0]).intersection(*split[1:])
-    kept = [word for word in dict.fromkeys(split[0]) if word in shared]
-    return "_".join(kept) if any(len(word) > 2 for word in kept) else ""
 
 
 # ---- applying ------------------------------------------------------------------------------------------------------------
