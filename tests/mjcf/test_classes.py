@@ -75,6 +75,16 @@ def test_whoever_is_different_says_so_but_never_half_of_a_size() -> None:
     assert '<geom class="visual" type="sphere" size="1"/>' in text
 
 
+def test_an_edit_in_a_class_comes_home_and_the_class_does_not(tmp_path: Path) -> None:
+    (tmp_path / "q.urdf").write_text(QUADRUPED)
+    hx.convert(tmp_path / "q.urdf", tmp_path / "q.xml")
+    text = (tmp_path / "q.xml").read_text()
+    (tmp_path / "q.xml").write_text(text.replace('range="-1.0625 1.0625"/>', 'range="-1.0625 1.5"/>'))
+    hx.convert(tmp_path / "q.xml", tmp_path / "home.urdf")
+    home = (tmp_path / "home.urdf").read_text()
+    assert [home.count('upper="1.5"'), home.count('upper="1.0625"'), home.count("residue")] == [4, 0, 0]
+
+
 def models(robot: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, **how: object) -> tuple[mujoco.MjModel, mujoco.MjModel]:
     """The compiled models with and without classes."""
     with_classes, without = folder / "with.xml", folder / "without.xml"

@@ -13,7 +13,7 @@ from hymeko_x.ir.residue.align import bridge_between
 from hymeko_x.ir.residue.bridge import cross
 from hymeko_x.ir.residue.order import by_kind, moves
 from hymeko_x.ir.residue.paths import differing, digest, identical
-from hymeko_x.ir.residue.prints import print_of, shape_group, weight_print
+from hymeko_x.ir.residue.prints import print_of, print_of_extra, shape_group, weight_print
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -113,7 +113,7 @@ def sides_between(image: Mechanism, source: Mechanism) -> Sides:
         tuple(_stereotypes(image, source)) if source.stereotypes else (),
         bool(image.stereotypes) and not source.stereotypes,
         tuple((key, extra) for key, extra, new in extras if new),
-        tuple((key, digest(extra.format, extra.path, extra.text)) for key, extra, new in extras if not new),
+        tuple((key, print_of_extra(extra)) for key, extra, new in extras if not new),
     )
 
 

@@ -15,7 +15,7 @@ from hymeko_x.ir.residue.bridge import cross
 from hymeko_x.ir.residue.follow import renamed_since, with_new_names, with_old_names
 from hymeko_x.ir.residue.order import by_kind, laid_out, moved
 from hymeko_x.ir.residue.paths import TURN, default_at, digest, get, guard_of, put
-from hymeko_x.ir.residue.prints import print_of, shape_group, weight_print
+from hymeko_x.ir.residue.prints import print_of, print_of_extra, shape_group, weight_print
 from hymeko_x.ir.residue.types import is_sound, settled
 
 if TYPE_CHECKING:
@@ -318,7 +318,7 @@ def _extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict[Id, tupl
     extras: dict[Id, list[Extra]] = {}
     for key, found in image.extras.items():
         for extra in found:
-            mark = (key, digest(extra.format, extra.path, extra.text))
+            mark = (key, print_of_extra(extra))
             if strangers[mark]:
                 strangers[mark] -= 1
             else:
