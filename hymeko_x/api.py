@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Literal
 
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.diagnostics import Report
+from hymeko_x.diagnostics import Origin, Report
 from hymeko_x.ir.legalize import Options
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import NoFiles, Source
 
 if TYPE_CHECKING:
@@ -45,7 +46,8 @@ def load(
     """
     source = disk.open_source(os.fspath(path), packages=_folders(packages))
     source = replace(source, arguments=dict(arguments or {}), environment=dict(environment or {}), variants=dict(variants or {}))
-    return pipeline.read(source, _input_format(source, format), Report() if report is None else report)
+    robot = pipeline.read(source, _input_format(source, format), Report() if report is None else report)
+    return replace(robot, origins={ROOT: Origin(source.name), **robot.origins})  # files are looked for beside the first of them
 
 
 def loads(data: bytes | str, format: str | None = None, *, files: Files | None = None, report: Report | None = None) -> Mechanism:
@@ -135,7 +137,7 @@ def convert(
     given = disk.open_source(os.fspath(source), packages=_folders(packages))
     given = replace(given, arguments=dict(arguments or {}), environment=dict(environment or {}), variants=dict(variants or {}))
     robot = pipeline.read(given, _input_format(given, from_format), report)
-    form = formats.by_name(to_format) if to_format else formats.of_output(os.fspath(target))
+    form = formats.of_output(os.fspath(target), to_format)
     options = Options(base, actuators, layout, nested, pure=pure)
     result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets))
     disk.write_package(result.package, os.fspath(target), given.files)

@@ -206,8 +206,7 @@ def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report
     from hymeko_x.frontends.mjcf.weigh import weigh
 
     native = legalize(mechanism, formats.MJCF.name, Options(), Report())
-    of_files = format not in (formats.USD, formats.USDC, formats.USDZ)
-    return weigh(mechanism, writer(formats.MJCF)(native, Report()).main, files, report, shapes=of_files)
+    return weigh(mechanism, writer(formats.MJCF)(native, Report()).main, files, report)
 
 
 def read_back(package: Package, format: Format, files: Files) -> Mechanism:

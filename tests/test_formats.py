@@ -62,6 +62,18 @@ def test_the_format_of_an_output_is_that_of_its_suffix() -> None:
         formats.of_output("robot.step")
 
 
+def test_of_the_kinds_of_usd_the_suffix_chooses() -> None:
+    named = {
+        ("a.usdc", "usd"): "usdc",
+        ("a.usda", "usdc"): "usd",
+        ("a.usd", "usdc"): "usdc",
+        ("a.usd", "usd"): "usd",
+        ("a.xml", "usdz"): "usdz",
+    }
+    assert {key: formats.of_output(*key).name for key in named} == named
+    assert formats.of_output("a.urdf", "xacro") is formats.XACRO
+
+
 def test_a_format_that_does_not_exist_is_refused_with_those_that_do() -> None:
     assert formats.by_name("URDF") is formats.URDF
     with pytest.raises(Refusal, match="there is no format 'step'\n  hint: known: hymeko, urdf, "):

@@ -68,13 +68,22 @@ def read_parts(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple
 
     Raises: Unreadable.
     """
+    _check_file(data, suffix)
+    if suffix == ".stl":
+        return (_welded(read_stl(data), None),)
+    groups = _by_look(_loaded(data, suffix, fetch))
+    return _sound(tuple(_welded(*_corners(group), group[0].look) for group in groups))
+
+
+def _check_file(data: bytes, suffix: str) -> None:
     if len(data) > MOST_BYTES:
         raise Unreadable(f"it has {len(data)} bytes, at most {MOST_BYTES} are read")
     if suffix not in READABLE:
         raise Unreadable(f"meshes of type '{suffix}' are not read; known: {', '.join(READABLE)}")
-    if suffix == ".stl":
-        return (_welded(read_stl(data), None),)
-    parts = _merged_by_look(_loaded(data, suffix, fetch))
+
+
+def _sound(parts: tuple[Part, ...]) -> tuple[Part, ...]:
+    """The parts, if there are any and every coordinate is a number."""
     if not parts:
         raise Unreadable("it has no triangles")
     if not all(np.isfinite(part.points).all() for part in parts):
@@ -142,10 +151,26 @@ def _loaded(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> list[Par
     import trimesh
 
     try:
+        if suffix == ".dae":
+            return _collada_parts(data, fetch)
         scene = trimesh.load_scene(io.BytesIO(data), suffix[1:], resolver=_resolver(fetch), process=False)
-        return [part for node in scene.graph.nodes_geometry for part in _node_part(scene, node)]
+        placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
+        return [part for matrix, name in placed for part in _placed_part(scene.geometry[name], matrix)]
     except _raised_by_loaders(suffix) as error:
         raise Unreadable(str(error).split("\n")[0][:200] or type(error).__name__) from error
+
+
+def _collada_parts(data: bytes, fetch: Callable[[str], bytes]) -> list[Part]:
+    """The same for COLLADA, of which a scene would merge points that are close to one another, and take its time for that."""
+    import trimesh
+    from trimesh.exchange.dae import load_collada
+
+    loaded = load_collada(io.BytesIO(data), resolver=_resolver(fetch))  # type: ignore[no-untyped-call]
+    meshes = {
+        name: trimesh.Trimesh(**{**said, "vertex_normals": None}, process=False, validate=False)
+        for name, said in loaded["geometry"].items()
+    }
+    return [part for node in loaded["graph"] for part in _placed_part(meshes[node["geometry"]], node["matrix"])]
 
 
 def _check_collada(data: bytes) -> None:
@@ -156,11 +181,9 @@ def _check_collada(data: bytes) -> None:
         raise Unreadable("it is a ZIP archive, which is not unpacked")
 
 
-def _node_part(scene: Any, node: str) -> Iterable[Part]:
+def _placed_part(mesh: Any, matrix: Any) -> Iterable[Part]:
     import trimesh
 
-    matrix, name = scene.graph[node]
-    mesh = scene.geometry[name]
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
         return
     if len(mesh.faces) > MOST_FACES:
@@ -291,12 +314,12 @@ def _raised_by_loaders(suffix: str) -> tuple[type[Exception], ...]:
 # ---- parts -------------------------------------------------------------------------------------------------------------------
 
 
-def _merged_by_look(parts: list[Part]) -> tuple[Part, ...]:
-    """One part per look, in the order of their first appearance."""
+def _by_look(parts: list[Part]) -> list[list[Part]]:
+    """The parts that have the same look, in the order of their first appearance."""
     groups: dict[Look | None, list[Part]] = {}
     for part in parts:
         groups.setdefault(part.look, []).append(part)
-    return tuple(_welded(*_corners(group), look) for look, group in groups.items())
+    return list(groups.values())
 
 
 def _corners(group: list[Part]) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
@@ -317,7 +340,38 @@ def _welded(corners: NDArray[np.float64], uv: NDArray[np.float64] | None, look: 
 
 
 def _unique_rows(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The different rows in lexical order, and for each given row its place there."""
+    """The different rows in lexical order, and for each given row its place there.
+
+    Equal rows are brought together by one key for each, so that only the different ones, which are few, are sorted column by column.
+    """
+    rows = np.ascontiguousarray(rows + 0.0)  # so that the zeros of both signs are the same
+    keys = _keys(rows)
+    order = np.argsort(keys)
+    ordered, keys = rows[order], keys[order]
+    starts = np.ones(len(rows), dtype=bool)
+    starts[1:] = np.logical_or.reduce([column[1:] != column[:-1] for column in ordered.T])
+    if len(rows) and not np.array_equal(starts[1:], keys[1:] != keys[:-1]):  # different rows with one key, or not a number
+        return _sorted_rows(rows)
+    unique = ordered[starts]
+    second = np.lexsort(unique.T[::-1])
+    places = np.empty(len(unique), dtype=np.int64)
+    places[second] = np.arange(len(unique))
+    index = np.empty(len(rows), dtype=np.int64)
+    index[order] = places[np.cumsum(starts) - 1]
+    return unique[second], index
+
+
+def _keys(rows: NDArray[np.float64]) -> NDArray[np.uint64]:
+    """A number for each row that is the same for equal rows, and hardly ever for others."""
+    keys = np.zeros(len(rows), dtype=np.uint64)
+    for column in rows.view(np.uint64).T:
+        keys = (keys ^ column ^ (column >> np.uint64(31))) * np.uint64(0x9E3779B97F4A7C15)
+        keys ^= keys >> np.uint64(32)
+    return keys
+
+
+def _sorted_rows(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """The same by sorting all rows."""
     order = np.lexsort(rows.T[::-1])
     ordered = rows[order]
     starts = np.ones(len(rows), dtype=bool)
@@ -341,6 +395,23 @@ def inline_part(points: tuple[float, ...], faces: tuple[int, ...]) -> Part:
     if not np.isfinite(table).all():
         raise Unreadable("a coordinate is not a finite number")
     return Part(table, index)
+
+
+def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Part:
+    """All triangles of a mesh file as one part without a look: ``merged(read_parts(...))``, sorted once.
+
+    Raises: Unreadable.
+    """
+    _check_file(data, suffix)
+    if suffix == ".stl":
+        return _welded(read_stl(data), None)
+    groups = _by_look(_loaded(data, suffix, fetch))
+    if len(groups) == 1:
+        return _sound((_welded(*_corners(groups[0]), None),))[0]
+    corners = np.concatenate([part.points[part.faces] for group in groups for part in group]) if groups else np.zeros((0, 3, 3))
+    whole = (corners[:, 0] != corners[:, 1]).any(axis=1) & (corners[:, 1] != corners[:, 2]).any(axis=1)
+    whole &= (corners[:, 2] != corners[:, 0]).any(axis=1)
+    return _sound((_welded(corners[whole], None),) if groups else ())[0]
 
 
 def merged(parts: tuple[Part, ...]) -> Part:

@@ -35,7 +35,7 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
 
 
 def _read(mechanism: Mechanism, key: Id, mesh: Mesh, files: Files, report: Report) -> Mesh | None:
-    from hymeko_x.assets.mesh import Unreadable, merged, read_parts
+    from hymeko_x.assets.mesh import Unreadable, read_whole
 
     found = read_file(files, mesh.uri or "")
     if found is None:
@@ -44,7 +44,7 @@ def _read(mechanism: Mechanism, key: Id, mesh: Mesh, files: Files, report: Repor
         return None
     path, data = found
     try:
-        part = merged(read_parts(data, suffix_of(path), _fetcher(files, mesh.uri or "")))
+        part = read_whole(data, suffix_of(path), _fetcher(files, mesh.uri or ""))
     except Unreadable as error:
         report.warn(codes.ASSET_UNREADABLE, f"{key}: '{mesh.uri}' cannot be read: {error}", mechanism.origin(key), element=str(key))
         return None

@@ -37,7 +37,7 @@ def run(chosen: argparse.Namespace) -> int:
         raise UsageError("--json prints to standard output, which already carries the result; use --report FILE.json")
     if chosen.verify and "-" in (chosen.input, chosen.output):
         raise UsageError("--verify reads the files again with other engines, so that neither can be a pipe")
-    format = formats.by_name(chosen.to_format) if chosen.to_format else formats.of_output(chosen.output)
+    format = formats.of_output(chosen.output, chosen.to_format)
     report = Report()
     code = deliver(read_input(chosen.input, chosen, report), Output(format, chosen.output), chosen, report)
     return verified(chosen.input, chosen.output, chosen) if chosen.verify and code == exits.DONE else code

@@ -27,6 +27,6 @@ def run(chosen: argparse.Namespace) -> int:
     """Read HyMeKo and write the wanted format."""
     if chosen.to_format is None and chosen.output == "-":
         raise UsageError("say which format to write: --to FORMAT, or -o FILE with its suffix")
-    format = formats.by_name(chosen.to_format) if chosen.to_format else formats.of_output(chosen.output)
+    format = formats.of_output(chosen.output, chosen.to_format)
     report = Report()
     return deliver(read_input(chosen.input, chosen, report), Output(format, chosen.output), chosen, report)

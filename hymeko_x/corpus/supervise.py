@@ -73,7 +73,7 @@ class Processes:
         """
         from pebble.concurrent import process
 
-        start = process(timeout=plan.limits.seconds, mp_context=self._context)(task)
+        start = process(timeout=plan.limits.seconds, context=self._context)(task)
         future: ProcessFuture[None] = start(case, plan, folder, scratch, steps)
         self._running.add(future)
         try:

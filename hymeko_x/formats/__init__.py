@@ -62,14 +62,20 @@ def by_name(name: str) -> Format:
     raise refuse(codes.UNKNOWN_FORMAT, f"there is no format '{name}'", hint=f"known: {', '.join(format.name for format in FORMATS)}")
 
 
-def of_output(path: str) -> Format:
-    """The format that a file to be written has by its suffix.
+def of_output(path: str, name: str | None = None) -> Format:
+    """The format of a file to be written: the named one, or that of its suffix.
+
+    Of the kinds of one format the suffix chooses, since readers go by it: ``usd`` in a ``.usdc`` is binary. A ``.usd`` may be any.
 
     Raises: Refusal HX003.
     """
-    for format in FORMATS:
-        if path.lower().endswith(format.suffixes):
-            return format
+    owner = next((format for format in FORMATS if path.lower().endswith(format.suffixes)), None)
+    if name is not None:
+        named = by_name(name)
+        is_kin = owner is not None and owner.frontend == named.frontend and not path.lower().endswith(".usd")
+        return owner if owner is not None and is_kin else named
+    if owner is not None:
+        return owner
     raise refuse(codes.UNKNOWN_FORMAT, f"the suffix of '{path}' belongs to no format", hint=_suffix_hint("--to"))
 
 

@@ -15,6 +15,9 @@ NAME = "mjcf"
 DOFS: Mapping[DofKind, str] = MappingProxyType({DofKind.HINGE: "hinge", DofKind.SLIDE: "slide", DofKind.BALL: "ball", DofKind.FREE: "free"})
 """The joint type of each kind of dof; a screw has none."""
 
+MAIN = "main"
+"""The class of everything that has none."""
+
 CLASSES: Mapping[Role, str] = MappingProxyType({Role.VISUAL: "visual", Role.COLLISION: "collision"})
 """The default class of a geom by what it is for; one that is for both has none."""
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
+from hymeko_x.formats.mjcf import MAIN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from hymeko_x.formats.mjcf_tree import Element
 
 Attributes = dict[str, str]
-
-MAIN = "main"
 
 FAMILIES: Mapping[str, str] = MappingProxyType(
     {

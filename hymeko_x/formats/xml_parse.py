@@ -73,7 +73,7 @@ def _utf8(source: Source, report: Report) -> bytes:
 # ---- building ----------------------------------------------------------------------------------------------------------------
 
 
-_WORDS = re.compile(rb">\s*[^\s<]")
+_WORDS = re.compile(rb">\s*[^\s<]|<!\[CDATA\[")
 _ENCODING = re.compile(rb"""\s*<\?xml[^?>]*encoding\s*=\s*["']([\w.-]+)""")
 
 

@@ -57,6 +57,9 @@ class Tolerance:
 
 EXACT = Tolerance()
 
+_LONG, _SHOWN = 64, 8
+"""Tuples with more items are the numbers of meshes, of which only a few are shown."""
+
 
 def diff(a: Mechanism, b: Mechanism, tolerance: Tolerance = EXACT) -> tuple[Difference, ...]:
     """Everything that differs from ``a`` to ``b``: the name, elements, their fields and arcs, and their extras.
@@ -124,6 +127,9 @@ def _poses(where: str, a: Pose, b: Pose, tolerance: Tolerance, found: list[Found
 
 
 def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance: Tolerance, found: list[Found]) -> None:
+    if _is_array(a) or _is_array(b):
+        found += _arrays(where, a, b, tolerance)
+        return
     if all(isinstance(x, float | int) for x in (*a, *b)):
         if len(a) != len(b) or not all(tolerance.accepts(x, y) for x, y in zip(a, b, strict=True)):  # type: ignore[arg-type]
             found.append((where, _short(a), _short(b)))
@@ -136,6 +142,32 @@ def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance:
             found.append((path, _short(a[number]), None))
         elif a[number] is not b[number]:
             _values(path, a[number], b[number], tolerance, found)
+
+
+def _arrays(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance: Tolerance) -> Iterator[Found]:
+    """The same for the numbers of meshes, of which there may be millions: those from the first difference on stand for all."""
+    if len(a) != len(b):
+        yield where, _short(a), _short(b)
+        return
+    if a == b:
+        return
+    first = next((place for place, (x, y) in enumerate(zip(a, b, strict=True)) if x != y and not _accepts(x, y, tolerance)), None)
+    if first is not None:
+        yield where, _excerpt(a, first), _excerpt(b, first)
+
+
+def _is_array(values: tuple[object, ...]) -> bool:
+    return len(values) > _LONG and isinstance(values[0], float | int)
+
+
+def _accepts(a: object, b: object, tolerance: Tolerance) -> bool:
+    return isinstance(a, float | int) and isinstance(b, float | int) and tolerance.accepts(a, b)
+
+
+def _excerpt(values: tuple[object, ...], first: int = 0) -> str:
+    """Some items of a long tuple, and how many there are."""
+    shown = " ".join(_short(item) for item in values[first : first + _SHOWN])
+    return f"[{'... ' if first else ''}{shown}{' ...' if first + _SHOWN < len(values) else ''}] of {len(values)}"
 
 
 def _extras(key: Id, a: tuple[Extra, ...], b: tuple[Extra, ...]) -> Iterator[Difference]:
@@ -191,6 +223,8 @@ def _short(value: object) -> str:
     if isinstance(value, Id):
         return str(value)
     if isinstance(value, tuple):
+        if _is_array(value):
+            return _excerpt(value)
         return "[" + " ".join(_short(item) for item in value) + "]"
     if is_dataclass(value):
         return _short_part(value)

@@ -13,7 +13,7 @@ from functools import lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.forms import Hole, Signed
+from hymeko_x.ir.forms import Hole, Signed, joined
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -77,7 +77,7 @@ def unify(columns: list[Vector], cut: Callable[[str], tuple[str, ...]], *, signs
                     pieces.append(Signed(names, negative, magnitude))
                 else:
                     pieces.append(Hole(hole(piece, number)))
-        made.texts[number] = _joined(pieces)
+        made.texts[number] = joined(pieces)
     return made
 
 
@@ -98,7 +98,7 @@ def _aligned(column: Vector, cut: Callable[[str], tuple[str, ...]]) -> list[Piec
     while back < shortest - front and _is_constant(tuple([row[-1 - back] for row in rows])):
         back += 1
     middles = [row[front : len(row) - back] for row in rows]
-    values = tuple([_joined(list(middle)) for middle in middles])
+    values = tuple([joined(list(middle)) for middle in middles])
     pieces: tuple[Piece | Vector, ...] = ()
     if len({len(middle) for middle in middles}) == 1:
         pieces = tuple([_piece(tuple(place)) for place in zip(*middles, strict=True)])
@@ -123,19 +123,6 @@ def _pieces(text: Text, cut: Callable[[str], tuple[str, ...]]) -> tuple[Piece, .
 @lru_cache(100_000)
 def _cut(text: str, cut: Callable[[str], tuple[str, ...]]) -> tuple[str, ...]:
     return cut(text)
-
-
-def _joined(pieces: list[Piece]) -> Text:
-    """Pieces as one text: neighbouring strings become one, and a text of strings only is a string."""
-    out: list[Piece] = []
-    for piece in pieces:
-        if isinstance(piece, str) and out and isinstance(out[-1], str):
-            out[-1] += piece
-        else:
-            out.append(piece)
-    if not out:
-        return ""
-    return out[0] if len(out) == 1 and isinstance(out[0], str) else tuple(out)
 
 
 class _Usage:

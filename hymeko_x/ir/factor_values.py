@@ -6,7 +6,7 @@ import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.forms import Call, Element, Factored, Hole, Value
+from hymeko_x.ir.forms import Call, Element, Factored, Hole, Value, joined
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -107,14 +107,4 @@ def _with_holes(text: Text, named: Mapping[str, str], dialect: Dialect) -> Text:
             pieces += [Hole(named[folder]), piece.removeprefix(folder)]
         else:
             pieces += [Hole(named[part]) if part in named else part for part in dialect.cut(piece)]
-    return _joined(pieces)
-
-
-def _joined(pieces: list[Piece]) -> Text:
-    out: list[Piece] = []
-    for piece in pieces:
-        if isinstance(piece, str) and out and isinstance(out[-1], str):
-            out[-1] += piece
-        else:
-            out.append(piece)
-    return "".join([piece for piece in out if isinstance(piece, str)]) if all(isinstance(piece, str) for piece in out) else tuple(out)
+    return joined(pieces)

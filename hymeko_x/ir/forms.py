@@ -125,3 +125,16 @@ def _filled(piece: Piece, values: dict[str, str]) -> str:
             return f"-{magnitude}" if negative else magnitude
         case _:
             return piece
+
+
+def joined(pieces: list[Piece]) -> Text:
+    """Pieces as one text: neighbouring strings become one, and a text of strings only is a string."""
+    out: list[Piece] = []
+    for piece in pieces:
+        if isinstance(piece, str) and out and isinstance(out[-1], str):
+            out[-1] += piece
+        else:
+            out.append(piece)
+    if not out:
+        return ""
+    return out[0] if len(out) == 1 and isinstance(out[0], str) else tuple(out)

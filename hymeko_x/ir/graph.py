@@ -68,6 +68,10 @@ class Hypergraph(Generic[K, V, E, W]):
 
     __hash__ = None  # type: ignore[assignment]
 
+    def __contains__(self, key: object) -> bool:
+        """Whether a vertex or an edge has this key."""
+        return key in self.vertices or key in self.edges
+
     # ---- looking around --------------------------------------------------------------------------------------------------
 
     @cached_property

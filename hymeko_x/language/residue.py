@@ -15,6 +15,7 @@ from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id
 from hymeko_x.ir.parts import EdgePart, Weight
 from hymeko_x.ir.residue import Addition, Bridge, Change, Fold, Join, Removal, Residue, Run, Sides
 from hymeko_x.ir.residue.paths import TURN
+from hymeko_x.ir.residue.types import fits, is_sound
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Document, Field, Node, Ref, Stereotype
@@ -82,7 +83,7 @@ def parse_residue(text: str) -> Residue:
     document = parse(text, "<residue>")
     try:
         return _residue(document)
-    except (ValueError, LookupError, TypeError, AttributeError, AssertionError, ZeroDivisionError) as error:
+    except (ValueError, LookupError, TypeError, AttributeError, AssertionError, ArithmeticError) as error:
         raise BadResidue(f"{type(error).__name__}: {error}") from error
 
 
@@ -93,7 +94,7 @@ def _residue(document: Document) -> Residue:
     if fields["version"] != VERSION:
         raise BadResidue(f"version {fields['version']}, and this program reads version {VERSION:g}")
     read = _Sections(sections)
-    return Residue(
+    residue = Residue(
         read.bridge(),
         tuple(Change(key, _path(key, item.name), _changed(item), item.type) for key, item in read.grouped("changes")),
         tuple(_added(item) for item in read.nodes("additions")),
@@ -104,6 +105,24 @@ def _residue(document: Document) -> Residue:
         tuple(decoded(fields.get("unplaced", ()))),
         tuple(read.marks("known")),
     )
+    _check(residue)
+    return residue
+
+
+def _check(residue: Residue) -> None:
+    """Whether the side tables hold what they may hold; parts are checked as they are read.
+
+    Raises: TypeError.
+    """
+    sides = residue.sides
+    for name, value, hint in (
+        ("notations", sides.notations, tuple[tuple[Id, str, str | None], ...]),
+        ("stereotypes", sides.stereotypes, tuple[tuple[Id, tuple[str, ...]], ...]),
+        ("extras", sides.extras, tuple[tuple[Id, Extra], ...]),
+        ("layout", (*(residue.layout or ()), *residue.unplaced), tuple[Id, ...]),
+    ):
+        if not fits(value, hint):
+            raise TypeError(f"{name} holds something else")
 
 
 class _Sections:
@@ -226,6 +245,8 @@ def _names(names: Iterable[tuple[Id, Id]]) -> list[Item]:
 
 def _renamed(kind: str, old: str, new: str) -> tuple[Id, Id]:
     """What was renamed is of the same kind, but for a body that stands for the world."""
+    if kind == WORLD.kind and new != WORLD.name:
+        raise ValueError(f"there is no other world '{new}'")
     return Id("body" if kind == WORLD.kind else kind, old), Id(kind, new)
 
 
@@ -244,7 +265,10 @@ def _folded(node: Node) -> Fold:
 def _pose(numbers: tuple[float, ...]) -> Pose:
     x, y, z, *quat = numbers
     a, b, c, d = quat
-    return Pose((x, y, z), (a, b, c, d))
+    found = Pose((x, y, z), (a, b, c, d))
+    if not is_sound(found):
+        raise ValueError(f"{numbers!r} is no pose")
+    return found
 
 
 # ---- fields --------------------------------------------------------------------------------------------------------------
@@ -299,6 +323,8 @@ def _added(node: Node) -> Addition:
         return Addition(key, _vertex(data))
     arcs = tuple(_arc(item) for item in node.items if isinstance(item, ArcItem))
     edge: RobotEdge = Edge(_edge_part(data), arcs)
+    if not is_sound(edge):
+        raise ValueError(f"no {key.kind}: {node.name}")
     return Addition(key, edge)
 
 
@@ -324,6 +350,8 @@ def _after(run: Run) -> Value:
 def _run(item: Field) -> Run:
     assert isinstance(item.value, tuple)
     after, *names = item.value
+    if not names:
+        raise ValueError(f"an order of no {item.name}")
     first = None if isinstance(after, float) else Id(item.name, _refs((after,))[0])
     return Run(first, tuple(Id(item.name, name) for name in _refs(tuple(names))))
 

@@ -15,7 +15,7 @@ from hymeko_x.ir import parts, values
 from hymeko_x.ir.fields import attributes_of, identical
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import Id
-from hymeko_x.ir.residue.types import is_sound
+from hymeko_x.ir.residue.types import is_sound, settled
 from hymeko_x.ir.values import ZERO, Written
 from hymeko_x.ir.written import pose_as_written
 from hymeko_x.language.syntax import Ref, is_list
@@ -32,7 +32,6 @@ _CLASSES: Mapping[str, type] = MappingProxyType(
 _WORDS: Mapping[str, object] = MappingProxyType(
     {"none": None, "true": True, "false": False} | {word.value: word for kind in (parts.Role, parts.DofKind) for word in kind}
 )
-_INTEGERS = frozenset({(parts.Mesh, "faces"), (parts.Camera, "resolution")})
 
 
 def name_ref(name: str) -> Ref:
@@ -108,13 +107,9 @@ def decoded(value: Value | None) -> Any:
 
 def _part(kind: type, words: tuple[Value, ...]) -> object:
     names = [_name(word) for word in words[::2]]
-    made = {name: decoded(word) for name, word in zip(names, words[1::2], strict=True)}
-    for name in made:
-        if (kind, name) in _INTEGERS and made[name] is not None:
-            made[name] = tuple(map(int, made[name]))
-    part: object = kind(**made)
+    part: object = kind(**{name: settled(kind, name, decoded(word)) for name, word in zip(names, words[1::2], strict=True)})
     if kind is not Arc and not is_sound(part):
-        raise ValueError(f"no {kind.__name__}: {made!r}")
+        raise ValueError(f"no {kind.__name__}: {part!r}")
     return part
 
 

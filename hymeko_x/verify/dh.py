@@ -133,20 +133,24 @@ def zero_poses(model: KinematicModel, coordinates: Array | None = None) -> Array
     return poses
 
 
-def lines_of(model: KinematicModel, start: int, body: int, dofs: Sequence[int], poses: Array) -> tuple[list[Line], tuple[Frame, Frame]]:
+def lines_of(
+    model: KinematicModel, start: int, body: int, dofs: Sequence[int], poses: Array, coordinates: Array | None = None
+) -> tuple[list[Line], tuple[Frame, Frame]]:
     """The dofs' axes and the frames of the chain's two ends, in the frame of ``start``, in these world poses (of :func:`zero_poses`)."""
     back = np.linalg.inv(poses[start])
-    lines = [_line(model, dof, back @ poses[model.bodies[model.body_of_dof[dof]].parent]) for dof in dofs]
+    rest = np.zeros(model.width) if coordinates is None else coordinates
+    lines = [_line(model, dof, back @ poses[model.bodies[model.body_of_dof[dof]].parent], rest) for dof in dofs]
     return lines, (Frame.of(np.eye(4)), Frame.of(back @ poses[body]))
 
 
-def _line(model: KinematicModel, index: int, parent: Array) -> Line:
-    """The axis of one dof: through its anchor, behind the dofs of the same joint that come before it."""
+def _line(model: KinematicModel, index: int, parent: Array, rest: Array) -> Line:
+    """The axis of one dof: through its anchor, behind the dofs of the same joint that come before it, at these coordinates."""
     body = model.body_of_dof[index]
     joint = model.bodies[body].joint
     place = parent @ joint.placement
-    for dof in joint.dofs[: index - model.first_dof[body]]:
-        place = place @ _displaced(dof.kind, dof.axis, dof.anchor, -dof.ref, dof.pitch)
+    first = model.first_dof[body]
+    for dof, column in zip(joint.dofs[: index - first], model.columns[first:index], strict=True):
+        place = place @ _displaced(dof.kind, dof.axis, dof.anchor, float(rest[column]) - dof.ref, dof.pitch)
     dof = model.dofs[index]
     point, axis = place[:3, :3] @ dof.anchor + place[:3, 3], place[:3, :3] @ dof.axis
     (px, py, pz), (x, y, z) = point.tolist(), axis.tolist()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,27 +16,53 @@ if TYPE_CHECKING:
 
 
 EMPTY = "holds no triangles"
+_REFERRING = (".gltf",)
 
 
 class Meshes:
-    """Reads mesh files, each one once; without ``read`` none at all."""
+    """Reads mesh files, those of one content once; without ``read`` none at all."""
 
     def __init__(self, *, read: bool = True) -> None:
         self._wanted = read
-        self._read: dict[Path, Surface | str] = {}
+        self._files: dict[Path, Surface | str] = {}
+        self._contents: dict[bytes, Surface | str] = {}
+        self._scaled: dict[MeshFile, Surface] = {}
 
     def surface(self, mesh: Surface | MeshFile | None) -> Surface | str:
-        """The triangles of a mesh in its own frame, scaled; or the reason why there are none."""
+        """The triangles of a mesh in its own frame, scaled; or the reason why there are none. The same mesh gives the same object."""
         if not self._wanted:
             return "meshes were not to be compared"
         if isinstance(mesh, Surface):
             return mesh if len(mesh.faces) else f"a mesh in the file {EMPTY}"
         if mesh is None or mesh.path is None:
             return f"the mesh '{mesh.uri if mesh else ''}' was not found"
-        if mesh.path not in self._read:
-            self._read[mesh.path] = _load(mesh.path)
-        found = self._read[mesh.path]
-        return found if isinstance(found, str) else Surface(found.vertices * np.asarray(mesh.scale), found.faces)
+        if mesh.path not in self._files:
+            self._files[mesh.path] = self._read(mesh.path)
+        found = self._files[mesh.path]
+        if isinstance(found, str):
+            return found
+        if mesh not in self._scaled:
+            self._scaled[mesh] = Surface(found.vertices * np.asarray(mesh.scale), found.faces)
+        return self._scaled[mesh]
+
+    def _read(self, path: Path) -> Surface | str:
+        """The triangles of a file, which several names may have: a copy beside the result is the file that was copied."""
+        try:
+            digest = _digest(path)
+        except OSError as error:
+            return f"the mesh '{path.name}' cannot be read: {error}"
+        if digest not in self._contents:
+            self._contents[digest] = _load(path)
+        return self._contents[digest]
+
+
+def _digest(path: Path) -> bytes:
+    """What tells the triangles of files apart: content and kind; for a kind that refers to other files also its place."""
+    kind = path.suffix.lower()
+    place = str(path) if kind in _REFERRING else ""
+    digest = hashlib.sha256(path.read_bytes())
+    digest.update(f"\n{kind}\n{place}".encode())
+    return digest.digest()
 
 
 def _load(path: Path) -> Surface | str:

@@ -13,6 +13,7 @@ from newton import JointType
 from newton.usd import SchemaResolverMjc, SchemaResolverNewton
 
 warp.config.quiet = True
+_NO_LIMIT = 1e6
 
 
 def describe(job: dict[str, Any]) -> dict[str, Any]:
@@ -52,8 +53,8 @@ def _joints(builder: Any) -> list[dict[str, Any]]:
                 "axes": [_list(builder.joint_axis[dof]) for dof in dofs],
                 "lower": [_finite(builder.joint_limit_lower[dof]) for dof in dofs],
                 "upper": [_finite(builder.joint_limit_upper[dof]) for dof in dofs],
-                "velocity": [_finite(builder.joint_velocity_limit[dof]) for dof in dofs],
-                "effort": [_finite(builder.joint_effort_limit[dof]) for dof in dofs],
+                "velocity": [_limit(builder.joint_velocity_limit[dof]) for dof in dofs],
+                "effort": [_limit(builder.joint_effort_limit[dof]) for dof in dofs],
                 "armature": [_finite(builder.joint_armature[dof]) for dof in dofs],
                 "friction": [_finite(builder.joint_friction[dof]) for dof in dofs],
             }
@@ -68,6 +69,11 @@ def _list(values: Any) -> list[float]:
 def _finite(value: Any) -> float | None:
     """None stands for no limit, which Newton writes as a very large number."""
     return float(value) if math.isfinite(value) and abs(value) < 1e9 else None
+
+
+def _limit(value: Any) -> float | None:
+    """None stands for no limit: Newton's default for speed and effort is a million, for what USD leaves open infinity."""
+    return float(value) if abs(value) < _NO_LIMIT else None
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import sys
 import time
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -28,6 +29,11 @@ def misbehave(case: Case, plan: Plan, folder: str, scratch: str, steps: Sequence
         line = {"step": step, "said": said, "cost": asdict(Cost(case.key, step, 0.0, 0.0, 0.0))}
         with (Path(scratch) / NOTES).open("a") as notes:
             notes.write(json.dumps(line) + "\n")
+
+
+def note_modules(case: Case, plan: Plan, folder: str, scratch: str, steps: Sequence[str]) -> None:
+    """Which modules a process has before it does anything."""
+    (Path(scratch) / "modules").write_text(" ".join(sys.modules))
 
 
 def said_at(case: Case, step: str) -> dict[str, object]:

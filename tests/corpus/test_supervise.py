@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import multiprocessing
 from pathlib import Path
 
 import pytest
@@ -9,8 +10,8 @@ import pytest
 from hymeko_x.corpus.cases import Case
 from hymeko_x.corpus.plan import Limits, Plan
 from hymeko_x.corpus.rows import Leg, Outcome
-from hymeko_x.corpus.supervise import Processes, supervise
-from tests.corpus.naughty import misbehave
+from hymeko_x.corpus.supervise import Processes, preloaded, supervise
+from tests.corpus.naughty import misbehave, note_modules
 
 PLAN = Plan((("urdf", "hymeko"), ("urdf", "mjcf")), limits=Limits(seconds=5.0, bytes=3 * 2**30))
 
@@ -69,3 +70,11 @@ def test_a_worker_that_somebody_kills_does_its_file_again(tmp_path: Path) -> Non
     found = outcome(tmp_path, "convert:mjcf=killed_once")
     assert (tmp_path / "grave").exists()
     assert rows(found) == [("hymeko", "done", "", "same"), ("mjcf", "done", "", "same")]
+
+
+@pytest.mark.skipif("forkserver" not in multiprocessing.get_all_start_methods(), reason="processes cannot be forked from a server here")
+def test_a_process_begins_with_the_heavy_libraries_loaded(tmp_path: Path) -> None:
+    case = Case("p", str(tmp_path), "any.urdf", "urdf")
+    assert Processes().run(note_modules, case, PLAN, "", str(tmp_path), ()) is None
+    at_hand = set((tmp_path / "modules").read_text().split())
+    assert {"mujoco", "numpy", "pinocchio", "pxr", "trimesh", *preloaded()} - at_hand == set()

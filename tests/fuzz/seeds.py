@@ -9,6 +9,9 @@ import hymeko_x as hx
 from hymeko_x.testing import texts
 
 FOLDER = Path(__file__).parents[2] / "corpus"
+SMALL = Path(__file__).parent / "small"
+"""Texts of a few lines, each about one thing: read within a fraction of a millisecond, and damage hits what they are about."""
+
 LARGEST = 4000
 """Small texts are read quickly, and a mutation hits something that means something."""
 
@@ -26,6 +29,14 @@ def seeds(format: str) -> tuple[bytes, ...]:
         return tuple(written)
     found = [_converted(path, format) for path in sorted(FOLDER.glob("*/*.hymeko"))]
     return (*written, *(text for text in found if len(text) <= LARGEST))
+
+
+@cache
+def small_seeds(format: str) -> tuple[bytes, ...]:
+    """The small texts of a format, in a fixed order."""
+    if format == "xml":
+        return (*(text.encode() for text in texts.SDF), *small_seeds("urdf")[:4], *small_seeds("mjcf")[:4])
+    return tuple(path.read_bytes() for path in sorted((SMALL / format).iterdir()))
 
 
 def _converted(path: Path, format: str) -> bytes:

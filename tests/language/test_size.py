@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import statistics
+import time
 from typing import TYPE_CHECKING
 
 import pytest
@@ -77,3 +78,20 @@ def test_parameters_of_one_name_stay_together_and_in_order() -> None:
 
 def test_letters_are_no_white_space() -> None:
     assert letters(" a\n\tb c ") == 3
+
+
+@pytest.mark.slow
+def test_printing_takes_little_longer_than_reading_where_thousands_of_values_are_shared() -> None:
+    """Every set of fields that two elements share could be a stereotype."""
+    joints = (
+        f"  @j{n} {{ [0 0 {n % 1000}] + b{n} - b{n + 1} limit [-1 {n % 600}] effort {n % 1500} velocity {n % 750} "
+        f"damping {n % 500} friction {n % 400} }}"
+        for n in range(3000)
+    )
+    bodies = (f"  b{n} {{ mass {n} }}" for n in range(3001))
+    text = "\n".join(("r : robot {", *bodies, *joints, "}"))
+    start = time.process_time()
+    robot = read(Source("robot.hymeko", text.encode()), Report())
+    done = time.process_time()
+    write(robot, Report())
+    assert time.process_time() - done < 2.5 * (done - start)

@@ -21,10 +21,6 @@ def applied(text: str, edits: list[Edit]) -> tuple[str, list[str]]:
     return etree.tostring(root, encoding="unicode"), done
 
 
-def _pick(draw: st.DrawFn, items: list[Any]) -> Any:
-    return items[draw(st.integers(0, 1000)) % len(items)] if items else None
-
-
 # ---- URDF ------------------------------------------------------------------------------------------------------------------
 
 

@@ -35,6 +35,7 @@ MJCF = """<mujoco model="walker">
         </body>
       </body>
       <body name="right_thigh" pos="0 -0.1 -0.2">
+        <camera name="depth" resolution="1280 720" sensorsize="0.004 0.002" focal="0.002 0.002"/>
         <joint name="right_hip" axis="0 1 0" range="-110 20"/>
         <geom name="right_thigh" type="ellipsoid" size="0.05 0.05 0.15" pos="0 0 -0.15"/>
         <body name="right_shin" pos="0 0 -0.35">

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import mujoco
@@ -159,11 +160,25 @@ def test_pure_files_carry_nothing() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "own", "other"), [(MJCF, "mjcf", "urdf"), (MJCF, "mjcf", "xacro"), (URDF, "urdf", "mjcf"), (URDF, "urdf", "xacro")]
+    ("text", "own", "other"),
+    [(MJCF, "mjcf", other) for other in ("urdf", "xacro", "usd")] + [(URDF, "urdf", other) for other in ("mjcf", "xacro", "usd")],
 )
 def test_there_and_back_is_the_same_to_the_last_bit(text: str, own: str, other: str) -> None:
     robot = hx.loads(text, own)
     assert unequal(robot, hx.loads(hx.dumps(robot, other), other)) == []
+
+
+def test_hymeko_says_everything_itself_but_where_a_line_stood() -> None:
+    robot = hx.loads(URDF, "urdf")
+    assert [fault for fault in unequal(robot, hx.loads(hx.dumps(robot, "hymeko"), "hymeko")) if not fault.startswith("layout: ")] == []
+
+
+def test_where_nothing_but_side_notes_differs_they_come_back() -> None:
+    """A file may have no other text than what it carries."""
+    robot = hx.loads('<robot name="r"><link name="base"/></robot>', "urdf")
+    robot = replace(robot, stereotypes={Id("body", "base"): ("platform",)})
+    for other in ("urdf", "xacro", "mjcf", "usd"):
+        assert unequal(robot, hx.loads(hx.dumps(robot, other), other)) == [], other
 
 
 def test_a_file_that_was_copied_is_found_on_the_way_back(tmp_path: Path) -> None:

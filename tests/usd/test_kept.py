@@ -10,8 +10,8 @@ from pxr import Sdf, Usd
 
 from hymeko_x.ir.diff import diff
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
-from hymeko_x.ir.parts import Box, Capsule, Coupling, DofKind, Joint
-from tests.usd.stages import again, opened, parsed, read_text, written
+from hymeko_x.ir.parts import Body, Box, Capsule, Coupling, DofKind, Joint
+from tests.usd.stages import HEADER, again, opened, parsed, read_text, written
 from tests.usd.test_read import ENDS, PLACE, body, joint, robot, the_joint
 
 SCALE = '    double3 xformOp:scale = (0.1, 0.2, 0.4)\n    uniform token[] xformOpOrder = ["xformOp:scale"]\n'
@@ -147,3 +147,11 @@ def test_a_joint_that_follows_by_a_polynomial(content: str, apis: str, coefficie
     ((_, _, arcs),) = read_text(text).edges(Coupling)
     assert [(arc.target.name, arc.sign, arc.weight) for arc in arcs] == [("k", 1, (1.0,)), ("j", -1, coefficients)]
     assert missing(text, tmp_path) == {}
+
+
+def test_the_second_prim_of_a_name_gets_no_other_name() -> None:
+    group = 'def Xform "{0}"\n{{\n    def Xform "leg" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])\n    {{\n    }}\n}}\n'
+    mechanism = read_text(HEADER + group.format("one") + group.format("two"))
+    assert [key.name for key, _ in mechanism.vertices(Body)] == ["leg", "leg#2"]
+    assert written(mechanism).count(b"displayName") == 1  # that of the robot
+    assert again(mechanism) == mechanism

@@ -169,7 +169,7 @@ def compare_joints(joint: dict, other: dict) -> set[str]:
         return {"type"}
     if joint["type"] == "FREE":
         return set()
-    pairs = {name: zip(joint[name], other[name], strict=True) for name in ("lower", "upper")}
+    pairs = {name: zip(joint[name], other[name], strict=True) for name in ("lower", "upper", "velocity", "effort")}
     found = {name for name, values in pairs.items() if not all(near(a, b) for a, b in values)}
     return found | ({"frame"} if not all(map(near, place(joint), place(other))) else set())
 

@@ -11,6 +11,7 @@ from pxr import Gf, Sdf, Usd, UsdPhysics
 
 from hymeko_x.verify import model_of, verify
 from hymeko_x.verify.model import KinematicModel
+from tests.usd.stages import HEADER
 from tests.verify.robots import ARM_MJCF, ARM_URDF, RIG_MJCF
 from tests.verify.usd_writer import usd_of
 
@@ -154,3 +155,74 @@ def test_several_joints_between_two_bodies_are_the_joints_of_one_body(written: W
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
     other = model_of(written("mjcf", text.replace("BODY", inner.replace('pos="0 0.1 0"', 'pos="0.01 0.1 0"'))))
     assert POSITION in {check.quantity for check in verify(model, written("usd", usd_of(other)), samples=20).failed}
+
+
+WORLD_AND_ARM = (
+    HEADER
+    + """def Xform "robot"
+{
+    def Xform "world" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])
+    {
+    }
+    def Xform "arm" (prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI", "NewtonMassAPI"])
+    {
+        float physics:mass = 1
+        double[] newton:inertia = [0.01, 0, 0.01, 0, 0.002, 0]
+    }
+    def PhysicsFixedJoint "held"
+    {
+        rel physics:body1 = </robot/world>
+    }
+    def PhysicsRevoluteJoint "turn"
+    {
+        rel physics:body0 = </robot/world>
+        rel physics:body1 = </robot/arm>
+    }
+}
+"""
+)
+WORLD_AND_ARM_URDF = """<robot name="robot"><link name="world"/>
+  <link name="arm"><inertial><mass value="1"/><inertia ixx="0.01" ixy="0" ixz="0.002" iyy="0" iyz="0" izz="0.01"/></inertial></link>
+  <joint name="turn" type="continuous"><parent link="world"/><child link="arm"/><axis xyz="1 0 0"/></joint></robot>"""
+
+
+def failed(written: Write, stage: str) -> list[str]:
+    found = verify(written("urdf", WORLD_AND_ARM_URDF), written("usd", stage))
+    assert found.checks
+    return [check.quantity for check in found.failed]
+
+
+def test_a_body_called_world_without_mass_that_is_fixed_there_is_the_world(written: Write) -> None:
+    assert failed(written, WORLD_AND_ARM) == []
+    assert failed(written, WORLD_AND_ARM.replace("PhysicsFixedJoint", "PhysicsPrismaticJoint")) != []
+    assert failed(written, WORLD_AND_ARM.replace('"held"\n    {', '"held"\n    {\n        point3f physics:localPos0 = (0, 0, 1)')) != []
+
+
+def test_a_tensor_without_principal_moments_is_that_of_newton(written: Write) -> None:
+    assert failed(written, WORLD_AND_ARM.replace("0.01, 0, 0.01", "0.01, 0.001, 0.01")) == ["inertia tensor"]
+    assert "inertia tensor" in failed(written, WORLD_AND_ARM.replace("double[] newton:inertia", "double[] other:inertia"))
+
+
+LOOP = """    def PhysicsRevoluteJoint "again"
+    {
+        rel physics:body0 = </robot/world>
+        rel physics:body1 = </robot/arm>
+        point3f physics:localPos0 = (0.1, 0, 0)
+        point3f physics:localPos1 = (0.1, 0, 0)
+        bool physics:excludeFromArticulation = true
+    }
+"""
+POINTS = """<mujoco><worldbody><body name="arm"><joint name="turn" axis="1 0 0"/>
+  <inertial mass="1" pos="0 0 0" fullinertia="0.01 0.01 0.01 0 0.002 0"/></body></worldbody>
+  <equality><connect name="again" body1="arm" anchor="0.1 0 0"/><connect body1="arm" anchor="0.3 0 0"/></equality></mujoco>"""
+
+
+def test_two_points_that_stay_together_are_a_hinge(written: Write) -> None:
+    stage = written("usd", (WORLD_AND_ARM.rstrip()[:-1] + LOOP + "}\n").replace("0.01, 0, 0.01", "0.01, 0.01, 0.01"))
+    points = written("mjcf", POINTS)
+    for pair in ((stage, points), (points, stage)):
+        assert [f"{check.quantity} at {check.at}" for check in verify(*pair).failed] == []
+    skew = written("mjcf", POINTS.replace("0.3 0 0", "0.3 0.1 0"))
+    assert [check.quantity for check in verify(stage, skew).failed] == ["loop closure, rotation"]
+    alone = written("mjcf", POINTS.replace('<connect body1="arm" anchor="0.3 0 0"/>', ""))
+    assert [check.quantity for check in verify(stage, alone).failed] == ["loops"]

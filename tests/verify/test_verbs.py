@@ -13,7 +13,6 @@ import hymeko_x as hx
 from hymeko_x import codes
 from hymeko_x.cli import exits, main
 from hymeko_x.diagnostics import Refusal
-from hymeko_x.ir.legalize import RULES
 from tests.verify.robots import ARM_MJCF, ARM_URDF, RIG_MJCF
 
 Write = Callable[[str, str], Path]
@@ -139,13 +138,13 @@ def test_convert_ends_with_4_when_the_result_is_another_robot(
     arm: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A rewriting rule that forgets the couplings, as a bug of ours might."""
-    from hymeko_x.ir import legalize
+    from hymeko_x.ir import rules_mjcf
 
     def forget(mechanism: hx.Mechanism, options: object, report: object) -> hx.Mechanism:
         gone = [key for key in mechanism.graph.edges if key.kind == "coupling"]
         return mechanism.with_graph(mechanism.graph.replace(without=gone))
 
-    monkeypatch.setattr(legalize, "RULES", {**RULES, "mjcf": (*RULES["mjcf"], forget)})
+    monkeypatch.setattr(rules_mjcf, "RULES", (*rules_mjcf.RULES, forget))
     assert main(["convert", arm, str(tmp_path / "out.xml"), "--verify", "--samples", "5"]) == exits.DIFFERENT
     err = capsys.readouterr().err
     assert "\ndifferent\n" in err

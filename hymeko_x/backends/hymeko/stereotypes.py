@@ -7,20 +7,21 @@ on with the elements that are left. Reading merges the fields again, in the same
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from dataclasses import dataclass, field
-from itertools import combinations
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.backends.hymeko.parts import value_of
 from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
+from hymeko_x.ir.factor_sets import candidates, common_words
 from hymeko_x.language.expand import standard_templates
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, Stereotype
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+
+    from hymeko_x.ir.factor_sets import Pair, Row
 
 _SHAPES = frozenset({"visual", "collision", "shape"})
 _WHOLE = frozenset({"safety", "calibration", "written"})
@@ -31,7 +32,6 @@ _LEAST = 12
 """Letters that a stereotype must save to be worth a name."""
 _MOST = 32
 """Stereotypes of one kind of element."""
-_SEEDS = 24
 _NAMES = {
     "visual": "look",
     "collision": "hull",
@@ -77,16 +77,28 @@ class _Carrier:
     units: dict[str, _Unit]
     stereotype: str = ""
     said: dict[str, _Unit] = field(default_factory=dict)
+    left: list[_Unit] = field(init=False)
+    """The units that the element says itself."""
+    pairs: Row = field(init=False)
+    """The slots and texts of those."""
+
+    def __post_init__(self) -> None:
+        self._keep(list(self.units.values()))
 
     def is_said(self, slot: str) -> bool:
         """Whether its stereotype says this unit as it is."""
         told = self.said.get(slot)
         return told is not None and told.text == self.units[slot].text
 
-    @property
-    def left(self) -> list[_Unit]:
-        """The units that the element says itself."""
-        return [unit for slot, unit in self.units.items() if not self.is_said(slot)]
+    def refine(self, definition: _Definition) -> None:
+        """Give the element a stereotype; what was said by another one is said by that, too."""
+        self.stereotype = definition.name
+        self.said = {**self.said, **{unit.slot: unit for unit in definition.units}}
+        self._keep([unit for slot, unit in self.units.items() if not self.is_said(slot)])
+
+    def _keep(self, left: list[_Unit]) -> None:
+        self.left = left
+        self.pairs = [(unit.slot, unit.text) for unit in left]
 
 
 @dataclass(slots=True)
@@ -200,8 +212,7 @@ def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_De
             units, members = best
             definition = _Definition(names.free(_name(kind, units, members)), units, base)
             for member in members:
-                member.stereotype = definition.name
-                member.said = {**member.said, **{unit.slot: unit for unit in units}}
+                member.refine(definition)
             found.append(definition)
             queue.append((members, (Stereotype(Ref((definition.name,))),)))
             gone = {member.path for member in members}
@@ -211,8 +222,7 @@ def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_De
 
 def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carrier]] | None:
     """The set of units that saves most, and the elements that it serves."""
-    masks = _masks(carriers)
-    for shared in _candidates(masks):
+    for shared in candidates([carrier.pairs for carrier in carriers]):
         members = [carrier for carrier in carriers if all(_has(carrier, pair) for pair in shared)]
         units = _in_order(kind, shared, members)
         members = [carrier for carrier in members if _keeps_order(kind, units, carrier)]
@@ -221,48 +231,12 @@ def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carri
     return None
 
 
-_Pair = tuple[str, str]
-
-
-def _has(carrier: _Carrier, pair: _Pair) -> bool:
+def _has(carrier: _Carrier, pair: Pair) -> bool:
     unit = carrier.units.get(pair[0])
     return unit is not None and unit.text == pair[1]
 
 
-def _masks(carriers: list[_Carrier]) -> dict[_Pair, int]:
-    """For every unit that occurs more than once the elements that have it, as bits."""
-    found: dict[_Pair, int] = {}
-    for number, carrier in enumerate(carriers):
-        for unit in carrier.left:
-            pair = (unit.slot, unit.text)
-            found[pair] = found.get(pair, 0) | (1 << number)
-    return {pair: mask for pair, mask in found.items() if mask & (mask - 1)}
-
-
-def _candidates(masks: Mapping[_Pair, int]) -> list[frozenset[_Pair]]:
-    """Sets of units that elements share, by what they would save, the best first."""
-    sharing: dict[int, set[_Pair]] = {}
-    for pair, mask in masks.items():
-        sharing.setdefault(mask, set()).add(pair)
-    ranked = sorted(sharing.items(), key=lambda entry: (-_worth(entry[0], entry[1]), sorted(entry[1])))[: 8 * _SEEDS]
-    closed = {mask: frozenset(pair for pair, other in masks.items() if other & mask == mask) for mask, _ in ranked}
-    seeds = sorted(closed, key=lambda mask: (-_worth(mask, closed[mask]), sorted(closed[mask])))[:_SEEDS]
-    for first, second in combinations(seeds, 2):
-        both = first & second
-        if both & (both - 1) and both not in closed:
-            closed[both] = frozenset(pair for pair, other in masks.items() if other & both == both)
-    scored = [(_worth(mask, shared), shared) for mask, shared in closed.items()]
-    ranked_sets = sorted((entry for entry in scored if entry[0] >= _LEAST), key=lambda entry: (-entry[0], sorted(entry[1])))
-    return [shared for _, shared in ranked_sets[:_SEEDS]]
-
-
-def _worth(mask: int, shared: Iterable[_Pair]) -> int:
-    """About how many letters a stereotype of these units saves."""
-    cost = sum(len(text) for _, text in shared)
-    return (mask.bit_count() - 1) * cost - 10
-
-
-def _in_order(kind: str, shared: frozenset[_Pair], members: list[_Carrier]) -> list[_Unit]:
+def _in_order(kind: str, shared: frozenset[Pair], members: list[_Carrier]) -> list[_Unit]:
     """The units of a stereotype in the order of its first element.
 
     Where order counts, what stands between them and differs is said as well, as it is mostly; elements then say their own.
@@ -341,18 +315,10 @@ def _name(kind: str, units: list[_Unit], members: list[_Carrier]) -> str:
             if isinstance(name, str) and name:
                 return name
     if len(members[0].path) == 1:
-        common = _common_words([member.node.name for member in members])
+        common = common_words([member.node.name for member in members])
         if common and kind:
             return common
     return _NAMES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
-
-
-def _common_words(names: list[str]) -> str:
-    """The words that all names share, in the order of the first: ``hip_joint`` of ``left_hip_joint`` and ``right_hip_joint``."""
-    split = [[word for word in re.split(r"[\W_\d]+", name) if word] for name in names]
-    shared = set(split[0]).intersection(*split[1:])
-    kept = [word for word in dict.fromkeys(split[0]) if word in shared]
-    return "_".join(kept) if any(len(word) > 2 for word in kept) else ""
 
 
 # ---- applying ------------------------------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.assets import write_assets
 from hymeko_x.backends.mjcf.bodies import write_worldbody
-from hymeko_x.backends.mjcf.geoms import write_defaults
+from hymeko_x.backends.mjcf.classes import write_defaults
 from hymeko_x.backends.mjcf.names import printed_names
 from hymeko_x.backends.mjcf.relations import write_actuators, write_contacts, write_equalities
 from hymeko_x.backends.mjcf.text import Text
@@ -37,8 +37,11 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     text = Text()
     text.open("mujoco", {"model": mechanism.name or None})
     text.leaf("compiler", {"angle": "radian", "autolimits": "true"})
-    for section in (write_defaults, write_assets, write_worldbody, write_contacts, write_equalities, write_actuators):
+    place, defaults = text.place, Text("mujoco")
+    for section in (write_assets, write_worldbody, write_contacts, write_equalities, write_actuators):
         section(text, mechanism, names)
+    write_defaults(defaults, text.leaves)
+    text.insert(place, defaults)
     text.close()
     return Package(text.bytes())
 

@@ -58,8 +58,10 @@ def write_joint(text: Text, view: JointView, dof: Dof) -> None:
     name = dof.name or view.id.name
     behaviour = _behaviour_attributes(dof)
     if dof.kind is DofKind.FREE:
-        tag, kind = ("joint", "free") if any(value is not None for value in behaviour.values()) else ("freejoint", None)
-        text.leaf(tag, {"name": name, "type": kind, **behaviour})
+        if any(value is not None for value in behaviour.values()):
+            text.later("joint", {"name": name, "type": "free", **behaviour}, name)
+        else:
+            text.leaf("freejoint", {"name": name})
         return
     anchor = apply(view.child_pose, dof.anchor)
     turns = dof.kind is not DofKind.SLIDE
@@ -71,7 +73,7 @@ def write_joint(text: Text, view: JointView, dof: Dof) -> None:
         "range": _range(dof),
         **behaviour,
     }
-    text.leaf("joint", attributes)
+    text.later("joint", attributes, name)
 
 
 def _range(dof: Dof) -> str | None:

@@ -1,4 +1,4 @@
-"""Geoms, and the default classes that say what is for the eye and what is for contact."""
+"""Geoms."""
 
 from __future__ import annotations
 
@@ -6,33 +6,14 @@ from typing import TYPE_CHECKING, assert_never
 
 from hymeko_x.backends.mjcf.text import Attributes, Text, number, numbers, pose_attributes
 from hymeko_x.formats.mjcf import CLASSES
-from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Geometry, MeshShape, NoShape, Plane, Role, Sphere
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Geometry, MeshShape, NoShape, Plane, Sphere
 
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.names import Printed
-    from hymeko_x.ir.mechanism import Mechanism, ShapeView
+    from hymeko_x.ir.mechanism import ShapeView
 
 _GRID = 0.05
 """Spacing in m of the lines with which MuJoCo draws a plane; it has to be positive."""
-
-
-def write_defaults(text: Text, mechanism: Mechanism, names: Printed) -> None:
-    """The classes ``visual`` and ``collision`` where shapes need them. Geoms weigh nothing: bodies say what they weigh."""
-    del names
-    roles = {view.shape.role for views in mechanism.shapes.values() for view in views}
-    if not roles:
-        return
-    text.section("default")
-    text.leaf("geom", {"density": "0"})
-    if Role.VISUAL in roles:
-        text.open("default", {"class": CLASSES[Role.VISUAL]})
-        text.leaf("geom", {"contype": "0", "conaffinity": "0", "group": "2"})
-        text.close()
-    if Role.COLLISION in roles:
-        text.open("default", {"class": CLASSES[Role.COLLISION]})
-        text.leaf("geom", {"group": "3"})
-        text.close()
-    text.close()
 
 
 def write_geom(text: Text, view: ShapeView, names: Printed) -> None:
@@ -50,7 +31,7 @@ def write_geom(text: Text, view: ShapeView, names: Printed) -> None:
         "density": number(shape.density),
         "friction": numbers(*shape.friction) if shape.friction else None,
     }
-    text.leaf("geom", attributes)
+    text.later("geom", attributes, view.body.name)
 
 
 def geometry_attributes(geometry: Geometry) -> Attributes:

@@ -117,7 +117,7 @@ def write_actuators(text: Text, mechanism: Mechanism, names: Printed) -> None:
     text.section("actuator")
     for key, actuator in actuators:
         target = _target_attributes(drives[key], names)
-        text.leaf(actuator.kind, {"name": names.of(key), **target, **_parameter_attributes(actuator.parameters)})
+        text.later(actuator.kind, {"name": names.of(key), **target, **_parameter_attributes(actuator.parameters)}, key.name)
     text.close()
 
 

@@ -25,29 +25,60 @@ Attributes = dict[str, str | None]
 """The attributes of an element in the order of printing; None is not printed."""
 
 
-class Text:
-    """XML under construction: elements are opened, closed and left in document order; two blanks per level."""
+class Leaf:
+    """An element without children whose attributes may still change: what a default class says, it need not."""
 
-    def __init__(self) -> None:
-        self._lines: list[str] = []
-        self._open: list[str] = []
-        self._indent = ""
+    __slots__ = ("about", "attributes", "indent", "tag")
+
+    def __init__(self, tag: str, attributes: Attributes, indent: str, about: str) -> None:
+        self.tag = tag
+        self.attributes = attributes
+        self.indent = indent
+        self.about = about
+
+    def __str__(self) -> str:
+        return f"{self.indent}<{self.tag}{_attributes_text(self.attributes)}/>"
+
+
+class Text:
+    """XML under construction: elements are opened, closed and left in document order; two blanks per level.
+
+    ``inside`` are the tags of the elements around it, where it is a part that another text takes over.
+    """
+
+    def __init__(self, *inside: str) -> None:
+        self._lines: list[str | Leaf] = []
+        self._open = list(inside)
+        self.leaves: list[Leaf] = []
 
     def open(self, tag: str, attributes: Mapping[str, str | None]) -> None:
         """Start an element that has children."""
         self._line(f"<{tag}{_attributes_text(attributes)}>")
         self._open.append(tag)
-        self._indent = "  " * min(len(self._open), _DEEPEST)
 
     def close(self) -> None:
         """End the innermost open element."""
         tag = self._open.pop()
-        self._indent = "  " * min(len(self._open), _DEEPEST)
         self._line(f"</{tag}>")
 
     def leaf(self, tag: str, attributes: Mapping[str, str | None]) -> None:
         """Add an element without children."""
         self._line(f"<{tag}{_attributes_text(attributes)}/>")
+
+    def later(self, tag: str, attributes: Attributes, about: str) -> None:
+        """Add an element without children that is one of ``leaves`` until the text is done; ``about`` names what it belongs to."""
+        leaf = Leaf(tag, attributes, self._indent(), about)
+        self._lines.append(leaf)
+        self.leaves.append(leaf)
+
+    def insert(self, place: int, other: Text) -> None:
+        """Put the lines of another text before a line of this one."""
+        self._lines[place:place] = other._lines
+
+    @property
+    def place(self) -> int:
+        """How many lines there are."""
+        return len(self._lines)
 
     def section(self, tag: str, attributes: Mapping[str, str | None] = _NO_ATTRIBUTES) -> None:
         """Start a section: an element with an empty line before it."""
@@ -77,10 +108,13 @@ class Text:
 
     def bytes(self) -> bytes:
         """The text so far in UTF-8, with a newline at its end."""
-        return ("\n".join(self._lines) + "\n").encode()
+        return ("\n".join(map(str, self._lines)) + "\n").encode()
 
     def _line(self, text: str) -> None:
-        self._lines.append(self._indent + text)
+        self._lines.append(self._indent() + text)
+
+    def _indent(self) -> str:
+        return "  " * min(len(self._open), _DEEPEST)
 
 
 _ESCAPES = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}

@@ -84,33 +84,26 @@ def _target(sheet: Sheet, key: Id, relative: str) -> Any | None:
 def _merge(sheet: Sheet, spec: Any, path: Any) -> None:
     """Everything that a block says about a prim, on the prim at this path, which may have to be made."""
     there = sheet.layer.GetPrimAtPath(path)
-    restored = sheet.restored.setdefault(path, set())
     if there is None:
         there = _new_prim(sheet, path)
         there.specifier = spec.specifier
-    if spec.typeName:
-        restored.add("@type")
     if spec.specifier != Sdf.SpecifierOver:
         there.specifier = spec.specifier
     if spec.typeName and (there.typeName in ("", "Xform") or path not in sheet.made):
         there.typeName = spec.typeName
     if not spec.typeName and spec.specifier != Sdf.SpecifierOver and path not in sheet.carried:
         there.ClearInfo("typeName")
-        restored.add("@type")
     if spec.HasInfo("apiSchemas"):
         schemas = spec.GetInfo("apiSchemas").GetAppliedItems()
         present = list(there.GetInfo("apiSchemas").GetAppliedItems()) if there.HasInfo("apiSchemas") else []
         set_schemas(there, [*present, *(schema for schema in schemas if schema not in present)])
-        restored.update(f"@{schema}" for schema in schemas)
     for name in spec.ListInfoKeys():
         if name not in ("specifier", "typeName", "apiSchemas"):
             there.SetInfo(name, spec.GetInfo(name))
-            restored.add(name)
     for item in spec.properties:
         if item.name in there.properties and _says_nothing(item):
             continue
         Sdf.CopySpec(spec.layer, item.path, sheet.layer, path.AppendProperty(item.name))
-        restored.add(item.name)
 
 
 def _says_nothing(item: Any) -> bool:

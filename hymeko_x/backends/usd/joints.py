@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import TYPE_CHECKING, Any
 
@@ -108,11 +109,11 @@ End = tuple[Id, Pose]
 
 def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: tuple[Dof, ...], numbers: list[int]) -> None:
     """Several dofs: a joint for each between the same two bodies, which together are one (Newton, MuJoCo's converters)."""
-    noted = (sheet.mechanism.notation(view.id, words.PATH) or "").split()
+    numbered = [f"{view.id.name}_{place + 1}" for place in range(len(dofs))]
+    names = [dof.name or name for dof, name in zip(dofs, numbered, strict=True)]
+    paths = _parallel_paths(sheet, view.id, names, numbered)
     for place, (number, dof) in enumerate(zip(numbers, dofs, strict=True)):
-        name = dof.name or f"{view.id.name}_{place + 1}"
-        is_free = len(noted) == len(dofs) and Sdf.Path.IsValidPathString(noted[place]) and Sdf.Path(noted[place]) not in sheet.prims
-        path = Sdf.Path(noted[place]) if is_free else sheet.free_path(sheet.scope("joints"), name)
+        path, name = paths[place], names[place]
         spec = sheet.define(path, _TYPES.get(dof.kind, GENERIC), name)
         sheet.made.setdefault(path, []).extend(["displayName"] if "displayName" in spec.info else [])
         write_frames(sheet, spec, view.id, ends, (dof,))
@@ -122,6 +123,21 @@ def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: 
             sheet.carried[path] = {"joint": view.id}
         else:
             sheet.carried.setdefault(path, {})
+
+
+def _parallel_paths(sheet: Sheet, key: Id, names: list[str], numbered: list[str]) -> list[Any]:
+    """Where the joints of one joint's dofs go: where they were, else by their names, which have to be in alphabetical order.
+
+    UsdPhysics' parser lists the joints of an articulation in that order, and Newton takes it for the order of the dofs.
+    """
+    noted = (sheet.mechanism.notation(key, words.PATH) or "").split()
+    there = [Sdf.Path(text) for text in noted if Sdf.Path.IsValidPathString(text) and Sdf.Path(text) not in sheet.prims]
+    if len(there) == len(names):
+        return there
+    group = sheet.scope("joints")
+    paths = [sheet.free_path(group, name) for name in names]
+    is_ordered = all(first < second for first, second in itertools.pairwise(paths))
+    return paths if is_ordered else [sheet.free_path(group, name) for name in numbered]
 
 
 # ---- one prim ------------------------------------------------------------------------------------------------------------------

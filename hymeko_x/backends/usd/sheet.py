@@ -25,8 +25,7 @@ class Sheet:
     """The layer, and where each element's prim is: ``homes`` by id, ``dofs`` the prim of each dof of a joint.
 
     ``carried`` holds by prim the elements that it carries, by their kinds; ``made`` what we added to a prim that no element
-    says, which the reader overlooks; ``restored`` what extras say about it. ``skins`` is the shape of each body whose own prim
-    is its geometry, ``scales`` the scale of such a prim.
+    says. ``skins`` is the shape of each body whose own prim is its geometry, ``scales`` the scale of such a prim.
     """
 
     mechanism: Mechanism
@@ -37,7 +36,6 @@ class Sheet:
     carried: dict[Any, dict[str, Id]] = field(default_factory=dict)
     made: dict[Any, list[str]] = field(default_factory=dict)
     prims: dict[Any, Prim] = field(default_factory=dict)
-    restored: dict[Any, set[str]] = field(default_factory=dict)
     skins: dict[Id, Id] = field(default_factory=dict)
     scales: dict[Id, Vec3] = field(default_factory=dict)
     surfaces: dict[Id, Surface | None] = field(default_factory=dict)
@@ -82,7 +80,10 @@ class Sheet:
         if noted is not None and below and not (noted != parent and noted.HasPrefix(parent)):
             noted = None
         path = noted or self.free_path(self.scope(parent) if isinstance(parent, str) else parent, name or key.name)
-        return self.put_prim(key, path, kind, name)
+        own = name or key.name
+        if noted is not None and own.partition("#")[0] == noted.name:  # the second prim of that name
+            own = noted.name
+        return self.put_prim(key, path, kind, own)
 
     def put_prim(self, key: Id, path: Any, kind: str, name: str | None = None) -> Prim:
         """A new prim at this path for an element."""

@@ -31,7 +31,9 @@ def normals_of(surface: Surface) -> NDArray[Any]:
     """The unit normal of each triangle (n x 3, single precision), by the right hand; z where a triangle has none."""
     points, faces = surface
     first, second, third = (points[faces[corner::3]].astype(np.float64) for corner in range(3))
-    normals = np.cross(second - first, third - first)
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    up = np.broadcast_to(np.array([0.0, 0.0, 1.0]), normals.shape)
-    return np.where(lengths > 0.0, np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0), up).astype(np.float32)
+    (ax, ay, az), (bx, by, bz) = (second - first).T, (third - first).T
+    normals = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
+    lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
+    flat = ~(lengths > 0.0)
+    normals[flat], lengths[flat] = (0.0, 0.0, 1.0), 1.0
+    return np.asarray(normals / lengths[:, None], dtype=np.float32)

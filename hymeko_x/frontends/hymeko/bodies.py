@@ -114,7 +114,9 @@ def _inertial(block: Block, place: Pose) -> parts.Inertial | None:
         return replace(inertial, tensor=local)
     turn = cast("tuple[Value, ...]", axes.value)
     frame = context.pose((ZERO, *turn) if turn and isinstance(turn[0], str) else (ZERO, turn), axes)
-    return replace(inertial, tensor=rotate_tensor(frame.quat, local), written=parts.InertialWritten(frame, local))
+    return replace(
+        inertial, tensor=rotate_tensor(frame.quat, local), written=parts.InertialWritten(replace(frame, xyz=inertial.com), local)
+    )
 
 
 def _tensor(numbers: tuple[float, ...], item: Field, block: Block) -> Tensor:

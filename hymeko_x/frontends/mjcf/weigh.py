@@ -27,16 +27,16 @@ _SCALES = ("settotalmass", "boundmass", "boundinertia", "balanceinertia")
 """Attributes of <compiler> that change inertias which are said."""
 
 
-def weigh(mechanism: Mechanism, text: bytes, files: Files, report: Report, *, shapes: bool = False) -> Mechanism:
+def weigh(mechanism: Mechanism, text: bytes, files: Files, report: Report) -> Mechanism:
     """The mechanism, which came from MJCF and is ``text`` in it, with the mass, centre of mass and tensor of every body.
 
-    With ``shapes`` also with the points of meshes and the sizes of primitives that only MuJoCo knows. Bodies that weigh
-    nothing stay without. Where MuJoCo is not there or refuses the text, nothing changes, with a warning.
+    So are the points of meshes and the sizes of primitives that only MuJoCo knows. Bodies that weigh nothing stay
+    without. Where MuJoCo is not there or refuses the text, nothing changes, with a warning.
     """
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
     scaled = _is_scaled(mechanism)
     sprung = b"springdamper=" in text
-    meshes, fitted = unsolid(mechanism) if shapes else ([], [])
+    meshes, fitted = unsolid(mechanism)
     if not (wanted or scaled or sprung or meshes or fitted):
         return mechanism
     try:

@@ -7,7 +7,7 @@ what becomes what.
 from __future__ import annotations
 
 from pathlib import PurePath
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
@@ -19,7 +19,7 @@ from hymeko_x.frontends.usd.bare_links import hang_bare_links, read_bare_links
 from hymeko_x.frontends.usd.bodies import BODY, read_body, read_mass
 from hymeko_x.frontends.usd.contacts import read_filtered_pairs
 from hymeko_x.frontends.usd.dialects import is_passive_drive, is_world, read_named_mimic
-from hymeko_x.frontends.usd.draft import Draft, api_schemas
+from hymeko_x.frontends.usd.draft import Draft
 from hymeko_x.frontends.usd.joints import TYPES, ReadJoint, read_joint
 from hymeko_x.frontends.usd.leftovers import gather_leftovers
 from hymeko_x.frontends.usd.lights import read_light
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hymeko_x.diagnostics import Report
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.source import Source
 
 _ARTICULATION = "PhysicsArticulationRootAPI"
@@ -50,11 +51,11 @@ def read(source: Source, report: Report) -> Mechanism:
         draft = Draft(source, report, scene)
         prims = _prims(scene)
         for prim in prims:
-            if BODY in api_schemas(prim):
+            if prim.has_api(BODY):
                 read_body(prim, draft)
         bare = read_bare_links(prims, draft)
         for prim in prims:
-            if prim.GetTypeName() == "Material":
+            if prim.kind == "Material":
                 read_material(prim, draft)
         _read_shapes(prims, draft)
         _read_things(prims, _read_joints(prims, bare, draft), draft)
@@ -73,12 +74,12 @@ def _take_residue(scene: Scene) -> Iterator[str]:
     yield text
 
 
-def _prims(scene: Scene) -> list[Any]:
+def _prims(scene: Scene) -> list[Prim]:
     """All prims in stage order, without the groups that only hold prims of ours."""
-    return [prim for prim in scene.stage.Traverse() if not prim.HasAttribute(f"{words.PREFIX}scope")]
+    return [prim for prim in scene.prims.values() if prim.is_real and f"{words.PREFIX}scope" not in prim.types]
 
 
-def _read_shapes(prims: list[Any], draft: Draft) -> None:
+def _read_shapes(prims: list[Prim], draft: Draft) -> None:
     """Shapes first, then the masses that may follow from them."""
     on: dict[Id, list[Read]] = {}
     for prim in prims:
@@ -86,32 +87,32 @@ def _read_shapes(prims: list[Any], draft: Draft) -> None:
         if found is not None:
             on.setdefault(found[0], []).append(found[1])
     for path, body in draft.bodies.items():
-        read_mass(draft.scene.stage.GetPrimAtPath(path), body, on.get(body, []), draft)
+        read_mass(draft.prim_at(path), body, on.get(body, []), draft)
 
 
-def _read_things(prims: list[Any], ends: dict[str, Driven], draft: Draft) -> None:
+def _read_things(prims: list[Prim], ends: dict[str, Driven], draft: Draft) -> None:
     """What sits on bodies, then what acts on it."""
     for prim in prims:
-        kind = str(prim.GetTypeName())
+        kind = prim.kind
         if kind == "Camera":
             read_camera(prim, draft)
         elif kind in words.LIGHTS:
             read_light(prim, draft)
-        elif any(site in api_schemas(prim) for site in SITES):
+        elif any(prim.has_api(site) for site in SITES):
             read_site(prim, draft)
     for prim in prims:
-        if prim.GetTypeName() == ACTUATOR:
+        if prim.kind == ACTUATOR:
             read_actuator(prim, ends, draft)
     for path in draft.bodies:
-        read_filtered_pairs(draft.scene.stage.GetPrimAtPath(path), draft)
+        read_filtered_pairs(draft.prim_at(path), draft)
 
 
-def _read_joints(prims: list[Any], bare: list[Any], draft: Draft) -> dict[str, Driven]:
+def _read_joints(prims: list[Prim], bare: list[Prim], draft: Draft) -> dict[str, Driven]:
     """The joints, with what acts on them; returns which dof each of their prims is."""
-    joints = [joint for prim in prims if str(prim.GetTypeName()) in TYPES for joint in [read_joint(prim, draft)] if joint is not None]
+    joints = [joint for prim in prims if prim.kind in TYPES for joint in [read_joint(prim, draft)] if joint is not None]
     joints = hang_bare_links(bare, joints, draft)
     joints = build_trees(joints, _articulation_roots(prims, joints, draft), _held(draft), draft)
-    ends = {str(prim.GetPath()): end for joint in joints for prim, end in driven_ends(joint)}
+    ends = {prim.path: end for joint in joints for prim, end in driven_ends(joint)}
     named = {end.dof or end.joint.name: end for end in ends.values()}
     for joint in joints:
         for prim, end in driven_ends(joint):
@@ -122,26 +123,24 @@ def _read_joints(prims: list[Any], bare: list[Any], draft: Draft) -> dict[str, D
     return ends
 
 
-def _articulation_roots(prims: list[Any], joints: list[ReadJoint], draft: Draft) -> list[Id]:
+def _articulation_roots(prims: list[Prim], joints: list[ReadJoint], draft: Draft) -> list[Id]:
     """The bodies at which articulations begin: those that bear the API, or an end of the joint that does."""
-    ends = {str(joint.prim.GetPath()): [end.body for end in joint.ends if end.body != WORLD] for joint in joints}
+    ends = {joint.prim.path: [end.body for end in joint.ends if end.body != WORLD] for joint in joints}
     roots: list[Id] = []
     for prim in prims:
-        if _ARTICULATION in api_schemas(prim):
-            path = str(prim.GetPath())
-            roots += [draft.bodies[path]] if path in draft.bodies else ends.get(path, [])[:1]
+        if prim.has_api(_ARTICULATION):
+            roots += [draft.bodies[prim.path]] if prim.path in draft.bodies else ends.get(prim.path, [])[:1]
     return roots
 
 
 def _held(draft: Draft) -> list[Id]:
     """The bodies whose simulation is switched off, that only a user moves, or that mean the world: by themselves they stand still."""
-    prims = {body: draft.scene.stage.GetPrimAtPath(path) for path, body in draft.bodies.items()}
-    return [body for body, prim in prims.items() if is_world(prim) or _stands_still(prim)]
+    prims = {body: draft.prim_at(path) for path, body in draft.bodies.items()}
+    return [body for body, prim in prims.items() if is_world(prim, draft) or _stands_still(prim)]
 
 
-def _stands_still(prim: Any) -> bool:
-    is_off = prim.GetAttribute("physics:rigidBodyEnabled").Get() is False
-    return is_off or prim.GetAttribute("physics:kinematicEnabled").Get() is True
+def _stands_still(prim: Prim) -> bool:
+    return prim.value("physics:rigidBodyEnabled") is False or prim.value("physics:kinematicEnabled") is True
 
 
 def _finished(scene: Scene, draft: Draft) -> Mechanism:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
@@ -12,6 +12,7 @@ from hymeko_x.ir.parts import Actuator, Drive
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.relations import Driven
     from hymeko_x.ir.mechanism import RobotArc
 
@@ -19,12 +20,12 @@ _GENERAL = ("gaintype", "gainprm", "biastype", "biasprm", "dyntype", "dynprm")
 _KINDS = ("frame", "body", "tendon")
 
 
-def read_actuator(prim: Any, ends: dict[str, Driven], draft: Draft) -> None:
+def read_actuator(prim: Prim, ends: dict[str, Driven], draft: Draft) -> None:
     """The actuator of a prim with the edge to its targets; one without a target that we know stays an extra."""
     arcs = [arc for role, name in _relationships(prim) for arc in _arcs(prim, role, name, ends, draft)]
     if not arcs:
-        said = f"actuator '{prim.GetPath()}' acts on nothing that is known; it is kept as written"
-        draft.report.warn(codes.UNDEFINED_REFERENCE, said, draft.origin, element=str(prim.GetPath()))
+        said = f"actuator '{prim.path}' acts on nothing that is known; it is kept as written"
+        draft.report.warn(codes.UNDEFINED_REFERENCE, said, draft.origin, element=prim.path)
         return
     parameters = _parameters(prim, draft)
     kind = "general" if any(name in _GENERAL for name, _ in parameters) else "motor"
@@ -34,21 +35,21 @@ def read_actuator(prim: Any, ends: dict[str, Driven], draft: Draft) -> None:
     gear = draft.get(prim, "mjc:gear")
     weight = _trimmed(tuple(map(float, gear))) if gear is not None else None
     first: RobotArc = Arc(arcs[0].target, -1, weight, arcs[0].role)
-    is_in_parent = prim.GetAttribute("mjc:jointInParent").Get() is True if prim.HasAttribute("mjc:jointInParent") else False
+    is_in_parent = prim.value("mjc:jointInParent") is True
     draft.take(prim, "@type", *(name for _, name in _relationships(prim)), *(["mjc:jointInParent"] if is_in_parent else []))
     drive = Drive("jointinparent" if is_in_parent else "")
     draft.edges[draft.own(prim, "drive", key.name)] = Edge(drive, (Arc(key, 1), first, *arcs[1:]))
 
 
-def _relationships(prim: Any) -> list[tuple[str, str]]:
+def _relationships(prim: Prim) -> list[tuple[str, str]]:
     """The relationships that name something, with the role of it. A target beside a slider is the crank."""
-    named = [name for name in (table.TARGET, table.SLIDER, table.REFERENCE) if prim.GetRelationship(name).GetTargets()]
+    named = [name for name in (table.TARGET, table.SLIDER, table.REFERENCE) if prim.targets(name)]
     roles = {table.TARGET: "crank" if table.SLIDER in named else "", table.SLIDER: "slider", table.REFERENCE: "reference"}
     return [(roles[name], name) for name in named]
 
 
-def _arcs(prim: Any, role: str, name: str, ends: dict[str, Driven], draft: Draft) -> list[RobotArc]:
-    path = str(prim.GetRelationship(name).GetTargets()[0])
+def _arcs(prim: Prim, role: str, name: str, ends: dict[str, Driven], draft: Draft) -> list[RobotArc]:
+    path = prim.targets(name)[0]
     end = ends.get(path)
     if end is not None:
         return [Arc(end.joint, -1, None, end.dof)]
@@ -59,7 +60,7 @@ def _arcs(prim: Any, role: str, name: str, ends: dict[str, Driven], draft: Draft
 # ---- parameters ------------------------------------------------------------------------------------------------------------------
 
 
-def _parameters(prim: Any, draft: Draft) -> list[tuple[str, float | str | tuple[float, ...]]]:
+def _parameters(prim: Prim, draft: Draft) -> list[tuple[str, float | str | tuple[float, ...]]]:
     """What the prim says beside its targets, under the names of MJCF; what is the schema's default says nothing."""
     found: list[tuple[str, float | str | tuple[float, ...]]] = []
     for name, attribute in table.TOKENS.items():
@@ -73,8 +74,7 @@ def _parameters(prim: Any, draft: Draft) -> list[tuple[str, float | str | tuple[
         if value is not None:
             found.append((name, _trimmed(tuple(map(float, value)))))
     for name, attribute in table.RANGES.items():
-        ends = [prim.GetAttribute(f"mjc:{attribute}:{end}") for end in ("min", "max")]
-        if any(end and end.HasAuthoredValue() for end in ends):
+        if any(prim.has_value(f"mjc:{attribute}:{end}") for end in ("min", "max")):
             low, high = (float(draft.get(prim, f"mjc:{attribute}:{end}") or 0.0) for end in ("min", "max"))
             found.append((name, (low, high)))
     for name, attribute in (*table.NUMBERS.items(), *table.INTEGERS.items()):
@@ -84,9 +84,9 @@ def _parameters(prim: Any, draft: Draft) -> list[tuple[str, float | str | tuple[
     return found
 
 
-def _leave(prim: Any, name: str, draft: Draft) -> None:
+def _leave(prim: Prim, name: str, draft: Draft) -> None:
     """A property that was looked at stays an extra."""
-    draft.taken.get(str(prim.GetPath()), set()).discard(name)
+    draft.taken.get(prim.path, set()).discard(name)
 
 
 def _trimmed(values: tuple[float, ...]) -> tuple[float, ...]:

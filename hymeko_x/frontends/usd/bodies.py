@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.formats import usd as words
-from hymeko_x.frontends.usd.draft import has_api
+from hymeko_x.frontends.usd.bindings import bound_to
 from hymeko_x.frontends.usd.places import turn_of
 from hymeko_x.frontends.usd.volumes import Solid, joined, solid_of
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Role, Shape
@@ -18,6 +18,7 @@ from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, rotate_ten
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 
 BODY = "PhysicsRigidBodyAPI"
@@ -25,32 +26,32 @@ MASS = "PhysicsMassAPI"
 _DENSITY = 1000.0
 
 
-def read_body(prim: Any, draft: Draft) -> None:
+def read_body(prim: Prim, draft: Draft) -> None:
     """The vertex of a rigid body; its mass comes later, when its shapes are known."""
     key = draft.own(prim, "body")
-    draft.bodies[str(prim.GetPath())] = key
+    draft.bodies[prim.path] = key
     draft.vertices[key] = Body()
-    draft.take(prim, f"@{BODY}", *(name for name in prim.GetAuthoredPropertyNames() if name.startswith("xformOp")))
-    if prim.GetTypeName() in ("Xform", ""):
+    draft.take(prim, f"@{BODY}", *(name for name in prim.properties if name.startswith("xformOp")))
+    if prim.kind in ("Xform", ""):
         draft.take(prim, "@type")
 
 
-def body_at(prim: Any, draft: Draft) -> tuple[Any, Id] | None:
+def body_at(prim: Prim | None, draft: Draft) -> tuple[Prim, Id] | None:
     """The nearest body at or above a prim, as prim and id."""
-    while prim and not prim.IsPseudoRoot():
-        key = draft.bodies.get(str(prim.GetPath()))
+    while prim is not None:
+        key = draft.bodies.get(prim.path)
         if key is not None:
             return prim, key
-        prim = prim.GetParent()
+        prim = prim.parent
     return None
 
 
 # ---- mass --------------------------------------------------------------------------------------------------------------------
 
 
-def read_mass(prim: Any, key: Id, shapes: list[tuple[Any, Shape, Pose, Any]], draft: Draft) -> None:
+def read_mass(prim: Prim, key: Id, shapes: list[tuple[Prim, Shape, Pose, Any]], draft: Draft) -> None:
     """The inertial of a body. ``shapes`` are its own, each with its prim, pose in the body and mesh points."""
-    stated = _stated(prim, draft) if has_api(prim, MASS) else Inertial()
+    stated = _stated(prim, draft) if prim.has_api(MASS) else Inertial()
     if stated.mass is not None and stated.tensor is not None:
         draft.take(prim, f"@{MASS}")
         draft.vertices[key] = Body(stated)
@@ -63,7 +64,7 @@ def read_mass(prim: Any, key: Id, shapes: list[tuple[Any, Shape, Pose, Any]], dr
     draft.take(prim, f"@{MASS}", *(["physics:mass"] if solids else []))
 
 
-def _stated(prim: Any, draft: Draft) -> Inertial:
+def _stated(prim: Prim, draft: Draft) -> Inertial:
     """What the body's own MassAPI says; None for what it leaves to be computed."""
     scene = draft.scene
     mass = draft.number(prim, "physics:mass", 0.0) * scene.kilograms
@@ -76,7 +77,7 @@ def _stated(prim: Any, draft: Draft) -> Inertial:
     return Inertial(mass if mass > 0.0 else None, com, tensor, written)
 
 
-def _tensor(prim: Any, com: Vec3, unit: float, draft: Draft) -> tuple[Tensor | None, InertialWritten | None]:
+def _tensor(prim: Prim, com: Vec3, unit: float, draft: Draft) -> tuple[Tensor | None, InertialWritten | None]:
     """The tensor in body axes: Newton's six doubles before UsdPhysics' principal moments."""
     full = draft.get(prim, "newton:inertia")
     diagonal = draft.get(prim, "physics:diagonalInertia")
@@ -94,7 +95,7 @@ def _tensor(prim: Any, com: Vec3, unit: float, draft: Draft) -> tuple[Tensor | N
     return rotate_tensor(quat, principal), InertialWritten(Pose(com, quat), principal)
 
 
-def _solid(prim: Any, shape: Shape, pose: Pose, points: Any, density: float, draft: Draft) -> Solid | None:
+def _solid(prim: Prim, shape: Shape, pose: Pose, points: Any, density: float, draft: Draft) -> Solid | None:
     """A collider with its mass, by the rules of precedence; None for what has no volume or only is looked at."""
     if shape.role is Role.VISUAL:
         return None
@@ -106,21 +107,18 @@ def _solid(prim: Any, shape: Shape, pose: Pose, points: Any, density: float, dra
         return unit.times(mass / unit.mass)
     per_volume = draft.scene.kilograms / draft.scene.metres**3
     own = _plain(prim, "physics:density") * per_volume
-    return unit.times(own or density or _material_density(prim) * per_volume or _DENSITY)
+    return unit.times(own or density or _material_density(prim, draft) * per_volume or _DENSITY)
 
 
-def _material_density(prim: Any) -> float:
+def _material_density(prim: Prim, draft: Draft) -> float:
     """The density of the physics material that is bound to a collider, 0 without one."""
-    from pxr import UsdShade
-
-    bound = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")[0]
-    return _plain(bound.GetPrim(), "physics:density") if bound else 0.0
+    bound = bound_to(prim, draft.scene, "physics")
+    return _plain(bound, "physics:density") if bound is not None else 0.0
 
 
-def _plain(prim: Any, name: str) -> float:
+def _plain(prim: Prim, name: str) -> float:
     """A number that stays an extra even though it counts here; 0 without one."""
-    attribute = prim.GetAttribute(name)
-    value = attribute.Get() if attribute else None
+    value = prim.value(name)
     return words.single(value) if isinstance(value, float) and value > 0.0 else 0.0
 
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
-
-from pxr import UsdShade
+from typing import TYPE_CHECKING
 
 from hymeko_x.formats.usd import single
-from hymeko_x.frontends.usd.draft import has_api
+from hymeko_x.frontends.usd.bindings import bound_to
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Contact
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.prims import Prim
 
 PAIRS = "PhysicsFilteredPairsAPI"
 _TARGETS = "physics:filteredPairs"
@@ -23,10 +22,10 @@ _FRICTIONS = (
 )
 
 
-def read_filtered_pairs(prim: Any, draft: Draft) -> None:
+def read_filtered_pairs(prim: Prim, draft: Draft) -> None:
     """Each body that another one is filtered against; a list that names anything else than bodies stays an extra."""
-    body = draft.bodies.get(str(prim.GetPath()))
-    others = [draft.bodies.get(str(path)) for path in prim.GetRelationship(_TARGETS).GetTargets()] if has_api(prim, PAIRS) else []
+    body = draft.bodies.get(prim.path)
+    others = [draft.bodies.get(path) for path in prim.targets(_TARGETS)] if prim.has_api(PAIRS) else []
     if body is None or not others or None in others:
         return
     draft.take(prim, f"@{PAIRS}", _TARGETS)
@@ -36,13 +35,15 @@ def read_filtered_pairs(prim: Any, draft: Draft) -> None:
             draft.edges[key] = Edge(Contact("exclude"), (Arc(body), Arc(other)))
 
 
-def friction_of(prim: Any) -> tuple[float, ...]:
+def friction_of(prim: Prim, draft: Draft) -> tuple[float, ...]:
     """Sliding, torsional and rolling friction of a collider by its physics material; nothing where that does not say."""
-    bound = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")[0]
+    bound = bound_to(prim, draft.scene, "physics")
     found: list[float] = []
-    for names in _FRICTIONS if bound else ():
-        said = [bound.GetPrim().GetAttribute(name).Get() for name in names if bound.GetPrim().GetAttribute(name).HasAuthoredValue()]
-        if not said:
+    if bound is None:
+        return ()
+    for names in _FRICTIONS:
+        said = next((value for name in names for value in [bound.value(name)] if value is not None), None)
+        if said is None:
             break
-        found.append(single(float(said[0])))
+        found.append(single(float(said)))
     return tuple(found)

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Coupling, DofKind
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.relations import Driven
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.parts import Dof, Limits
@@ -25,17 +26,17 @@ _JOINT = "cyberwave:joint:"
 # ---- dofs ----------------------------------------------------------------------------------------------------------------------
 
 
-def with_dialect(prim: Any, dof: Dof, draft: Draft) -> Dof:
+def with_dialect(prim: Prim, dof: Dof, draft: Draft) -> Dof:
     """The dof with what a converter says about it in its own attributes where the public ones say nothing."""
     if dof.kind not in (DofKind.HINGE, DofKind.SLIDE):
         return dof
     effort = draft.get(prim, "urdf:limit:effort")
     if effort is not None and dof.limits.effort is None:
         dof = replace(dof, limits=replace(dof.limits, effort=effort))
-    return _cyberwave_dof(prim, dof, draft) if prim.HasAttribute(f"{_JOINT}type") else dof
+    return _cyberwave_dof(prim, dof, draft) if f"{_JOINT}type" in prim.types else dof
 
 
-def _cyberwave_dof(prim: Any, dof: Dof, draft: Draft) -> Dof:
+def _cyberwave_dof(prim: Prim, dof: Dof, draft: Draft) -> Dof:
     draft.take(prim, f"{_JOINT}type", f"{_JOINT}hasLimits", f"{_JOINT}hasDynamics")
     return replace(
         dof,
@@ -47,7 +48,7 @@ def _cyberwave_dof(prim: Any, dof: Dof, draft: Draft) -> Dof:
     )
 
 
-def _cyberwave_limits(prim: Any, limits: Limits, draft: Draft) -> Limits:
+def _cyberwave_limits(prim: Prim, limits: Limits, draft: Draft) -> Limits:
     """Speed and effort, which UsdPhysics has not, and bounds in double precision where they still are those of the joint."""
     lower, upper = (draft.number(prim, f"{_JOINT}limit{name}", math.nan) for name in ("Lower", "Upper"))
     velocity, effort = (draft.number(prim, f"{_JOINT}limit{name}", math.inf) for name in ("Velocity", "Effort"))
@@ -66,15 +67,15 @@ def _sharper(native: float | None, double: float) -> float | None:
     return double if is_same else native
 
 
-def is_passive_drive(prim: Any) -> bool:
+def is_passive_drive(prim: Prim) -> bool:
     """Whether a joint's drive only repeats its damping and spring."""
-    return bool(prim.HasAttribute(f"{_JOINT}hasDynamics"))
+    return f"{_JOINT}hasDynamics" in prim.types
 
 
 # ---- mimics --------------------------------------------------------------------------------------------------------------------
 
 
-def read_named_mimic(prim: Any, end: Driven, named: dict[str, Driven], draft: Draft) -> None:
+def read_named_mimic(prim: Prim, end: Driven, named: dict[str, Driven], draft: Draft) -> None:
     """cyberwave-robot-format's mimic: the name of the leader, in SI units."""
     name = draft.get(prim, f"{_JOINT}mimicJoint")
     leader = named.get(name) if isinstance(name, str) else None
@@ -89,8 +90,6 @@ def read_named_mimic(prim: Any, end: Driven, named: dict[str, Driven], draft: Dr
 # ---- the world -----------------------------------------------------------------------------------------------------------------
 
 
-def is_world(prim: Any) -> bool:
+def is_world(prim: Prim, draft: Draft) -> bool:
     """Whether a rigid body is what cyberwave-robot-format makes of the world body of an MJCF."""
-    return prim.GetName() == "world" and any(
-        "cyberwave" in above.GetCustomData() for above in prim.GetStage().GetPseudoRoot().GetChildren()
-    )
+    return prim.name == "world" and any("cyberwave" in top.custom_data for top in draft.scene.prims.values() if top.parent is None)

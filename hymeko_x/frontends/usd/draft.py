@@ -6,16 +6,15 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from pxr import Usd
-
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
-from hymeko_x.frontends.usd.places import Places
+from hymeko_x.frontends.usd.places import Places, numbers_of
 from hymeko_x.ir.mechanism import Names
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.stage import Scene
     from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
     from hymeko_x.ir.parts import VertexPart
@@ -57,60 +56,64 @@ class Draft:
     def __post_init__(self) -> None:
         self.places = Places(self.scene)
 
+    def prim_at(self, path: str) -> Prim:
+        """The prim at a path that something was read from."""
+        return self.scene.prims[path]
+
     @property
     def origin(self) -> Origin:
         """The file; USD keeps no lines."""
         return Origin(self.source.name)
 
-    def own(self, prim: Any, kind: str, fallback: str | None = None) -> Id:
+    def own(self, prim: Prim, kind: str, fallback: str | None = None) -> Id:
         """A fresh id for the element that a prim stands for, after the name that it carries."""
         key = self.names.take(kind, self._name(prim, fallback))
-        path = str(prim.GetPath())
+        path = prim.path
         self.elements.setdefault(path, []).append(key)
         self.origins[key] = self.origin
         if fallback is None:
             self.note(key, words.PATH, path)
         return key
 
-    def _name(self, prim: Any, fallback: str | None) -> str:
+    def _name(self, prim: Prim, fallback: str | None) -> str:
         if fallback is not None:
             return fallback
-        own = prim.GetAttribute(ORIGINAL_NAME)
-        if own and isinstance(own.Get(), str) and own.Get():
+        own = prim.value(ORIGINAL_NAME)
+        if isinstance(own, str) and own:
             self.take(prim, ORIGINAL_NAME)
-            return str(own.Get())
-        shown = prim.GetMetadata("displayName")
-        return shown if isinstance(shown, str) and shown else str(prim.GetName())
+            return own
+        return prim.display_name or prim.name
 
     def note(self, key: Id, name: str, text: str) -> None:
         """Keep how the author wrote something."""
         self.notations.setdefault(key, {})[name] = text
 
-    def take(self, prim: Any, *names: str) -> None:
+    def take(self, prim: Prim, *names: str) -> None:
         """These properties, ``@Api`` schemas or the ``@type`` of a prim are typed now."""
-        self.taken.setdefault(str(prim.GetPath()), set()).update(names)
+        self.taken.setdefault(prim.path, set()).update(names)
 
-    def get(self, prim: Any, name: str) -> Any:
+    def get(self, prim: Prim, name: str) -> Any:
         """An authored value, single precision as the decimal that it stands for; None without one. The property counts as read.
 
         A value that changes with time stays an extra as well.
         """
-        attribute = prim.GetAttribute(name)
-        if not attribute or not attribute.HasAuthoredValue():
+        if name not in prim.types:
             return None
-        value = attribute.Get()
+        value = prim.value(name)
         if value is None:
-            value = attribute.Get(Usd.TimeCode.EarliestTime())
-        if attribute.GetNumTimeSamples() == 0 and value is not None:
+            value = prim.earliest(name)
+        if value is not None and not prim.is_animated(name):
             self.take(prim, name)
-        return _rounded(value, str(attribute.GetTypeName()))
+        return _rounded(value, prim.types[name])
 
-    def number(self, prim: Any, name: str, default: float) -> float:
+    def number(self, prim: Prim, name: str, default: float) -> float:
         """An authored number, or the default (not a number for none). One that says nothing, which is not written, stays an extra."""
+        if name not in prim.types:
+            return default
         value = self.get(prim, name)
         is_nothing = value == 0.0 or (isinstance(value, float) and math.isinf(value))
         if is_nothing and (value == default or math.isnan(default)):
-            self.taken.get(str(prim.GetPath()), set()).discard(name)
+            self.taken.get(prim.path, set()).discard(name)
         return float(value) if isinstance(value, int | float) else default
 
 
@@ -120,16 +123,5 @@ def _rounded(value: Any, kind: str) -> Any:
     if isinstance(value, float):
         return single(value)
     if kind == "quatf":
-        return (single(value.GetReal()), *map(single, value.GetImaginary()))
-    return tuple(map(single, value))
-
-
-def api_schemas(prim: Any) -> list[str]:
-    """The API schemas of a prim as authored, also those that no plugin knows."""
-    listed = prim.GetMetadata("apiSchemas")
-    return list(listed.GetAppliedItems()) if listed is not None else []
-
-
-def has_api(prim: Any, name: str) -> bool:
-    """Whether the schema is applied."""
-    return name in api_schemas(prim)
+        return (single(value.real), *map(single, numbers_of(value.imaginary)))
+    return tuple(map(single, numbers_of(value)))

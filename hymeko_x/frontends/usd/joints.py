@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.dialects import with_dialect
-from hymeko_x.frontends.usd.draft import has_api
 from hymeko_x.frontends.usd.places import turn_of
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
@@ -18,6 +17,7 @@ from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, X, compose, invers
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 
 GENERIC = "PhysicsJoint"
@@ -50,32 +50,32 @@ class ReadJoint:
     ``merged`` are the prims of its dofs where it was made of several joints.
     """
 
-    prim: Any
+    prim: Prim
     id: Id
     dofs: tuple[Dof, ...]
     ends: tuple[End, End]
     is_enabled: bool
     is_excluded: bool
-    merged: tuple[Any, ...] = ()
+    merged: tuple[Prim, ...] = ()
 
 
-def read_joint(prim: Any, draft: Draft) -> ReadJoint | None:
+def read_joint(prim: Prim, draft: Draft) -> ReadJoint | None:
     """The joint of a prim; None, said and kept as an extra, where it does not connect two bodies."""
     first, second = _end(prim, 0, draft), _end(prim, 1, draft)
     if first is None or second is None:
         return None
     if first.body == second.body:
-        said = f"joint '{prim.GetPath()}' connects {first.body} with itself; it is kept as written and moves nothing"
-        draft.report.warn(codes.MISSING_PART, said, draft.origin, element=str(prim.GetPath()))
+        said = f"joint '{prim.path}' connects {first.body} with itself; it is kept as written and moves nothing"
+        draft.report.warn(codes.MISSING_PART, said, draft.origin, element=prim.path)
         return None
     key = draft.own(prim, "joint")
-    kind = str(prim.GetTypeName())
+    kind = prim.kind
     dofs = _dofs(prim, kind, draft)
     draft.take(prim, "@type", *(f"physics:local{what}{side}" for what in ("Pos", "Rot") for side in "01"))
-    draft.take(prim, *(name for name in ("physics:body0", "physics:body1") if prim.GetRelationship(name).GetTargets()))
+    draft.take(prim, *(name for name in ("physics:body0", "physics:body1") if prim.targets(name)))
     _take_schemas(prim, draft)
-    enabled = prim.GetAttribute("physics:jointEnabled").Get() is not False
-    excluded = bool(prim.GetAttribute("physics:excludeFromArticulation").Get())
+    enabled = prim.value("physics:jointEnabled") is not False
+    excluded = bool(prim.value("physics:excludeFromArticulation"))
     if kind == GENERIC:
         draft.note(key, words.TYPE, kind)
     for side, end in enumerate((first, second)):
@@ -83,10 +83,10 @@ def read_joint(prim: Any, draft: Draft) -> ReadJoint | None:
     return ReadJoint(prim, key, dofs, (first, second), enabled, excluded)
 
 
-def _take_schemas(prim: Any, draft: Draft) -> None:
+def _take_schemas(prim: Prim, draft: Draft) -> None:
     """A schema of which every value is typed needs no extra; one that says nothing does."""
-    taken = draft.taken.get(str(prim.GetPath()), set())
-    own = [str(name) for name in prim.GetAuthoredPropertyNames() if not str(name).startswith(_OF_COUPLINGS)]
+    taken = draft.taken.get(prim.path, set())
+    own = [name for name in prim.properties if not name.startswith(_OF_COUPLINGS)]
     for prefix, schema in (("mjc:", "MjcJointAPI"), ("newton:", "NewtonJointAPI")):
         said = [name for name in own if name.startswith(prefix)]
         if said and taken.issuperset(said):
@@ -96,34 +96,34 @@ def _take_schemas(prim: Any, draft: Draft) -> None:
 # ---- ends --------------------------------------------------------------------------------------------------------------------
 
 
-def _end(prim: Any, side: int, draft: Draft) -> End | None:
+def _end(prim: Prim, side: int, draft: Draft) -> End | None:
     """The joint's frame in the body of one side; without a body in the world, in the frame of whatever prim is named."""
     position = draft.get(prim, f"physics:localPos{side}") or ZERO
     quat = draft.get(prim, f"physics:localRot{side}") or NO_ROTATION
     local = Pose(position, turn_of(quat))
-    targets = prim.GetRelationship(f"physics:body{side}").GetTargets()
+    targets = prim.targets(f"physics:body{side}")
     if not targets:
         return End(WORLD, _in_world(local, draft))
-    target = prim.GetStage().GetPrimAtPath(targets[0])
-    if not target:
-        said = f"joint '{prim.GetPath()}': body{side} is '{targets[0]}', which does not exist; the joint is kept as written"
-        draft.report.error(codes.UNDEFINED_REFERENCE, said, draft.origin, element=str(prim.GetPath()))
+    target = draft.scene.prims.get(targets[0])
+    if target is None:
+        said = f"joint '{prim.path}': body{side} is '{targets[0]}', which does not exist; the joint is kept as written"
+        draft.report.error(codes.UNDEFINED_REFERENCE, said, draft.origin, element=prim.path)
         return None
     found = body_at(target, draft)
     frame = _frame_on(target, local, draft)
     if found is None:
         return End(WORLD, frame)
     body, key = found
-    if body == target:
+    if body is target:
         return End(key, Pose(_stretched(position, draft.places.of(body).scale), local.quat))
     return End(key, compose(inverse(draft.places.of(body).pose), frame))
 
 
-def _note_ground(prim: Any, side: int, end: End, key: Id, draft: Draft) -> None:
+def _note_ground(prim: Prim, side: int, end: End, key: Id, draft: Draft) -> None:
     """Keep which prim stood for the world, where it is a group above bodies, which will be written without a place of its own."""
-    targets = prim.GetRelationship(f"physics:body{side}").GetTargets() if end.body == WORLD else []
+    targets = prim.targets(f"physics:body{side}") if end.body == WORLD else []
     if targets and any(path.startswith(f"{targets[0]}/") for path in draft.bodies):
-        draft.note(key, words.GROUND[side], str(targets[0]))
+        draft.note(key, words.GROUND[side], targets[0])
 
 
 def _in_world(local: Pose, draft: Draft) -> Pose:
@@ -133,7 +133,7 @@ def _in_world(local: Pose, draft: Draft) -> Pose:
     return compose(world.pose, Pose(_stretched(local.xyz, world.scale), local.quat))
 
 
-def _frame_on(target: Any, local: Pose, draft: Draft) -> Pose:
+def _frame_on(target: Prim, local: Pose, draft: Draft) -> Pose:
     """A frame given in the scaled space of a prim, seen from the world."""
     at = draft.places.of(target)
     return compose(at.pose, Pose(_stretched(local.xyz, at.scale), local.quat))
@@ -146,7 +146,7 @@ def _stretched(vector: Vec3, scale: Vec3) -> Vec3:
 # ---- dofs --------------------------------------------------------------------------------------------------------------------
 
 
-def _dofs(prim: Any, kind: str, draft: Draft) -> tuple[Dof, ...]:
+def _dofs(prim: Prim, kind: str, draft: Draft) -> tuple[Dof, ...]:
     match kind:
         case "PhysicsRevoluteJoint":
             return (_behaving(prim, Dof(DofKind.HINGE, _axis(prim, draft), _limits(prim, DofKind.HINGE, draft)), draft),)
@@ -160,11 +160,11 @@ def _dofs(prim: Any, kind: str, draft: Draft) -> tuple[Dof, ...]:
             return ()
 
 
-def _axis(prim: Any, draft: Draft) -> Vec3:
+def _axis(prim: Prim, draft: Draft) -> Vec3:
     return words.AXES.get(str(draft.get(prim, "physics:axis") or "X"), X)
 
 
-def _limits(prim: Any, kind: DofKind, draft: Draft) -> Limits:
+def _limits(prim: Prim, kind: DofKind, draft: Draft) -> Limits:
     """Degrees or lengths of the stage as rad or m. Infinite bounds are none; lower above upper switches both off."""
     lower = draft.number(prim, "physics:lowerLimit", -math.inf)
     upper = draft.number(prim, "physics:upperLimit", math.inf)
@@ -179,20 +179,20 @@ def _bound(value: float, kind: DofKind, draft: Draft) -> float | None:
     return math.radians(value) if kind is DofKind.HINGE else value * draft.scene.metres
 
 
-def _generic_dofs(prim: Any, draft: Draft) -> tuple[Dof, ...]:
+def _generic_dofs(prim: Prim, draft: Draft) -> tuple[Dof, ...]:
     """The axes that are left free: low above high locks one, an axis without a LimitAPI is free.
 
     A point that turns freely in all directions is a ball, and one without any limit at all floats.
     """
     free = [name for name in words.D6_AXES if not _is_locked(prim, name)]
-    bare = [name for name in free if not has_api(prim, f"PhysicsLimitAPI:{name}")]
+    bare = [name for name in free if not prim.has_api(f"PhysicsLimitAPI:{name}")]
     if len(bare) == len(words.D6_AXES):
         return (Dof(DofKind.FREE),)
-    is_ball = bare[-3:] == list(words.D6_AXES[3:]) and not any(has_api(prim, f"PhysicsDriveAPI:{name}") for name in bare[-3:])
+    is_ball = bare[-3:] == list(words.D6_AXES[3:]) and not any(prim.has_api(f"PhysicsDriveAPI:{name}") for name in bare[-3:])
     dofs = []
     for name in free[:-3] if is_ball else free:
         kind, axis = words.d6_axis(name)
-        is_limited = has_api(prim, f"PhysicsLimitAPI:{name}")
+        is_limited = prim.has_api(f"PhysicsLimitAPI:{name}")
         low = draft.number(prim, f"limit:{name}:physics:low", -math.inf) if is_limited else -math.inf
         high = draft.number(prim, f"limit:{name}:physics:high", math.inf) if is_limited else math.inf
         if math.isfinite(low) or math.isfinite(high):
@@ -207,21 +207,21 @@ def _generic_dofs(prim: Any, draft: Draft) -> tuple[Dof, ...]:
     return tuple(dofs)
 
 
-def _take_lock(prim: Any, name: str, draft: Draft) -> None:
+def _take_lock(prim: Prim, name: str, draft: Draft) -> None:
     """A locked axis; by how much its bounds are crossed only counts where it is not by as much as the writer's."""
     low, high = f"limit:{name}:physics:low", f"limit:{name}:physics:high"
-    said = prim.GetAttribute(low).Get(), prim.GetAttribute(high).Get()
+    said = prim.value(low), prim.value(high)
     draft.take(prim, f"@PhysicsLimitAPI:{name}", *((low, high) if said == words.LOCKED else ()))
 
 
-def _is_locked(prim: Any, name: str) -> bool:
-    if not has_api(prim, f"PhysicsLimitAPI:{name}"):
+def _is_locked(prim: Prim, name: str) -> bool:
+    if not prim.has_api(f"PhysicsLimitAPI:{name}"):
         return False
-    low, high = (prim.GetAttribute(f"limit:{name}:physics:{end}") for end in ("low", "high"))
-    return (low.Get() if low and low.Get() is not None else -math.inf) > (high.Get() if high and high.Get() is not None else math.inf)
+    low, high = (prim.value(f"limit:{name}:physics:{end}") for end in ("low", "high"))
+    return bool((-math.inf if low is None else low) > (math.inf if high is None else high))
 
 
-def _behaving(prim: Any, dof: Dof, draft: Draft) -> Dof:
+def _behaving(prim: Prim, dof: Dof, draft: Draft) -> Dof:
     """The dof with what MuJoCo's and Newton's schemas say about the whole joint. Newton counts angles in degrees, MuJoCo in radians."""
     scene = draft.scene
     turns = dof.kind is not DofKind.SLIDE
@@ -247,13 +247,13 @@ def _behaving(prim: Any, dof: Dof, draft: Draft) -> Dof:
     return with_dialect(prim, found, draft)
 
 
-def _effort(prim: Any, unit: float, draft: Draft) -> float | None:
+def _effort(prim: Prim, unit: float, draft: Draft) -> float | None:
     """MuJoCo's symmetric limit of the force at the joint; a one-sided one stays an extra."""
-    low, high = (prim.GetAttribute(f"mjc:actuatorfrcrange:{end}") for end in ("min", "max"))
-    if not (low and high and low.HasAuthoredValue() and high.HasAuthoredValue()) or low.Get() != -high.Get():
+    low, high = (prim.value(f"mjc:actuatorfrcrange:{end}") for end in ("min", "max"))
+    if low is None or high is None or low != -high:
         return None
     draft.take(prim, "mjc:actuatorfrcrange:min", "mjc:actuatorfrcrange:max")
-    return float(abs(high.Get() * unit))
+    return float(abs(high * unit))
 
 
 def _first(*values: float) -> float:

@@ -5,16 +5,19 @@ An extra is the text of a prim in USD's own language, without its children; its 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Usd, UsdGeom
 
 from hymeko_x.formats import usd as words
-from hymeko_x.frontends.usd.places import matrix_of
+from hymeko_x.frontends.usd.bodies import body_at
+from hymeko_x.frontends.usd.places import matrix_of, placed
 from hymeko_x.ir.mechanism import ROOT, Extra
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 
 STAGE = "/"
@@ -31,73 +34,87 @@ def gather_leftovers(draft: Draft) -> None:
     scratch = Sdf.Layer.CreateAnonymous(".usda")
     _gather_stage(layer, draft)
     folded = _above_typed(draft)
-    owners: dict[Any, tuple[Id, Any]] = {}
-    stack = list(reversed(layer.rootPrims))
-    while stack:
-        spec = stack.pop()
-        path = spec.path
-        found = draft.elements.get(str(path))
-        owner = (found[0], _home(found[0], path, draft)) if found else owners.get(path.GetParentPath(), (ROOT, Sdf.Path.absoluteRootPath))
-        owners[path] = owner
-        if _is_scope(spec):
+    owners: dict[Prim | None, tuple[Id, str] | None] = {None: (ROOT, "/")}
+    for prim in draft.scene.prims.values():
+        above = owners[prim.parent]
+        if above is None or f"{words.PREFIX}scope" in prim.types:  # what we made up ourselves, with all that is in it
+            owners[prim] = None
             continue
-        _gather_prim(spec, owner, folded, scratch, draft)
-        stack.extend(reversed(spec.nameChildren))
+        found = draft.elements.get(prim.path)
+        owners[prim] = owner = (found[0], _home(found[0], prim.path, draft)) if found else above
+        _gather_prim(prim, owner, folded, scratch, draft)
 
 
-def _home(key: Id, path: Any, draft: Draft) -> Any:
+def _home(key: Id, path: str, draft: Draft) -> str:
     """The prim from which the extras of an element are counted: the first one where it was made of several."""
     noted = draft.notations.get(key, {}).get(words.PATH, "")
-    return Sdf.Path(noted.split()[0]) if " " in noted else path
+    return noted.split()[0] if " " in noted else path
 
 
-def _is_scope(spec: Any) -> bool:
-    return bool(spec.attributes.get(f"{words.PREFIX}scope"))
+@dataclass(frozen=True, slots=True)
+class _Rest:
+    """What was not read of a prim: whether its type was not, its schemas, metadata and properties, and where it stands now."""
+
+    has_type: bool
+    schemas: tuple[str, ...]
+    metadata: tuple[str, ...]
+    properties: tuple[str, ...]
+    moved: Any | None
+
+    @property
+    def is_something(self) -> bool:
+        """Whether anything but a type is left."""
+        is_moved = self.moved is not None and self.moved != Gf.Matrix4d(1)
+        return bool(self.schemas or self.metadata or self.properties) or is_moved
 
 
-def _gather_prim(spec: Any, owner: tuple[Id, Any], folded: set[str], scratch: Any, draft: Draft) -> None:
-    path = str(spec.path)
-    taken = draft.taken.get(path, set())
-    if "@spec" in taken:
+def _gather_prim(prim: Prim, owner: tuple[Id, str], folded: set[str], scratch: Any, draft: Draft) -> None:
+    if "@spec" in draft.taken.get(prim.path, ()):
         return
-    is_typed = path in draft.elements
-    moved = None if is_typed else _new_place(spec, folded, draft)
-    copy = Sdf.CreatePrimInLayer(scratch, f"/{spec.name}")
-    copy.specifier = Sdf.SpecifierOver if is_typed or "@type" in taken else spec.specifier
-    if "@type" not in taken and spec.typeName:
-        copy.typeName = spec.typeName
-        copy.specifier = spec.specifier
-    is_worth_it = _copy_metadata(spec, copy, taken, owner[0] if is_typed else None)
-    for item in filter(None, spec.properties):  # a damaged crate may list properties that it does not have
-        name = item.name
-        if name in taken or name.startswith(words.PREFIX) or (moved is not None and name.startswith("xformOp")):
-            continue
-        Sdf.CopySpec(spec.layer, item.path, scratch, copy.path.AppendProperty(name))
-        is_worth_it = True
-    if moved is not None and moved != Gf.Matrix4d(1):
-        _author_matrix(copy, moved)
-        is_worth_it = True
-    has_own_type = bool(copy.typeName) and (is_typed or copy.typeName != "Xform" or path not in folded)
-    if is_worth_it or has_own_type or not (is_typed or spec.typeName):
-        relative = str(spec.path.MakeRelativePath(owner[1])) if spec.path != owner[1] else ""
-        text = copy.GetAsText().strip().replace(draft.scene.folder + "/", "")
+    is_typed = prim.path in draft.elements
+    rest = _rest_of(prim, owner[0] if is_typed else None, None if is_typed else _new_place(prim, folded, draft), draft)
+    has_own_type = rest.has_type and (is_typed or prim.kind != "Xform" or prim.path not in folded)
+    if rest.is_something or has_own_type or not (is_typed or prim.kind):
+        relative = str(Sdf.Path(prim.path).MakeRelativePath(Sdf.Path(owner[1]))) if prim.path != owner[1] else ""
+        is_over = is_typed or "@type" in draft.taken.get(prim.path, ())
+        text = _text_of(prim, rest, scratch, is_over=is_over).replace(draft.scene.folder + "/", "")
         draft.extras.setdefault(owner[0], []).append(Extra(words.FORMAT, relative, text))
-    del scratch.rootPrims[spec.name]
 
 
-def _copy_metadata(spec: Any, copy: Any, taken: set[str], element: Id | None) -> bool:
-    """Copy what is said about the prim itself; returns whether there was something."""
-    schemas = spec.GetInfo("apiSchemas").GetAppliedItems() if spec.HasInfo("apiSchemas") else []
-    left = [schema for schema in schemas if f"@{schema}" not in taken]
-    if left:
-        copy.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=left))
-    any_left = bool(left)
-    for name in spec.ListInfoKeys():
-        if name in _COMPOSED or name in taken or (name == "displayName" and element is not None and spec.GetInfo(name) == element.name):
-            continue
+def _rest_of(prim: Prim, element: Id | None, moved: Any | None, draft: Draft) -> _Rest:
+    """What is left of a prim, which is the one of an element or none."""
+    taken = draft.taken.get(prim.path, set())
+    metadata = [name for name in prim.said if name not in _COMPOSED and name not in taken]
+    if "displayName" in metadata and element is not None and prim.display_name == element.name:
+        metadata.remove("displayName")
+    ignored = (words.PREFIX,) if moved is None else (words.PREFIX, "xformOp")
+    return _Rest(
+        bool(prim.kind) and "@type" not in taken,
+        tuple(schema for schema in prim.schemas if f"@{schema}" not in taken),
+        tuple(metadata),
+        tuple(name for name in prim.properties if name not in taken and not name.startswith(ignored)),
+        moved,
+    )
+
+
+def _text_of(prim: Prim, rest: _Rest, scratch: Any, *, is_over: bool) -> str:
+    """What is left of a prim as text of USD."""
+    spec = prim.spec
+    copy = Sdf.CreatePrimInLayer(scratch, f"/{prim.name}")
+    copy.specifier = Sdf.SpecifierOver if is_over and not rest.has_type else spec.specifier
+    if rest.has_type:
+        copy.typeName = prim.kind
+    if rest.schemas:
+        copy.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=list(rest.schemas)))
+    for name in rest.metadata:
         copy.SetInfo(name, spec.GetInfo(name))
-        any_left = True
-    return any_left
+    for name in rest.properties:
+        Sdf.CopySpec(spec.layer, f"{prim.path}.{name}", scratch, f"/{prim.name}.{name}")
+    if rest.moved is not None and rest.moved != Gf.Matrix4d(1):
+        _author_matrix(copy, rest.moved)
+    text = str(copy.GetAsText().strip())
+    del scratch.rootPrims[prim.name]
+    return text
 
 
 def _gather_stage(layer: Any, draft: Draft) -> None:
@@ -117,50 +134,40 @@ def _above_typed(draft: Draft) -> set[str]:
     """The paths of all prims with a typed one somewhere below: their transformations are part of what is below."""
     above: set[str] = set()
     for path in draft.elements:
-        way = Sdf.Path(path).GetParentPath()
-        while way != Sdf.Path.absoluteRootPath and str(way) not in above:
-            above.add(str(way))
-            way = way.GetParentPath()
+        way = path.rpartition("/")[0]
+        while way and way not in above:
+            above.add(way)
+            way = way.rpartition("/")[0]
     return above
 
 
-def _new_place(spec: Any, folded: set[str], draft: Draft) -> Any | None:
+def _new_place(prim: Prim, folded: set[str], draft: Draft) -> Any | None:
     """The matrix of a prim in the frame in which it will stand, or None where what it says stays true.
 
     Groups above typed prims stand in the frame of their body or the world; what hangs below such a group alone gets its
     own matrix there; what hangs deeper keeps its own.
     """
-    path = str(spec.path)
-    if path in folded:
+    if prim.path in folded:
         return Gf.Matrix4d(1)
-    parent = spec.path.GetParentPath()
-    prim = draft.scene.stage.GetPrimAtPath(spec.path)
-    is_top = parent.IsAbsoluteRootPath() or str(parent) in folded or str(parent) in draft.elements
-    if not is_top or not prim or not UsdGeom.Xformable(prim):
+    parent = prim.parent
+    is_top = parent is None or parent.path in folded or parent.path in draft.elements
+    composed = prim.composed if is_top else None
+    if not composed or not UsdGeom.Xformable(composed) or (parent is not None and _is_skin(parent, draft)):
         return None
-    if _is_skin(parent, draft):
-        return None
-    body = _body_of(prim, draft)
-    matrix = draft.places.relative(prim, body)
-    if body is None and spec.attributes.get("xformOpOrder") is None and Gf.IsClose(matrix, Gf.Matrix4d(1), 1e-12):
-        return None
-    return None if Gf.IsClose(matrix, _own_matrix(prim), 1e-12) else matrix
-
-
-def _is_skin(path: Any, draft: Draft) -> bool:
-    """Whether the prim is a body and its geometry at once: it keeps its scale, so what is below keeps its place."""
-    return {"body", "shape"} <= {key.kind for key in draft.elements.get(str(path), ())}
-
-
-def _own_matrix(prim: Any) -> Any:
-    return UsdGeom.Xformable(prim).GetLocalTransformation(Usd.TimeCode.Default())
-
-
-def _body_of(prim: Any, draft: Draft) -> Any | None:
-    from hymeko_x.frontends.usd.bodies import body_at
-
     found = body_at(prim, draft)
-    return found[0] if found is not None else None
+    matrix = draft.places.relative(prim, found[0] if found is not None else None)
+    if found is None and "xformOpOrder" not in prim.types and Gf.IsClose(matrix, Gf.Matrix4d(1), 1e-12):
+        return None
+    return None if Gf.IsClose(matrix, _own_matrix(composed), 1e-12) else matrix
+
+
+def _is_skin(prim: Prim, draft: Draft) -> bool:
+    """Whether the prim is a body and its geometry at once: it keeps its scale, so what is below keeps its place."""
+    return {"body", "shape"} <= {key.kind for key in draft.elements.get(prim.path, ())}
+
+
+def _own_matrix(composed: Any) -> Any:
+    return UsdGeom.Xformable(composed).GetLocalTransformation(Usd.TimeCode.Default())
 
 
 def _author_matrix(copy: Any, matrix: Any) -> None:
@@ -171,14 +178,13 @@ def _author_matrix(copy: Any, matrix: Any) -> None:
 
 def _turn_gravity(draft: Draft) -> None:
     """Gravity in metres, seen with z up, where the stage has other units or another up axis."""
-    turn = matrix_of(draft.places.of(draft.scene.stage.GetPseudoRoot()).pose) if draft.scene.stage else Gf.Matrix4d(1)
+    turn = matrix_of(placed(draft.scene.world).pose)
     if draft.scene.metres == 1.0 and turn == Gf.Matrix4d(1):
         return
-    for prim in draft.scene.stage.Traverse():
-        if prim.GetTypeName() != "PhysicsScene":
+    for prim in draft.scene.prims.values():
+        if prim.kind != "PhysicsScene" or not prim.is_real:
             continue
-        spec = draft.scene.layer.GetPrimAtPath(prim.GetPath())
-        direction, magnitude = (spec.attributes.get(f"physics:gravity{name}") for name in ("Direction", "Magnitude"))
+        direction, magnitude = (prim.spec.attributes.get(f"physics:gravity{name}") for name in ("Direction", "Magnitude"))
         if direction is not None and direction.default is not None:
             direction.default = Gf.Vec3f(turn.TransformDir(Gf.Vec3d(direction.default)))
         if magnitude is not None and magnitude.default is not None:

@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING, Any
 from pxr import UsdShade
 
 from hymeko_x.formats.usd import single
+from hymeko_x.frontends.usd.bindings import bound_to
+from hymeko_x.frontends.usd.prims import BINDING
 from hymeko_x.ir.mechanism import layer_edge
 from hymeko_x.ir.parts import Material, Texture
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 
 PREVIEW = "UsdPreviewSurface"
@@ -20,35 +23,34 @@ _COORDINATES = "UsdPrimvarReader_float2"
 _TYPED = ("inputs:diffuseColor", "inputs:opacity", "inputs:metallic", "inputs:roughness")
 
 
-def read_material(prim: Any, draft: Draft) -> None:
+def read_material(prim: Prim, draft: Draft) -> None:
     """The vertex of a material; its network is typed only where nothing of it would be left over."""
     key = draft.own(prim, "material")
-    draft.materials[str(prim.GetPath())] = key
-    surface = UsdShade.Material(prim).ComputeSurfaceSource()[0]
+    draft.materials[prim.path] = key
+    surface = UsdShade.Material(prim.composed).ComputeSurfaceSource()[0]
     shader = surface.GetPrim() if surface else None
     if shader is None or surface.GetShaderId() != PREVIEW:
-        draft.vertices[key] = Material(str(prim.GetName()))
+        draft.vertices[key] = Material(prim.name)
         draft.take(prim, "@type")
         return
     draft.vertices[key] = _looks(prim, shader)
     draft.take(prim, "@type")
-    if _is_plain(prim, shader):
+    if _is_plain(prim.composed, shader):
         _take_network(prim, shader, key, draft)
 
 
-def bound_material(prim: Any, draft: Draft) -> Id | None:
+def bound_material(prim: Prim, draft: Draft) -> Id | None:
     """The material that a shape shows; a binding of its own is typed, one of a prim above stays there as well."""
-    bound = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
-    key = draft.materials.get(str(bound.GetPath())) if bound else None
-    own = prim.GetRelationship("material:binding")
-    if key is not None and own and own.HasAuthoredTargets() and not own.GetAllAuthoredMetadata().get("bindMaterialAs"):
-        draft.take(prim, "material:binding")
-        if not any(name.startswith("material:binding:") for name in prim.GetAuthoredPropertyNames()):
+    bound = bound_to(prim, draft.scene)
+    key = draft.materials.get(bound.path) if bound is not None else None
+    if key is not None and prim.targets(BINDING) and not prim.composed.GetRelationship(BINDING).GetMetadata("bindMaterialAs"):
+        draft.take(prim, BINDING)
+        if not any(name.startswith(f"{BINDING}:") for name in prim.properties):
             draft.take(prim, "@MaterialBindingAPI")
     return key
 
 
-def _looks(prim: Any, shader: Any) -> Material:
+def _looks(prim: Prim, shader: Any) -> Material:
     colour, opacity = _constant(shader, "diffuseColor"), _constant(shader, "opacity")
     rgba = None
     if colour is not None:
@@ -56,7 +58,7 @@ def _looks(prim: Any, shader: Any) -> Material:
         rgba = (r, g, b, single(float(opacity)) if opacity is not None else 1.0)
     metallic, roughness = _constant(shader, "metallic"), _constant(shader, "roughness")
     return Material(
-        str(prim.GetName()),
+        prim.name,
         rgba,
         metallic=None if metallic is None else single(float(metallic)),
         roughness=None if roughness is None else single(float(roughness)),
@@ -92,12 +94,13 @@ def _image(below: list[Any]) -> str | None:
     return None
 
 
-def _take_network(prim: Any, shader: Any, key: Id, draft: Draft) -> None:
+def _take_network(prim: Prim, shader: Any, key: Id, draft: Draft) -> None:
     """Everything below the material is typed, or follows from what is."""
     draft.take(prim, "outputs:surface")
-    image = _image([child for child in prim.GetChildren() if child != shader])
-    for child in prim.GetChildren():
-        draft.take(child, "@type", "@spec", *child.GetAuthoredPropertyNames())
+    image = _image([child for child in prim.composed.GetChildren() if child != shader])
+    for child in prim.children:
+        if child.is_real:
+            draft.take(child, "@type", "@spec", *child.properties)
     if image is not None:
         texture = draft.own(prim, "texture", key.name)
         draft.vertices[texture] = Texture(image)

@@ -25,7 +25,7 @@ def merge_parallel(joints: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
     groups: dict[object, list[ReadJoint]] = {}
     for joint in joints:
         first, second = joint.ends
-        is_simple = str(joint.prim.GetTypeName()) in _TYPES and joint.is_enabled and not joint.is_excluded
+        is_simple = joint.prim.kind in _TYPES and joint.is_enabled and not joint.is_excluded
         groups.setdefault((first.body, second.body) if is_simple else joint.id, []).append(joint)
     return [merged for group in groups.values() for merged in _merged(group, draft)]
 
@@ -38,9 +38,9 @@ def _merged(group: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
     if len(agreeing) < 2:
         return group
     dofs = tuple(_dof_seen_from(first, joint) for joint in agreeing)
-    draft.note(first.id, words.PATH, " ".join(str(joint.prim.GetPath()) for joint in agreeing))
+    draft.note(first.id, words.PATH, " ".join(joint.prim.path for joint in agreeing))
     for joint in agreeing[1:]:
-        draft.elements[str(joint.prim.GetPath())] = [first.id]
+        draft.elements[joint.prim.path] = [first.id]
         draft.notations.pop(joint.id, None)
     rest = [joint for joint in group if joint not in agreeing]
     return [replace(first, dofs=dofs, merged=tuple(joint.prim for joint in agreeing)), *rest]

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, UsdGeom
 
-from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, unit_quat
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, cross, scaled, unit_quat
 
 if TYPE_CHECKING:
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.stage import Scene
 
 _UNIT = 1e-6
@@ -32,24 +33,24 @@ class Places:
     def __init__(self, scene: Scene) -> None:
         self._cache = UsdGeom.XformCache()
         self._world = scene.world
-        self._bodies: dict[Any, Placed] = {}
+        self._bodies: dict[str, Placed] = {}
 
-    def matrix(self, prim: Any) -> Any:
+    def matrix(self, prim: Prim) -> Any:
         """Local to world, for row vectors."""
-        return self._cache.GetLocalToWorldTransform(prim) * self._world
+        return self._cache.GetLocalToWorldTransform(prim.composed) * self._world
 
-    def of(self, prim: Any) -> Placed:
+    def of(self, prim: Prim) -> Placed:
         """The prim in the world."""
-        path = prim.GetPath()
-        if path not in self._bodies:
-            self._bodies[path] = placed(self.matrix(prim))
-        return self._bodies[path]
+        found = self._bodies.get(prim.path)
+        if found is None:
+            found = self._bodies[prim.path] = placed(self.matrix(prim))
+        return found
 
-    def seen_from(self, prim: Any, body: Any | None) -> Placed:
+    def seen_from(self, prim: Prim, body: Prim | None) -> Placed:
         """The prim in the rigid frame of a body; in the world without one."""
         return placed(self.relative(prim, body))
 
-    def relative(self, prim: Any, body: Any | None) -> Any:
+    def relative(self, prim: Prim, body: Prim | None) -> Any:
         """The matrix from a prim to the rigid frame of a body, or to the world."""
         if body is None:
             return self.matrix(prim)
@@ -65,20 +66,23 @@ def matrix_of(pose: Pose) -> Any:
 
 def placed(matrix: Any) -> Placed:
     """The rigid pose and the scale of a matrix; a mirrored one has a negative scale along x."""
-    rows = [Gf.Vec3d(*(matrix[i][j] for j in range(3))) for i in range(3)]
-    lengths = [row.GetLength() for row in rows]
-    at = matrix.ExtractTranslation()
+    *rows, at = ((row[0], row[1], row[2]) for row in numbers_of(matrix))
+    lengths = [math.sqrt(_dot(row, row)) for row in rows]
     xyz = (at[0] + 0.0, at[1] + 0.0, at[2] + 0.0)
     if min(lengths) < 1e-12 or not all(map(math.isfinite, (*lengths, *xyz))):
         x, y, z = (v if math.isfinite(v) else 0.0 for v in xyz)
         return Placed(Pose((x, y, z)), (lengths[0], lengths[1], lengths[2]), True)
-    if Gf.Dot(Gf.Cross(rows[0], rows[1]), rows[2]) < 0.0:
+    if _dot(cross(rows[0], rows[1]), rows[2]) < 0.0:
         lengths[0] = -lengths[0]
-    axes = [row / length for row, length in zip(rows, lengths, strict=True)]
-    sheared = max(abs(Gf.Dot(axes[0], axes[1])), abs(Gf.Dot(axes[0], axes[2])), abs(Gf.Dot(axes[1], axes[2]))) > 1e-4
+    axes = [scaled(row, 1.0 / length) for row, length in zip(rows, lengths, strict=True)]
+    sheared = max(abs(_dot(axes[0], axes[1])), abs(_dot(axes[0], axes[2])), abs(_dot(axes[1], axes[2]))) > 1e-4
     turn = Gf.Matrix3d(*axes[0], *axes[1], *axes[2])
     turn.Orthonormalize(False)
     return Placed(_pose(xyz, quat_of(turn.ExtractRotation().GetQuat())), _scale(lengths), sheared)
+
+
+def _dot(a: Vec3, b: Vec3) -> float:
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def _pose(xyz: Vec3, quat: Quat) -> Pose:
@@ -90,10 +94,15 @@ def _scale(lengths: list[float]) -> Vec3:
     return (x, y, z)
 
 
+def numbers_of(value: Any) -> list[Any]:
+    """The numbers of a vector, a matrix (by rows) or an array of numbers. USD hands them out one by one forty times slower."""
+    return memoryview(value).tolist()
+
+
 def quat_of(quat: Any) -> Quat:
     """A quaternion of USD as one of ours."""
-    x, y, z = map(float, quat.GetImaginary())
-    return turn_of((float(quat.GetReal()), x, y, z))
+    x, y, z = numbers_of(quat.imaginary)
+    return turn_of((float(quat.real), x, y, z))
 
 
 def turn_of(numbers: Quat) -> Quat:

@@ -5,15 +5,12 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING, Any
 
-from pxr import UsdGeom
-
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.contacts import friction_of
-from hymeko_x.frontends.usd.draft import has_api
 from hymeko_x.frontends.usd.materials import bound_material
 from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
 from hymeko_x.ir.parts import Mesh, MeshShape, Role, Shape, World
@@ -23,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.parts import Geometry, Rgba
 
 COLLISION = "PhysicsCollisionAPI"
@@ -30,23 +28,23 @@ SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 TYPES = ("Cube", "Sphere", "Cylinder", "Capsule", "Plane", "Mesh")
 _XFORM = "xformOp"
 
-Read = tuple[Any, Shape, Pose, "NDArray[Any] | None"]
+Read = tuple["Prim", Shape, Pose, "NDArray[Any] | None"]
 """A shape that was read: its prim, part, pose in the body, and for a mesh its points in the shape's frame (n x 3)."""
 
 
-def is_shape(prim: Any) -> bool:
+def is_shape(prim: Prim) -> bool:
     """Whether a prim is a geometry that the IR has, and no site."""
-    return str(prim.GetTypeName()) in TYPES and not any(has_api(prim, site) for site in SITES)
+    return prim.kind in TYPES and not any(prim.has_api(site) for site in SITES)
 
 
-def read_shape(prim: Any, draft: Draft) -> tuple[Id, Read] | None:
+def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
     """Add the shape of a gprim; returns the body (or the world) that it is on with what was read. None where it cannot be one."""
     found = body_at(prim, draft)
     body, owner = found if found is not None else (None, WORLD)
     at = draft.places.seen_from(prim, body)
-    pose, points, mesh, said = IDENTITY if prim == body else at.pose, None, None, None
+    pose, points, mesh, said = IDENTITY if prim is body else at.pose, None, None, None
     geometry: Geometry = MeshShape()
-    if prim.GetTypeName() == "Mesh":
+    if prim.kind == "Mesh":
         points, mesh = _read_mesh(prim, draft, at.scale)
         if mesh is None:
             return None
@@ -57,10 +55,10 @@ def read_shape(prim: Any, draft: Draft) -> tuple[Id, Read] | None:
         _take_extent(prim, gprims.half_extent(said), draft)
     if owner == WORLD:
         draft.vertices.setdefault(WORLD, World())
-    draft.take(prim, "@type", *(name for name in prim.GetAuthoredPropertyNames() if name.startswith(_XFORM)))
+    draft.take(prim, "@type", *(name for name in prim.properties if name.startswith(_XFORM)))
     role = _role(prim, draft)
-    friction = friction_of(prim) if role is not Role.VISUAL else ()
-    shape = Shape(geometry, role, name=str(prim.GetName()), rgba=_colour(prim, draft), friction=friction)
+    friction = friction_of(prim, draft) if role is not Role.VISUAL else ()
+    shape = Shape(geometry, role, name=prim.name, rgba=_colour(prim, draft), friction=friction)
     key = draft.own(prim, "shape")
     if said is not None and said != gprims.chosen(geometry):
         draft.note(key, gprims.NOTATION, str(said))
@@ -71,17 +69,17 @@ def read_shape(prim: Any, draft: Draft) -> tuple[Id, Read] | None:
 # ---- primitives ------------------------------------------------------------------------------------------------------------------
 
 
-def _primitive(prim: Any, scale: Vec3, draft: Draft) -> gprims.Gprim:
+def _primitive(prim: Prim, scale: Vec3, draft: Draft) -> gprims.Gprim:
     """What the prim of a primitive says; a wrong axis is z."""
-    kind = str(prim.GetTypeName())
+    kind = prim.kind
     sizes = tuple(draft.number(prim, name, default) for name, default in gprims.SIZES[kind])
     axis = str(draft.get(prim, "axis") or "Z")
     return gprims.Gprim(kind, sizes, axis if axis in words.AXES else "Z", scale)
 
 
-def _take_extent(prim: Any, half: Vec3, draft: Draft) -> None:
+def _take_extent(prim: Prim, half: Vec3, draft: Draft) -> None:
     """A box around the prim that follows from its sizes is no news."""
-    said = prim.GetAttribute("extent").Get() if prim.HasAttribute("extent") else None
+    said = prim.value("extent")
     box = (*(-value for value in half), *half)
     if said is not None and len(said) == 2 and all(abs(a - b) <= 1e-6 * max(half) for a, b in zip((*said[0], *said[1]), box, strict=True)):
         draft.take(prim, "extent")
@@ -90,11 +88,11 @@ def _take_extent(prim: Any, half: Vec3, draft: Draft) -> None:
 # ---- meshes --------------------------------------------------------------------------------------------------------------------
 
 
-def _read_mesh(prim: Any, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | None, Id | None]:
+def _read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | None, Id | None]:
     """The points of a mesh prim in metres with the mesh's id. Equal meshes at equal scale share one; polygons become fans."""
     import numpy as np
 
-    points, counts, indices = (prim.GetAttribute(name).Get() for name in ("points", "faceVertexCounts", "faceVertexIndices"))
+    points, counts, indices = (prim.value(name) for name in ("points", "faceVertexCounts", "faceVertexIndices"))
     if points is None or counts is None or indices is None:
         return _refused(prim, "has no points or no faces", draft)
     vertices = np.asarray(points, dtype=np.float64).reshape(-1, 3)
@@ -106,7 +104,7 @@ def _read_mesh(prim: Any, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | Non
     if not np.isfinite(vertices).all():
         return _refused(prim, "has points that are not finite", draft)
     faces = triangles(sizes, corners)
-    if prim.GetAttribute("points").GetNumTimeSamples() == 0:
+    if not prim.is_animated("points"):
         draft.take(prim, "points")
     _take_mesh_extent(prim, vertices, draft)
     if (sizes == 3).all():
@@ -115,19 +113,19 @@ def _read_mesh(prim: Any, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | Non
     return vertices * np.asarray(scale), key
 
 
-def _take_mesh_extent(prim: Any, vertices: NDArray[Any], draft: Draft) -> None:
+def _take_mesh_extent(prim: Prim, vertices: NDArray[Any], draft: Draft) -> None:
     import numpy as np
 
-    said = prim.GetAttribute("extent").Get()
+    said = prim.value("extent")
     if said is not None and len(said) == 2 and len(vertices):
         box = np.stack([vertices.min(axis=0), vertices.max(axis=0)])
         if np.allclose(np.asarray(said, dtype=np.float64), box, rtol=1e-6, atol=1e-6 * float(np.abs(box).max())):
             draft.take(prim, "extent")
 
 
-def _refused(prim: Any, why: str, draft: Draft) -> tuple[None, None]:
-    said = f"mesh '{prim.GetPath()}' {why}; it is kept as written"
-    draft.report.error(codes.ASSET_UNREADABLE, said, draft.origin, element=str(prim.GetPath()))
+def _refused(prim: Prim, why: str, draft: Draft) -> tuple[None, None]:
+    said = f"mesh '{prim.path}' {why}; it is kept as written"
+    draft.report.error(codes.ASSET_UNREADABLE, said, draft.origin, element=prim.path)
     return None, None
 
 
@@ -143,12 +141,12 @@ def triangles(sizes: NDArray[Any], corners: NDArray[Any]) -> NDArray[Any]:
     return corners[np.stack([starts, starts + step + 1, starts + step + 2], axis=1)] if len(step) else corners[:0].reshape(0, 3)
 
 
-def _shared_mesh(prim: Any, vertices: NDArray[Any], faces: NDArray[Any], scale: Vec3, draft: Draft) -> Id:
+def _shared_mesh(prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], scale: Vec3, draft: Draft) -> Id:
     content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + repr(scale).encode()).hexdigest()
     known = draft.meshes.get(content)
     if known is not None:
         return known
-    key = draft.own(prim, "mesh", str(prim.GetName()))
+    key = draft.own(prim, "mesh", prim.name)
     draft.meshes[content] = key
     draft.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), tuple(faces.ravel().tolist()))
     return key
@@ -157,25 +155,32 @@ def _shared_mesh(prim: Any, vertices: NDArray[Any], faces: NDArray[Any], scale: 
 # ---- looks and purpose -----------------------------------------------------------------------------------------------------------
 
 
-def _role(prim: Any, draft: Draft) -> Role:
+def _role(prim: Prim, draft: Draft) -> Role:
     """Without a collider a shape is for looking; a collider that is only a guide or a proxy is for colliding alone."""
-    collides = has_api(prim, COLLISION) and prim.GetAttribute("physics:collisionEnabled").Get() is not False
+    collides = prim.has_api(COLLISION) and prim.value("physics:collisionEnabled") is not False
     if not collides:
         return Role.VISUAL
     draft.take(prim, f"@{COLLISION}")
-    purpose = UsdGeom.Imageable(prim).ComputePurpose()
-    if purpose == UsdGeom.Tokens.guide:
+    purpose = _purpose(prim)
+    if purpose == "guide":
         draft.get(prim, "purpose")
-    return Role.COLLISION if purpose in (UsdGeom.Tokens.guide, UsdGeom.Tokens.proxy) else Role.BOTH
+    return Role.COLLISION if purpose in ("guide", "proxy") else Role.BOTH
 
 
-def _colour(prim: Any, draft: Draft) -> Rgba | None:
+def _purpose(prim: Prim) -> str:
+    """What a prim is for: its own purpose, else that of the nearest one above that says it."""
+    if not any("purpose" in above.types for above in prim.above()):
+        return "default"
+    from pxr import UsdGeom
+
+    return str(UsdGeom.Imageable(prim.composed).ComputePurpose())
+
+
+def _colour(prim: Prim, draft: Draft) -> Rgba | None:
     """One colour for all of the shape; colours per point or face stay extras."""
-    colour, opacity = prim.GetAttribute("primvars:displayColor"), prim.GetAttribute("primvars:displayOpacity")
-    shown = colour.Get() if colour and colour.HasAuthoredValue() else None
-    if shown is None or len(shown) != 1 or colour.GetNumTimeSamples():
+    shown, alpha = prim.value("primvars:displayColor"), prim.value("primvars:displayOpacity")
+    if shown is None or len(shown) != 1 or prim.is_animated("primvars:displayColor"):
         return None
-    alpha = opacity.Get() if opacity and opacity.HasAuthoredValue() else None
     if alpha is not None and len(alpha) == 1:
         draft.take(prim, "primvars:displayOpacity")
     draft.take(prim, "primvars:displayColor")

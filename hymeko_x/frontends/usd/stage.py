@@ -19,14 +19,16 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.frontends.usd.prims import read_layer
 from hymeko_x.frontends.usd.size import check_depth, check_size
 from hymeko_x.frontends.usd.types import drop_unknown_types
 from hymeko_x.frontends.usd.unpack import lay_out
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.diagnostics import Report
+    from hymeko_x.frontends.usd.prims import Layer, Prim
     from hymeko_x.source import Source
 
 MOST_PRIMS = 2_000_000
@@ -40,9 +42,13 @@ _SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """An open stage in its own units; ``world`` turns its world into metres with z up; ``folder`` is where its layers lie."""
+    """An open stage in its own units; ``world`` turns its world into metres with z up; ``folder`` is where its layers lie.
+
+    ``layer`` says all of it by itself, and ``prims`` is what it says, by path.
+    """
 
     stage: Any
+    prims: Mapping[str, Prim]
     world: Any
     kilograms: float
     metres: float
@@ -70,19 +76,26 @@ def _opened(source: Source, report: Report) -> Iterator[Scene]:
         os.makedirs(base)
         main = lay_out(source, base)
         layers = _gather(main, base, source, report)
-        check_size(layers, MOST_PRIMS, source)
-        drop_unknown_types(layers, source, report)
+        found = _read_plain(layers, source, report)
+        if found is None:
+            check_size(layers, MOST_PRIMS, source)
+            drop_unknown_types(layers, source, report)
         stage = _composed(main, source)
-        _choose_variants(stage, source)
-        _expand_instances(stage, source)
+        flat = stage.GetRootLayer()
+        if found is None:
+            _choose_variants(stage, source)
+            _expand_instances(stage, source)
+            flat = stage.Flatten(False)
+            found = _read_layer(flat, source)
         _say_composition_errors(stage, base, source, report)
+        found.stage = stage
         metres, up = UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage)
         turn = Gf.Rotation(Gf.Vec3d(1, 0, 0), 90.0 if up == UsdGeom.Tokens.y else 0.0)
         world = Gf.Matrix4d().SetScale(metres) * Gf.Matrix4d().SetRotate(turn)
-        flat = stage.GetRootLayer() if _is_plain(stage) else stage.Flatten(False)
         try:
-            yield Scene(stage, world, UsdPhysics.GetStageKilogramsPerUnit(stage), metres, base, flat)
+            yield Scene(stage, found.prims, world, UsdPhysics.GetStageKilogramsPerUnit(stage), metres, base, flat)
         finally:
+            found.stage = None
             del stage, layers, flat
 
 
@@ -176,21 +189,28 @@ def _is_absolute(uri: str) -> bool:
     return uri.startswith(("/", "\\")) or "://" in uri or (len(uri) > 1 and uri[1] == ":")
 
 
-_ARCS = ("references", "payload", "inheritPaths", "specializes", "variantSetNames")
+_ARCS = frozenset(("references", "payload", "inheritPaths", "specializes", "variantSetNames", "instanceable"))
 
 
-def _is_plain(stage: Any) -> bool:
-    """Whether the root layer says everything by itself, so that composing it changes nothing."""
-    root = stage.GetRootLayer()
-    if {*stage.GetUsedLayers()} - {root, stage.GetSessionLayer()} or root.subLayerPaths or root.relocates:
-        return False
-    stack = list(root.rootPrims)
-    while stack:
-        spec = stack.pop()
-        if any(spec.HasInfo(arc) for arc in _ARCS) or spec.instanceable:
-            return False
-        stack.extend(spec.nameChildren)
-    return True
+def _read_plain(layers: list[Any], source: Source, report: Report) -> Layer | None:
+    """What a layer says that says everything by itself, so that composing it changes nothing; None where there is more to it."""
+    root = layers[0]
+    if len(layers) > 1 or root.subLayerPaths or root.relocates or source.variants:
+        return None
+    found = _read_layer(root, source)
+    if any(not _ARCS.isdisjoint(prim.said) for prim in found.prims.values()):
+        return None
+    if not found.has_unknown_types:
+        return found
+    drop_unknown_types(layers, source, report)
+    return _read_layer(root, source)
+
+
+def _read_layer(layer: Any, source: Source) -> Layer:
+    found = read_layer(layer, MOST_PRIMS)
+    if found is None:
+        raise refuse(codes.TOO_LARGE, f"it has more than {MOST_PRIMS} prims", Origin(source.name))
+    return found
 
 
 # ---- composition ---------------------------------------------------------------------------------------------------------------

@@ -54,7 +54,7 @@ def build_trees(joints: list[ReadJoint], roots: Iterable[Id], held: Iterable[Id]
 def note_poses(draft: Draft) -> None:
     """Keep where a body's prim stands where that is not where the joints above it put it: only their frames count for the robot."""
     mechanism = Mechanism("", Hypergraph(draft.vertices, draft.edges))
-    prims = {key: draft.scene.stage.GetPrimAtPath(path) for path, key in draft.bodies.items()}
+    prims = {key: draft.prim_at(path) for path, key in draft.bodies.items()}
     poses = {WORLD: IDENTITY}
     for body in mechanism.depth_first():
         stands = draft.places.of(prims[body]).pose
@@ -74,7 +74,7 @@ def _split(joints: list[ReadJoint]) -> tuple[list[ReadJoint], set[Id]]:
     tree, loops = [], set()
     for joint in joints:
         first, second = (_leader(end.body, leader) for end in joint.ends)
-        if joint.is_excluded or not joint.is_enabled or joint.prim.GetTypeName() == DISTANCE or first == second:
+        if joint.is_excluded or not joint.is_enabled or joint.prim.kind == DISTANCE or first == second:
             loops.add(joint.id)
             continue
         leader[second] = first
@@ -148,8 +148,8 @@ def _add_loop(joint: ReadJoint, draft: Draft) -> None:
     arcs: tuple[RobotArc, ...] = tuple(Arc(end.body, 0, end.pose) for end in joint.ends)
     draft.edges[key] = Edge(Loop(kind, dofs, joint.is_enabled, parameters), arcs)
     draft.origins[key] = draft.origin
-    draft.notations[key] = {**draft.notations.pop(joint.id, {}), words.TYPE: str(joint.prim.GetTypeName())}
-    draft.elements[str(joint.prim.GetPath())] = [key]
+    draft.notations[key] = {**draft.notations.pop(joint.id, {}), words.TYPE: joint.prim.kind}
+    draft.elements[joint.prim.path] = [key]
     draft.take(joint.prim, "physics:jointEnabled")
     draft.take(joint.prim, "physics:excludeFromArticulation")
     if not joint.is_excluded:
@@ -157,7 +157,7 @@ def _add_loop(joint: ReadJoint, draft: Draft) -> None:
 
 
 def _loop_kind(joint: ReadJoint, draft: Draft) -> tuple[str, tuple[Dof, ...], Parameters]:
-    if joint.prim.GetTypeName() == DISTANCE:
+    if joint.prim.kind == DISTANCE:
         found: list[tuple[str, float | str | tuple[float, ...]]] = []
         for name in ("minDistance", "maxDistance"):
             value = draft.number(joint.prim, f"physics:{name}", -1.0)
@@ -176,7 +176,7 @@ def _hang_free_bodies(hung: set[Id], held: set[Id], draft: Draft) -> None:
     for path, body in draft.bodies.items():
         if body in hung:
             continue
-        prim = draft.scene.stage.GetPrimAtPath(path)
+        prim = draft.prim_at(path)
         key = draft.own(prim, "joint", body.name + FREE_SUFFIX)
         dofs = () if body in held else (Dof(DofKind.FREE),)
         if body in held:

@@ -23,11 +23,23 @@ if TYPE_CHECKING:
 
 def cross(image: Mechanism, bridge: Bridge) -> Mechanism:
     """The same robot as the source describes it; what an editor has taken apart stays as it is."""
-    names = {old: new for old, new in bridge.names if old != new}
-    mechanism = _with_world(rename(image, {old: new for old, new in names.items() if _is_there(image, old)}))
+    mechanism = _with_world(rename(image, _free_names(image, bridge)))
     mechanism = fold_chains(mechanism, bridge.folds)
     mechanism = join_twins(mechanism, bridge.joins)
     return move_frames(mechanism, dict(bridge.frames))
+
+
+def _free_names(image: Mechanism, bridge: Bridge) -> dict[Id, Id]:
+    """The source's name of each of the image's elements, where no other element has come to be called so; a world may be there."""
+    names = {old: new for old, new in bridge.names if old != new and old in image.graph}
+    given: dict[Id, Id] = {}
+    for old, new in names.items():
+        given.setdefault(new, old)
+    names = {old: new for old, new in names.items() if given[new] == old or new == WORLD}
+    while taken := [old for old, new in names.items() if new != WORLD and new not in names and new in image.graph]:
+        for old in taken:
+            del names[old]
+    return names
 
 
 def _with_world(mechanism: Mechanism) -> Mechanism:
@@ -48,10 +60,6 @@ def other_words(bridge: Bridge) -> Iterator[Difference]:
         yield Difference(shape, "role", "both", f"visual, and collision as '{twin.name}'")
     for body, pose in bridge.frames:
         yield Difference(body, "frame", "its own", f"{numbers_text(pose.xyz)}, {numbers_text(pose.quat)} from there")
-
-
-def _is_there(mechanism: Mechanism, key: Id) -> bool:
-    return key in mechanism.graph.vertices or key in mechanism.graph.edges
 
 
 # ---- chains of joints ------------------------------------------------------------------------------------------------------

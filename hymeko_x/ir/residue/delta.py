@@ -13,7 +13,7 @@ from hymeko_x.ir.residue import Addition, Change, Removal, Residue, Sides
 from hymeko_x.ir.residue.align import aligned
 from hymeko_x.ir.residue.order import by_kind, moves
 from hymeko_x.ir.residue.paths import differing, digest
-from hymeko_x.ir.residue.prints import Prints, shape_group, weight_print
+from hymeko_x.ir.residue.prints import Prints, print_of_extra, shape_group, weight_print
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -81,7 +81,7 @@ def _additions(image: Mechanism, source: Mechanism) -> Iterator[Addition]:
 def _removals(image: Mechanism, source: Mechanism) -> Iterator[Removal]:
     prints = Prints(image)
     for key in (*image.graph.vertices, *image.graph.edges):
-        if key not in source.graph.vertices and key not in source.graph.edges:
+        if key not in source.graph:
             edge = image.graph.edges.get(key)
             yield Removal(key, prints.of(key), "" if edge is None else shape_group(edge))
 
@@ -102,7 +102,7 @@ def _layout(image: Mechanism, source: Mechanism) -> tuple[tuple[Id, ...] | None,
     if image.layout == source.layout:
         return None, ()
     placed = set(source.layout)
-    there = (key for key in image.layout if key in source.graph.vertices or key in source.graph.edges)
+    there = (key for key in image.layout if key in source.graph)
     return source.layout, tuple(key for key in there if key not in placed)
 
 
@@ -120,7 +120,7 @@ def sides_between(image: Mechanism, source: Mechanism) -> Sides:
         tuple(_stereotypes(image, source)) if source.stereotypes else (),
         bool(image.stereotypes) and not source.stereotypes,
         tuple((key, extra) for key, extra, new in extras if new),
-        tuple((key, digest(extra.format, extra.path, extra.text)) for key, extra, new in extras if not new),
+        tuple((key, print_of_extra(extra)) for key, extra, new in extras if not new),
     )
 
 
@@ -165,7 +165,7 @@ def _known(image: Mechanism, residue: Residue) -> Iterator[tuple[Id, str]]:
     names = {new: old for old, new in residue.bridge.names}
     spoken = dict.fromkeys(names.get(key, key) for key in map(_named, _spoken_of(residue)) if key.kind in _NAMED)
     prints = Prints(image)
-    yield from ((key, prints.of(key)) for key in spoken if key in image.graph.vertices or key in image.graph.edges)
+    yield from ((key, prints.of(key)) for key in spoken if key in image.graph)
 
 
 def _named(key: Id) -> Id:

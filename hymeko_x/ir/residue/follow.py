@@ -23,7 +23,7 @@ def renamed_since(image: Mechanism, residue: Residue) -> dict[Id, Id]:
     """The old ids of renamed elements by their new ones; those for which the evidence is not unique are left out."""
     graph = image.graph
     known = dict(residue.known)
-    missing = {key: mark for key, mark in known.items() if key not in graph.vertices and key not in graph.edges}
+    missing = {key: mark for key, mark in known.items() if key not in graph}
     if not missing:
         return {}
     kinds = {key.kind for key in missing}

@@ -14,9 +14,9 @@ from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Texture
 from hymeko_x.ir.residue.bridge import cross
 from hymeko_x.ir.residue.follow import renamed_since, with_new_names, with_old_names
 from hymeko_x.ir.residue.order import by_kind, laid_out, moved
-from hymeko_x.ir.residue.paths import default_at, digest, get, guard_of, put
-from hymeko_x.ir.residue.prints import print_of, shape_group, weight_print
-from hymeko_x.ir.residue.types import is_sound
+from hymeko_x.ir.residue.paths import TURN, default_at, digest, get, guard_of, put
+from hymeko_x.ir.residue.prints import print_of, print_of_extra, shape_group, weight_print
+from hymeko_x.ir.residue.types import is_sound, settled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -43,10 +43,6 @@ def restore(image: Mechanism, residue: Residue, report: Report) -> Mechanism:
         report.note(codes.RESIDUE_FOLLOWED, f"{old} is called '{new.name}' now", element=str(new))
     crossed = cross(with_old_names(image, names), residue.bridge)
     return with_new_names(_Merge(crossed, residue, report).result(), names)
-
-
-def _has(mechanism: Mechanism, key: Id) -> bool:
-    return key in mechanism.graph.vertices or key in mechanism.graph.edges
 
 
 @dataclass(slots=True)
@@ -107,7 +103,7 @@ class _Merge:
             value = get(part, change.path)
         except LookupError:
             return False
-        if change.path[-1] == "turn":
+        if change.path[-1] == TURN:
             value = value[0]  # type: ignore[index]
         return change.guard == guard_of(value, default_at(part, change.path)) or change.guard == digest(value)
 
@@ -132,7 +128,7 @@ class _Merge:
         return kept, withheld
 
     def _is_untouched(self, removal: Removal) -> bool:
-        return _has(self.image, removal.element) and print_of(self.image, removal.element) == removal.guard
+        return removal.element in self.image.graph and print_of(self.image, removal.element) == removal.guard
 
     def _add(self, withheld: set[Id]) -> None:
         """Put in what the image does not have; what it is on must be there."""
@@ -153,7 +149,7 @@ class _Merge:
         gone: dict[Id, VertexPart | RobotEdge] = {}
         for removal in self.residue.removals:
             key = removal.element
-            if key in kept or not _has(self.image, key):
+            if key in kept or key not in self.image.graph:
                 continue
             if not self._is_untouched(removal):
                 self._say(key, "was edited, and stays")
@@ -232,7 +228,8 @@ def _with_changes(part: P, changes: list[Change]) -> P | None:
     """The part with all changes; None where they are of no part that there is, as in a damaged residue."""
     try:
         for change in changes:
-            part = put(part, change.path, change.value)
+            owner = type(get(part, change.path[:-1]))
+            part = put(part, change.path, settled(owner, change.path[-1], change.value))
     except LookupError:
         return None
     return part if is_sound(part) else None
@@ -275,7 +272,7 @@ def _group(path: Path) -> str:
 
 def _is_rounding(part: object, change: Change) -> bool:
     before, after = get(part, change.path), change.value
-    if change.path[-1] == "turn":
+    if change.path[-1] == TURN:
         before, after = before[0], after[0]  # type: ignore[index]
     flat = list(_numbers(before)), list(_numbers(after))
     return len(flat[0]) == len(flat[1]) > 0 and all(abs(a - b) <= _ROUNDING for a, b in zip(*flat, strict=True))
@@ -290,7 +287,7 @@ def _numbers(value: object) -> Iterator[float]:
 
 
 def _path_text(path: Path) -> str:
-    return ".".join(str(step) for step in path if step not in ("data", "arcs", "weight", "turn"))
+    return ".".join(str(step) for step in path if step not in ("data", "arcs", "weight", TURN))
 
 
 # ---- side tables -------------------------------------------------------------------------------------------------------------
@@ -321,7 +318,7 @@ def _extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict[Id, tupl
     extras: dict[Id, list[Extra]] = {}
     for key, found in image.extras.items():
         for extra in found:
-            mark = (key, digest(extra.format, extra.path, extra.text))
+            mark = (key, print_of_extra(extra))
             if strangers[mark]:
                 strangers[mark] -= 1
             else:

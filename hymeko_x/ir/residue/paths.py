@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from array import array
 from dataclasses import MISSING, is_dataclass, replace
 from enum import Enum
 from hashlib import blake2b
@@ -166,4 +165,6 @@ def _joined(values: tuple[object, ...]) -> str:
 
 def _array(numbers: tuple[float, ...]) -> str:
     """Many numbers at once; adding zero makes its two signs one."""
-    return blake2b(array("d", [number + 0.0 for number in numbers]).tobytes(), digest_size=16).hexdigest()
+    import numpy as np
+
+    return blake2b((np.fromiter(numbers, np.float64, len(numbers)) + 0.0).tobytes(), digest_size=16).hexdigest()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -9,7 +10,13 @@ from hymeko_x.ir.parts import Body, Joint, Shape
 from hymeko_x.ir.residue.paths import canonical, digest, digest_of_texts
 
 if TYPE_CHECKING:
-    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotEdge
+
+_IN_ELEMENTS = re.compile(
+    r"\s(?:type|size|material|rgba|density|friction|axis|range|ref|springref|stiffness|damping|frictionloss|armature|actuatorfrcrange|"
+    r'ctrlrange|forcerange|gear|kp|kv|dampratio)="[^"]*"'
+)
+"""What a default class of MJCF says for its elements, each of which has it in a field of its own when it is read."""
 
 
 def print_of(mechanism: Mechanism, key: Id) -> str:
@@ -74,6 +81,12 @@ def _nameless(part: object) -> object:
     if getattr(part, "name", None) is not None:
         return replace(part, name=None)  # type: ignore[type-var]
     return part
+
+
+def print_of_extra(extra: Extra) -> str:
+    """The digest of an extra; of default classes only of what no element has in a field, where an edit would be seen."""
+    is_classes = extra.format == "mjcf" and not extra.path and extra.text.startswith("<default")
+    return digest(extra.format, extra.path, _IN_ELEMENTS.sub("", extra.text) if is_classes else extra.text)
 
 
 def shape_group(edge: RobotEdge) -> str:

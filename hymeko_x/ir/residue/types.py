@@ -4,24 +4,37 @@ from __future__ import annotations
 
 from dataclasses import is_dataclass
 from functools import cache
+from math import hypot, isfinite
 from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
-from hymeko_x.ir import mechanism, parts, values
+from hymeko_x.ir import graph, mechanism, parts, values
 from hymeko_x.ir.fields import attributes_of
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.values import Pose
+
+_ROUNDING = 1e-6
+"""How far from one the length of a unit quaternion may be."""
 
 
 def is_sound(part: object) -> bool:
     """Whether a part, or an edge with its arcs, holds nothing but what its fields may hold. Depth is that of the parts."""
     if isinstance(part, Edge):
         return is_sound(part.data) and isinstance(part.arcs, tuple) and all(map(_is_sound_arc, part.arcs))
+    if isinstance(part, Pose) and not _is_placement(part):
+        return False
     kind: Any = type(part)
     hints = hints_of(kind)
     fields = ((getattr(part, item.name), hints.get(item.name, Any)) for item in attributes_of(part))
     return all(fits(value, hint) for value, hint in fields)
+
+
+def _is_placement(pose: Pose) -> bool:
+    """Whether a pose is somewhere, and turned by a rotation."""
+    if not fits(pose.xyz, values.Vec3) or not fits(pose.quat, values.Quat):
+        return False
+    return all(map(isfinite, pose.xyz)) and abs(hypot(*pose.quat) - 1) < _ROUNDING
 
 
 def _is_sound_arc(arc: object) -> bool:
@@ -33,7 +46,18 @@ def _is_sound_arc(arc: object) -> bool:
 @cache
 def hints_of(kind: Any) -> dict[str, Any]:
     """The types of a part's fields."""
-    return get_type_hints(kind, {**vars(mechanism), **vars(parts), **vars(values)})
+    return get_type_hints(kind, {**vars(graph), **vars(mechanism), **vars(parts), **vars(values)})
+
+
+_WHOLE = frozenset({tuple[int, ...], tuple[int, int] | None})
+"""The types of fields that hold whole numbers."""
+
+
+def settled(owner: type, name: object, value: object) -> object:
+    """A value for a field of a part, with whole numbers where the field has such: a text knows but one kind of number."""
+    if not isinstance(value, tuple) or hints_of(owner).get(name) not in _WHOLE:  # type: ignore[call-overload]
+        return value
+    return tuple(int(item) if isinstance(item, float) and item.is_integer() else item for item in value)
 
 
 def fits(value: object, hint: Any) -> bool:

@@ -56,8 +56,8 @@ def _chains(pair: Pair) -> Iterator[tuple[int, int, list[int], list[int]]]:
 
 
 def _signature(pair: Pair, body: int, dofs: list[int], *, first: bool) -> tuple[Link, ...]:
-    model, poses = (pair.a, pair.zero_a) if first else (pair.b, pair.zero_b)
-    lines, frames = lines_of(model, chain(model, body)[0], body, dofs, poses)
+    model, poses, rest = (pair.a, pair.zero_a, None) if first else (pair.b, pair.zero_b, pair.rest_b)
+    lines, frames = lines_of(model, chain(model, body)[0], body, dofs, poses, rest)
     return signature(lines, frames[1])
 
 

@@ -68,8 +68,18 @@ def check_dynamics(pair: Pair) -> Iterator[Check]:
 
     if places:
         yield worst("mass matrix", "relative", np.array(matrix), pair.allowed(MASS_MATRIX, 8.0), label)
-        allowed = np.maximum(pair.allowed(1e-9, 8.0) * np.array(scale), 1e-9)
+        allowed = np.maximum(pair.allowed(1e-9, 8.0) * np.array(scale), max(1e-9, pair.precision * _largest_torque(pair.a)))
         yield worst("gravity torque", "N m or N", np.array(torque), allowed, label)
+
+
+def _largest_torque(model: KinematicModel) -> float:
+    """What gravity could do at most, in N m: numbers of single precision leave a part of it where a balanced robot feels nothing."""
+    reach = np.zeros(len(model.bodies))
+    for i, body in enumerate(model.bodies[1:], start=1):
+        reach[i] = 0.0 if body.parent == WORLD else reach[body.parent] + np.linalg.norm(body.joint.placement[:3, 3])
+    anchors = [max((float(np.linalg.norm(dof.anchor)) for dof in body.joint.dofs), default=0.0) for body in model.bodies]
+    levers = reach + np.array([float(np.linalg.norm(body.com)) for body in model.bodies]) + anchors
+    return 9.81 * float(levers @ np.array([abs(body.mass) for body in model.bodies]))
 
 
 def _trees(pair: Pair, weightless: tuple[frozenset[int], frozenset[int]]) -> Iterator[tuple[PinModel, PinModel]]:

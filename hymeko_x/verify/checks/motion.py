@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,11 +10,11 @@ import numpy as np
 from hymeko_x.verify.checks.pair import POSITION, ROTATION, Pair, counted, worst
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import Array, Feature, Index, KinematicModel, Loop
-from hymeko_x.verify.spatial import angle_between
+from hymeko_x.verify.spatial import angle_between, frame_with_z, inverse
 from hymeko_x.verify.verdict import Check
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
 LoopPair = tuple[Loop, Loop, bool]
 """A closure of each robot, and whether the second names the two bodies the other way round."""
@@ -93,10 +94,11 @@ def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
         _note_unsaid(pair)
         return [], []
     back = {j: i for i, j in pair.match.bodies}
-    waiting = list(pair.b.loops)
+    there = dict(pair.match.bodies)
+    waiting = list(_with_hinges(pair.b.loops, pair.a.loops, there))
     pairs: list[LoopPair] = []
     findings: list[str] = []
-    for loop in pair.a.loops:
+    for loop in _with_hinges(pair.a.loops, pair.b.loops, back):
         other = _counterpart(loop, waiting, back)
         if other is None:
             findings.append(f"{_loop_label(pair, loop)} is missing")
@@ -111,6 +113,28 @@ def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
             pairs.append((loop, other, ends[0] != loop.body_a))
     findings += [f"loop '{loop.name or loop.kind}' is new" for loop in waiting]
     return pairs, findings
+
+
+def _with_hinges(loops: Iterable[Loop], others: Iterable[Loop], place: Mapping[int, int]) -> Iterator[Loop]:
+    """The loops, two points that stay together as one hinge where the other robot has one; ``place`` leads from its bodies to ours."""
+    hinges = {frozenset((place.get(other.body_a), place.get(other.body_b))) for other in others if other.kind == "hinge"}
+    points: dict[tuple[int, int], list[Loop]] = {}
+    for loop in loops:
+        if loop.kind == "connect" and frozenset((loop.body_a, loop.body_b)) in hinges:
+            points.setdefault((loop.body_a, loop.body_b), []).append(loop)
+        else:
+            yield loop
+    for found in points.values():
+        yield from [_hinge_of(*found)] if len(found) == 2 else found
+
+
+def _hinge_of(first: Loop, second: Loop) -> Loop:
+    """The hinge that two points on both bodies make: its origin is the first one, its axis leads to the second."""
+    ends = []
+    for here, there in ((first.pose_a, second.pose_a), (first.pose_b, second.pose_b)):
+        axis = there[:3, 3] - here[:3, 3]
+        ends.append(frame_with_z(axis, here[:3, 3]) if axis.any() else here)
+    return replace(first, kind="hinge", pose_a=ends[0], pose_b=ends[1])
 
 
 def _note_unsaid(pair: Pair) -> None:
@@ -142,6 +166,8 @@ def _compare_loop(poses_a: Array, poses_b: Array, loop_a: Loop, loop_b: Loop, *,
     """By how much the residuals of two closures differ: in m for what must coincide, in rad for what must align, (n,) each."""
     first_a, second_a = _ends(poses_a, loop_a, swapped=False)
     first_b, second_b = _ends(poses_b, loop_b, swapped=swapped)
+    if loop_a.kind == "weld":  # the same wherever on the two bodies its frames are
+        first_b, second_b = first_a, second_b @ inverse(first_b) @ first_a
     gap = _gap(first_a, second_a, loop_a.kind) - _gap(first_b, second_b, loop_a.kind)
     distance: Array = np.linalg.norm(gap, axis=-1)
     match loop_a.kind:

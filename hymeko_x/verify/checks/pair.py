@@ -29,7 +29,7 @@ MASS_MATRIX = 1e-8
 class Pair:
     """Two robots, their match, the same configurations (n, width) in the coordinates of each, and notes for the verdict.
 
-    ``meshes`` reads the mesh files that are compared, each once.
+    ``meshes`` reads the mesh files that are compared, each once; ``mesh_distances`` is what was found of meshes already.
 
     ``shifts`` holds for each pair of dofs by how much the second's coordinate is larger for the same pose.
     """
@@ -42,6 +42,7 @@ class Pair:
     shifts: tuple[float, ...]
     meshes: Meshes = field(default_factory=Meshes)
     notes: list[str] = field(default_factory=list)
+    mesh_distances: dict[object, tuple[float, str, str]] = field(default_factory=dict)
 
     @cached_property
     def zero_a(self) -> Array:
@@ -49,12 +50,17 @@ class Pair:
         return zero_poses(self.a)
 
     @cached_property
-    def zero_b(self) -> Array:
-        """World poses of the second robot in the same pose."""
+    def rest_b(self) -> Array:
+        """The coordinates of the second robot where all of the first's are 0."""
         coordinates = np.zeros(self.b.width)
         for (_, e), shift in zip(self.match.dofs, self.shifts, strict=True):
             coordinates[self.b.columns[e]] = shift
-        return zero_poses(self.b, coordinates)
+        return coordinates
+
+    @cached_property
+    def zero_b(self) -> Array:
+        """World poses of the second robot in the same pose."""
+        return zero_poses(self.b, self.rest_b)
 
     @property
     def precision(self) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 
 from hymeko_x.verify.checks.pair import Pair, counted, worst
 from hymeko_x.verify.checks.stand_ins import stands_for
-from hymeko_x.verify.model import WORLD, Array, Feature, Index, Role, Shape
+from hymeko_x.verify.model import WORLD, Array, Feature, Index, MeshFile, Role, Shape
 from hymeko_x.verify.surfaces import EMPTY, measures, used
 
 if TYPE_CHECKING:
@@ -97,10 +97,10 @@ def _compare_body(pair: Pair, i: int, j: int, roles: tuple[Role, Role], meshes: 
     best: _Result | None = None
     for left in _readings(ours, roles):
         for right in _readings(theirs, roles):
-            result = _fit(left, right, meshes)
+            result = _fit(pair, left, right)
             if best is None or result.misfit < best.misfit:
                 best = result
-            if best.misfit == (0, 0.0, 0.0):
+            if not best.lone and best.apart <= _LENGTH and best.meshes <= _MESH:
                 return best
     assert best is not None
     return best
@@ -153,11 +153,11 @@ def _readings(shapes: Sequence[Shape], roles: tuple[Role, Role]) -> list[list[Sh
     return [everything] if roles[0] is Role.COLLISION or len(only) == len(everything) else [everything, only]
 
 
-def _fit(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes) -> _Result:
+def _fit(pair: Pair, left: Sequence[Shape], right: Sequence[Shape]) -> _Result:
     solid_left, solid_right = [s for s in left if s.kind != "mesh"], [s for s in right if s.kind != "mesh"]
     lone, apart, at = _fit_solids(solid_left, solid_right)
     mesh_left, mesh_right = [s for s in left if s.kind == "mesh"], [s for s in right if s.kind == "mesh"]
-    gone = _unreadable(mesh_left, meshes) if mesh_left and not mesh_right else ""
+    gone = _unreadable(mesh_left, pair.meshes) if mesh_left and not mesh_right else ""
     if gone:
         return _Result(tuple(lone), apart, 0.0, at, "", gone)
     if bool(mesh_left) != bool(mesh_right):
@@ -165,7 +165,7 @@ def _fit(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes) -> _Resu
         return _Result((*lone, *(f"{_label(shape)} {words}" for shape in which)), apart, 0.0, at)
     if not mesh_left:
         return _Result(tuple(lone), apart, 0.0, at)
-    difference, where, missing = _mesh_distance(mesh_left, mesh_right, meshes)
+    difference, where, missing = _distance_once(pair, mesh_left, mesh_right)
     return _Result(tuple(lone), apart, difference, at, where, missing)
 
 
@@ -223,6 +223,19 @@ def _box_distance(sizes: tuple[Array, Array], relative: Array) -> float:
 
 
 # ---- meshes ----------------------------------------------------------------------------------------------------------
+
+
+def _distance_once(pair: Pair, left: Sequence[Shape], right: Sequence[Shape]) -> tuple[float, str, str]:
+    """What :func:`_mesh_distance` says: what collides is often what is drawn, and is looked at once."""
+    key = tuple(_placed(shape) for shape in left), tuple(_placed(shape) for shape in right)
+    if key not in pair.mesh_distances:
+        pair.mesh_distances[key] = _mesh_distance(left, right, pair.meshes)
+    return pair.mesh_distances[key]
+
+
+def _placed(shape: Shape) -> tuple[object, bytes]:
+    """A mesh where it is: the file, or the triangles by their identity, which they keep as long as the pair lives."""
+    return shape.mesh if isinstance(shape.mesh, MeshFile) else id(shape.mesh), shape.pose.tobytes()
 
 
 def _mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes) -> tuple[float, str, str]:

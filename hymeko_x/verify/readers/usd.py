@@ -1,13 +1,14 @@
 """USD as Pixar's UsdPhysics parser sees it: bodies, joints with both local frames, limits, collision shapes.
 
-Masses come from MassAPI, poses at rest and visual shapes from UsdGeom. Couplings are what NewtonMimicAPI and
-MjcEqualityJointAPI say, since UsdPhysics has no word for them. Physics is float32 and degrees in USD; lengths are in stage
-units. Everything is converted to SI, and to z up.
+Masses come from MassAPI, tensors that have no principal moments from NewtonMassAPI, poses at rest and visual shapes from
+UsdGeom. Couplings are what NewtonMimicAPI and MjcEqualityJointAPI say, since UsdPhysics has no word for them. Physics is
+float32 and degrees in USD; lengths are in stage units. Everything is converted to SI, and to z up.
 Source: UsdPhysics schema and parseDesc.h (OpenUSD); newton-usd-schemas for NewtonMimicAPI.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +24,7 @@ from hymeko_x.verify.readers.words import overheard
 from hymeko_x.verify.spatial import inverse, rigid, rotation_from_quat
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
     from hymeko_x.verify.readers import Places
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
 SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
 SINGLE = 1.2e-7
 """The relative precision of what UsdPhysics stores."""
+NEAR = 1e-6
+WORLD_NAME = "world"
 
 _JOINTS = ("FixedJoint", "RevoluteJoint", "PrismaticJoint", "SphericalJoint", "D6Joint", "DistanceJoint", "CustomJoint")
 
@@ -77,12 +80,15 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     joints = [desc for word in _JOINTS for desc in found.get(getattr(kinds, word), ((), ()))[1] if desc.jointEnabled and desc.isValid]
     ranks: dict[str, int] = {str(prim.GetPath()): rank for rank, prim in enumerate(scene.stage.Traverse(Usd.TraverseInstanceProxies()))}
     joints.sort(key=lambda desc: ranks.get(str(desc.primPath), len(ranks)))
-    edges = [read_joint(scene, desc) for desc in joints]
+    called = _names(scene.stage, [str(desc.primPath) for desc in joints])
+    edges = [read_joint(scene, desc, called[str(desc.primPath)]) for desc in joints]
     order, tree, closing = _spanning_tree(list(rigid_bodies), edges)
-    places = {path: index for index, path in enumerate(order, start=1)} | {"": WORLD}
-    names = _names(scene.stage, order)
+    names = _names(scene.stage, sorted(order, key=lambda path: ranks.get(path, len(ranks))))
+    ground = [path for path in order if names[path] == WORLD_NAME and _is_ground(scene, path, tree.get(path))]
+    order = [path for path in order if path not in ground]
+    places = {path: index for index, path in enumerate(order, start=1)} | dict.fromkeys(("", *ground), WORLD)
     shapes = read_shapes(scene, found, set(rigid_bodies))
-    bodies = [grounded(shapes=shapes.get("", ()))]
+    bodies = [grounded(shapes=tuple(shape for path in ("", *ground) for shape in shapes.get(path, ())))]
     for path in order:
         bodies.append(_body(scene, path, names[path], tree.get(path), places, rigid_bodies[path].kinematicBody, shapes))
     default = scene.stage.GetDefaultPrim()
@@ -98,13 +104,24 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     return read_couplings(scene, model, tree)
 
 
-def _names(stage: Any, paths: Sequence[str]) -> dict[str, str]:
-    """Display names where there are any, else prim names; a path where two bodies would have one name."""
+def _is_ground(scene: Scene, path: str, edge: JointEdge | None) -> bool:
+    """Whether a body called ``world`` is the world itself, as in a URDF: it has no mass and is fixed where the world is."""
+    if edge is None or edge.parent or edge.dofs or edge.more or scene.stage.GetPrimAtPath(path).GetAttribute("physics:mass").Get():
+        return False
+    return bool(np.abs(edge.joint().placement - np.eye(4)).max() < NEAR)
+
+
+def _names(stage: Any, paths: Iterable[str]) -> dict[str, str]:
+    """Display names where there are any, else prim names; in the order of the stage the second of a name is ``name#2``."""
     names = {path: stage.GetPrimAtPath(path).GetDisplayName() or path.rpartition("/")[2] for path in paths}
-    counts: dict[str, int] = {}
-    for name in names.values():
-        counts[name] = counts.get(name, 0) + 1
-    return {path: name if counts[name] == 1 else path for path, name in names.items()}
+    taken, counts = set(names.values()), Counter[str]()
+    for path, name in names.items():
+        counts[name] += 1
+        while counts[name] > 1 and f"{name}#{counts[name]}" in taken:
+            counts[name] += 1
+        if counts[name] > 1:
+            names[path] = f"{name}#{counts[name]}"
+    return names
 
 
 # ---- the tree --------------------------------------------------------------------------------------------------------
@@ -225,8 +242,19 @@ def _inertia(scene: Scene, prim: Any, has_shapes: bool) -> tuple[bool, float, Ar
     axes = api.GetPrincipalAxesAttr().Get() or Gf.Quatf(0)
     quat = np.array([axes.GetReal(), *axes.GetImaginary()], dtype=float)
     turn = rotation_from_quat(quat) if quat.any() else np.eye(3)
-    known = bool(mass and moments.any()) or not has_shapes
-    return known, mass, com, turn @ np.diag(moments) @ turn.T
+    tensor = turn @ np.diag(moments) @ turn.T if moments.any() else _newton_tensor(prim) * scene.kilograms * scene.metres**2
+    known = bool(mass and tensor.any()) or not has_shapes
+    return known, mass, com, tensor
+
+
+def _newton_tensor(prim: Any) -> Array:
+    """The tensor by NewtonMassAPI, for what no principal moments can say, like moments of zero; without one nothing."""
+    attribute = prim.GetAttribute("newton:inertia")
+    said = attribute.Get() if attribute else None
+    if said is None or len(said) != 6:
+        return np.zeros((3, 3))
+    xx, yy, zz, xy, xz, yz = map(float, said)
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
 def relative(scene: Scene, body: str, prim: Any) -> tuple[Array, Array]:

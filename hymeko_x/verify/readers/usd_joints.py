@@ -81,10 +81,8 @@ def _reversed(dof: Dof) -> Dof:
     return replace(dof, axis=-dof.axis)
 
 
-def read_joint(scene: Scene, desc: Any) -> JointEdge:
+def read_joint(scene: Scene, desc: Any, name: str) -> JointEdge:
     """A joint of the parser, in SI units."""
-    prim = scene.stage.GetPrimAtPath(desc.primPath)
-    name = prim.GetDisplayName() or prim.GetName()
     parent, child = _path(desc.body0), _path(desc.body1)
     above, below = (
         _local(scene, desc.localPose0Position, desc.localPose0Orientation, not parent),
@@ -111,15 +109,26 @@ def _dofs(scene: Scene, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
         case kinds.FixedJoint:
             return (), "weld"
         case kinds.RevoluteJoint:
-            return (_scalar(Kind.HINGE, _AXES[desc.axis], desc.limit, math.radians(1.0), name),), "hinge"
+            dof = _scalar(Kind.HINGE, _AXES[desc.axis], desc.limit, math.radians(1.0), name)
+            return (_counted(scene, desc, dof, math.radians(1.0)),), "hinge"
         case kinds.PrismaticJoint:
-            return (_scalar(Kind.SLIDE, _AXES[desc.axis], desc.limit, scene.metres, name),), "slide"
+            dof = _scalar(Kind.SLIDE, _AXES[desc.axis], desc.limit, scene.metres, name)
+            return (_counted(scene, desc, dof, scene.metres),), "slide"
         case kinds.SphericalJoint:
             return (Dof(Kind.BALL, np.eye(3)[_AXES[desc.axis]], name=name),), "connect"
         case kinds.D6Joint:
             return _d6(scene, desc, name)
         case _:
             return (), "other"
+
+
+def _counted(scene: Scene, desc: Any, dof: Dof, unit: float) -> Dof:
+    """The dof with the coordinate that it has where both frames coincide, by MjcJointAPI; its limits are coordinates of that kind.
+
+    Source: Newton's importer, which takes `mjc:ref` off the limits; mujoco-usd-converter, which writes them so.
+    """
+    attribute = scene.stage.GetPrimAtPath(desc.primPath).GetAttribute("mjc:ref")
+    return replace(dof, ref=float(attribute.Get() or 0.0) * unit) if attribute else dof
 
 
 def _scalar(kind: Kind, axis: int, limit: Any, unit: float, name: str | None) -> Dof:

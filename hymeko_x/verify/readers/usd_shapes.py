@@ -103,10 +103,9 @@ def _surface(prim: Any, scale: Array) -> Surface:
     """The faces as triangles (fans), at the default time."""
     mesh = UsdGeom.Mesh(prim)
     points = np.array(mesh.GetPointsAttr().Get() or [], dtype=float).reshape(-1, 3) @ scale.T
-    counts, corners = mesh.GetFaceVertexCountsAttr().Get() or [], mesh.GetFaceVertexIndicesAttr().Get() or []
-    faces: list[tuple[int, int, int]] = []
-    first = 0
-    for count in counts:
-        faces += [(corners[first], corners[first + k], corners[first + k + 1]) for k in range(1, count - 1)]
-        first += count
-    return Surface(points, np.array(faces, dtype=np.intp).reshape(-1, 3))
+    counts = np.array(mesh.GetFaceVertexCountsAttr().Get() or [], dtype=np.intp)
+    corners = np.array(mesh.GetFaceVertexIndicesAttr().Get() or [], dtype=np.intp)
+    fans = np.maximum(counts - 2, 0)
+    first = np.repeat(np.cumsum(counts) - counts, fans)
+    step = np.arange(len(first)) - np.repeat(np.cumsum(fans) - fans, fans)
+    return Surface(points, np.stack([corners[first], corners[first + step + 1], corners[first + step + 2]], axis=1))

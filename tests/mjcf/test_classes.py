@@ -1,0 +1,118 @@
+"""Default classes of what is written from other formats: named by role, and MuJoCo compiles the same model as without them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import mujoco
+import pytest
+
+import hymeko_x as hx
+from hymeko_x.backends.mjcf import classes
+from hymeko_x.corpus.catalog import development_files
+from tests.mjcf.mjmodels import differences
+
+LEG = """<link name="{0}_leg"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual><geometry><box size="0.1125 0.2125 0.7125"/></geometry><material name="red"><color rgba="1 0 0 1"/></material></visual>
+<collision><geometry><box size="0.1125 0.2125 0.7125"/></geometry></collision></link>
+<joint name="{0}_hip" type="revolute"><origin xyz="0 0 {1}"/><parent link="base"/><child link="{0}_leg"/><axis xyz="0 1 0"/>
+<limit lower="-1.0625" upper="1.0625" effort="40" velocity="10"/><dynamics damping="0.125"/></joint>
+<link name="{0}_foot"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><sphere radius="0.0625"/></geometry></collision></link>
+<joint name="{0}_ankle" type="revolute"><origin xyz="0 0 1"/><parent link="{0}_leg"/><child link="{0}_foot"/><axis xyz="1 0 0"/>
+<limit lower="-0.03125" upper="0.03125" effort="40" velocity="10"/><dynamics damping="0.125"/></joint>"""
+QUADRUPED = (
+    '<robot name="q"><link name="base"/>'
+    + "".join(LEG.format(*leg) for leg in zip(("lf", "rf", "lh", "rh"), "1234", strict=True))
+    + "</robot>"
+)
+
+
+def test_what_legs_share_is_in_classes_called_after_their_parts() -> None:
+    text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf", pure=True)
+    head = text[text.index("  <default>") : text.index("  <asset>")]
+    assert (
+        head
+        == """\
+  <default>
+    <geom density="0"/>
+    <joint damping="0.125" actuatorfrcrange="-40 40"/>
+    <default class="visual">
+      <geom contype="0" conaffinity="0" group="2" type="box" size="0.05625 0.10625 0.35625" material="red"/>
+    </default>
+    <default class="collision">
+      <geom group="3"/>
+      <default class="collision_leg">
+        <geom type="box" size="0.05625 0.10625 0.35625"/>
+      </default>
+    </default>
+    <default class="hip">
+      <joint axis="0 1 0" range="-1.0625 1.0625"/>
+    </default>
+    <default class="ankle">
+      <joint axis="1 0 0" range="-0.03125 0.03125"/>
+    </default>
+  </default>
+
+"""
+    )
+    assert '<joint name="lf_hip" class="hip"/>' in text
+    assert '<geom class="collision" type="sphere" size="0.0625"/>' in text
+
+
+def test_actuators_share_a_class_as_well() -> None:
+    text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf", actuators="position", pure=True)
+    assert '    <position kp="400" dampratio="1"/>\n' in text[: text.index("<asset>")]
+    assert '<position name="lf_hip" joint="lf_hip" ctrlrange="-1.0625 1.0625"/>' in text
+
+
+def test_whoever_is_different_says_so_but_never_half_of_a_size() -> None:
+    """An element with fewer numbers than its class would inherit the rest of them."""
+    box = '<visual><geometry><box size="1 2 3"/></geometry></visual>'
+    ball = '<visual><geometry><sphere radius="1"/></geometry></visual>'
+    text = hx.dumps(hx.loads(f'<robot name="r"><link name="a">{box * 3}{ball}</link></robot>', "urdf"), "mjcf", pure=True)
+    assert '<geom contype="0" conaffinity="0" group="2" type="box"/>' in text
+    assert '<geom class="visual" type="sphere" size="1"/>' in text
+
+
+def test_an_edit_in_a_class_comes_home_and_the_class_does_not(tmp_path: Path) -> None:
+    (tmp_path / "q.urdf").write_text(QUADRUPED)
+    hx.convert(tmp_path / "q.urdf", tmp_path / "q.xml")
+    text = (tmp_path / "q.xml").read_text()
+    (tmp_path / "q.xml").write_text(text.replace('range="-1.0625 1.0625"/>', 'range="-1.0625 1.5"/>'))
+    hx.convert(tmp_path / "q.xml", tmp_path / "home.urdf")
+    home = (tmp_path / "home.urdf").read_text()
+    assert [home.count('upper="1.5"'), home.count('upper="1.0625"'), home.count("residue")] == [4, 0, 0]
+
+
+def models(robot: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, **how: object) -> tuple[mujoco.MjModel, mujoco.MjModel]:
+    """The compiled models with and without classes."""
+    with_classes, without = folder / "with.xml", folder / "without.xml"
+    hx.convert(robot, with_classes, pure=True, **how)  # type: ignore[arg-type]
+    monkeypatch.setattr(classes, "shared_attributes", lambda leaves: classes.Defaults())
+    hx.convert(robot, without, pure=True, **how)  # type: ignore[arg-type]
+    assert with_classes.read_text() != without.read_text()
+    return mujoco.MjModel.from_xml_path(str(with_classes)), mujoco.MjModel.from_xml_path(str(without))
+
+
+@pytest.mark.parametrize("actuators", ["none", "motor", "position", "velocity"])
+def test_mujoco_compiles_the_same_model_as_without_classes(actuators: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "q.urdf").write_text(QUADRUPED)
+    assert differences(*models(tmp_path / "q.urdf", tmp_path, monkeypatch, actuators=actuators)) == []
+
+
+FILES = development_files("urdf")
+FEW = [file for file in FILES if file.path.endswith(("minitaur.urdf", "allegro_hand_right_fsr_simple.urdf", "al5d_robot.urdf"))]
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("robot", FEW, ids=lambda file: file.id, indirect=True)
+def test_a_real_robot_compiles_to_the_same_model(robot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert differences(*models(robot, tmp_path, monkeypatch, actuators="position")) == []
+
+
+@pytest.mark.corpus
+@pytest.mark.full
+@pytest.mark.parametrize("robot", FILES, ids=lambda file: file.id, indirect=True)
+def test_every_real_robot_compiles_to_the_same_model(robot: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert differences(*models(robot, tmp_path, monkeypatch)) == []

@@ -1,0 +1,83 @@
+"""Mesh files are read once for each content, and compared once for each place."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pxr import Usd, UsdGeom
+
+from hymeko_x import verify
+from hymeko_x.verify import surfaces
+from hymeko_x.verify.model import MeshFile, Surface
+from hymeko_x.verify.surfaces import Meshes
+
+TETRAHEDRON = """solid t
+facet normal 0 0 0
+outer loop
+vertex 0 0 0
+vertex 1 0 0
+vertex 0 1 0
+endloop
+endfacet
+facet normal 0 0 0
+outer loop
+vertex 0 0 0
+vertex 0 1 0
+vertex 0 0 {}
+endloop
+endfacet
+endsolid t
+"""
+
+
+def mesh(path: Path, height: float) -> Path:
+    path.parent.mkdir(exist_ok=True)
+    path.write_text(TETRAHEDRON.format(height))
+    return path
+
+
+def test_a_copy_of_a_mesh_is_not_read_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    load, read = surfaces._load, []
+    monkeypatch.setattr(surfaces, "_load", lambda path: read.append(path.name) or load(path))
+    paths = [mesh(tmp_path / "a.stl", 1.0), mesh(tmp_path / "copy" / "b.stl", 1.0), mesh(tmp_path / "c.stl", 2.0)]
+    meshes = Meshes()
+    found = [meshes.surface(MeshFile(path.name, path)) for path in (*paths, *paths)]
+    assert read == ["a.stl", "c.stl"]
+    assert [float(item.vertices[:, 2].max()) for item in found if isinstance(item, Surface)] == [1.0, 1.0, 2.0] * 2
+
+
+def test_the_same_bytes_of_another_kind_are_another_mesh(tmp_path: Path) -> None:
+    stl, obj = mesh(tmp_path / "a.stl", 1.0), mesh(tmp_path / "a.obj", 1.0)
+    meshes = Meshes()
+    assert isinstance(meshes.surface(MeshFile("a.stl", stl)), Surface)
+    assert meshes.surface(MeshFile("a.obj", obj)) == "the mesh 'a.obj' holds no triangles"
+
+
+def test_a_mesh_has_every_scale_that_is_asked_for(tmp_path: Path) -> None:
+    path = mesh(tmp_path / "a.stl", 1.0)
+    meshes = Meshes()
+    sizes = [meshes.surface(MeshFile("a.stl", path, (scale, 1.0, 1.0))) for scale in (1.0, 3.0)]
+    assert [float(item.vertices[:, 0].max()) for item in sizes if isinstance(item, Surface)] == [1.0, 3.0]
+
+
+def test_a_mesh_that_cannot_be_opened_is_a_reason(tmp_path: Path) -> None:
+    words = Meshes().surface(MeshFile("a.stl", tmp_path))
+    assert isinstance(words, str)
+    assert words.startswith(f"the mesh '{tmp_path.name}' cannot be read: ")
+
+
+def test_faces_of_any_number_of_corners_become_fans_of_triangles(tmp_path: Path) -> None:
+    stage = Usd.Stage.CreateNew(str(tmp_path / "faces.usda"))
+    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    faces = UsdGeom.Mesh.Define(stage, "/mesh")
+    faces.CreatePointsAttr([(float(x), float(x * x), 0.0) for x in range(9)])
+    faces.CreateFaceVertexCountsAttr([3, 5, 2, 4])
+    faces.CreateFaceVertexIndicesAttr([0, 1, 2, 3, 4, 5, 6, 7, 0, 8, 5, 6, 7, 8])
+    stage.Save()
+    world = verify.model_of(tmp_path / "faces.usda").bodies[0]
+    surface = world.shapes[0].mesh
+    assert isinstance(surface, Surface)
+    expected = [(0, 1, 2), (3, 4, 5), (3, 5, 6), (3, 6, 7), (5, 6, 7), (5, 7, 8)]
+    assert np.array_equal(surface.faces, expected)
