@@ -6,7 +6,6 @@ import hashlib
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
-from hymeko_x.formats import usd as words
 from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bodies import body_at
@@ -70,11 +69,10 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
 
 
 def _primitive(prim: Prim, scale: Vec3, draft: Draft) -> gprims.Gprim:
-    """What the prim of a primitive says; a wrong axis is z."""
+    """What the prim of a primitive says."""
     kind = prim.kind
     sizes = tuple(draft.number(prim, name, default) for name, default in gprims.SIZES[kind])
-    axis = str(draft.get(prim, "axis") or "Z")
-    return gprims.Gprim(kind, sizes, axis if axis in words.AXES else "Z", scale)
+    return gprims.Gprim(kind, sizes, draft.axis(prim, "axis", "Z"), scale)
 
 
 def _take_extent(prim: Prim, half: Vec3, draft: Draft) -> None:
