@@ -64,6 +64,9 @@ def d6_axis(name: str) -> D6Axis:
 # ---- single precision ----------------------------------------------------------------------------------------------------
 
 
+_pack = struct.Struct("f").pack
+
+
 def single(value: float) -> float:
     """The shortest decimal that names a single-precision number: 0.1 for the float that is closest to 0.1.
 
@@ -71,8 +74,9 @@ def single(value: float) -> float:
     """
     if not math.isfinite(value) or value == int(value):
         return float(value)
-    for digits in (6, 7, 8):
-        short = float(f"{value:.{digits}g}")
-        if struct.pack("f", short) == struct.pack("f", value):
+    packed = _pack(value)
+    for digits in ("%.6g", "%.7g", "%.8g"):
+        short = float(digits % value)
+        if _pack(short) == packed:
             return short
     return float(f"{value:.9g}")

@@ -11,6 +11,7 @@ from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.contacts import friction_of
 from hymeko_x.frontends.usd.materials import bound_material
+from hymeko_x.frontends.usd.places import numbers_of
 from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
 from hymeko_x.ir.parts import Mesh, MeshShape, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Vec3, compose
@@ -79,7 +80,10 @@ def _take_extent(prim: Prim, half: Vec3, draft: Draft) -> None:
     """A box around the prim that follows from its sizes is no news."""
     said = prim.value("extent")
     box = (*(-value for value in half), *half)
-    if said is not None and len(said) == 2 and all(abs(a - b) <= 1e-6 * max(half) for a, b in zip((*said[0], *said[1]), box, strict=True)):
+    if said is None or len(said) != 2:
+        return
+    low, high = numbers_of(said)
+    if all(abs(a - b) <= 1e-6 * max(half) for a, b in zip((*low, *high), box, strict=True)):
         draft.take(prim, "extent")
 
 
@@ -182,5 +186,5 @@ def _colour(prim: Prim, draft: Draft) -> Rgba | None:
     if alpha is not None and len(alpha) == 1:
         draft.take(prim, "primvars:displayOpacity")
     draft.take(prim, "primvars:displayColor")
-    r, g, b = (single(float(value)) for value in shown[0])
+    r, g, b = map(single, numbers_of(shown)[0])
     return (r, g, b, single(float(alpha[0])) if alpha is not None and len(alpha) == 1 else 1.0)
