@@ -27,6 +27,7 @@ COLLISION = "PhysicsCollisionAPI"
 SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 TYPES = ("Cube", "Sphere", "Cylinder", "Capsule", "Plane", "Mesh")
 _XFORM = "xformOp"
+_OF_NORMALS = frozenset(("typeName", "variability", "custom", "default", "interpolation"))
 
 Read = tuple["Prim", Shape, Pose, "NDArray[Any] | None"]
 """A shape that was read: its prim, part, pose in the body, and for a mesh its points in the shape's frame (n x 3)."""
@@ -62,6 +63,8 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
     key = draft.own(prim, "shape")
     if said is not None and said != gprims.chosen(geometry):
         draft.note(key, gprims.NOTATION, str(said))
+    if points is not None and _says_normals(prim, draft):
+        draft.note(key, words.NORMALS, "faces")
     draft.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, draft))
     return owner, (prim, shape, pose, points)
 
@@ -109,6 +112,8 @@ def _read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | No
     if not prim.is_animated("points"):
         draft.take(prim, "points")
     _take_mesh_extent(prim, vertices, draft)
+    if prim.value("subdivisionScheme") == "none":  # which is what we say of every mesh
+        draft.take(prim, "subdivisionScheme")
     if (sizes == 3).all():
         draft.take(prim, "faceVertexCounts", "faceVertexIndices")
     key = _shared_mesh(prim, vertices, faces, scale, draft)
@@ -123,6 +128,24 @@ def _take_mesh_extent(prim: Prim, vertices: NDArray[Any], draft: Draft) -> None:
         box = np.stack([vertices.min(axis=0), vertices.max(axis=0)])
         if np.allclose(np.asarray(said, dtype=np.float64), box, rtol=1e-6, atol=1e-6 * float(np.abs(box).max())):
             draft.take(prim, "extent")
+
+
+def _says_normals(prim: Prim, draft: Draft) -> bool:
+    """Whether the normals of a mesh are those of its triangles, which nobody has to keep."""
+    normals, counts = prim.value("normals"), prim.value("faceVertexCounts")
+    if normals is None or len(normals) != len(counts) or "faceVertexCounts" not in draft.taken.get(prim.path, ()):
+        return False
+    import numpy as np
+
+    from hymeko_x.assets.mesh import face_normals
+
+    spec = prim.spec.attributes["normals"]
+    is_plain = set(spec.ListInfoKeys()) <= _OF_NORMALS and spec.GetInfo("interpolation") == "uniform" and not prim.is_animated("normals")
+    points, corners = (np.asarray(prim.value(name)) for name in ("points", "faceVertexIndices"))
+    if not is_plain or not np.array_equal(np.asarray(normals), face_normals(points, corners)):
+        return False
+    draft.take(prim, "normals")
+    return True
 
 
 def _refused(prim: Prim, why: str, draft: Draft) -> tuple[None, None]:
