@@ -6,6 +6,7 @@ import hashlib
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
+from hymeko_x.formats import usd as words
 from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bodies import body_at
