@@ -11,6 +11,7 @@ from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.carrier import taken_off
+from hymeko_x.formats.usd import POSE
 from hymeko_x.ir.diff import Difference, Tolerance, diff
 from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import ROOT
@@ -22,7 +23,7 @@ from hymeko_x.language.residue import BadResidue, parse_residue, print_residue
 from hymeko_x.source import Package, Source
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism
@@ -226,8 +227,15 @@ def ledger(mechanism: Mechanism, crossed: Mechanism, bridge: Bridge, format: For
 
     ``crossed`` is what was read back, behind the bridge that leads to the mechanism.
     """
-    found = (*other_words(bridge), *diff(mechanism, crossed, LEDGER_TOLERANCE))
+    found = (*other_words(bridge), *diff(mechanism, crossed, LEDGER_TOLERANCE), *_unsaid_notes(mechanism, crossed))
     return tuple(_loss(difference, mechanism) for difference in found if not _is_dress(difference, format))
+
+
+def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:
+    """What only a notation holds, and yet says more than how something was written: where a stage shows its bodies at first."""
+    for key, table in mechanism.notations.items():
+        if POSE in table and image.notation(key, POSE) != table[POSE]:
+            yield Difference(key, "pose on the stage", table[POSE], image.notation(key, POSE))
 
 
 def _is_dress(difference: Difference, format: Format) -> bool:

@@ -421,6 +421,20 @@ def merged(parts: tuple[Part, ...]) -> Part:
     return _welded(np.concatenate([part.points[part.faces] for part in parts]), None)
 
 
+def face_normals(points: NDArray[np.float32], corners: NDArray[Any]) -> NDArray[np.float32]:
+    """The unit normal of each triangle (n x 3, single precision), by the right hand; z where a triangle has none.
+
+    ``points`` is (m, 3), ``corners`` the rows of ``points`` of all triangles, flat.
+    """
+    first, second, third = (points[corners[corner::3]].astype(np.float64) for corner in range(3))
+    (ax, ay, az), (bx, by, bz) = (second - first).T, (third - first).T
+    normals = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
+    lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
+    flat = ~(lengths > 0.0)
+    normals[flat], lengths[flat] = (0.0, 0.0, 1.0), 1.0
+    return np.asarray(normals / lengths[:, None], dtype=np.float32)
+
+
 # ---- measures ------------------------------------------------------------------------------------------------------------------
 
 

@@ -21,6 +21,8 @@ REVERSED = "usd.reversed"
 """The notation of a joint whose parent in the tree is its ``body1``."""
 EQUALITY = "usd.equality"
 """The notation of a coupling that MuJoCo's schema says alone, without Newton's."""
+NORMALS = "usd.normals"
+"""The notation of a mesh shape whose prim says the normal of each triangle, which follows from its points."""
 HELD = "usd.held"
 """The notation of a joint that stands for no prim: its body is fixed because its simulation is switched off."""
 POSE = "usd.pose"
@@ -64,6 +66,9 @@ def d6_axis(name: str) -> D6Axis:
 # ---- single precision ----------------------------------------------------------------------------------------------------
 
 
+_pack = struct.Struct("f").pack
+
+
 def single(value: float) -> float:
     """The shortest decimal that names a single-precision number: 0.1 for the float that is closest to 0.1.
 
@@ -71,8 +76,9 @@ def single(value: float) -> float:
     """
     if not math.isfinite(value) or value == int(value):
         return float(value)
-    for digits in (6, 7, 8):
-        short = float(f"{value:.{digits}g}")
-        if struct.pack("f", short) == struct.pack("f", value):
+    packed = _pack(value)
+    for digits in ("%.6g", "%.7g", "%.8g"):
+        short = float(digits % value)
+        if _pack(short) == packed:
             return short
     return float(f"{value:.9g}")

@@ -88,7 +88,7 @@ def foreign_text(extra: Extra, declared: Mapping[str, str]) -> str:
         found = list(etree.fromstring(f"<x{spaces}>{extra.text}</x>".encode(), parser))
     except (etree.XMLSyntaxError, UnicodeEncodeError) as error:
         raise _not_xml(extra, str(error)) from error
-    if len(found) != 1 or not extra.text.startswith("<"):
+    if len(found) != 1 or not extra.text.startswith("<") or (found[0].tail or "").strip():
         raise _not_xml(extra, "it is not one element")
     return without_declared(extra.text, declared)
 

@@ -19,6 +19,7 @@ from hymeko_x.assets.mesh import (
     obj_bytes,
     read_parts,
     read_stl,
+    read_whole,
     stl_bytes,
     stl_is_exact,
     thickened,
@@ -247,3 +248,18 @@ def test_a_flat_mesh_has_no_volume_until_it_is_thickened() -> None:
 
 def test_the_volume_of_a_box_is_its_own() -> None:
     assert volume_of_sheets(read_parts(STL, ".stl", nothing_else)[0]) == pytest.approx(6.0)
+
+
+@pytest.mark.parametrize("suffix", [".stl", ".obj", ".dae"])
+def test_a_whole_file_is_its_parts_put_together(suffix: str) -> None:
+    data = {".stl": STL, ".obj": OBJ.encode() if isinstance(OBJ, str) else OBJ, ".dae": dae()}[suffix]
+    whole, parts = (read(data, suffix, lambda name: b"") for read in (read_whole, lambda *all: merged(read_parts(*all))))
+    assert np.array_equal(whole.points, parts.points)
+    assert np.array_equal(whole.faces, parts.faces)
+
+
+def test_points_that_are_equal_become_one_in_lexical_order_whatever_the_sign_of_their_zeros() -> None:
+    dice = np.random.default_rng(0)
+    corners = dice.integers(-2, 3, (500, 3, 3)) * dice.choice([-1.0, 1.0], (500, 3, 3))
+    part = read_whole(stl_bytes(inline_part(tuple(corners.ravel()), tuple(range(1500)))), ".stl", nothing_else)
+    assert np.array_equal(part.points, np.unique(corners.reshape(-1, 3) + 0.0, axis=0))

@@ -229,3 +229,15 @@ def test_a_difference_is_found_exactly_where_mechanisms_are_not_equal(a: Mechani
     assert diff(a, a) == ()
     assert bool(diff(a, b)) == (a != b)
     assert len(diff(a, b)) == len(diff(b, a))
+
+
+def test_of_the_numbers_of_a_mesh_those_from_the_first_difference_on_are_shown() -> None:
+    key = Id("mesh", "m")
+    points = tuple(float(number) for number in range(99))
+    a, b = (Mechanism("m", Hypergraph({key: parts.Mesh(vertices=values)}, {})) for values in (points, (*points[:90], 0.5, *points[91:])))
+    ((found),) = diff(a, b)
+    assert (found.field, found.before) == ("vertices", "[... 90 91 92 93 94 95 96 97 ...] of 99")
+    assert found.after == "[... 0.5 91 92 93 94 95 96 97 ...] of 99"
+    assert diff(a, b, Tolerance(100.0)) == ()
+    ((missing),) = diff(a, Mechanism("m", Hypergraph({key: parts.Mesh()}, {})))
+    assert (missing.before, missing.after) == ("[0 1 2 3 4 5 6 7 ...] of 99", "[]")

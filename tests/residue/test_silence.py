@@ -2,42 +2,54 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.corpus.catalog import development_files
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.legalize import Options
-from hymeko_x.source import NoFiles, Package, Source
+from hymeko_x.source import Files, NoFiles, Package, Source
 from tests.residue import silence
 from tests.residue.samples import MJCF, URDF
 
+NATIVE = tuple(target for target in silence.TARGETS if target != "hymeko")
 
-@pytest.mark.parametrize("target", ["mjcf", "urdf", "hymeko", "xacro"])
+
+def silent(data: bytes, own: str, targets: Sequence[str], files: Files | None = None, *, most: int | None = None) -> list[str]:
+    """The changes that some format lets pass."""
+    found = silence.silent_changes(data, own, targets, files, most=most)
+    return [f"{what} ({', '.join(among)})" for what, among in found if among]
+
+
 @pytest.mark.parametrize(("text", "own"), [(URDF, "urdf"), (MJCF, "mjcf")])
-def test_every_change_is_seen(text: str, own: str, target: str) -> None:
-    assert silence.silent_changes(text.encode(), own, target, most=60) == []
+def test_every_change_is_seen(text: str, own: str) -> None:
+    assert silent(text.encode(), own, silence.TARGETS, most=25) == []
 
 
-REAL = [
-    (file, target)
-    for format in ("urdf", "mjcf")
-    for file in development_files(format)[:: {"urdf": 2, "mjcf": 3}[format]]
-    for target in ("mjcf", "urdf", "hymeko")
-    if target != format
-]
+CONCEPTS = sorted(Path("corpus/robots").glob("*.hymeko"))
+
+
+@pytest.mark.parametrize("robot", CONCEPTS, ids=lambda path: path.stem)
+def test_every_change_of_a_concept_is_seen(robot: Path) -> None:
+    assert silent(robot.read_bytes(), "hymeko", NATIVE, DiskFiles(robot.parent), most=4) == []
 
 
 @pytest.mark.full
-@pytest.mark.corpus
-@pytest.mark.parametrize(("robot", "target"), REAL, ids=lambda value: str(getattr(value, "id", value)), indirect=["robot"])
-def test_every_change_of_a_real_robot_is_seen(robot: Path, target: str) -> None:
+@pytest.mark.parametrize("robot", CONCEPTS, ids=lambda path: path.stem)
+def test_each_change_of_a_concept_is_seen(robot: Path) -> None:
+    assert silent(robot.read_bytes(), "hymeko", NATIVE, DiskFiles(robot.parent)) == []
+
+
+@pytest.mark.full
+@pytest.mark.robots("urdf", "mjcf", "usd")
+def test_every_change_of_a_real_robot_is_seen(robot: Path) -> None:
     data = robot.read_bytes()
     own = formats.of_input(robot.name, data).name
-    assert silence.silent_changes(data, own, target, DiskFiles(robot.parent), most=20) == []
+    targets = [target for target in silence.TARGETS if target != own]
+    assert silent(data, own, targets, DiskFiles(robot.parent), most=20) == []
 
 
 def test_without_a_ledger_silence_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -45,6 +57,6 @@ def test_without_a_ledger_silence_is_found(monkeypatch: pytest.MonkeyPatch) -> N
     robot = pipeline.read(Source("robot", URDF.encode(), NoFiles()), formats.URDF, Report())
     frozen = pipeline.write(robot, formats.URDF, Options(pure=True), NoFiles(), Report())
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: Package(frozen.main))
-    assert len(silence.silent_changes(URDF.encode(), "urdf", "urdf", most=20)) < 3
+    assert len(silent(URDF.encode(), "urdf", ["urdf"], most=20)) < 3
     monkeypatch.setattr(pipeline, "ledger", lambda *_: ())
-    assert len(silence.silent_changes(URDF.encode(), "urdf", "urdf", most=20)) > 10
+    assert len(silent(URDF.encode(), "urdf", ["urdf"], most=20)) > 10

@@ -194,6 +194,7 @@ def test_the_order_of_the_author_is_kept() -> None:
         (Extra("urdf", "", "<a>"), "<a>"),
         (Extra("urdf", "", "a"), "a"),
         (Extra("urdf", "", "<a/><b/>"), "<a/><b/>"),
+        (Extra("urdf", "", "<a/>b"), "<a/>b"),
         (Extra("urdf", "", "<x:a/>"), "<x:a/>"),
         (Extra("urdf", "limit/<", "<a/>"), "<a/>"),
         (Extra("urdf", "@a b", "c"), "c"),

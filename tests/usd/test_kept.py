@@ -8,9 +8,13 @@ from typing import Any
 import pytest
 from pxr import Sdf, Usd
 
+from hymeko_x import formats, pipeline
+from hymeko_x.diagnostics import Report
 from hymeko_x.ir.diff import diff
+from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.parts import Body, Box, Capsule, Coupling, DofKind, Joint
+from hymeko_x.source import NoFiles
 from tests.usd.stages import HEADER, again, opened, parsed, read_text, written
 from tests.usd.test_read import ENDS, PLACE, body, joint, robot, the_joint
 
@@ -52,6 +56,23 @@ def test_sizes_and_axis_of_a_primitive(tmp_path: Path) -> None:
     assert missing(text, tmp_path) == {}
     shapes = [view.shape.geometry for view in read_text(text).shapes[Id("body", "a")]]
     assert shapes == [Capsule(0.08, 0.4), Box((2.0, 4.0, 6.0))]
+
+
+def test_an_axis_that_is_none_is_reported_and_kept(tmp_path: Path) -> None:
+    report = Report()
+    text = robot(body("a", '    def Capsule "c"\n    {\n        uniform token axis = "sideways"\n    }\n'))
+    mechanism = read_text(text, report)
+    assert [str(item).partition(": ")[2] for item in report] == ["warning[HX027]: /robot/a/c: axis is 'sideways'; Z instead"]
+    assert b'token axis = "sideways"' in written(mechanism)
+
+
+def test_where_a_stage_shows_a_body_that_its_joints_put_elsewhere_is_in_the_ledger() -> None:
+    shown = PLACE.format(x=0, y=0, z=3)
+    mechanism = read_text(robot(body("a"), body("b", shown), joint("PhysicsFixedJoint", "j", ENDS)))
+    result = pipeline.convert(mechanism, formats.URDF, Options(), NoFiles(), Report())
+    assert [(loss.element, loss.before) for loss in result.losses or () if loss.field == "pose on the stage"] == [
+        ("body 'b'", "0 0 3 1 0 0 0")
+    ]
 
 
 def test_a_body_whose_prim_is_its_geometry_with_what_is_below_it_and_joints_in_its_scaled_space(tmp_path: Path) -> None:

@@ -6,16 +6,18 @@ import math
 from pathlib import Path
 
 import pytest
-from pxr import Usd, UsdGeom, UsdPhysics
+from pxr import Sdf, Usd, UsdGeom, UsdPhysics
 
 from hymeko_x import formats, pipeline
+from hymeko_x.backends.usd.carrier import carry_in_text
 from hymeko_x.diagnostics import Report
+from hymeko_x.formats import carrier
 from hymeko_x.frontends import urdf, usd
 from hymeko_x.ir.diff import diff
 from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.parts import Body, Mesh
-from hymeko_x.source import NoFiles, Source
+from hymeko_x.source import NoFiles, Package, Source
 from tests.usd.stages import Texts, again, opened, parsed, written
 
 ARM = """<robot name="my arm">
@@ -169,3 +171,38 @@ def test_a_written_stage_needs_no_other_layer(tmp_path: Path) -> None:
     stage = opened(written(arm()), tmp_path)
     assert len(stage.GetUsedLayers()) == 2
     assert isinstance(stage, Usd.Stage)
+
+
+def shown_once(factor: float) -> str:
+    """A stage with one mesh as we write it, its normals multiplied."""
+    robot = b'<robot name="m"><link name="a"><visual><geometry><mesh filename="a.obj"/></geometry></visual></link></robot>'
+    mechanism = urdf.read(Source("m.urdf", robot), Report())
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    layer.ImportFromString(pipeline.write(mechanism, formats.USD, Options(), Texts({"a.obj": OBJ}), Report()).main.decode())
+    normals = layer.GetAttributeAtPath("/m/a/visual.normals")
+    normals.default = [factor * normal for normal in normals.default]
+    return str(layer.ExportToString())
+
+
+@pytest.mark.parametrize(("factor", "kept"), [(1.0, False), (-1.0, True)])
+def test_normals_that_follow_from_the_triangles_are_no_extra_and_are_written_again(factor: float, kept: bool) -> None:
+    text = shown_once(factor)
+    mechanism = usd.read(Source("m.usda", text.encode()), Report())
+    assert any("normals" in extra.text for extras in mechanism.extras.values() for extra in extras) is kept
+    result = Sdf.Layer.CreateAnonymous(".usda")
+    result.ImportFromString(pipeline.write(mechanism, formats.USD, Options(), NoFiles(), Report()).main.decode())
+    source = Sdf.Layer.CreateAnonymous(".usda")
+    source.ImportFromString(text)
+    before, after = (layer.GetAttributeAtPath("/m/a/visual.normals") for layer in (source, result))
+    assert (before.default, before.GetInfo("interpolation")) == (after.default, after.GetInfo("interpolation"))
+
+
+@pytest.mark.parametrize("comment", ["plain", "two lines\n)\nlike the end of a header"])
+def test_a_residue_in_the_header_leaves_the_rest_of_the_text_as_it_was(comment: str) -> None:
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    layer.ImportFromString(written(arm()).decode())
+    layer.comment = comment
+    whole = layer.ExportToString()
+    carried = carry_in_text(Package(whole.encode()), 'said "so"\n)\n').main.decode()
+    layer.customLayerData = {**layer.customLayerData, carrier.USD_KEY: 'said "so"\n)\n'}
+    assert carried == layer.ExportToString()

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pxr import Sdf
+from pxr import Sdf, Tf
 
 from hymeko_x.formats import carrier
 
@@ -16,11 +16,24 @@ if TYPE_CHECKING:
 
 
 def carry_in_text(package: Package, text: str) -> Package:
-    """The package with a residue in its text layer."""
+    """The package with a residue in its text layer, of which only the header is parsed."""
+    whole = package.main.decode()
+    head, end, prims = whole.partition("\n)\n")
+    header = _parsed(head + end)
+    if header is None:  # a string in the header looks like its end
+        header, prims = _parsed(whole), ""
+    assert header is not None
+    _put(header, text)
+    said = header.ExportToString()
+    return replace(package, main=(said.rstrip("\n") + "\n" + prims if prims else said).encode())
+
+
+def _parsed(text: str) -> Any | None:
     layer = Sdf.Layer.CreateAnonymous(".usda")
-    layer.ImportFromString(package.main.decode())
-    _put(layer, text)
-    return replace(package, main=layer.ExportToString().encode())
+    try:
+        return layer if layer.ImportFromString(text) else None
+    except Tf.ErrorException:
+        return None
 
 
 def carry_in_crate(package: Package, text: str) -> Package:

@@ -6,9 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Vt
 
+from hymeko_x.assets.mesh import face_normals
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put
-from hymeko_x.backends.usd.surfaces import normals_of, surface_of
+from hymeko_x.backends.usd.surfaces import surface_of
 from hymeko_x.formats import usd as words
 from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.ir.mechanism import WORLD
@@ -109,7 +110,7 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
         _carry_mesh(sheet, spec, view.mesh)
         if surface is not None:
             _write_surface(spec, surface)
-            if sheet.mechanism.notation(view.id, words.PATH) is None:
+            if _has_normals(sheet.mechanism, view.id):
                 _write_normals(spec, surface)
     else:
         if view.mesh not in shared:
@@ -119,6 +120,11 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
         spec.reference = shared[view.mesh]
     sheet.made[spec.path] += ["subdivisionScheme", "normals"]
     return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
+
+
+def _has_normals(mechanism: Mechanism, shape: Id) -> bool:
+    """Whether a mesh says the normals of its triangles: ours do, those of others where they did."""
+    return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, words.NORMALS) is not None
 
 
 def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
@@ -156,7 +162,7 @@ def _write_surface(prim: Prim, surface: Surface) -> None:
 
 def _write_normals(prim: Prim, surface: Surface) -> None:
     """One normal for each triangle, for programs that compute none of their own; a degenerate triangle has some unit vector."""
-    put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(normals_of(surface)))
+    put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(face_normals(*surface)))
     prim.per_face.append("normals")
 
 

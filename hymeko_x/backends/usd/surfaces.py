@@ -25,15 +25,3 @@ def surface_of(mesh: Mesh) -> Surface | None:
     if not np.isfinite(points).all() or (faces.size and (faces.min() < 0 or faces.max() >= len(points))):
         return None
     return points, faces.astype(np.int32)
-
-
-def normals_of(surface: Surface) -> NDArray[Any]:
-    """The unit normal of each triangle (n x 3, single precision), by the right hand; z where a triangle has none."""
-    points, faces = surface
-    first, second, third = (points[faces[corner::3]].astype(np.float64) for corner in range(3))
-    (ax, ay, az), (bx, by, bz) = (second - first).T, (third - first).T
-    normals = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
-    lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
-    flat = ~(lengths > 0.0)
-    normals[flat], lengths[flat] = (0.0, 0.0, 1.0), 1.0
-    return np.asarray(normals / lengths[:, None], dtype=np.float32)

@@ -12,7 +12,7 @@ from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.build import sign_of
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
-from hymeko_x.ir.values import IDENTITY, Pose, Vec3, Written, rotate, scaled, unit
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Vec3, Written, numbers_text, rotate, scaled, unit
 from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, Ref
 
 if TYPE_CHECKING:
@@ -232,9 +232,20 @@ def _take_axis_arc(build: Build, block: Block, scope: Scope) -> tuple[Vec3, Writ
             continue
         block.arcs.remove(arc)
         sign = -1.0 if sign_of(arc) < 0 and arc.ref.direction == "-" else 1.0
-        turned = rotate(build.context.pose(arc.weight, arc).quat, direction) if arc.weight is not None else direction
+        turned = _turned(build, arc, direction)
         return (_signed(turned, sign) if sign < 0 else scaled(turned, 1.0)), None
     return None
+
+
+def _turned(build: Build, arc: ArcItem, direction: Vec3) -> Vec3:
+    """A direction as the weight of its arc turns it. The position that is written with the rotation has no meaning there."""
+    if arc.weight is None:
+        return direction
+    pose = build.context.pose(arc.weight, arc)
+    if pose.xyz != ZERO:
+        said = f"only the rotation of the weight turns the axis; the position {numbers_text(pose.xyz)} means nothing"
+        build.context.report.warn(codes.BAD_VALUE, said, build.context.origin(arc))
+    return rotate(pose.quat, direction)
 
 
 def _direction(build: Build, ref: Ref, scope: Scope) -> Vec3 | None:

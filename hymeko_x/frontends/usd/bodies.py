@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bindings import bound_to
-from hymeko_x.frontends.usd.places import turn_of
+from hymeko_x.frontends.usd.places import numbers_of, turn_of
 from hymeko_x.frontends.usd.volumes import Solid, joined, solid_of
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Role, Shape
 from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, rotate_tensor
@@ -84,7 +84,7 @@ def _tensor(prim: Prim, com: Vec3, unit: float, draft: Draft) -> tuple[Tensor | 
     axes = draft.get(prim, "physics:principalAxes")
     if full is not None and len(full) == 6:
         draft.take(prim, "@NewtonMassAPI")
-        xx, yy, zz, xy, xz, yz = (float(value) * unit for value in full)
+        xx, yy, zz, xy, xz, yz = (value * unit for value in numbers_of(full))
         return (xx, yy, zz, xy, xz, yz), None
     if diagonal is None or not any(diagonal):
         return None, None

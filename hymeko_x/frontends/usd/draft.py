@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
@@ -105,6 +106,16 @@ class Draft:
         if value is not None and not prim.is_animated(name):
             self.take(prim, name)
         return _rounded(value, prim.types[name])
+
+    def axis(self, prim: Prim, name: str, default: str) -> str:
+        """An authored axis: X, Y or Z. Any other word is reported and stays an extra, and the axis is the default."""
+        word = str(self.get(prim, name) or default)
+        if word in words.AXES:
+            return word
+        self.taken.get(prim.path, set()).discard(name)
+        said = f"{prim.path}: {name} is '{word}'; {default} instead"
+        self.report.warn(codes.UNKNOWN_WORD, said, self.origin, element=prim.path)
+        return default
 
     def number(self, prim: Prim, name: str, default: float) -> float:
         """An authored number, or the default (not a number for none). One that says nothing, which is not written, stays an extra."""

@@ -13,7 +13,7 @@ from hymeko_x.frontends.usd.dialects import with_dialect
 from hymeko_x.frontends.usd.places import turn_of
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
-from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, X, compose, inverse
+from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, compose, inverse
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.draft import Draft
@@ -161,7 +161,7 @@ def _dofs(prim: Prim, kind: str, draft: Draft) -> tuple[Dof, ...]:
 
 
 def _axis(prim: Prim, draft: Draft) -> Vec3:
-    return words.AXES.get(str(draft.get(prim, "physics:axis") or "X"), X)
+    return words.AXES[draft.axis(prim, "physics:axis", "X")]
 
 
 def _limits(prim: Prim, kind: DofKind, draft: Draft) -> Limits:

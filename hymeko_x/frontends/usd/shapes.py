@@ -12,6 +12,7 @@ from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.contacts import friction_of
 from hymeko_x.frontends.usd.materials import bound_material
+from hymeko_x.frontends.usd.places import numbers_of
 from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
 from hymeko_x.ir.parts import Mesh, MeshShape, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Vec3, compose
@@ -27,6 +28,7 @@ COLLISION = "PhysicsCollisionAPI"
 SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 TYPES = ("Cube", "Sphere", "Cylinder", "Capsule", "Plane", "Mesh")
 _XFORM = "xformOp"
+_OF_NORMALS = frozenset(("typeName", "variability", "custom", "default", "interpolation"))
 
 Read = tuple["Prim", Shape, Pose, "NDArray[Any] | None"]
 """A shape that was read: its prim, part, pose in the body, and for a mesh its points in the shape's frame (n x 3)."""
@@ -62,6 +64,8 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
     key = draft.own(prim, "shape")
     if said is not None and said != gprims.chosen(geometry):
         draft.note(key, gprims.NOTATION, str(said))
+    if points is not None and _says_normals(prim, draft):
+        draft.note(key, words.NORMALS, "faces")
     draft.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, draft))
     return owner, (prim, shape, pose, points)
 
@@ -70,18 +74,20 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
 
 
 def _primitive(prim: Prim, scale: Vec3, draft: Draft) -> gprims.Gprim:
-    """What the prim of a primitive says; a wrong axis is z."""
+    """What the prim of a primitive says."""
     kind = prim.kind
     sizes = tuple(draft.number(prim, name, default) for name, default in gprims.SIZES[kind])
-    axis = str(draft.get(prim, "axis") or "Z")
-    return gprims.Gprim(kind, sizes, axis if axis in words.AXES else "Z", scale)
+    return gprims.Gprim(kind, sizes, draft.axis(prim, "axis", "Z"), scale)
 
 
 def _take_extent(prim: Prim, half: Vec3, draft: Draft) -> None:
     """A box around the prim that follows from its sizes is no news."""
     said = prim.value("extent")
     box = (*(-value for value in half), *half)
-    if said is not None and len(said) == 2 and all(abs(a - b) <= 1e-6 * max(half) for a, b in zip((*said[0], *said[1]), box, strict=True)):
+    if said is None or len(said) != 2:
+        return
+    low, high = numbers_of(said)
+    if all(abs(a - b) <= 1e-6 * max(half) for a, b in zip((*low, *high), box, strict=True)):
         draft.take(prim, "extent")
 
 
@@ -107,6 +113,8 @@ def _read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | No
     if not prim.is_animated("points"):
         draft.take(prim, "points")
     _take_mesh_extent(prim, vertices, draft)
+    if prim.value("subdivisionScheme") == "none":  # which is what we say of every mesh
+        draft.take(prim, "subdivisionScheme")
     if (sizes == 3).all():
         draft.take(prim, "faceVertexCounts", "faceVertexIndices")
     key = _shared_mesh(prim, vertices, faces, scale, draft)
@@ -121,6 +129,24 @@ def _take_mesh_extent(prim: Prim, vertices: NDArray[Any], draft: Draft) -> None:
         box = np.stack([vertices.min(axis=0), vertices.max(axis=0)])
         if np.allclose(np.asarray(said, dtype=np.float64), box, rtol=1e-6, atol=1e-6 * float(np.abs(box).max())):
             draft.take(prim, "extent")
+
+
+def _says_normals(prim: Prim, draft: Draft) -> bool:
+    """Whether the normals of a mesh are those of its triangles, which nobody has to keep."""
+    normals, counts = prim.value("normals"), prim.value("faceVertexCounts")
+    if normals is None or len(normals) != len(counts) or "faceVertexCounts" not in draft.taken.get(prim.path, ()):
+        return False
+    import numpy as np
+
+    from hymeko_x.assets.mesh import face_normals
+
+    spec = prim.spec.attributes["normals"]
+    is_plain = set(spec.ListInfoKeys()) <= _OF_NORMALS and spec.GetInfo("interpolation") == "uniform" and not prim.is_animated("normals")
+    points, corners = (np.asarray(prim.value(name)) for name in ("points", "faceVertexIndices"))
+    if not is_plain or not np.array_equal(np.asarray(normals), face_normals(points, corners)):
+        return False
+    draft.take(prim, "normals")
+    return True
 
 
 def _refused(prim: Prim, why: str, draft: Draft) -> tuple[None, None]:
@@ -184,5 +210,5 @@ def _colour(prim: Prim, draft: Draft) -> Rgba | None:
     if alpha is not None and len(alpha) == 1:
         draft.take(prim, "primvars:displayOpacity")
     draft.take(prim, "primvars:displayColor")
-    r, g, b = (single(float(value)) for value in shown[0])
+    r, g, b = map(single, numbers_of(shown)[0])
     return (r, g, b, single(float(alpha[0])) if alpha is not None and len(alpha) == 1 else 1.0)
