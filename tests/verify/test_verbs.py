@@ -257,3 +257,9 @@ def test_a_profile_asks_only_for_what_it_needs(written: Write, capsys: pytest.Ca
     file = written("urdf", LISTING.replace('<mass value="1"/>', '<mass value="0"/>'))
     assert found_codes(file, capsys, "--profile", "kinematics") == (exits.DONE, set())
     assert found_codes(file, capsys, "--profile", "simulation") == (exits.FAIL_ON, {"HX314"})
+
+
+def test_a_hypergraph_without_bodies_is_no_robot(tmp_path: Path) -> None:
+    text = tmp_path / "plain.hymeko"
+    text.write_text("plain\nnode0 {\nx1 x2\nx3 x4\n@e1 {+x1 +x2 -x3 -x4}\n}\n")
+    assert hx.verify(text, text).reason == "; ".join(["the HyMeKo text describes a hypergraph without bodies, which is no robot"] * 2)
