@@ -14,7 +14,7 @@ help:
 	@echo "make bench  speed as ratios against yardsticks timed in the same run"
 	@echo "make peers  other people's programs that tests and benchmarks compare with, each into .peers/"
 	@echo "make fuzz   damage texts of every format and read them; PROFILE=ci (minutes) or nightly (hours)"
-	@echo "make corpus every robot of the catalogue through every format, verified; renews corpus/results and README"
+	@echo "make corpus every robot of the catalogue through every format, verified; renews corpus/results and its pages"
 	@echo "make clean  remove .venv and everything that was built"
 
 $(STAMP): pyproject.toml
@@ -60,7 +60,7 @@ fuzz: $(STAMP)
 corpus: $(STAMP)
 	$(BIN)/hymeko-x corpus fetch
 	$(BIN)/hymeko-x corpus run --verify --resume --jobs $(JOBS) -o corpus-run
-	$(BIN)/hymeko-x corpus stats corpus-run -o corpus/results --page README.md
+	$(BIN)/hymeko-x corpus stats corpus-run -o corpus/results --page README.md --page docs/results.md --page docs/scale.md
 
 clean:
 	rm -rf .venv .peers build dist demo .mypy_cache .pytest_cache .ruff_cache

@@ -1,4 +1,5 @@
-"""How long HyMeKo text is: letters without white space and comments, against URDF and MJCF as their authors wrote them.
+"""How long HyMeKo text is: letters without white space and comments, against URDF and MJCF as their authors wrote them, and
+against the USD text that hymeko-x writes of the same URDF (without what it carries, and without the arrays of meshes).
 
 python benchmarks/size.py
 """
@@ -10,7 +11,9 @@ import statistics
 import sys
 from typing import TYPE_CHECKING
 
+import hymeko_x as hx
 from hymeko_x.backends.hymeko import write
+from hymeko_x.corpus.lengths import tokens_of
 from hymeko_x.diagnostics import Report
 from hymeko_x.disk import open_source
 from hymeko_x.frontends import mjcf, urdf
@@ -21,6 +24,8 @@ if TYPE_CHECKING:
 
 BOUNDS = {"urdf": 0.40, "mjcf": 0.75}
 """HyMeKo against each format, median over the development files."""
+
+USDA_BOUND = 0.15
 
 _READERS = {"urdf": urdf.read, "mjcf": mjcf.read}
 _XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
@@ -37,6 +42,24 @@ def ratio(robot: Path, form: str) -> float:
     said = write(_READERS[form](open_source(str(robot)), Report()), Report()).main.decode()
     plain = TOKENS.sub(lambda token: "" if token[0].startswith(("#", "//", "/*")) else token[0], said)
     return letters(plain) / _source_letters(robot)
+
+
+_MESH_ARRAY = re.compile(
+    r"^[ \t]*(?:uniform )?\w+\[\] (?:points|normals|faceVertexCounts|faceVertexIndices|indices|primvars:\S+) = "
+    r"(?:\[[^\]]*\]|None)(?: \([^)]*\))?",
+    re.MULTILINE,
+)
+
+
+def usda_ratio(robot: Path) -> float:
+    """The letters of a URDF's HyMeKo text for one letter of its USD text, in which no array of a mesh is counted."""
+    mechanism = hx.load(robot)
+    stage = _MESH_ARRAY.sub("", hx.dumps(mechanism, "usd", pure=True))
+    return _code(hx.dumps(mechanism, "hymeko"), "hymeko") / _code(stage, "usda")
+
+
+def _code(text: str, form: str) -> int:
+    return sum(map(letters, tokens_of(text, form)))
 
 
 def _source_letters(robot: Path) -> int:
@@ -57,7 +80,12 @@ def main() -> int:
             ratios.append(ratio(robot, form))
             print(f"{ratios[-1]:6.3f}  {robot.name}")
         good &= verdict(f"letters of HyMeKo / {form}, median of {len(ratios)}", statistics.median(ratios), bound, at_least=False)
-    return 0 if good else 1
+    ratios = []
+    for robot in robots("urdf"):
+        ratios.append(usda_ratio(robot))
+        print(f"{ratios[-1]:6.3f}  {robot.name}")
+    name = f"letters of HyMeKo / usda of urdf, median of {len(ratios)}"
+    return 0 if verdict(name, statistics.median(ratios), USDA_BOUND, at_least=False) and good else 1
 
 
 if __name__ == "__main__":

@@ -118,12 +118,16 @@ def _shown(value: str | None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a conversion made. ``losses`` is None when the target cannot be read back, so that nothing was measured."""
+    """What a conversion made. ``losses`` is None when the target cannot be read back, so that nothing was measured.
+
+    ``bare`` is the main file before anything was put in for it to carry; None when it carries nothing.
+    """
 
     mechanism: Mechanism
     package: Package
     report: Report
     losses: tuple[Loss, ...] | None
+    bare: bytes | None = None
 
 
 def read(source: Source, format: Format, report: Report) -> Mechanism:
@@ -174,9 +178,10 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
     if carry is None:
         return Result(mechanism, package, report, losses)
     residue = residue_behind(mechanism, image, bridge, crossed)
+    bare = package.main
     if not residue.is_empty:
         package = carry(package, print_residue(residue))
-    return Result(mechanism, package, report, tuple(replace(loss, fate="carried") for loss in losses))
+    return Result(mechanism, package, report, tuple(replace(loss, fate="carried") for loss in losses), bare)
 
 
 def write_unmeasured(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:

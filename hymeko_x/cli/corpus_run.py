@@ -44,7 +44,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--every", type=_count, default=1, metavar="N", help="take every N-th file only")
     parser.add_argument("--timeout", type=float, default=180.0, metavar="S", help="seconds that one process may take (default 180)")
-    parser.add_argument("--memory", type=float, default=3072.0, metavar="MB", help="memory of one process in MiB (default 3072)")
+    parser.add_argument(
+        "--memory", type=float, default=5120.0, metavar="MB", help="memory of one process in MiB, with what is only reserved (default 5120)"
+    )
     parser.add_argument("--resume", action="store_true", help="go on with the results that are there")
     parser.add_argument("--engine", choices=("local", "ray"), default="local", help="processes of this machine, or a running Ray cluster")
     parser.add_argument("--address", metavar="HOST:PORT", help="the Ray cluster (default: the one of this machine)")

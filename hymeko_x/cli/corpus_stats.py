@@ -19,14 +19,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("results", nargs="?", default="corpus-run", metavar="DIR", help="the results of a run (default corpus-run)")
     where = "where tables and figures go (default: beside the results)"
     parser.add_argument("-o", dest="output", metavar="DIR", help=where)
-    parser.add_argument("--page", action="append", default=[], metavar="FILE.md", help="renew the pair matrix in this page (repeatable)")
+    parser.add_argument("--page", action="append", default=[], metavar="FILE.md", help="renew the numbers in this page (repeatable)")
 
 
 def run(chosen: argparse.Namespace) -> int:
     """Write tables and figures, and the tables of the run where they go elsewhere."""
-    from hymeko_x.corpus.report import costs_page, files_of, with_pairs
+    from hymeko_x.corpus.pages import renewed
+    from hymeko_x.corpus.report import costs_page, files_of
     from hymeko_x.corpus.store import Store
-    from hymeko_x.corpus.tables import load, save
+    from hymeko_x.corpus.tables import load, load_pace, save
 
     store = Store(chosen.results)
     tables = load(store)
@@ -36,9 +37,10 @@ def run(chosen: argparse.Namespace) -> int:
     for name, data in files_of(tables):
         target.put(name, data)
     target.put("costs.md", costs_page(tables).encode())
+    pace = load_pace(target)
     for page in chosen.page:
         try:
-            text = with_pairs(Path(page).read_text("utf-8"), tables)
+            text = renewed(Path(page).read_text("utf-8"), tables, pace)
         except (OSError, ValueError) as error:
             raise UsageError(f"{page}: {error}") from error
         disk.write_package(Package(text.encode()), page, NoFiles())

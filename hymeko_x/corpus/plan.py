@@ -16,10 +16,10 @@ READ, ENGINE, CONVERT, VERIFY = "read", "engine", "convert", "verify"
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What one process may use: wall-clock seconds, and bytes of memory."""
+    """What one process may use: wall-clock seconds, and bytes of memory, of which MuJoCo reserves some that it never touches."""
 
     seconds: float = 180.0
-    bytes: int = 3 * 2**30
+    bytes: int = 5 * 2**30
 
 
 @dataclass(frozen=True, slots=True)

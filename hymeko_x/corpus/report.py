@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from hymeko_x.corpus.statistics import PairRow, Shortness
     from hymeko_x.corpus.tables import Tables
 
-BEGIN, END = "<!-- pairs: written by `hymeko-x corpus stats` -->", "<!-- end of pairs -->"
 _WORDS = {"characters": "characters", "code": "characters without comments", "bytes": "bytes", "tokens": "tokens", "gzip": "gzip bytes"}
 
 
@@ -42,16 +41,6 @@ def files_of(tables: Tables) -> Iterator[tuple[str, bytes]]:
         yield f"{name}.csv", frame.write_csv(float_precision=6).encode()
         yield f"{name}.parquet", _parquet(frame)
     yield from figures(tables)
-
-
-def with_pairs(text: str, tables: Tables) -> str:
-    """A page with the pair matrix of this run between its two marks. Raises: ValueError when it has none."""
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"the page has no place for the pairs: {BEGIN} ... {END}")
-    pairs = matrix(statistics.pair_rows(tables))
-    return f"{before}{BEGIN}\n\n{pairs}\n\nMeasured on {len(tables.robots)} files.\n\n{END}{after}"
 
 
 def matrix(rows: Sequence[PairRow]) -> str:
@@ -82,37 +71,41 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
         "## Pairs of formats",
         "Of the files that the reference reader of the source accepts, those that convert into the same robot.",
         matrix(rows),
-        _table(_PAIR_HEAD, _pair_lines(rows)),
+        table(_PAIR_HEAD, _pair_lines(rows)),
+        "*all in its words*: the same robots of which the target says everything natively; *all*: those that have everything with what "
+        "the file carries for the way back; *not in its words*: the median number of fields and elements that are only carried.",
         "## Lengths (the paper's table 4)",
         "Characters without white space and comments; mean and standard deviation, of the robots that were found in each format.",
-        _table(["found in", "robots", "HyMeKo", "compared with", "length"], _length_lines(short)),
+        table(["found in", "robots", "HyMeKo", "compared with", "length"], _length_lines(short)),
         "## Is HyMeKo shorter? (the paper's table 5)",
         "Reduction in percent of the other format's length: of the sums, and the median over robots with its 95 % bootstrap interval; "
         "one-sided Wilcoxon signed-rank test; effect: rank-biserial correlation.",
-        *(part for measure in MEASURES for part in (f"### In {_WORDS[measure]}", _table(_SHORT_HEAD, _short_lines(short, measure)))),
-        "## What is lost",
-        _table(["from", "into", "kind", "robots"], _top(statistics.kinds(tables, "lost"), 5)),
+        *(part for measure in MEASURES for part in (f"### In {_WORDS[measure]}", table(_SHORT_HEAD, _short_lines(short, measure)))),
+        "## What a format's own words do not say",
+        "It travels in the file where other readers pass over it, and is left out with `--pure`.",
+        table(["from", "into", "kind", "robots"], _top(statistics.kinds(tables, "lost"), 5)),
         "## In what results differ",
-        _table(["from", "into", "quantity", "robots"], _top(statistics.kinds(tables, "failed"), 5)),
+        table(["from", "into", "quantity", "robots"], _top(statistics.kinds(tables, "failed"), 5)),
         "## Every accepted file that is not the same",
-        _table(["file", "from", "into", "cause"], statistics.failures(tables).rows()),
+        table(["file", "from", "into", "cause"], statistics.failures(tables).rows()),
         "## Figures",
         *(f"![{name}]({name}.svg)" for name in ("pairs", "lengths", "ratios", "sizes")),
     ]
     return "\n\n".join(parts) + "\n"
 
 
-_PAIR_HEAD = ["from", "into", "accepted", "converted", "same", "different", "not comparable", "no loss", "losses (median)"]
+_PAIR_HEAD = ["from", "into", "accepted", "converted", "same", "different", "not comparable", "all in its words", "all", "not in its words"]
 _SHORT_HEAD = ["found in", "compared with", "robots", "shorter", "sums", "median", "95 %", "p", "effect"]
 
 
-def _table(head: Sequence[str], lines: Sequence[Sequence[Any]]) -> str:
+def table(head: Sequence[str], lines: Sequence[Sequence[Any]]) -> str:
+    """A table in Markdown."""
     rows = [head, ["---"] * len(head), *lines]
     return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows)
 
 
 def _pair_lines(rows: Sequence[PairRow]) -> list[list[str]]:
-    counts = ("accepted", "converted", "same", "different", "not_comparable", "exact")
+    counts = ("accepted", "converted", "same", "different", "not_comparable", "exact", "complete")
     return [[row.source, row.target, *(str(getattr(row, name)) for name in counts), f"{row.losses:g}"] for row in rows]
 
 
@@ -164,9 +157,9 @@ def costs_page(tables: Tables) -> str:
                 "# What the run cost",
                 f"{files} files took {total:.0f} s of processor time, {total / files:.2f} s each; "
                 f"the most memory of one process was {float(tables.costs['megabytes'].max() or 0):.0f} MB.",  # type: ignore[arg-type]
-                _table(steps.columns, steps.rows()),
+                table(steps.columns, steps.rows()),
                 "The slowest files:",
-                _table(["file", "processor", "megabytes", "step"], statistics.slowest(tables).rows()),
+                table(["file", "processor", "megabytes", "step"], statistics.slowest(tables).rows()),
             ]
         )
         + "\n"

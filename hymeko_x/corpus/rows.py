@@ -20,8 +20,9 @@ CRASHED, TIMED_OUT, OUT_OF_MEMORY, UNREAD = "crashed", "timed out", "out of memo
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """One file as it was found. ``engine`` says what the format's reference reader did; ``whole`` is False where other files
-    of the format are included, so that the lengths are not those of the robot."""
+    """One file as it was found. ``engine`` says what the format's reference reader did, ``reader`` which one that was where it
+    accepts the file; ``whole`` is False where other files of the format are included, so that the lengths are not those of
+    the robot."""
 
     key: str
     package: str
@@ -31,6 +32,7 @@ class Robot:
     reason: str = ""
     engine: str = ""
     engine_reason: str = ""
+    reader: str = ""
     bodies: int = 0
     joints: int = 0
     dofs: int = 0
@@ -46,9 +48,11 @@ class Robot:
 
 @dataclass(frozen=True, slots=True)
 class Leg:
-    """One conversion: the lengths of the result, what was lost by kind, what was said by code, and the engines' verdict.
+    """One conversion: the lengths of the result, what its format cannot say by kind, what was said by code, and the verdict.
 
-    ``verdict`` is empty where nothing was verified. ``failed`` are the verifier's quantities that differ, with the place of the worst.
+    The lengths are those of the file without what it carries for the way back, which has ``residue`` bytes. Of the ``losses``,
+    ``carried`` travel in there. ``verdict`` is empty where nothing was verified. ``failed`` are the verifier's quantities that
+    differ, with the place of the worst.
     """
 
     key: str
@@ -62,7 +66,9 @@ class Leg:
     code: int | None = None
     tokens: int | None = None
     gzip: int | None = None
+    residue: int = 0
     losses: int | None = None
+    carried: int = 0
     lost: Mapping[str, int] | None = None
     diagnostics: Mapping[str, int] | None = None
     verdict: str = ""

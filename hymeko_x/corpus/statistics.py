@@ -27,6 +27,7 @@ SEED = 74
 DRAWS = 10_000
 _BLOCK = 2_000_000
 HYMEKO = "hymeko"
+_LONGEST_PLACE = 160
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +68,10 @@ def lengths_of(tables: Tables, measure: str) -> pl.DataFrame:
     return robots.join(printed, on="key", how="left").sort("key")
 
 
-def shortness(tables: Tables) -> tuple[Shortness, ...]:
+def shortness(tables: Tables, measures: tuple[str, ...] = MEASURES) -> tuple[Shortness, ...]:
     """HyMeKo against every format: in the robots' own format as found and as printed, and in every other one as printed."""
     results = []
-    for measure in MEASURES:
+    for measure in measures:
         frame = lengths_of(tables, measure)
         targets = [name for name in frame.columns if name not in ("key", "package", "format", "found", HYMEKO)]
         for source in sorted(set(frame["format"]) - {HYMEKO}):
@@ -136,7 +137,9 @@ def signed_rank(differences: Numbers) -> tuple[float, float]:
 class PairRow:
     """What became of the robots of one format in another one. Counted are those that the source's reference reader accepts.
 
-    ``good`` are converted and, where verified, the same; ``exact`` those of them without a loss; ``losses`` the median.
+    ``same`` are converted and, as the engines see them, the same robot; ``exact`` those of them of which the target's own words
+    say everything; ``complete`` those that have everything with what the file carries. ``losses`` is the median of what those
+    words do not say.
     """
 
     source: str
@@ -148,6 +151,7 @@ class PairRow:
     different: int
     not_comparable: int
     exact: int
+    complete: int
     losses: float
 
     @property
@@ -167,9 +171,10 @@ def pair_rows(tables: Tables) -> tuple[PairRow, ...]:
         accepted = all_legs.filter(pl.col("engine") == "done")
         done = accepted.filter(pl.col("status") == "done")
         same, different, unknown = (len(done.filter(pl.col("verdict") == word)) for word in ("same", "different", "not comparable"))
-        exact = len(done.filter((pl.col("losses") == 0) & (pl.col("verdict") == "same")))
+        alike = done.filter(pl.col("verdict") == "same")
+        exact, complete = len(alike.filter(pl.col("losses") == 0)), len(alike.filter(pl.col("losses") == pl.col("carried")))
         median = float(np.median(done["losses"].drop_nulls().to_numpy())) if done["losses"].drop_nulls().len() else 0.0
-        counts = (len(all_legs), len(accepted), len(done), same, different, unknown, exact)
+        counts = (len(all_legs), len(accepted), len(done), same, different, unknown, exact, complete)
         rows.append(PairRow(str(source), str(target), *counts, median))
     return tuple(rows)
 
@@ -191,7 +196,8 @@ def failures(tables: Tables) -> pl.DataFrame:
     engines = tables.robots.select("key", "engine")
     legs = tables.legs.join(engines, on="key", how="left").filter(pl.col("engine") == "done")
     bad = legs.filter((pl.col("status") != "done") | ((pl.col("verdict") != "same") & (pl.col("verdict") != "")))
-    failed = pl.col("failed").list.eval(pl.element().struct.field("name")).list.join("; ")
+    place = pl.element().struct.field("name") + " (" + pl.element().struct.field("value").str.slice(0, _LONGEST_PLACE) + ")"
+    failed = pl.col("failed").list.eval(place).list.join("; ")
     ended = pl.col("status") + ": " + pl.col("reason")
     differs = pl.lit("different: ") + failed
     unknown = pl.lit("not comparable: ") + pl.col("verdict_reason")

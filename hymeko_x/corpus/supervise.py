@@ -73,7 +73,8 @@ class Processes:
         """
         from pebble.concurrent import process
 
-        start = process(timeout=plan.limits.seconds, context=self._context)(task)
+        # pebble's types say mp_context, its code reads context, and what it does not know it passes over
+        start = process(timeout=plan.limits.seconds, context=self._context, mp_context=self._context)(task)  # type: ignore[call-overload]
         future: ProcessFuture[None] = start(case, plan, folder, scratch, steps)
         self._running.add(future)
         try:

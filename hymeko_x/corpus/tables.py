@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from hymeko_x.corpus.store import Store
 
 NAMES = ("robots", "legs", "costs")
+PACE = "pace.csv"
 
 
 class Tables(NamedTuple):
@@ -61,6 +62,13 @@ def load(store: Store) -> Tables:
     if not store.has(f"{NAMES[-1]}.parquet") and store.known():
         return tables_of(store.outcomes())
     return Tables(*(pl.read_parquet(io.BytesIO(store.get(f"{name}.parquet"))) for name in NAMES))
+
+
+def load_pace(store: Store) -> pl.DataFrame | None:
+    """How many robots each engine does in a second, if somebody has measured it beside these results."""
+    import polars as pl
+
+    return pl.read_csv(io.BytesIO(store.get(PACE))) if store.has(PACE) else None
 
 
 def _row(row: Robot | Leg | Cost) -> dict[str, Any]:

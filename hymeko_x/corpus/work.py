@@ -150,7 +150,7 @@ def _ask_engine(desk: Desk) -> dict[str, str]:
         desk.model = model_of(desk.folder / desk.case.path, arguments=desk.source.arguments)
     except Refusal as refusal:
         return {"engine": REFUSED, "engine_reason": _told(refusal, desk.folder)}
-    return {"engine": DONE, "engine_reason": ""}
+    return {"engine": DONE, "engine_reason": "", "reader": desk.model.engine}
 
 
 # ---- the results -----------------------------------------------------------------------------------------------------
@@ -173,10 +173,12 @@ def _convert(desk: Desk, target: str) -> Leg:
     return replace(
         leg,
         files=len(result.package.files) + len(result.package.copies),
-        losses=None if result.losses is None else sum(loss.fate != "carried" for loss in result.losses),
+        residue=0 if result.bare is None else len(result.package.main) - len(result.bare),
+        losses=None if result.losses is None else len(result.losses),
+        carried=sum(loss.fate == "carried" for loss in result.losses or ()),
         lost=_by_kind(result.losses or ()),
         diagnostics=_by_code(report),
-        **asdict(lengths(result.package.main, target)),
+        **asdict(lengths(result.package.main if result.bare is None else result.bare, target)),
     )
 
 
@@ -219,9 +221,16 @@ def _by_code(report: Report, refusal: Refusal | None = None) -> dict[str, int]:
 
 
 def _by_kind(losses: Sequence[Loss]) -> dict[str, int]:
-    """Losses by what kind of element lost what, and how: ``joint dofs.limits.velocity dropped``."""
-    kinds = (f"{loss.element.split(' ')[0]} {_INDEX.sub('', loss.field).split(' ')[0]}".rstrip() + f" {loss.fate}" for loss in losses)
+    """What a format cannot say, by what kind of element says what, and how it ends: ``joint dofs.limits.velocity dropped``."""
+    kinds = (f"{loss.element.split(' ')[0]} {_INDEX.sub('', loss.field).split(' ')[0]}".rstrip() + f" {_end(loss)}" for loss in losses)
     return dict(sorted(Counter(kinds).items()))
+
+
+def _end(loss: Loss) -> str:
+    """What becomes of it in the words of the format, whatever is carried beside them."""
+    if loss.after is None:
+        return "dropped"
+    return "new" if loss.before is None else "approximated"
 
 
 def _told(refusal: Refusal, *folders: Path) -> str:

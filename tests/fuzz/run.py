@@ -62,7 +62,7 @@ def _in_child(task: Task, start: int, stop: int, deadline: float) -> tuple[int, 
     child = context.Process(target=_work, args=(task, start, stop, deadline, at, ours[1]), daemon=True)
     child.start()
     ours[1].close()
-    is_stuck = _wait(child, at)
+    is_stuck = _wait(child, at, start)
     kinds = list(_received(ours[0]))
     if child.exitcode == 0 and not is_stuck:
         return at.value, kinds
@@ -71,14 +71,14 @@ def _in_child(task: Task, start: int, stop: int, deadline: float) -> tuple[int, 
     return at.value + 1, [*kinds, (kind, at.value)]
 
 
-def _wait(child: Any, at: Any) -> bool:
-    """Wait for the end of the child; kill it when it does not move on."""
+def _wait(child: Any, at: Any, start: int) -> bool:
+    """Wait for the end of the child; kill it when it does not move on. Before its first case it loads the libraries."""
     last, since = at.value, time.monotonic()
     while child.is_alive():
         child.join(0.2)
         if at.value != last:
             last, since = at.value, time.monotonic()
-        elif time.monotonic() - since > PATIENCE + 20 * (last == 0):
+        elif time.monotonic() - since > PATIENCE * (3 if last == start else 1):
             child.kill()
             child.join()
             return True

@@ -5,8 +5,10 @@ from __future__ import annotations
 import io
 import pickle
 import struct
+import tempfile
 import zipfile
 import zlib
+from pathlib import Path
 
 from tests.hostile.case import Case, reading
 
@@ -38,6 +40,19 @@ def _zip(*entries: tuple[str, bytes], method: int = zipfile.ZIP_STORED) -> bytes
 
 def _nested_prims() -> bytes:
     return (STAGE.format('def "a" {\n' * DEEP + "}\n" * DEEP)).encode()
+
+
+def _nested_crate() -> bytes:
+    """USD writes no deeper one itself; what it composes recurses all the same."""
+    from pxr import Sdf
+
+    with tempfile.TemporaryDirectory() as folder:
+        layer = Sdf.Layer.CreateNew(f"{folder}/deep.usdc")
+        prim = Sdf.PrimSpec(layer, "a", Sdf.SpecifierDef)
+        for _ in range(2_500):
+            prim = Sdf.PrimSpec(prim, "a", Sdf.SpecifierDef)
+        layer.Save()
+        return Path(folder, "deep.usdc").read_bytes()
 
 
 def _doubling_references() -> bytes:
@@ -86,6 +101,7 @@ HYMEKO = (
 
 STAGES = (
     reading("a hundred thousand prims in each other: s.usda", _nested_prims, "HX007", seconds=60.0),
+    reading("thousands of prims in each other in a crate: s.usdc", _nested_crate, "HX007", seconds=60.0),
     reading("five thousand prims: s.usda", _many_prims, code=0, seconds=90.0),
     reading("references that double forty times: s.usda", _doubling_references, "HX007", seconds=90.0),
     reading("a stage that refers to itself: s.usda", STAGE.format('def "a" (references = @s.usda@) {}'), "HX040", code=0),

@@ -13,7 +13,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.mjcf.weigh import weigh
 from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Id, Mechanism
-from hymeko_x.ir.parts import Body, Inertial, NoShape, Shape
+from hymeko_x.ir.parts import Body, Capsule, Inertial, NoShape, Shape
 from hymeko_x.source import NoFiles
 
 CUBE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1"
@@ -65,6 +65,23 @@ def test_without_a_mesh_there_is_a_warning_and_no_inertia() -> None:
     robot, report = read_text(text), Report()
     assert weigh(robot, write(robot).encode(), NoFiles(), report) == robot
     assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
+
+
+def test_textures_and_skins_that_are_not_there_weigh_nothing() -> None:
+    cube = "".join(f'file{side}="far/{side}.png" ' for side in ("up", "down", "left", "right", "front", "back"))
+    texture = f'<texture name="t" type="cube" {cube}/><texture name="u" type="2d" file="far.png"/>'
+    skin = '<skin name="s" file="far.skn" material="m"/>'
+    head = f'<asset>{texture}<material name="m" texture="t"/><material name="n" texture="u"/>{skin}</asset>'
+    geoms = '<geom size=".1" mass="2" material="m"/><geom size=".1" mass="3" material="n"/>'
+    assert inertial(weighed(f'<body name="b">{geoms}</body>', head), "b").mass == pytest.approx(5.0)
+
+
+def test_a_capsule_around_a_mesh_has_its_size_in_every_format() -> None:
+    head = f'<asset><mesh name="m" vertex="{CUBE}"/></asset>'
+    robot = weighed('<body name="b"><geom type="capsule" mesh="m"/></body>', head)
+    capsule = robot.shapes[Id("body", "b")][0].shape.geometry
+    assert isinstance(capsule, Capsule)
+    assert capsule.radius > 0.5
 
 
 def test_a_time_constant_and_a_damping_ratio_become_stiffness_and_damping() -> None:

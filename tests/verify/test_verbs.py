@@ -73,6 +73,25 @@ def test_a_urdf_that_urdfdom_refuses_is_not_comparable(written: Write) -> None:
     assert "shoulder" in verdict.reason
 
 
+def test_a_scale_of_four_numbers_means_that_shapes_are_not_compared(written: Write) -> None:
+    text = '<robot name="r"><link name="a"><visual><geometry><mesh filename="a.stl" scale="1 1 1 1"/></geometry></visual></link></robot>'
+    path = written("urdf", text)
+    verdict = hx.verify(path, path)
+    assert any("a shape of link 'a' has another size than it may have (a scale of 4 numbers)" in note for note in verdict.not_compared)
+
+
+def test_mjcf_may_have_any_suffix(tmp_path: Path) -> None:
+    """MuJoCo itself takes `.xml` only; what the file includes lies beside it."""
+    (tmp_path / "arm.mjcf").write_text('<mujoco><worldbody><include file="parts/arm.xml"/></worldbody></mujoco>')
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts/arm.xml").write_text('<mujocoinclude><body name="a"><joint name="j"/><geom size="1"/></body></mujocoinclude>')
+    (tmp_path / "arm.xml").write_text((tmp_path / "arm.mjcf").read_text())
+    assert hx.verify(tmp_path / "arm.mjcf", tmp_path / "arm.xml").verdict == "same"
+    (tmp_path / "parts/arm.xml").write_text('<mujocoinclude><body name="a"><joint name="j"/><geom size="2"/></body></mujocoinclude>')
+    (tmp_path / "other.xml").write_text('<mujoco><worldbody><body name="a"><joint name="j"/><geom size="1"/></body></worldbody></mujoco>')
+    assert hx.verify(tmp_path / "arm.mjcf", tmp_path / "other.xml").verdict == "different"
+
+
 def test_an_axis_of_zero_is_not_comparable(written: Write) -> None:
     broken = written("urdf", ARM_URDF.replace('<axis xyz="0 0.6 0.8"/>', '<axis xyz="0 0 0"/>'))
     verdict = hx.verify(broken, broken)
@@ -256,3 +275,9 @@ def test_a_profile_asks_only_for_what_it_needs(written: Write, capsys: pytest.Ca
     file = written("urdf", LISTING.replace('<mass value="1"/>', '<mass value="0"/>'))
     assert found_codes(file, capsys, "--profile", "kinematics") == (exits.DONE, set())
     assert found_codes(file, capsys, "--profile", "simulation") == (exits.FAIL_ON, {"HX314"})
+
+
+def test_a_hypergraph_without_bodies_is_no_robot(tmp_path: Path) -> None:
+    text = tmp_path / "plain.hymeko"
+    text.write_text("plain\nnode0 {\nx1 x2\nx3 x4\n@e1 {+x1 +x2 -x3 -x4}\n}\n")
+    assert hx.verify(text, text).reason == "; ".join(["the HyMeKo text describes a hypergraph without bodies, which is no robot"] * 2)

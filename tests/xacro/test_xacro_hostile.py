@@ -89,6 +89,19 @@ def test_a_file_that_is_no_xml_shows_nothing_of_itself(folder: Folder) -> None:
     assert str(said.origin) == f"{folder.path}/secret.txt:1"
 
 
+@pytest.mark.skipif(not Path("/etc/passwd").is_file(), reason="there is no such file here")
+def test_the_list_of_users_is_no_robot(folder: Folder) -> None:
+    said = folder.refusal('<xacro:include filename="/etc/passwd"/>')
+    assert (said.code, str(said.origin)) == (codes.NOT_XML, "/etc/passwd:1")
+    assert said.message in ("not XML: syntax error", "not XML: not well-formed (invalid token)")
+
+
+@pytest.mark.parametrize("body", ['<xacro:include filename="/etc/passwd"/>', "<a>${xacro.load_yaml('/etc/passwd')}</a>"])
+def test_the_list_of_users_is_out_of_reach_where_reading_is_confined(folder: Folder, body: str) -> None:
+    said = folder.refusal(body, confine=folder.path)
+    assert said.message == "the file '/etc/passwd' cannot be read: no such file, or none that may be read"
+
+
 @pytest.mark.parametrize(
     ("data", "said"),
     [

@@ -243,6 +243,8 @@ def _direction(build: Build, element: Element) -> tuple[float, float, float]:
     item = block.take("direction", "axis", "ax")
     if item is not None:
         return unit_axis(build, item)[0]
+    if element.name not in AXES:
+        raise build.context.refuse(element.node, f"axis '{element.name}' needs 'direction': only {', '.join(AXES)} have one by their name")
     return AXES[element.name]
 
 

@@ -14,7 +14,7 @@ from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.formats.mjcf_words import NAME, joined, settings_of
 from hymeko_x.frontends.mjcf.solids import fitted_shape, solid_mesh, unsolid
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
-from hymeko_x.ir.parts import Body, DofKind, Inertial, Joint, Mesh, Texture
+from hymeko_x.ir.parts import Body, DofKind, Inertial, Joint, Mesh
 from hymeko_x.ir.values import rotate_tensor, unit_quat
 
 if TYPE_CHECKING:
@@ -73,6 +73,7 @@ def _compiled(mujoco: Any, text: bytes, assets: dict[str, bytes]) -> Any:
         spec = mujoco.MjSpec.from_string(text.decode(), assets=assets)
         for key in spec.keys:
             spec.delete(key)  # a pose weighs nothing, and may be of another number of joints
+        _undress(spec)
         spec.compiler.fusestatic = False
         spec.compiler.alignfree = False
         spec.compiler.discardvisual = False
@@ -82,17 +83,23 @@ def _compiled(mujoco: Any, text: bytes, assets: dict[str, bytes]) -> Any:
         return spec.compile()
 
 
+def _undress(spec: Any) -> None:
+    """Take off what weighs nothing, whose files may be far away."""
+    for skin in tuple(spec.skins):
+        spec.delete(skin)
+    for material in spec.materials:
+        material.textures = [""] * len(material.textures)
+    for texture in tuple(spec.textures):
+        spec.delete(texture)
+
+
 def _assets(mechanism: Mechanism, files: Files) -> dict[str, bytes]:
-    """Every file that the model refers to, by its path from the model."""
-    uris = [part.uri for part in mechanism.graph.vertices.values() if isinstance(part, Mesh | Texture) and part.uri]
-    for key, extras in mechanism.extras.items():
-        for extra in extras:
-            if extra.format == NAME and key.kind == "texture" and extra.path.startswith("@file"):
-                uris.append(joined(_settings(mechanism).texture_folder, extra.text, _settings(mechanism)))
-            elif extra.format == NAME and key == ROOT and extra.path == "asset":
-                uris.append(
-                    joined(_settings(mechanism).mesh_folder, parse_text(extra.text).attributes.get("file", ""), _settings(mechanism))
-                )
+    """Every file that counts for masses and shapes, by its path from the model."""
+    uris = [part.uri for part in mechanism.graph.vertices.values() if isinstance(part, Mesh) and part.uri]
+    settings = _settings(mechanism)
+    for extra in mechanism.extras.get(ROOT, ()):
+        if extra.format == NAME and extra.path == "asset":
+            uris.append(joined(settings.mesh_folder, parse_text(extra.text).attributes.get("file", ""), settings))
     found: dict[str, bytes] = {}
     for uri in uris:
         path = files.find(uri)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
@@ -23,6 +24,13 @@ if TYPE_CHECKING:
 
 _SINGLE = frozenset(("float", "float2", "float3", "float4", "point3f", "vector3f", "normal3f", "color3f", "color4f", "quatf", "half"))
 
+_SIZES = MappingProxyType(
+    {
+        **dict.fromkeys(("physics:localPos0", "physics:localPos1", "physics:centerOfMass", "physics:diagonalInertia", "inputs:color"), 3),
+        **dict.fromkeys(("physics:localRot0", "physics:localRot1", "physics:principalAxes"), 4),
+    }
+)
+"""How many numbers the values have that are taken apart: a file may give a property another type than its schema."""
 
 ORIGINAL_NAME = "cyberwave:name"
 """Where cyberwave-robot-format keeps what a prim could not be called."""
@@ -103,6 +111,10 @@ class Draft:
         value = prim.value(name)
         if value is None:
             value = prim.earliest(name)
+        if name in _SIZES and value is not None and _size(value) != _SIZES[name]:
+            said = f"'{name}' has {_size(value)} numbers and takes {_SIZES[name]}; it is kept as written"
+            self.report.error(codes.BAD_VALUE, said, self.origin, element=prim.path)
+            return None
         if value is not None and not prim.is_animated(name):
             self.take(prim, name)
         return _rounded(value, prim.types[name])
@@ -126,6 +138,13 @@ class Draft:
         if is_nothing and (value == default or math.isnan(default)):
             self.taken.get(prim.path, set()).discard(name)
         return float(value) if isinstance(value, int | float) else default
+
+
+def _size(value: Any) -> int:
+    """How many numbers a value has."""
+    if hasattr(value, "imaginary"):
+        return 4
+    return len(value) if hasattr(value, "__len__") else 1
 
 
 def _rounded(value: Any, kind: str) -> Any:

@@ -9,7 +9,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from hymeko_x.source import Source
 
@@ -42,6 +42,15 @@ def check_depth(path: str, source: Source) -> None:
             raise refuse(codes.TOO_LARGE, f"blocks are nested more than {MOST_DEPTH} deep", Origin(source.name))
 
 
+def check_paths(paths: Iterable[str], source: Source) -> None:
+    """Refuse prims that lie too deep, which a binary layer shows only when it is open: composing them recurses.
+
+    Raises: Refusal HX007.
+    """
+    if any(path.count("/") > MOST_DEPTH for path in paths):
+        raise refuse(codes.TOO_LARGE, f"prims are nested more than {MOST_DEPTH} deep", Origin(source.name))
+
+
 def check_size(layers: list[Any], most: int, source: Source) -> None:
     """Refuse a stage of more than ``most`` prims before USD composes it. A prim that refers to itself counts once.
 
@@ -49,6 +58,7 @@ def check_size(layers: list[Any], most: int, source: Source) -> None:
     """
     known = {layer.identifier: layer for layer in layers} | {layer.realPath: layer for layer in layers}
     below = {(layer.identifier, str(spec.path)): list(_parts(layer, spec, known)) for layer in layers for spec in specs(layer)}
+    check_paths((path for _, path in below), source)
     if sum(len(parts) for parts in below.values()) - len(below) < FEW:
         return
     sizes: dict[Place, int] = {}

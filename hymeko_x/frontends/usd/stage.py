@@ -20,7 +20,7 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.frontends.usd.prims import read_layer
-from hymeko_x.frontends.usd.size import check_depth, check_size
+from hymeko_x.frontends.usd.size import check_depth, check_paths, check_size
 from hymeko_x.frontends.usd.types import drop_unknown_types
 from hymeko_x.frontends.usd.unpack import lay_out
 
@@ -33,6 +33,8 @@ if TYPE_CHECKING:
 
 MOST_PRIMS = 2_000_000
 MOST_LAYERS = 10_000
+_MOST_UNIT = 1e12
+"""Units of a stage lie between this and its inverse: from less than a picometre to more than the solar system."""
 MOST_NESTED_INSTANCES = 32
 _FOLDER = re.compile(r"[^\s'<@]*hymeko-usd-[^\s'>@]*/")
 _UP = 8
@@ -89,14 +91,24 @@ def _opened(source: Source, report: Report) -> Iterator[Scene]:
             found = _read_layer(flat, source)
         _say_composition_errors(stage, base, source, report)
         found.stage = stage
-        metres, up = UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage)
+        metres = _unit("metersPerUnit", UsdGeom.GetStageMetersPerUnit(stage), 0.01, source, report)
+        kilograms = _unit("kilogramsPerUnit", UsdPhysics.GetStageKilogramsPerUnit(stage), 1.0, source, report)
+        up = UsdGeom.GetStageUpAxis(stage)
         turn = Gf.Rotation(Gf.Vec3d(1, 0, 0), 90.0 if up == UsdGeom.Tokens.y else 0.0)
         world = Gf.Matrix4d().SetScale(metres) * Gf.Matrix4d().SetRotate(turn)
         try:
-            yield Scene(stage, found.prims, world, UsdPhysics.GetStageKilogramsPerUnit(stage), metres, base, flat)
+            yield Scene(stage, found.prims, world, kilograms, metres, base, flat)
         finally:
             found.stage = None
             del stage, layers, flat
+
+
+def _unit(name: str, value: float, usual: float, source: Source, report: Report) -> float:
+    """A unit of the stage; the usual one where the file has none that could be."""
+    if 1.0 / _MOST_UNIT <= value <= _MOST_UNIT:
+        return value
+    report.error(codes.BAD_NUMBER, f"{name} is {value:g}, which is no unit; read as {usual:g}", Origin(source.name))
+    return usual
 
 
 def _composed(main: str, source: Source) -> Any:
@@ -210,6 +222,7 @@ def _read_layer(layer: Any, source: Source) -> Layer:
     found = read_layer(layer, MOST_PRIMS)
     if found is None:
         raise refuse(codes.TOO_LARGE, f"it has more than {MOST_PRIMS} prims", Origin(source.name))
+    check_paths(found.prims, source)
     return found
 
 

@@ -13,6 +13,7 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.frontends import hymeko
 from hymeko_x.frontends.mjcf.weigh import weigh
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Body
 from hymeko_x.source import Source
 from hymeko_x.verify.readers.mechanism import from_mechanism
 
@@ -30,6 +31,8 @@ def read(path: Path, places: Places) -> KinematicModel:
         mechanism = hymeko.read(Source(str(path), path.read_bytes(), files), Report())
     except Refusal as refusal:
         raise refuse(codes.ENGINE_REFUSED, f"the HyMeKo text cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
+    if next(mechanism.vertices(Body), None) is None:
+        raise refuse(codes.ENGINE_REFUSED, "the HyMeKo text describes a hypergraph without bodies, which is no robot", Origin(str(path)))
     if mechanism.notation(ROOT, "mjcf") is not None:
         mechanism = weigh(mechanism, mjcf.write(mechanism, Report()).main, files, Report())
     return from_mechanism(mechanism, format="hymeko")

@@ -31,7 +31,7 @@ from hymeko_x.verify.model import (
     between_frames,
     grounded,
 )
-from hymeko_x.verify.spatial import pose
+from hymeko_x.verify.spatial import frame_with_z, pose
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -158,8 +158,8 @@ def _loops(mechanism: Mechanism, places: Mapping[Id, int]) -> Iterator[Loop]:
         ends = [end for arc in arcs if (end := _end(arc, places, frames)) is not None]
         if not loop.active or len(ends) < 2:
             continue
-        kind, words = _closure(loop)
-        yield Loop(kind, ends[0][0], ends[0][1], ends[1][0], ends[1][1], key.name, words)
+        kind, words, along = _closure(loop)
+        yield Loop(kind, ends[0][0], ends[0][1] @ along, ends[1][0], ends[1][1] @ along, key.name, words)
 
 
 def _end(arc: RobotArc, places: Mapping[Id, int], frames: Mapping[Id, tuple[int, Array]]) -> tuple[int, Array] | None:
@@ -180,10 +180,17 @@ def _frames(mechanism: Mechanism, places: Mapping[Id, int]) -> dict[Id, tuple[in
     return found
 
 
-def _closure(loop: parts.Loop) -> tuple[str, str]:
+def _closure(loop: parts.Loop) -> tuple[str, str, Array]:
+    """Its kind, words for one that has no kind, and the frame, in those of the closure, whose z axis stays free."""
     if loop.kind in ("connect", "weld"):
-        return loop.kind, ""
-    return ("other", " ".join(dof.kind.value for dof in loop.dofs)) if loop.dofs else ("weld", "")
+        return loop.kind, "", np.eye(4)
+    match loop.dofs:
+        case ():
+            return "weld", "", np.eye(4)
+        case (dof,) if dof.kind in (parts.DofKind.HINGE, parts.DofKind.SLIDE):
+            return dof.kind.value, "", frame_with_z(np.array(dof.axis), np.array(dof.anchor))
+        case dofs:
+            return "other", " ".join(dof.kind.value for dof in dofs), np.eye(4)
 
 
 # ---- shapes ----------------------------------------------------------------------------------------------------------

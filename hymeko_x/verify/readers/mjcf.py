@@ -59,10 +59,18 @@ def _compiled(path: Path) -> Any:
     """The mjModel of everything that the file says: bodies without joints are not fused with their parents, visuals stay."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of words that MuJoCo is about to drop: they still mean what they mean
-        spec = mujoco.MjSpec.from_file(str(path))
+        spec = _spec(path)
         spec.compiler.fusestatic = False
         spec.compiler.discardvisual = False
         return spec.compile()
+
+
+def _spec(path: Path) -> Any:
+    """The model in the file, with what it includes. MuJoCo takes no suffix but `.xml`; under another one it gets the text by hand."""
+    if path.suffix.lower() == ".xml":
+        return mujoco.MjSpec.from_file(str(path))
+    name = f"{path}.xml"
+    return mujoco.MjSpec.from_file(name, include={name: path.read_bytes()})
 
 
 @contextlib.contextmanager

@@ -67,10 +67,22 @@ def load(data: bytes, path: Path, places: Places) -> Second:
         for j in robot.joints
         if j.mimic
     )
-    files = places.files(path.parent)
-    shapes = {link.name: tuple(_shapes(link, files)) for link in robot.links}
+    shapes, notes = _all_shapes(robot, places.files(path.parent))
     still = next((j.name for j in robot.joints if j.type in _MOVING and j.axis is not None and not np.any(j.axis)), "")
-    return Second(robot, shapes, mimics, still)
+    return Second(robot, shapes, mimics, still, notes)
+
+
+def _all_shapes(robot: Any, files: Files) -> tuple[dict[str, tuple[Shape, ...]] | None, tuple[str, ...]]:
+    """The shapes by link; none, and why, where yourdfpy hands out sizes that are none."""
+    link = None
+    try:
+        found = {}
+        for link in robot.links:
+            found[link.name] = tuple(_shapes(link, files))
+    except (ValueError, TypeError) as error:
+        words = " ".join(str(error).split())
+        return None, (f"a shape of link '{link and link.name}' has another size than it may have ({words}): shapes are not compared",)
+    return found, ()
 
 
 @contextlib.contextmanager
@@ -106,9 +118,11 @@ def _shape(element: Any, role: Role, files: Files) -> Shape | None:
         return Shape("cylinder", role, pose, (float(geometry.cylinder.radius), float(geometry.cylinder.length)), element.name)
     if geometry.mesh is None:
         return None
-    scale = np.broadcast_to(np.asarray(1.0 if geometry.mesh.scale is None else geometry.mesh.scale, dtype=float), (3,))
+    scale = np.asarray(1.0 if geometry.mesh.scale is None else geometry.mesh.scale, dtype=float).reshape(-1)
+    if scale.size not in (1, 3):
+        raise ValueError(f"a scale of {scale.size} numbers")
     uri = str(geometry.mesh.filename)
-    mesh = MeshFile(uri, _found(files.find(uri)), (float(scale[0]), float(scale[1]), float(scale[2])))
+    mesh = MeshFile(uri, _found(files.find(uri)), (float(scale[0]), float(scale[1 % scale.size]), float(scale[2 % scale.size])))
     return Shape("mesh", role, pose, (), element.name, mesh)
 
 
