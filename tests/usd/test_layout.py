@@ -153,3 +153,14 @@ def test_the_command_line_chooses_variants_and_layout(tmp_path: Path, capsys: py
     (tmp_path / "arm.urdf").write_text(ARM)
     assert main(["info", str(tmp_path / "arm.urdf"), "--variant", "arm=long"]) == 2
     assert "--variant is for formats that have variants" in capsys.readouterr().err
+
+
+def test_verify_looks_at_the_variant_that_is_meant(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    stage, out = tmp_path / "in.usda", tmp_path / "out.usda"
+    stage.write_text(VARIANTS)
+    chosen = ["--variant", "arm=long", "--variant", "tip=hook"]
+    assert main(["convert", str(stage), str(out), "--verify", *chosen]) == 0
+    assert main(["verify", str(stage), str(out), *chosen]) == 0
+    assert main(["verify", str(stage), str(out)]) == 4
+    assert main(["verify", str(stage), str(out), "--variant", "arm=lng"]) == 1
+    assert "the variant set 'arm' has no variant 'lng'" in capsys.readouterr().err
