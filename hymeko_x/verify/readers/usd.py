@@ -79,7 +79,9 @@ def _choose(stage: Any, variants: Mapping[str, str], path: Path) -> bool:
         for item, variant in changed:
             if variant not in item.GetVariantNames():
                 said = f"the variant set '{item.GetName()}' has no variant '{variant}'"
-                raise refuse(codes.UNDEFINED_REFERENCE, said, Origin(str(path)), hint=f"it has: {', '.join(sorted(item.GetVariantNames()))}")
+                raise refuse(
+                    codes.UNDEFINED_REFERENCE, said, Origin(str(path)), hint=f"it has: {', '.join(sorted(item.GetVariantNames()))}"
+                )
             item.SetVariantSelection(variant)
     return bool(changed)
 
