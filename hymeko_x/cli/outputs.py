@@ -54,8 +54,8 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
 
     With ``measured`` the result is read back and its losses are listed.
     """
-    beside = "" if output.path == "-" else Path(output.path).stem
-    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, beside)
+    stem = "" if output.path == "-" else Path(output.path).stem
+    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, stem)
     what = (given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
     result = pipeline.convert(*what) if measured else pipeline.write_unmeasured(*what)
     beside = [*result.package.files, *result.package.copies]
