@@ -12,7 +12,7 @@ help:
 	@echo "make test   ruff, mypy --strict, pytest"
 	@echo "make test-full  the same with the tests that take minutes: every robot, every size"
 	@echo "make bench  speed as ratios against yardsticks timed in the same run"
-	@echo "make peers  other people's programs that tests and benchmarks compare with, each into .peers/"
+	@echo "make peers  other people's programs, each into .peers/, and the tests that compare with them"
 	@echo "make fuzz   damage texts of every format and read them; PROFILE=ci (minutes) or nightly (hours)"
 	@echo "make corpus every robot of the catalogue through every format, verified; renews corpus/results and its pages"
 	@echo "make clean  remove .venv and everything that was built"
@@ -47,6 +47,7 @@ bench: $(STAMP)
 
 peers: $(STAMP)
 	$(BIN)/python -m peers
+	$(BIN)/python -m pytest -W error -m peers tests
 
 PROFILE ?= ci
 GUIDED_SECONDS := $(if $(filter nightly,$(PROFILE)),3600,30)

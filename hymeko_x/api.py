@@ -83,7 +83,7 @@ def dump(
     report = Report()
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
     files = _files_of(robot, packages)
-    options = Options(base, actuators, layout, nested, pure=pure)
+    options = Options(base, actuators, layout, nested, pure=pure, beside=Path(path).stem)
     result = pipeline.convert(robot, target, options, files, report, _place(path, assets))
     disk.write_package(result.package, os.fspath(path), files)
     return report
@@ -138,7 +138,7 @@ def convert(
     given = replace(given, arguments=dict(arguments or {}), environment=dict(environment or {}), variants=dict(variants or {}))
     robot = pipeline.read(given, _input_format(given, from_format), report)
     form = formats.of_output(os.fspath(target), to_format)
-    options = Options(base, actuators, layout, nested, pure=pure)
+    options = Options(base, actuators, layout, nested, pure=pure, beside=Path(target).stem)
     result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets))
     disk.write_package(result.package, os.fspath(target), given.files)
     return result

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from hymeko_x import codes, disk, pipeline
@@ -52,7 +53,8 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
 
     With ``measured`` the result is read back and its losses are listed.
     """
-    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure)
+    stem = "" if output.path == "-" else Path(output.path).stem
+    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, stem)
     what = (given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
     result = pipeline.convert(*what) if measured else pipeline.write_unmeasured(*what)
     beside = [*result.package.files, *result.package.copies]

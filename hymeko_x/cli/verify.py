@@ -62,6 +62,7 @@ def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = 
         packages=dict(chosen.package),
         search_path=search_path(os.environ),
         arguments=dict(chosen.arg),
+        variants=dict(chosen.variant),
     )
 
 

@@ -27,6 +27,7 @@ class Options:
     driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows. ``layout`` and
     ``nested``: how a stage of USD is laid out (None = as it was, else one file with flat bodies). ``split``: whether the
     macros of xacro go into a file of their own. ``pure``: whether the output carries nothing but what its format says.
+    ``beside``: how files of our own that may stand beside the output begin, which is its own name; empty = there is no place.
     """
 
     base: Literal["fixed", "free"] | None = None
@@ -35,6 +36,7 @@ class Options:
     nested: bool | None = None
     split: bool = False
     pure: bool = False
+    beside: str = ""
 
 
 Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]

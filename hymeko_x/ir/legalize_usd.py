@@ -17,9 +17,12 @@ LAYOUT = "usd.layout"
 NESTED = "usd.nested"
 """The notation of the mechanism that says ``true`` where each body is inside of its parent."""
 
+POINTS = "usd.points"
+"""The notation of the mechanism that names the crate file which holds what is too long for a text."""
+
 
 def choose_layout(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
-    """Note the options about the layout of a stage; without them it stays as it was."""
+    """Note the options about the layout of a stage; without them it stays as it was. Meshes go beside it if they can."""
     del report
     own = dict(mechanism.notations.get(ROOT, {}))
     wanted = dict(own)
@@ -27,4 +30,6 @@ def choose_layout(mechanism: Mechanism, options: Options, report: Report) -> Mec
         wanted[LAYOUT] = options.layout
     if options.nested is not None:
         wanted[NESTED] = "true" if options.nested else "false"
+    if options.beside:
+        wanted[POINTS] = f"{options.beside}_meshes.usdc"
     return replace(mechanism, notations={**mechanism.notations, ROOT: wanted}) if wanted != own else mechanism

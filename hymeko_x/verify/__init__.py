@@ -38,6 +38,7 @@ def verify(
     packages: Packages | None = None,
     search_path: tuple[Path, ...] = (),
     arguments: Mapping[str, str] | None = None,
+    variants: Mapping[str, str] | None = None,
 ) -> Verdict:
     """Whether two robots (files, mechanisms or models) are the same one.
 
@@ -45,10 +46,10 @@ def verify(
     are matched by name, or with ``structure`` by the shape of the tree. Without ``meshes`` no mesh file is read, which is what
     takes most of the time; one reader of meshes in several verdicts reads each file once. ``packages`` says where
     ``package://NAME`` is, ``search_path`` in which folders packages stand, ``arguments`` the values of a xacro file's
-    arguments.
+    arguments, ``variants`` which variant of a variant set of USD is meant, in every file that has the set.
 
-    Raises: Refusal HX001, HX003 or HX301 when a file is not there, its format unknown or its engine not installed. A file
-    that its engine refuses makes the verdict "not comparable".
+    Raises: Refusal HX001, HX003 or HX301 when a file is not there, its format unknown or its engine not installed, HX040
+    when a variant set has no such variant. A file that its engine refuses makes the verdict "not comparable".
     """
     from hymeko_x.verify.compare import compare
     from hymeko_x.verify.verdict import Verdict
@@ -57,7 +58,7 @@ def verify(
     reasons: list[str] = []
     for robot in (a, b):
         try:
-            models.append(model_of(robot, packages=packages, search_path=search_path, arguments=arguments))
+            models.append(model_of(robot, packages=packages, search_path=search_path, arguments=arguments, variants=variants))
         except Refusal as refusal:
             if refusal.diagnostic.code != codes.ENGINE_REFUSED:
                 raise
@@ -73,6 +74,7 @@ def model_of(
     packages: Packages | None = None,
     search_path: tuple[Path, ...] = (),
     arguments: Mapping[str, str] | None = None,
+    variants: Mapping[str, str] | None = None,
 ) -> KinematicModel:
     """A robot as its reference engine sees it; a mechanism in memory as it is.
 
@@ -90,7 +92,7 @@ def model_of(
     from hymeko_x.verify.readers import Places, read
 
     folders = {name: Path(folder) for name, folder in (packages or {}).items()}
-    return read(Path(robot), Places(folders, search_path, arguments or {}))
+    return read(Path(robot), Places(folders, search_path, arguments or {}, variants or {}))
 
 
 class _Callable(ModuleType):

@@ -11,6 +11,7 @@ from typing import Literal
 import pytest
 from pxr import Usd, UsdPhysics
 
+import hymeko_x as hx
 from hymeko_x import codes, formats, pipeline
 from hymeko_x.cli import main
 from hymeko_x.diagnostics import Refusal, Report
@@ -73,6 +74,28 @@ def test_nested_bodies_are_inside_of_their_parents_and_stand_where_they_stood(tm
     there = {path.rpartition("/")[2]: pose for path, pose in parsed(nested).bodies.items()}
     for path, pose in parsed(flat).bodies.items():
         assert there[path.rpartition("/")[2]] == pytest.approx(pose, abs=1e-6)
+
+
+def test_what_is_too_long_for_a_text_stands_in_a_crate_beside_it(tmp_path: Path) -> None:
+    """A grid of 99 points in use; a tetrahedron stays in the text, and so does everything where there is no place beside it."""
+    grid = "".join(f"v {x} {y} {x * y % 3}\n" for x in range(10) for y in range(10))
+    grid += "".join(f"f {n} {n + 1} {n + 10}\n" for n in range(1, 90) if n % 10)
+    (tmp_path / "grid.obj").write_text(grid)
+    (tmp_path / "tetra.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+    shape = '<visual><geometry><mesh filename="{}.obj"/></geometry></visual>'
+    source = tmp_path / "robot.urdf"
+    source.write_text(f'<robot name="r"><link name="a">{shape.format("grid")}{shape.format("tetra")}</link></robot>')
+    out = tmp_path / "out.usda"
+    assert main(["convert", str(source), str(out)]) == 0
+    text = out.read_text()
+    assert (text.count("point3f[] points"), len(text) < 10_000) == (1, True)
+    stage = Usd.Stage.Open(str(out))
+    assert sorted(len(prim.GetAttribute("points").Get()) for prim in stage.Traverse() if prim.GetTypeName() == "Mesh") == [4, 99]
+    assert hx.load(out) == hx.load(source)
+    assert hx.verify(source, out).verdict == "same"
+    whole = tmp_path / "whole.usda"
+    whole.write_text(hx.dumps(hx.load(source), "usd"))
+    assert hx.load(whole) == hx.load(source)
 
 
 # ---- packages in ----------------------------------------------------------------------------------------------------------------
@@ -153,3 +176,14 @@ def test_the_command_line_chooses_variants_and_layout(tmp_path: Path, capsys: py
     (tmp_path / "arm.urdf").write_text(ARM)
     assert main(["info", str(tmp_path / "arm.urdf"), "--variant", "arm=long"]) == 2
     assert "--variant is for formats that have variants" in capsys.readouterr().err
+
+
+def test_verify_looks_at_the_variant_that_is_meant(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    stage, out = tmp_path / "in.usda", tmp_path / "out.usda"
+    stage.write_text(VARIANTS)
+    chosen = ["--variant", "arm=long", "--variant", "tip=hook"]
+    assert main(["convert", str(stage), str(out), "--verify", *chosen]) == 0
+    assert main(["verify", str(stage), str(out), *chosen]) == 0
+    assert main(["verify", str(stage), str(out)]) == 4
+    assert main(["verify", str(stage), str(out), "--variant", "arm=lng"]) == 1
+    assert "the variant set 'arm' has no variant 'lng'" in capsys.readouterr().err

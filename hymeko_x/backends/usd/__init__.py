@@ -15,14 +15,14 @@ from hymeko_x.backends.usd.carrier import carry_in_text as carry_residue
 from hymeko_x.backends.usd.contacts import write_contacts, write_frictions
 from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
-from hymeko_x.backends.usd.layers import encoded, split
+from hymeko_x.backends.usd.layers import encoded, set_points_aside, split
 from hymeko_x.backends.usd.materials import write_materials
 from hymeko_x.backends.usd.prims import author
 from hymeko_x.backends.usd.relations import write_drives, write_mimics
 from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
 from hymeko_x.formats import usd as words
-from hymeko_x.ir.legalize_usd import LAYOUT
+from hymeko_x.ir.legalize_usd import LAYOUT, POINTS
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 
@@ -51,6 +51,9 @@ _SECTIONS = (
 def write(mechanism: Mechanism, report: Report) -> Package:
     """The mechanism as USD text. Textures are not part of it: `assets.pack` returns them."""
     layers = write_layers(mechanism, report, ".usda")
+    beside = mechanism.notation(ROOT, POINTS)
+    if beside is not None and len(layers) == 1:
+        layers |= set_points_aside(layers[""], beside)
     written = {name: encoded(layer) if name.endswith(".usdc") else layer.ExportToString().encode() for name, layer in layers.items()}
     return Package(written.pop(""), written)
 

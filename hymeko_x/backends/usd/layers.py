@@ -21,6 +21,7 @@ _PHYSICS = ("physics:", "mjc:", "newton:", "physx", "urdf:", "hymeko:", "drive:"
 _MATERIALS = ("material:binding", "inputs:", "outputs:", "info:")
 _PHYSICS_TYPES = ("Physics", "Mjc", "Newton", "Physx")
 _MATERIAL_TYPES = ("Material", "Shader", "NodeGraph", "GeomSubset")
+_MOST_IN_TEXT = 64
 _HEADER = ("metersPerUnit", "kilogramsPerUnit", "upAxis", "defaultPrim")
 
 
@@ -44,6 +45,30 @@ def split(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
 def _has_meshes(layer: Any) -> bool:
     """Whether there are long arrays, which are no text for people and slow to read as one."""
     return any(spec.typeName == "Mesh" for spec in _prims(layer))
+
+
+def set_points_aside(layer: Any, name: str) -> dict[str, Any]:
+    """A layer for the arrays that are too long for a text, by its file name, which becomes a sublayer; none where there are none.
+
+    Source: the rule of usdchecker and its successors that long arrays belong into crate files.
+    """
+    long = [item.path for spec in _prims(layer) for item in spec.attributes if _is_long(item.default)]
+    if not long:
+        return {}
+    aside = Sdf.Layer.CreateAnonymous(".usda")
+    _copy_header(layer, aside, _HEADER)
+    with Sdf.ChangeBlock():
+        for path in long:
+            Sdf.CreatePrimInLayer(aside, path.GetPrimPath())
+            Sdf.CopySpec(layer, path, aside, path)
+            spec = layer.GetPrimAtPath(path.GetPrimPath())
+            del spec.properties[path.name]
+        layer.subLayerPaths.append(f"./{name}")
+    return {name: aside}
+
+
+def _is_long(value: Any) -> bool:
+    return hasattr(value, "__len__") and not isinstance(value, str) and len(value) > _MOST_IN_TEXT
 
 
 def encoded(layer: Any) -> bytes:

@@ -64,11 +64,12 @@ class Reader(Protocol):
 @dataclass(frozen=True, slots=True)
 class Places:
     """Where the files are that a robot refers to: the user's own NAME=DIR, the folders in which packages
-    stand, and the arguments of a xacro file."""
+    stand, the arguments of a xacro file, and the variants of a USD file."""
 
     packages: Mapping[str, Path] = field(default_factory=dict)
     search_path: tuple[Path, ...] = ()
     arguments: Mapping[str, str] = field(default_factory=dict)
+    variants: Mapping[str, str] = field(default_factory=dict)
 
     def files(self, folder: Path) -> Files:
         """The files that a robot in this folder may refer to."""

@@ -34,6 +34,7 @@ SINGLE = 1.2e-7
 """The relative precision of what UsdPhysics stores."""
 NEAR = 1e-6
 WORLD_NAME = "world"
+_MOST_NESTED = 32
 
 _JOINTS = ("FixedJoint", "RevoluteJoint", "PrismaticJoint", "SphericalJoint", "D6Joint", "DistanceJoint", "CustomJoint")
 
@@ -62,9 +63,31 @@ def read(path: Path, places: Places) -> KinematicModel:
         except Tf.ErrorException as error:
             words = said() or " ".join(str(error).split())
             raise refuse(codes.ENGINE_REFUSED, f"USD refuses the file: {words}", Origin(str(path))) from error
+        for _ in range(_MOST_NESTED if places.variants else 0):  # a variant may bring forth prims that have sets themselves
+            if not _choose(stage, places.variants, path):
+                break
         found = UsdPhysics.UsdPhysicsLoadStageFromPrimRange(stage, [Sdf.Path.absoluteRootPath])
     scene = Scene(stage, UsdGeom.GetStageMetersPerUnit(stage), UsdPhysics.GetStageKilogramsPerUnit(stage), _upright(stage))
     return _model(scene, path.stem, found)
+
+
+def _choose(stage: Any, variants: Mapping[str, str], path: Path) -> bool:
+    """Select these variants in the session, wherever the stage has their sets; returns whether that changed anything."""
+    sets = [(prim.GetVariantSet(name), variants[name]) for prim in stage.Traverse() for name in _sets_of(prim, variants)]
+    changed = [(item, variant) for item, variant in sets if item.GetVariantSelection() != variant]
+    with Usd.EditContext(stage, stage.GetSessionLayer()):
+        for item, variant in changed:
+            if variant not in item.GetVariantNames():
+                said = f"the variant set '{item.GetName()}' has no variant '{variant}'"
+                raise refuse(
+                    codes.UNDEFINED_REFERENCE, said, Origin(str(path)), hint=f"it has: {', '.join(sorted(item.GetVariantNames()))}"
+                )
+            item.SetVariantSelection(variant)
+    return bool(changed)
+
+
+def _sets_of(prim: Any, variants: Mapping[str, str]) -> list[str]:
+    return [name for name in prim.GetVariantSets().GetNames() if name in variants]
 
 
 def _upright(stage: Any) -> Array:
