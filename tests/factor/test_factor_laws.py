@@ -64,7 +64,7 @@ def _flipped(text: object) -> str:
     ids=["xml", "cheap", "unsigned", "whole", "values"],
 )
 @given(repetitive())
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_expanding_gives_back_exactly_what_was_factored(dialect: Dialect, forms: tuple[Element, ...]) -> None:
     found = factor(forms, dialect)
     assert expand(found) == forms
@@ -72,7 +72,7 @@ def test_expanding_gives_back_exactly_what_was_factored(dialect: Dialect, forms:
 
 
 @given(repetitive())
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_what_is_factored_is_never_longer(forms: tuple[Element, ...]) -> None:
     assert size(factor(forms, Dialect())) <= size(Factored(forms))
 
@@ -155,7 +155,7 @@ def macro(segments: list[tuple[str, float, float]]) -> Macro:
     ),
     st.data(),
 )
-@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_planted_limbs_are_found(segments: list[tuple[str, float, float]], legs: list[tuple[str, int]], data: st.DataObject) -> None:
     """The result is about as short as with the macro that was planted, wherever other forms stand between the limbs."""
     forms: list[Element] = []

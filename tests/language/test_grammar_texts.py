@@ -16,7 +16,7 @@ from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from tests.fuzz.cases import run
 
-FEW = settings(max_examples=settings.default.max_examples, deadline=None, suppress_health_check=list(HealthCheck))
+FEW = settings(max_examples=settings.default.max_examples // 2, deadline=None, suppress_health_check=list(HealthCheck))
 _WORDS = re.compile(r"\S+").findall(
     "a b j base arm tool world robot link body joint revolute prismatic fixed floating ball screw coupling loop weld "
     "connect tendon actuator motor servo sensor frame camera light material mesh texture shape visual collision box sphere "

@@ -6,11 +6,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
 from pxr import Gf, Sdf, Usd, UsdPhysics
 
 from hymeko_x.verify import model_of, verify
 from hymeko_x.verify.model import KinematicModel
+from hymeko_x.verify.readers.usd import unit_axes
 from tests.usd.stages import HEADER
 from tests.verify.robots import ARM_MJCF, ARM_URDF, RIG_MJCF
 from tests.verify.usd_writer import usd_of
@@ -226,3 +228,11 @@ def test_two_points_that_stay_together_are_a_hinge(written: Write) -> None:
     assert [check.quantity for check in verify(stage, skew).failed] == ["loop closure, rotation"]
     alone = written("mjcf", POINTS.replace('<connect body1="arm" anchor="0.3 0 0"/>', ""))
     assert [check.quantity for check in verify(stage, alone).failed] == ["loops"]
+
+
+def test_what_a_scale_of_zero_flattens_still_has_axes() -> None:
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    for scale in ((2.0, 3.0, 0.0), (0.0, 3.0, 4.0), (2.0, 0.0, 4.0)):
+        assert unit_axes(turn @ np.diag(scale)) == pytest.approx(turn)
+    assert unit_axes(turn @ np.diag((2.0, 3.0, 4.0))) == pytest.approx(turn)
+    assert np.linalg.det(unit_axes(np.zeros((3, 3)))) == pytest.approx(1.0)

@@ -281,3 +281,11 @@ def test_a_hypergraph_without_bodies_is_no_robot(tmp_path: Path) -> None:
     text = tmp_path / "plain.hymeko"
     text.write_text("plain\nnode0 {\nx1 x2\nx3 x4\n@e1 {+x1 +x2 -x3 -x4}\n}\n")
     assert hx.verify(text, text).reason == "; ".join(["the HyMeKo text describes a hypergraph without bodies, which is no robot"] * 2)
+
+
+def test_a_root_link_called_world_is_a_body_where_it_weighs_something(tmp_path: Path) -> None:
+    text = tmp_path / "heavy.hymeko"
+    bodies = "world : link {{ {} }} arm {{ mass 1 inertia [1 1 1] }} @turn : continuous {{ + `world` - arm }}"
+    for mass, names in (("mass 1 inertia [1 1 1]", ["world", "arm"]), ("", ["arm"])):
+        text.write_text("r : robot { " + bodies.format(mass) + " }")
+        assert [body.name for body in hx.verify.model_of(text).bodies[1:]] == names

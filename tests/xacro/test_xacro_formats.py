@@ -7,14 +7,18 @@ from pathlib import Path
 import pytest
 
 import hymeko_x as hx
+from hymeko_x import disk
 from hymeko_x.corpus.catalog import DevelopmentFile, development_files, select
+from hymeko_x.diagnostics import Report
+from hymeko_x.frontends.xacro import read
+from hymeko_x.ir.diff import diff
+from hymeko_x.source import Source
+from tests.xacro.test_xacro_writing import check
 
 (RTB_DATA,) = select(("rtb_data",))
-ROBOTS = (
-    *development_files("xacro"),
-    *(DevelopmentFile("xacro", RTB_DATA, path) for path in RTB_DATA.robots["xacro"]),
-)
-"""The development files, and every other robot of the package with the most of them."""
+OTHERS = tuple(DevelopmentFile("xacro", RTB_DATA, path) for path in RTB_DATA.robots["xacro"])
+"""Every robot of the package with the most of them that is no development file."""
+ROBOTS = (*development_files("xacro"), *OTHERS)
 
 TARGETS = (".hymeko", ".urdf", ".xml", ".usda")
 FEW = [file for file in ROBOTS if file.path.endswith("/vxxmd.urdf.xacro")]
@@ -35,6 +39,12 @@ def assert_same_there_and_back(robot: Path, suffix: str, folder: Path) -> None:
     assert_same(robot, there)
     hx.convert(there, back)
     assert_same(robot, back)
+
+
+@pytest.mark.parametrize("robot", OTHERS, ids=lambda file: file.id, indirect=True)
+def test_xacro_that_is_written_again_expands_to_what_the_source_expands_to(robot: Path) -> None:
+    mechanism = read(disk.open_source(str(robot)), Report())
+    assert diff(mechanism, read(Source("again.xacro", check(mechanism).encode()), Report())) == ()
 
 
 @pytest.mark.parametrize("suffix", TARGETS)

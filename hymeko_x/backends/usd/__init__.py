@@ -95,10 +95,9 @@ def _write_stage(sheet: Sheet) -> None:
     stage.SetInfo("upAxis", UsdGeom.Tokens.z)
     sheet.layer.defaultPrim = sheet.root.name
     prim = sheet.define(sheet.root, "Xform", sheet.mechanism.name)
-    sheet.made[sheet.root] = []
+    sheet.groups.add(sheet.root)
     if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is None:
         prim.info["kind"] = Kind.Tokens.component
-    sheet.made[sheet.root] += ["kind", "displayName", "@type"]
 
 
 def _write_articulations(sheet: Sheet) -> None:
@@ -110,4 +109,3 @@ def _write_articulations(sheet: Sheet) -> None:
         return
     for path in [sheet.root] if len(roots) == 1 else [sheet.homes[root] for root in roots if sheet.mechanism.children.get(root)]:
         apply(sheet.prims[path], _ARTICULATION)
-        sheet.made[path].append(f"@{_ARTICULATION}")

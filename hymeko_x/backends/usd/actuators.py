@@ -15,7 +15,7 @@ from hymeko_x.ir.parts import Actuator, Drive
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.prims import Prim
     from hymeko_x.backends.usd.sheet import Sheet
-    from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.ir.mechanism import RobotArc
 
 _STATED = ("motor", "general")
 
@@ -31,15 +31,9 @@ def write_actuators(sheet: Sheet) -> None:
         if not targets or any(target is None for _, target in targets):
             continue
         spec = sheet.place(source, "actuators", table.PRIM)
-        _carry_drive(sheet, spec, key)
+        sheet.homes[key] = spec.path
         _write_targets(spec, targets, drive)
         _write_parameters(spec, actuator)
-        sheet.made[spec.path].append("@type")
-
-
-def _carry_drive(sheet: Sheet, spec: Prim, key: Id) -> None:
-    sheet.carried[spec.path]["drive"] = key
-    sheet.homes[key] = spec.path
 
 
 def _target(sheet: Sheet, arc: RobotArc) -> Any | None:

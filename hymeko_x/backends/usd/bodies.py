@@ -57,7 +57,6 @@ def _write_body(sheet: Sheet, spec: Any, key: Id) -> None:
     inertial = sheet.mechanism.vertex(key, Body).inertial
     if inertial is not None:
         write_inertial(spec, inertial, sheet.shrunk(key, inertial.com))
-        sheet.made[spec.path] += ["@PhysicsMassAPI", "physics:centerOfMass", "physics:diagonalInertia"]
 
 
 def _parents_first(mechanism: Mechanism) -> list[Id]:
@@ -176,11 +175,9 @@ def write_mounts(sheet: Sheet) -> None:
         if home is None:
             continue
         spec = sheet.place(thing.target, home, _type_of(part), below=body.target != WORLD)
-        sheet.carried[spec.path]["mount"] = key
         sheet.homes[key] = spec.path
         sheet.move(spec, pose_weight(body), on=body.target)
-        sheet.made[spec.path].append("@type")
-        _write_thing(sheet, spec, part)
+        _write_thing(spec, part)
 
 
 def _type_of(part: Frame | Camera | Light) -> str:
@@ -193,11 +190,10 @@ def _type_of(part: Frame | Camera | Light) -> str:
             return next((name for name, meant in words.LIGHTS.items() if meant == kind), "SphereLight")
 
 
-def _write_thing(sheet: Sheet, spec: Any, part: Frame | Camera | Light) -> None:
+def _write_thing(spec: Any, part: Frame | Camera | Light) -> None:
     """What a frame, a camera or a light says beside where it is."""
     if isinstance(part, Frame):
         apply(spec, "MjcSiteAPI", "NewtonSiteAPI")
-        sheet.made[spec.path] += ["@MjcSiteAPI", "@NewtonSiteAPI"]
     elif isinstance(part, Light):
         if part.kind == "spot":
             apply(spec, words.CONE)
@@ -207,4 +203,3 @@ def _write_thing(sheet: Sheet, spec: Any, part: Frame | Camera | Light) -> None:
         aperture = 15.2908
         put(spec, "verticalAperture", T.Float, aperture)
         put(spec, "focalLength", T.Float, aperture / 2.0 / math.tan(part.fovy / 2.0))
-        sheet.made[spec.path] += ["verticalAperture", "focalLength"]

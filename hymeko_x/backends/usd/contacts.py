@@ -17,6 +17,7 @@ _BINDING = "material:binding:physics"
 
 def write_contacts(sheet: Sheet) -> None:
     """Pairs of bodies that do not collide, on the first of them; each prim carries one of its pairs."""
+    first: set[Any] = set()
     for key, contact, arcs in sheet.mechanism.edges(Contact):
         paths = [sheet.homes.get(arc.target) for arc in arcs if arc.target.kind == "body"]
         if contact.kind != "exclude" or len(paths) != 2 or None in paths:
@@ -24,8 +25,8 @@ def write_contacts(sheet: Sheet) -> None:
         spec = sheet.prims[paths[0]]
         apply(spec, "PhysicsFilteredPairsAPI")
         point(spec, "physics:filteredPairs", paths[1])
-        if "contact" not in sheet.carried[spec.path]:
-            sheet.carried[spec.path]["contact"] = key
+        if spec.path not in first:
+            first.add(spec.path)
             sheet.homes[key] = spec.path
 
 
@@ -43,14 +44,13 @@ def write_frictions(sheet: Sheet) -> None:
             spec = sheet.prims[sheet.homes[view.id]]
             apply(spec, "MaterialBindingAPI")
             point(spec, _BINDING, materials[view.shape.friction])
-            sheet.made[spec.path] += ["@MaterialBindingAPI", _BINDING]
 
 
 def _write_material(sheet: Sheet, friction: tuple[float, ...]) -> Any:
     """Sliding friction for UsdPhysics, torsional and rolling friction for MuJoCo and Newton."""
     scope = sheet.scope("frictions")
     put(sheet.prims[scope], f"{words.PREFIX}scope", T.Bool, True)
-    sheet.made.pop(scope, None)
+    sheet.groups.discard(scope)
     spec = sheet.define(sheet.free_path(scope, "friction"), "Material")
     apply(spec, "PhysicsMaterialAPI")
     put(spec, "physics:staticFriction", T.Float, friction[0])

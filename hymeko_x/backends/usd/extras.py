@@ -89,9 +89,9 @@ def _merge(sheet: Sheet, spec: Any, path: Any) -> None:
         there.specifier = spec.specifier
     if spec.specifier != Sdf.SpecifierOver:
         there.specifier = spec.specifier
-    if spec.typeName and (there.typeName in ("", "Xform") or path not in sheet.made):
+    if spec.typeName and (there.typeName in ("", "Xform") or not sheet.is_made(path)):
         there.typeName = spec.typeName
-    if not spec.typeName and spec.specifier != Sdf.SpecifierOver and path not in sheet.carried:
+    if not spec.typeName and spec.specifier != Sdf.SpecifierOver and path not in sheet.placed:
         there.ClearInfo("typeName")
     if spec.HasInfo("apiSchemas"):
         schemas = spec.GetInfo("apiSchemas").GetAppliedItems()

@@ -53,9 +53,8 @@ def _floats(view: JointView) -> bool:
 
 def _carry_on_body(sheet: Sheet, view: JointView) -> None:
     home = sheet.homes.get(view.child)
-    if home is not None and "joint" not in sheet.carried[home]:
+    if home is not None:
         sheet.homes[view.id] = home
-        sheet.carried[home]["joint"] = view.id
 
 
 def write_joint(sheet: Sheet, view: JointView) -> None:
@@ -115,14 +114,11 @@ def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: 
     for place, (number, dof) in enumerate(zip(numbers, dofs, strict=True)):
         path, name = paths[place], names[place]
         spec = sheet.define(path, _TYPES.get(dof.kind, GENERIC), name)
-        sheet.made.setdefault(path, []).extend(["displayName"] if "displayName" in spec.info else [])
+        sheet.placed.add(path)
         write_frames(sheet, spec, view.id, ends, (dof,))
         sheet.dofs[view.id, number] = (path, "")
         if place == 0:
             sheet.homes[view.id] = path
-            sheet.carried[path] = {"joint": view.id}
-        else:
-            sheet.carried.setdefault(path, {})
 
 
 def _parallel_paths(sheet: Sheet, key: Id, names: list[str], numbered: list[str]) -> list[Any]:

@@ -21,6 +21,7 @@ _KINDS = ("position", "velocity")
 
 def write_drives(sheet: Sheet) -> None:
     """Each servo or motor on one dof as a DriveAPI of its joint; gains per degree, force limits from its force range."""
+    driven_prims: set[Any] = set()
     for key, _, arcs in sheet.mechanism.edges(Drive):
         source = next((arc.target for arc in arcs if arc.sign > 0), None)
         driven = next((arc for arc in arcs if arc.sign < 0), None)
@@ -30,8 +31,8 @@ def write_drives(sheet: Sheet) -> None:
             continue
         spec, axis, dof = found
         _write_drive(spec, axis or ("angular" if dof.kind is DofKind.HINGE else "linear"), actuator, dof)
-        if not {"actuator", "drive"} & {*sheet.carried[spec.path]}:
-            sheet.carried[spec.path] |= {"actuator": source, "drive": key}
+        if spec.path not in driven_prims:
+            driven_prims.add(spec.path)
             sheet.homes |= {source: spec.path, key: spec.path}
 
 
@@ -99,9 +100,7 @@ def write_mimics(sheet: Sheet) -> None:
             apply(spec, "MjcEqualityJointAPI")
             point(spec, "mjc:target", found.leader.path)
             _write_powers(spec, weight, 0)
-        if "coupling" not in sheet.carried[spec.path]:
-            sheet.carried[spec.path]["coupling"] = found.key
-            sheet.homes[found.key] = spec.path
+        sheet.homes[found.key] = spec.path
 
 
 def _follower(sheet: Sheet, key: Id, coupling: Coupling, arcs: tuple[RobotArc, ...]) -> _Follower | None:

@@ -54,22 +54,18 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
     if is_body:
         spec = sheet.prims[body]
         sheet.homes[view.id] = body
-        sheet.carried[body]["shape"] = view.id
     else:
         spec = sheet.place(view.id, body, "Xform", view.shape.name or view.shape.role.value, below=view.body != WORLD)
     if prim is not None:
-        _write_primitive(sheet, spec, prim)
+        _write_primitive(spec, prim)
     scale = _write_mesh_shape(sheet, spec, view, users, shared) if isinstance(view.shape.geometry, MeshShape) else None
     if not is_body:
         sheet.move(spec, skin_pose(view, prim), scale if prim is None else _unless_one(prim.scale), on=view.body)
-    if spec.kind == "Xform":
-        sheet.made[spec.path].append("@spec")
     if view.shape.role is not Role.VISUAL:
         apply(spec, "PhysicsCollisionAPI")
         if isinstance(view.shape.geometry, MeshShape) and sheet.mechanism.notation(view.id, words.PATH) is None:
             apply(spec, "PhysicsMeshCollisionAPI")
             put(spec, "physics:approximation", T.Token, "convexHull")
-            sheet.made[spec.path] += ["@PhysicsMeshCollisionAPI", "physics:approximation"]
     if view.shape.role is Role.COLLISION:
         put(spec, "purpose", T.Token, "guide")
     _write_looks(sheet, spec, view)
@@ -83,7 +79,7 @@ def gprim_of(mechanism: Mechanism, view: ShapeView) -> gprims.Gprim | None:
     return gprims.chosen(view.shape.geometry)
 
 
-def _write_primitive(sheet: Sheet, spec: Any, prim: gprims.Gprim) -> None:
+def _write_primitive(spec: Any, prim: gprims.Gprim) -> None:
     """Type, sizes, axis and the box around it."""
     spec.kind = prim.kind
     for (name, _), value in zip(gprims.SIZES[prim.kind], prim.sizes, strict=True):
@@ -92,7 +88,6 @@ def _write_primitive(sheet: Sheet, spec: Any, prim: gprims.Gprim) -> None:
         put(spec, "axis", T.Token, prim.axis)
     half = gprims.half_extent(prim)
     put(spec, "extent", T.Float3Array, Vt.Vec3fArray([Gf.Vec3f(*(-value for value in half)), Gf.Vec3f(*half)]))
-    sheet.made[spec.path].append("extent")
 
 
 # ---- meshes --------------------------------------------------------------------------------------------------------------------
@@ -118,7 +113,6 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
             _carry_mesh(sheet, spec, view.mesh)
         spec.kind = "Mesh"
         spec.reference = shared[view.mesh]
-    sheet.made[spec.path] += ["subdivisionScheme", "normals"]
     return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
 
 
@@ -130,7 +124,6 @@ def _has_normals(mechanism: Mechanism, shape: Id) -> bool:
 def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
     """The prim of a mesh carries it; it says nothing about subdivision but that there is none."""
     sheet.homes[mesh] = spec.path
-    sheet.carried[spec.path]["mesh"] = mesh
 
 
 def _write_prototype(sheet: Sheet, key: Id, surface: Surface) -> Any:

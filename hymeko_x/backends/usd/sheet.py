@@ -24,8 +24,8 @@ RESET = "!resetXformStack!"
 class Sheet:
     """The layer, and where each element's prim is: ``homes`` by id, ``dofs`` the prim of each dof of a joint.
 
-    ``carried`` holds by prim the elements that it carries, by their kinds; ``made`` what we added to a prim that no element
-    says. ``skins`` is the shape of each body whose own prim is its geometry, ``scales`` the scale of such a prim.
+    ``placed`` are the prims that stand for elements, ``groups`` those that hold them. ``skins`` is the shape of each body whose
+    own prim is its geometry, ``scales`` the scale of such a prim.
     """
 
     mechanism: Mechanism
@@ -33,8 +33,8 @@ class Sheet:
     root: Any
     homes: dict[Id, Any] = field(default_factory=dict)
     dofs: dict[tuple[Id, int], tuple[Any, str]] = field(default_factory=dict)
-    carried: dict[Any, dict[str, Id]] = field(default_factory=dict)
-    made: dict[Any, list[str]] = field(default_factory=dict)
+    placed: set[Any] = field(default_factory=set)
+    groups: set[Any] = field(default_factory=set)
     prims: dict[Any, Prim] = field(default_factory=dict)
     skins: dict[Id, Id] = field(default_factory=dict)
     scales: dict[Id, Vec3] = field(default_factory=dict)
@@ -62,13 +62,17 @@ class Sheet:
             prim.info["displayName"] = name
         return prim
 
+    def is_made(self, path: Any) -> bool:
+        """Whether a prim is there for an element or a group of ours, not only because something is below it."""
+        return path in self.placed or path in self.groups
+
     def noted_path(self, key: Id) -> Any | None:
         """The path of the prim that an element was read from, where nothing else stands there yet."""
         noted = self.mechanism.notation(key, words.PATH)
         if noted is None or not Sdf.Path.IsValidPathString(noted):
             return None
         path = Sdf.Path(noted)
-        is_free = path not in self.prims or (path not in self.made and path not in self.carried)
+        is_free = path not in self.prims or not self.is_made(path)
         return path if path.IsAbsoluteRootOrPrimPath() and is_free else None
 
     def place(self, key: Id, parent: Any, kind: str, name: str | None = None, *, below: bool = False) -> Prim:
@@ -89,8 +93,7 @@ class Sheet:
         """A new prim at this path for an element."""
         prim = self.define(path, kind, name or key.name)
         self.homes[key] = path
-        self.made.setdefault(path, []).extend(["displayName"] if "displayName" in prim.info else [])
-        self.carried.setdefault(path, {})[key.kind] = key
+        self.placed.add(path)
         return prim
 
     def move(self, prim: Prim, pose: Pose, scale: Vec3 | None = None, *, on: Id) -> None:
@@ -107,7 +110,7 @@ class Sheet:
         path = self.root.AppendChild(name)
         if path not in self.prims:
             self.define(path, "Scope")
-            self.made[path] = ["@spec"]
+            self.groups.add(path)
         return path
 
 

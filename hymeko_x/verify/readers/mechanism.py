@@ -43,12 +43,12 @@ SAYS = frozenset(Feature) - {Feature.ACTUATORS, Feature.TENDONS}
 
 
 def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> KinematicModel:
-    """The tree, its couplings and loops. A root link called ``world`` is the world itself, as for every other reader."""
+    """The tree, its couplings and loops. A massless root link called ``world`` is the world itself, as for every other reader."""
     places = {WORLD_ID: WORLD}
     bodies = [grounded(shapes=tuple(_shapes(mechanism, WORLD_ID)))]
     for key in mechanism.depth_first():
         view = mechanism.parent_joint.get(key)
-        if view is None and key.name == WORLD_ID.name:
+        if view is None and key.name == WORLD_ID.name and not _weighs(mechanism, key):
             places[key] = WORLD
             bodies[WORLD] = grounded(shapes=(*bodies[WORLD].shapes, *_shapes(mechanism, key)))
             continue
@@ -66,6 +66,11 @@ def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> Kinema
         says=SAYS,
         trusted=False,
     )
+
+
+def _weighs(mechanism: Mechanism, key: Id) -> bool:
+    inertial = mechanism.vertex(key, parts.Body).inertial
+    return inertial is not None and bool(inertial.mass)
 
 
 def _body(mechanism: Mechanism, key: Id, view: JointView | None, places: Mapping[Id, int]) -> Body:

@@ -51,7 +51,7 @@ class Scene:
     def pose(self, prim: Any) -> Array:
         """The pose of a prim in the world at rest, in m, z up, without its scale."""
         matrix = np.array(UsdGeom.XformCache().GetLocalToWorldTransform(prim), dtype=float).T
-        turn = matrix[:3, :3] / np.linalg.norm(matrix[:3, :3], axis=0)
+        turn = unit_axes(matrix[:3, :3])
         return rigid(self.upright @ turn, self.upright @ matrix[:3, 3] * self.metres)
 
 
@@ -280,6 +280,16 @@ def _newton_tensor(prim: Any) -> Array:
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 
 
+def unit_axes(matrix: Array) -> Array:
+    """The directions of the axes of a 3x3 matrix; those that a scale of zero has flattened complete the others to a right-handed frame."""
+    lengths = np.linalg.norm(matrix, axis=0)
+    if lengths.all():
+        return np.asarray(matrix / lengths)
+    left, _, right = np.linalg.svd(matrix)
+    left[:, 2] *= np.sign(np.linalg.det(left @ right))
+    return np.asarray(left @ right)
+
+
 def relative(scene: Scene, body: str, prim: Any) -> tuple[Array, Array]:
     """A prim in the frame of a body ("" is the world): its pose in m, and the 3x3 matrix of scale that comes before it."""
     cache = UsdGeom.XformCache()
@@ -288,7 +298,7 @@ def relative(scene: Scene, body: str, prim: Any) -> tuple[Array, Array]:
     base = np.eye(4) if not body else rigid(*_unscaled(scene, body))
     base[:3, 3] /= scene.metres
     inside = inverse(base) @ world
-    turn = inside[:3, :3] / np.linalg.norm(inside[:3, :3], axis=0)
+    turn = unit_axes(inside[:3, :3])
     return rigid(turn, inside[:3, 3] * scene.metres), turn.T @ inside[:3, :3] * scene.metres
 
 

@@ -132,7 +132,7 @@ def _counted(scene: Scene, desc: Any, dof: Dof, unit: float) -> Dof:
 
 
 def _scalar(kind: Kind, axis: int, limit: Any, unit: float, name: str | None) -> Dof:
-    lower, upper = (float(limit.lower), float(limit.upper)) if limit.enabled else (-INF, INF)
+    lower, upper = float(limit.lower), float(limit.upper)  # ``enabled`` is only set where both are finite; the schema allows one
     if lower > upper:
         lower, upper = -INF, INF
     return Dof(kind, np.eye(3)[axis], name=name, lower=lower * unit, upper=upper * unit)
