@@ -1,4 +1,4 @@
-"""What an editor does to a file: edits of URDF and MJCF texts, drawn at random."""
+"""What an editor does to a file: edits of URDF, xacro, MJCF and USD texts, drawn at random."""
 
 from __future__ import annotations
 
@@ -7,9 +7,10 @@ from typing import Any
 
 from hypothesis import strategies as st
 from lxml import etree
+from pxr import Sdf
 
 Edit = Callable[[Any], str]
-"""Changes a tree in place and says what it did."""
+"""Changes a tree or a layer in place and says what it did."""
 
 _VALUES = st.floats(0.001, 2.0).map(lambda value: round(value, 4))
 
@@ -19,6 +20,14 @@ def applied(text: str, edits: list[Edit]) -> tuple[str, list[str]]:
     root = etree.fromstring(text.encode(), etree.XMLParser(strip_cdata=False, huge_tree=True))
     done = [edit(root) for edit in edits]
     return etree.tostring(root, encoding="unicode"), done
+
+
+def applied_to_stage(text: str, edits: list[Edit]) -> tuple[str, list[str]]:
+    """The same for the text of a stage."""
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    layer.ImportFromString(text)
+    done = [edit(layer) for edit in edits]
+    return layer.ExportToString(), done
 
 
 # ---- URDF ------------------------------------------------------------------------------------------------------------------
@@ -211,4 +220,126 @@ _MJCF: dict[str, Callable[[Any, float, int], str]] = {
     "add": _add_body,
     "remove": _remove_body,
     "rename body": _rename_body,
+}
+
+
+# ---- xacro -----------------------------------------------------------------------------------------------------------------
+
+_XACRO_NAME = "{http://www.ros.org/wiki/xacro}"
+
+
+@st.composite
+def xacro_edits(draw: st.DrawFn) -> Edit:
+    """One edit of a xacro text: of what calls of macros say, and of links that stand by themselves."""
+    kind = draw(st.sampled_from(sorted(_XACRO)))
+    value, place = draw(_VALUES), draw(st.integers(0, 1000))
+    return lambda root: f"{kind}: {_XACRO[kind](root, value, place)}"
+
+
+def _call(root: Any, value: float, place: int) -> str:
+    calls = [call for call in root.iter() if isinstance(call.tag, str) and call.tag.startswith(_XACRO_NAME)]
+    said = [(call, name) for call in calls for name in ("mass", "upper", "radius") if _is_number(call.get(name))]
+    if not said:
+        return "nothing"
+    call, name = _chosen(said, place)
+    call.set(name, str(float(call.get(name)) + value))
+    return f"{call.tag} {name}"
+
+
+def _is_number(text: str | None) -> bool:
+    return text is not None and text.replace(".", "", 1).lstrip("-").isdigit()
+
+
+_XACRO: dict[str, Callable[[Any, float, int], str]] = {"call": _call, "add": _add, "mass": _mass}
+
+
+# ---- USD -------------------------------------------------------------------------------------------------------------------
+
+
+@st.composite
+def usd_edits(draw: st.DrawFn) -> Edit:
+    """One edit of the layer of a stage with flat bodies."""
+    kind = draw(st.sampled_from(sorted(_USD)))
+    value, place = draw(_VALUES), draw(st.integers(0, 1000))
+    return lambda layer: f"{kind}: {_USD[kind](layer, value, place)}"
+
+
+def _prims(layer: Any, *types: str) -> list[Any]:
+    found: list[Any] = []
+    layer.Traverse("/", lambda path: found.append(layer.GetPrimAtPath(path)) if path.IsPrimPath() else None)
+    return [prim for prim in found if prim.typeName in types]
+
+
+def _bodies(layer: Any) -> list[Any]:
+    return [prim for prim in _prims(layer, "Xform") if "physics:mass" in prim.properties]
+
+
+def _users(layer: Any, path: Any) -> list[Any]:
+    """The joints on a body."""
+    joints = _prims(layer, "PhysicsRevoluteJoint", "PhysicsPrismaticJoint", "PhysicsFixedJoint", "PhysicsJoint")
+    return [prim for prim in joints if any(path in _targets(prim, name) for name in ("physics:body0", "physics:body1"))]
+
+
+def _targets(prim: Any, name: str) -> list[Any]:
+    return list(prim.properties[name].targetPathList.GetAppliedItems()) if name in prim.properties else []
+
+
+def _upper(layer: Any, value: float, place: int) -> str:
+    joint = _chosen([prim for prim in _prims(layer, "PhysicsRevoluteJoint") if "physics:upperLimit" in prim.properties], place)
+    if joint is None:
+        return "nothing"
+    joint.properties["physics:upperLimit"].default = joint.properties["physics:lowerLimit"].default + 10 * value
+    return str(joint.name)
+
+
+def _heavier(layer: Any, value: float, place: int) -> str:
+    body = _chosen(_bodies(layer), place)
+    body.properties["physics:mass"].default += value
+    return str(body.name)
+
+
+def _slide(layer: Any, value: float, place: int) -> str:
+    shapes = _prims(layer, "Capsule", "Cube", "Sphere", "Cylinder")
+    shape = _chosen([prim for prim in shapes if "xformOp:translate" in prim.properties], place)
+    if shape is None:
+        return "nothing"
+    translate = shape.properties["xformOp:translate"]
+    translate.default = (translate.default[0] + value, *translate.default[1:])
+    return str(shape.path)
+
+
+def _add_prim(layer: Any, value: float, place: int) -> str:
+    parent = _chosen(_bodies(layer), place)
+    name = f"tool{len(_prims(layer, 'Xform'))}"
+    body = Sdf.PrimSpec(parent.nameParent, name, Sdf.SpecifierDef, "Xform")
+    schemas = Sdf.TokenListOp()
+    schemas.prependedItems = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]
+    body.SetInfo("apiSchemas", schemas)
+    Sdf.AttributeSpec(body, "physics:mass", Sdf.ValueTypeNames.Float).default = value
+    Sdf.AttributeSpec(body, "physics:diagonalInertia", Sdf.ValueTypeNames.Float3).default = (0.01, 0.01, 0.01)
+    ball = Sdf.PrimSpec(body, "ball", Sdf.SpecifierDef, "Sphere")
+    Sdf.AttributeSpec(ball, "radius", Sdf.ValueTypeNames.Double).default = value
+    joint = Sdf.PrimSpec(parent.nameParent, f"{name}_mount", Sdf.SpecifierDef, "PhysicsFixedJoint")
+    for side, end in (("physics:body0", parent), ("physics:body1", body)):
+        Sdf.RelationshipSpec(joint, side).targetPathList.explicitItems = [end.path]
+    return f"{name} on {parent.name}"
+
+
+def _remove_prim(layer: Any, value: float, place: int) -> str:
+    leaves = [prim for prim in _bodies(layer) if len(_users(layer, prim.path)) == 1]
+    body = _chosen(leaves, place)
+    if body is None or _targets(_users(layer, body.path)[0], "physics:body0") == [body.path]:
+        return "nothing"
+    joint, name = _users(layer, body.path)[0], str(body.name)
+    for prim in (joint, body):
+        del prim.nameParent.nameChildren[prim.name]
+    return name
+
+
+_USD: dict[str, Callable[[Any, float, int], str]] = {
+    "limit": _upper,
+    "mass": _heavier,
+    "move": _slide,
+    "add": _add_prim,
+    "remove": _remove_prim,
 }

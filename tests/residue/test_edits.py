@@ -16,10 +16,10 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.formats.carrier import taken_off
 from hymeko_x.ir.diff import Tolerance, diff
 from hymeko_x.ir.legalize import Options
-from hymeko_x.ir.mechanism import Id, Mechanism
+from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
 from hymeko_x.ir.parts import Mesh
 from hymeko_x.source import NoFiles, Source
-from tests.residue.edits import Edit, applied, mjcf_edits, urdf_edits
+from tests.residue.edits import Edit, applied, applied_to_stage, mjcf_edits, urdf_edits, usd_edits, xacro_edits
 from tests.residue.exactness import unequal
 from tests.residue.samples import MJCF, PLAIN_MJCF, URDF
 
@@ -45,6 +45,11 @@ def arm() -> str:
     return hx.dumps(hx.loads(URDF, "urdf"), "mjcf")
 
 
+@pytest.fixture(scope="module")
+def macros() -> str:
+    return hx.dumps(hx.loads(PLAIN_MJCF, "mjcf"), "xacro")
+
+
 @settings(max_examples=40, deadline=None)
 @given(st.lists(urdf_edits(), min_size=1, max_size=3))
 def test_edits_of_a_urdf_survive_and_the_rest_of_the_mjcf_is_restored(walker: str, edits: list[Edit]) -> None:
@@ -64,6 +69,34 @@ def test_edits_of_an_mjcf_survive_and_the_rest_of_the_urdf_is_restored(arm: str,
     _expect_only_edits(hx.loads(URDF, "urdf"), back, done)
 
 
+@settings(max_examples=25, deadline=None)
+@given(st.lists(xacro_edits(), min_size=1, max_size=3))
+def test_edits_of_a_xacro_survive_and_the_rest_of_the_mjcf_is_restored(macros: str, edits: list[Edit]) -> None:
+    text, done = applied(macros, edits)
+    back = hx.loads(text, "xacro")
+    _expect_same(_native(text.encode(), "xacro"), _written_again(back, "xacro"), done)
+    _expect_only_edits(hx.loads(PLAIN_MJCF, "mjcf"), back, done)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(usd_edits(), min_size=1, max_size=3))
+@pytest.mark.parametrize(("source", "own"), [(PLAIN_MJCF, "mjcf"), (URDF, "urdf")])
+def test_edits_of_a_stage_survive_and_the_rest_is_restored(source: str, own: str, edits: list[Edit]) -> None:
+    robot = hx.loads(source, own)
+    text, done = applied_to_stage(hx.dumps(robot, "usd"), edits)
+    back = hx.loads(text, "usd")
+    _expect_same(_tidied(_native(text.encode(), "usd")), _tidied(_written_again(back, "usd")), done)
+    _expect_only_edits(robot, back, done)
+
+
+def _tidied(stage: Mechanism) -> Mechanism:
+    """A stage without what has no use when bodies are gone: a friction, an empty group, an actuator, an articulation root."""
+    used = {arc.target for edge in stage.graph.edges.values() for arc in edge.arcs}
+    idle = [key for key in stage.graph.vertices if key.kind == "material" and key not in used]
+    extras = {key: found for key, found in stage.extras.items() if key != ROOT}
+    return replace(stage, graph=stage.graph.replace(without=idle), extras=extras)
+
+
 def _expect_same(edited: Mechanism, again: Mechanism, done: list[str]) -> None:
     """The same robot; shapes may come in another order, and generated files may be called after another body."""
     found = [difference for difference in diff(edited, again, _NEARLY) if difference.element.kind not in ("shape", "mesh")]
@@ -78,7 +111,7 @@ def _shapes(robot: Mechanism) -> list[str]:
 
 def _expect_only_edits(source: Mechanism, back: Mechanism, done: list[str]) -> None:
     """Nothing is missing but what was removed or renamed, or was on it."""
-    takes_along = {"remove", "rename link", "rename joint", "rename body", "move", "shift"}
+    takes_along = {"call", "remove", "rename link", "rename joint", "rename body", "move", "shift"}
     missing = [difference for difference in diff(source, back) if difference.after is None and difference.field == ""]
     if not any(edit.partition(":")[0] in takes_along for edit in done):
         assert missing == [], done
