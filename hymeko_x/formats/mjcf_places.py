@@ -79,11 +79,20 @@ class Place:
     grid: float | None = None
 
 
+def _check_ends(said: Mapping[str, str], word: str) -> None:
+    """Both ends say what lies along them and where, so that a position beside them is refused, as MuJoCo does."""
+    if "fromto" not in said:
+        return
+    if word not in _ALONG:
+        raise BadAttribute("fromto", "a capsule, cylinder, box or ellipsoid")
+    if any(read_numbers(said.get("pos", "")) or ()):
+        raise BadAttribute("pos", "nothing beside fromto")
+
+
 def _read_place(said: Mapping[str, str], settings: Settings) -> Place:
     pose = read_pose(said, settings)
     word = said.get("type", "sphere")
-    if "fromto" in said and word not in _ALONG:
-        raise BadAttribute("fromto", "a capsule, cylinder, box or ellipsoid")
+    _check_ends(said, word)
     if word == "hfield" and not said.get("hfield"):
         raise BadAttribute("hfield", "the name of a height field")
     if word == "mesh" and "mesh" in said:
@@ -177,8 +186,7 @@ def _read_site_size(said: Mapping[str, str], settings: Settings) -> tuple[float,
     word = said.get("type", "sphere")
     if (word not in _SIZES and word != "mesh") or word == "plane":
         raise BadAttribute("type", "one of sphere, capsule, ellipsoid, cylinder, box, mesh")
-    if "fromto" in said and word not in _ALONG:
-        raise BadAttribute("fromto", "a capsule, cylinder, box or ellipsoid")
+    _check_ends(said, word)
     found = numbers_of(said, "size", 1, 3) or ()
     needed = 1 if "fromto" in said else _SIZES.get(word, 0)
     if any(number <= 0.0 for number in (*found, *[_MARK] * 3)[:needed]):

@@ -12,7 +12,11 @@ import random
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import chdir
 from pathlib import Path
+
+import mujoco
+import numpy as np
 
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
@@ -36,7 +40,10 @@ def silent_changes(
         tried = random.Random(len(tried)).sample(tried, most)
     before = {target: outcome(nothing, own, target, files) for target in targets}
     for change in tried:
-        yield change.what, [target for target in targets if outcome(change, own, target, files) == before[target]]
+        silent = [target for target in targets if outcome(change, own, target, files) == before[target]]
+        if silent and own == "mjcf" and is_same_to_mujoco(change, nothing, files):
+            silent = []  # the axis of a free joint, a direction of another length
+        yield change.what, silent
 
 
 def outcome(change: Change, own: str, target: str, files: Files) -> Outcome:
@@ -47,6 +54,23 @@ def outcome(change: Change, own: str, target: str, files: Files) -> Outcome:
         return _converted(robot, target, files, report)
     except Refusal as refusal:
         return ("refused", refusal.diagnostic.message)
+
+
+def is_same_to_mujoco(a: Change, b: Change, files: Files) -> bool:
+    """Whether MuJoCo makes the same model of two MJCF texts: what it does not see means nothing."""
+    folder = files.base if isinstance(files, DiskFiles) else Path()
+    try:
+        with chdir(folder):
+            return _compiled(a.data) == _compiled(b.data)
+    except ValueError:
+        return False
+
+
+def _compiled(data: bytes) -> bytes:
+    model = mujoco.MjModel.from_xml_string(data.decode())
+    buffer = np.zeros(mujoco.mj_sizeModel(model), dtype=np.uint8)
+    mujoco.mj_saveModel(model, None, buffer)
+    return buffer.tobytes()
 
 
 def _converted(robot: Mechanism, target: str, files: Files, report: Report) -> Outcome:
