@@ -140,11 +140,14 @@ COEFFICIENTS = 5
 
 
 def shifted(coefficients: tuple[float, ...], by: float) -> list[float]:
-    """The coefficients of p(x + by), padded with zeros to a quartic."""
+    """The coefficients of p(x + by), padded with zeros to a quartic.
+
+    Raises: OverflowError where numbers leave the range of doubles.
+    """
     padded = [*coefficients[:COEFFICIENTS], *[0.0] * (COEFFICIENTS - len(coefficients))]
     if by == 0.0:
         return padded
-    return [sum(padded[n] * comb(n, k) * by ** (n - k) for n in range(k, COEFFICIENTS)) for k in range(COEFFICIENTS)]
+    return [sum(padded[n] * comb(n, k) * by ** (n - k) for n in range(k, COEFFICIENTS) if padded[n]) for k in range(COEFFICIENTS)]
 
 
 TRANSMISSIONS = ("joint", "jointinparent", "tendon", "site", "body", "cranksite", "slidersite", "refsite")

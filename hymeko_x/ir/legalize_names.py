@@ -19,8 +19,11 @@ _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def make_names_usable(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
-    """Empty names become the kind of the element, characters that XML forbids become ``_``."""
+    """Empty names become the kind of the element (of the mechanism: robot), characters that XML forbids become ``_``."""
     del options
+    if not mechanism.name:
+        mechanism = replace(mechanism, name="robot")
+        report.note(codes.RENAMED, "the robot has no name; it is written as 'robot'")
     unusable = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if not key.name or _NOT_XML.search(key.name)]
     if not unusable:
         return mechanism

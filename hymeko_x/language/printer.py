@@ -28,8 +28,12 @@ WIDTH = 120
 INDENT = "  "
 _PLAIN_NAME = re.compile(r"[^\W\d]\w*")
 _WORDS = frozenset({"rel", "seq", "concurrent", "use", "import", "as", "inf", "nan"})
-_ESCAPES = str.maketrans({"\\": "\\\\", "\n": "\\n", "\t": "\\t", "\r": "\\r", "\0": "\\0"})
-_FEW_ESCAPES = str.maketrans({"\\": "\\\\", "\r": "\\r", "\0": "\\0"})
+_FEW_ESCAPES = str.maketrans(
+    {chr(code): f"\\u{code:04x}" for code in (*range(32), 0x7F, 0xFFFE, 0xFFFF) if chr(code) not in "\n\t"}
+    | {"\\": "\\\\", "\r": "\\r", "\0": "\\0"}
+)
+"""Of characters without a sign only line feeds and tabs stand in a text as they are; files that carry it could not hold the others."""
+_ESCAPES = {**_FEW_ESCAPES, **str.maketrans({"\n": "\\n", "\t": "\\t"})}
 
 
 def print_document(document: Document) -> str:
@@ -73,10 +77,10 @@ def print_name(name: str) -> str:
 
 def print_text(text: str) -> str:
     """A string literal with as few escapes as possible."""
-    if '"' in text and "\\" not in text and '"""' not in text and not text.endswith('"'):
+    escaped = text.translate(_FEW_ESCAPES)
+    if '"' in text and escaped == text and '"""' not in text and not text.endswith('"'):
         return f"'{text}'" if "'" not in text else f'"""{text}"""'
     quote = "'" if '"' in text and "'" not in text else '"'
-    escaped = text.translate(_FEW_ESCAPES)
     return f"{quote}{escaped.replace(quote, chr(92) + quote)}{quote}"
 
 

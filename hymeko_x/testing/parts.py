@@ -22,7 +22,7 @@ def inertials(draw: st.DrawFn) -> parts.Inertial:
     mass, com, tensor = draw(maybe(LENGTHS)), draw(VECTORS), draw(maybe(TENSORS))
     if tensor is None or draw(st.booleans()):
         return parts.Inertial(mass, com, tensor)
-    frame = draw(POSES.filter(_is_no_segment).map(lambda p: Pose((0.0, 0.0, 0.0), p.quat, p.written)))
+    frame = draw(POSES.filter(_is_no_segment).map(lambda p: Pose(com, p.quat, p.written)))
     return parts.Inertial(mass, com, rotate_tensor(frame.quat, tensor), parts.InertialWritten(frame, tensor))
 
 

@@ -149,7 +149,7 @@ COUNTS = (
          "<worldbody><body><geom size='1'/></body></worldbody></mujoco>"},
         ("convert", "m.xml", "../out/r.urdf"),
         0,
-        ("HX302",),
+        (),
         60.0,
         ("r.urdf",),
     ),

@@ -89,7 +89,8 @@ def _hymeko(data: bytes) -> Iterator[Change]:
 def _around(item: Any) -> Iterator[tuple[str, tuple[Any, ...]]]:
     """What may stand instead of an item: nothing, or the item with one change in it. Depth is that of the text."""
     if isinstance(item, Node):
-        yield from ((f"{item.name}: {what}", (item._replace(items=items),)) for what, items in _inside(item.items))
+        own = f"without {item.name}"  # a joint moves the body that bears its name anyway
+        yield from ((f"{item.name}: {what}", (item._replace(items=items),)) for what, items in _inside(item.items) if what != own)
     elif isinstance(item, Field):
         if item != item._replace(name="moves", value=Ref(("hinge",))):  # which is what a dof does anyway
             yield f"without {item.name}", ()

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from dataclasses import fields, is_dataclass
 
-from hypothesis import given, settings
+import pytest
+from hypothesis import HealthCheck, assume, given, reject, settings
 
-from hymeko_x.diagnostics import Report
+import hymeko_x as hx
+from hymeko_x import codes
+from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.ir import parts, values
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Mechanism
@@ -25,6 +28,30 @@ def test_any_mechanism_is_restored_from_any_image(source: Mechanism, image: Mech
     residue = parse_residue(print_residue(residue_of(source, image)))
     assert unequal(source, restore(image, residue, report)) == []
     assert list(report) == []
+
+
+@pytest.mark.parametrize("format", ["urdf", "xacro", "mjcf", "usd"])
+@settings(max_examples=20, deadline=None, suppress_health_check=list(HealthCheck))
+@given(robot=mechanisms())
+def test_what_a_format_cannot_say_comes_back_from_it(format: str, robot: Mechanism) -> None:
+    assume(format != "mjcf" or not _goes_out_of_range(robot))
+    assert unequal(robot, hx.loads(_written(robot, format), format)) == []
+
+
+def _written(robot: Mechanism, format: str) -> str:
+    """The text of a robot, but for one with extras that are no XML."""
+    try:
+        return hx.dumps(robot, format)
+    except Refusal as refusal:
+        if refusal.diagnostic.code != codes.BAD_VALUE:
+            raise
+        reject()
+
+
+def _goes_out_of_range(robot: Mechanism) -> bool:
+    """Whether relations of joints, which MJCF counts from their references, may leave the range of doubles."""
+    dofs = [dof for view in robot.joints.values() for dof in view.joint.dofs]
+    return any(robot.edges(parts.Coupling)) and any(abs(dof.ref) > 1e9 for dof in dofs)
 
 
 @settings(max_examples=30, deadline=None)

@@ -62,11 +62,13 @@ def _read_coupling(element: Element, draft: Draft) -> None:
     draft.base(element, key, tag="joint@equality")
     try:
         found = numbers_of(element.attributes, "polycoef", 1, 5)
+        said = (0.0, 1.0) if found is None else found if len(found) > 1 else (found[0], 1.0)
+        coefficients = shifted(said, -leader_ref)
     except BadAttribute as error:
         raise draft.bad(element, error) from error
-    said = (0.0, 1.0) if found is None else found if len(found) > 1 else (found[0], 1.0)
+    except OverflowError as error:
+        raise draft.bad(element, BadAttribute("polycoef", "numbers that stay finite at the reference")) from error
     text = element.take("polycoef")
-    coefficients = shifted(said, -leader_ref)
     coefficients[0] += follower_ref
     while len(coefficients) > 2 and coefficients[-1] == 0.0:
         coefficients.pop()
