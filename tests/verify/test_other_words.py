@@ -64,3 +64,21 @@ def test_three_hinges_on_one_body_are_a_chain_in_urdf(written: Write, tmp_path: 
     verdict = hx.verify(written("mjcf", text), as_urdf(written, tmp_path, text))
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
     assert any(note.startswith("bodies that only carry dofs: ") for note in verdict.not_compared)
+
+
+FLOATING = """r : robot {
+  base { mass 1 inertia [1 1 1] }
+  boat { mass 1 inertia [0.1 0.2 0.3] }
+  @held : fixed { + world - base }
+  @floats : floating { [[0 0 0.3] [0 30 0]] + base - boat }
+}"""
+
+
+def test_what_floats_below_another_body_has_three_slides_and_a_ball_in_mjcf(written: Write, tmp_path: Path) -> None:
+    target = tmp_path / "robot.xml"
+    hx.convert(written("hymeko", FLOATING), target)
+    assert hx.verify(written("hymeko", FLOATING), target).verdict == "same"
+    damped = target.with_name("damped.xml")
+    damped.write_text(target.read_text().replace('type="ball"', 'type="ball" damping="1"'))
+    assert damped.read_text() != target.read_text()
+    assert "joints" in {check.quantity for check in hx.verify(written("hymeko", FLOATING), damped).failed}

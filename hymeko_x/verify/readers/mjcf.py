@@ -105,10 +105,11 @@ def from_compiled(compiled: Any) -> KinematicModel:
 
 def _body(compiled: Any, index: int, joint_dofs: dict[int, int]) -> Body:
     first, count = int(compiled.body_jntadr[index]), int(compiled.body_jntnum[index])
-    dofs = []
-    for joint in range(first, first + count):
-        joint_dofs[joint] = len(joint_dofs)
-        dofs.append(_dof(compiled, joint))
+    dofs = [_dof(compiled, joint) for joint in range(first, first + count)]
+    number = next(reversed(joint_dofs.values()), -1) + 1
+    if int(compiled.body_parentid[index]) and _floats(dofs):
+        dofs = [Dof(Kind.FREE, np.array([0.0, 0.0, 1.0]))]
+    joint_dofs |= {joint: number + min(joint - first, len(dofs) - 1) for joint in range(first, first + count)}
     turn = rotation_from_quat(compiled.body_iquat[index])
     name = dofs[0].name if len(dofs) == 1 else None
     return Body(
@@ -120,6 +121,14 @@ def _body(compiled: Any, index: int, joint_dofs: dict[int, int]) -> Body:
         tensor=turn @ np.diag(compiled.body_inertia[index]) @ turn.T,
         shapes=tuple(_shapes(compiled, index)),
     )
+
+
+def _floats(dofs: list[Dof]) -> bool:
+    """Whether a body moves freely below another one, for which MJCF has three slides and a ball: the same seven coordinates."""
+    if [dof.kind for dof in dofs] != [Kind.SLIDE, Kind.SLIDE, Kind.SLIDE, Kind.BALL]:
+        return False
+    plain = (Dof(dof.kind, axis, name=dof.name) for dof, axis in zip(dofs, (*np.eye(3), dofs[3].axis), strict=True))
+    return all(repr(dof) == repr(other) for dof, other in zip(dofs, plain, strict=True))
 
 
 def _dof(compiled: Any, joint: int) -> Dof:
@@ -226,7 +235,7 @@ def engine_coordinates(found: KinematicModel, q: Array) -> Array:
     """The same configurations as MuJoCo's qpos: its free joints count from the world, ours from their initial pose."""
     qpos = q.copy()
     for dof, column, body in zip(found.dofs, found.columns, found.body_of_dof, strict=True):
-        if dof.kind is not Kind.FREE:
+        if dof.kind is not Kind.FREE or found.bodies[body].parent:
             continue
         placed = found.bodies[body].joint.placement @ rigid(rotation_from_quat(q[:, column + 3 : column + 7]), q[:, column : column + 3])
         qpos[:, column : column + 3] = placed[:, :3, 3]
