@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "usd": ".usda"}
+SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "usd": ".usda", "hymeko": ".hymeko"}
 
 
 @pytest.fixture
