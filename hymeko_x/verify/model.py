@@ -174,7 +174,8 @@ class Body:
     """A rigid body: mass in kg, centre of mass in m and tensor about it in kg m^2, both in body axes.
 
     ``parent`` is the index of the body at the other end of ``joint``. ``weighed`` is False where
-    nothing was said about inertia and each engine would compute another one.
+    nothing was said about inertia and each engine would compute another one; ``shaped`` is False
+    where a mass was said, but no tensor.
     """
 
     name: str | None
@@ -185,6 +186,7 @@ class Body:
     tensor: Array = field(default_factory=lambda: np.zeros((3, 3)))
     shapes: tuple[Shape, ...] = ()
     weighed: bool = True
+    shaped: bool = True
 
 
 @dataclass(frozen=True, slots=True)

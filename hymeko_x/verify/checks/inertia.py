@@ -58,11 +58,14 @@ def made_for_mujoco(pair: Pair) -> bool:
 
 def repaired_bodies(pair: Pair) -> list[tuple[int, int]]:
     """Pairs of bodies whose inertia was accepted although it differs: what differs there says nothing about dynamics."""
-    found = [(i, j) for i, j in pair.match.bodies[1:] if not _comparable(pair.a.bodies[i], pair.b.bodies[j])]
+    bodies = [(i, j, pair.a.bodies[i], pair.b.bodies[j]) for i, j in pair.match.bodies[1:]]
+    found = [(i, j) for i, j, ours, theirs in bodies if not (_comparable(ours, theirs) and ours.shaped)]
     if not made_for_mujoco(pair):
         return found
-    for i, j in pair.match.bodies[1:]:
-        x, y = of_body(pair.a.bodies[i]), of_body(pair.b.bodies[j])
+    for i, j, ours, theirs in bodies:
+        if not ours.shaped:
+            continue
+        x, y = of_body(ours), of_body(theirs)
         apart = max(abs(x[0] - y[0]), float(np.abs(x[2] - y[2]).max()))
         unphysical = not is_physical(x[2]) and is_physical(y[2])
         if unphysical or 1e-9 * float(np.abs(x[2]).max()) < apart <= _floor(pair, x):
@@ -100,7 +103,7 @@ def _units(pair: Pair) -> tuple[list[str], list[Inertia], list[Inertia]]:
         pair.notes.append(
             f"inertia of {len(unweighed)} bodies: not said in one of the files, so every engine computes another ({unweighed[0]})"
         )
-    return _without_unphysical(pair, labels, ours, theirs)
+    return _without_unsaid(pair, labels, ours, theirs)
 
 
 def _comparable(ours: Body, theirs: Body) -> bool:
@@ -108,18 +111,23 @@ def _comparable(ours: Body, theirs: Body) -> bool:
     return ours.weighed and (theirs.weighed or ours.mass > 0.0)
 
 
-def _without_unphysical(
+def _without_unsaid(
     pair: Pair, labels: list[str], ours: list[Inertia], theirs: list[Inertia]
 ) -> tuple[list[str], list[Inertia], list[Inertia]]:
-    """Tensors that no body can have: MuJoCo refuses them, so a robot made for it has others; then only masses are compared."""
-    if not made_for_mujoco(pair):
-        return labels, ours, theirs
+    """Tensors that the first file does not say, and those that no body can have, which MuJoCo refuses: only masses are compared.
+
+    A tensor that only the second file does not say is a difference.
+    """
+    theirs = [(mass, centre, np.nan_to_num(tensor)) for mass, centre, tensor in theirs]
     kept = []
     for label, x, y in zip(labels, ours, theirs, strict=True):
-        repaired = not is_physical(x[2]) and is_physical(y[2])
+        unsaid = bool(np.isnan(x[2]).any())
+        repaired = not unsaid and made_for_mujoco(pair) and not is_physical(x[2]) and is_physical(y[2])
+        if unsaid:
+            pair.notes.append(f"inertia tensor: {pair.a.format} does not say that of {label}")
         if repaired:
             pair.notes.append(f"inertia tensor: that of {label} is not physical in {pair.a.format}, and MuJoCo takes no such tensor")
-        kept.append((x[0], x[1], y[2]) if repaired else x)
+        kept.append((x[0], x[1], y[2]) if unsaid or repaired else x)
     return labels, kept, theirs
 
 
@@ -131,8 +139,8 @@ def is_physical(tensor: Array) -> bool:
 
 
 def of_body(body: Body) -> Inertia:
-    """The inertia of one body in its own frame."""
-    return body.mass, body.com, body.tensor
+    """The inertia of one body in its own frame; a tensor that its file does not say is not a number."""
+    return body.mass, body.com, body.tensor if body.shaped else np.full((3, 3), np.nan)
 
 
 def fixed_groups(model: KinematicModel) -> list[int]:

@@ -78,7 +78,8 @@ def _body(mechanism: Mechanism, key: Id, view: JointView | None, places: Mapping
     mass, com, tensor = _inertia(inertial)
     parent = WORLD if view is None else places[view.parent]
     joint = Joint(open=True) if view is None else _joint(view)
-    return Body(key.name, parent, joint, mass, com, tensor, tuple(_shapes(mechanism, key)))
+    shaped = inertial is None or inertial.tensor is not None or not inertial.mass
+    return Body(key.name, parent, joint, mass, com, tensor, tuple(_shapes(mechanism, key)), shaped=shaped)
 
 
 def _inertia(inertial: parts.Inertial | None) -> tuple[float, Array, Array]:

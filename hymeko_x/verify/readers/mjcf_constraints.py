@@ -80,12 +80,13 @@ def _site(compiled: Any, site: int) -> tuple[int, Array]:
 def _anchors(data: Array, *, connect: bool) -> tuple[Array, Array]:
     """The closure's frame in both bodies.
 
-    A connect holds its point in body 1 and in body 2; a weld the anchor in body 2 and the pose of body 2 in body 1.
-    Source: MuJoCo engine_core_constraint.c.
+    A connect holds its point in body 1 and in body 2; a weld its anchor in body 2, which meets the place in body 1 that
+    stands with the rotation of body 2 in body 1. Source: MuJoCo engine_core_constraint.c.
     """
+    straight = np.array([1.0, 0.0, 0.0, 0.0])
     if connect:
-        return pose(data[0:3], np.array([1.0, 0, 0, 0])), pose(data[3:6], np.array([1.0, 0, 0, 0]))
-    return pose(data[3:6], data[6:10]), np.eye(4)
+        return pose(data[0:3], straight), pose(data[3:6], straight)
+    return pose(data[3:6], data[6:10]), pose(data[0:3], straight)
 
 
 # ---- tendons and actuators -------------------------------------------------------------------------------------------
