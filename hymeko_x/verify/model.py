@@ -138,10 +138,14 @@ class Role(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Surface:
-    """The triangles of a mesh in its own frame after scaling: ``vertices`` (n, 3) in m and ``faces`` (m, 3)."""
+    """The triangles of a mesh in its own frame after scaling: ``vertices`` (n, 3) in m and ``faces`` (m, 3).
+
+    ``polygons``: whether its file has larger faces, which every reader splits in its own way.
+    """
 
     vertices: Array
     faces: Index
+    polygons: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import hashlib
+import re
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +19,7 @@ if TYPE_CHECKING:
 
 EMPTY = "holds no triangles"
 _REFERRING = (".gltf",)
+_POLYGON = re.compile(rb"^f(?:[ \t]+[\d/-]+){4}", re.MULTILINE)
 
 
 class Meshes:
@@ -42,7 +45,7 @@ class Meshes:
         if isinstance(found, str):
             return found
         if mesh not in self._scaled:
-            self._scaled[mesh] = Surface(found.vertices * np.asarray(mesh.scale), found.faces)
+            self._scaled[mesh] = replace(found, vertices=found.vertices * np.asarray(mesh.scale))
         return self._scaled[mesh]
 
     def _read(self, path: Path) -> Surface | str:
@@ -75,7 +78,8 @@ def _load(path: Path) -> Surface | str:
         return f"the mesh '{path.name}' cannot be read: {error}"
     if len(whole.faces) == 0:
         return f"the mesh '{path.name}' {EMPTY}"
-    return Surface(np.asarray(whole.vertices, dtype=float), np.asarray(whole.faces, dtype=np.intp))
+    polygons = path.suffix.lower() == ".obj" and _POLYGON.search(path.read_bytes()) is not None
+    return Surface(np.asarray(whole.vertices, dtype=float), np.asarray(whole.faces, dtype=np.intp), polygons)
 
 
 def used(vertices: Array, faces: Index) -> Array:

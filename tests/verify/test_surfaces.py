@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from pxr import Usd, UsdGeom
 
+import hymeko_x as hx
 from hymeko_x import verify
 from hymeko_x.verify import surfaces
 from hymeko_x.verify.model import MeshFile, Surface
@@ -81,3 +82,17 @@ def test_faces_of_any_number_of_corners_become_fans_of_triangles(tmp_path: Path)
     assert isinstance(surface, Surface)
     expected = [(0, 1, 2), (3, 4, 5), (3, 5, 6), (3, 6, 7), (5, 6, 7), (5, 7, 8)]
     assert np.array_equal(surface.faces, expected)
+
+
+def test_faces_that_each_reader_splits_otherwise_are_the_same_mesh_and_a_moved_corner_is_found(tmp_path: Path) -> None:
+    bent = "v 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nv 0.5 0.5 1\nf {}\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
+    link = '<robot name="r"><link name="a"><visual><geometry><mesh filename="{}.obj"/></geometry></visual></link></robot>'
+    for name, text in (
+        ("a", bent.format("4 3 2 1")),
+        ("b", bent.format("3 2 1 4")),
+        ("c", bent.replace("1 1 0.1", "1 1 0.11").format("3 2 1 4")),
+    ):
+        (tmp_path / f"{name}.obj").write_text(text)
+        (tmp_path / f"{name}.urdf").write_text(link.format(name))
+    assert hx.verify(tmp_path / "a.urdf", tmp_path / "b.urdf").verdict == "same"
+    assert [check.quantity for check in hx.verify(tmp_path / "a.urdf", tmp_path / "c.urdf").failed] == ["visual meshes"]

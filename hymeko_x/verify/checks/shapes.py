@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 _LENGTH = 1e-8  # m; primitive sizes and poses are read from text by both sides
 _MESH = 3e-6  # relative to the mesh's extent: engines keep vertices as floats
+_POLYGONS = 0.05  # by so much may area and volume differ where larger faces are split otherwise
 _MOST_POINTS = 4000  # of each side are looked up among all points of the other
 _NOT_IN_URDF = ("plane", "hfield", "ellipsoid")
 _INFINITE = ("plane", "hfield", "none")
@@ -255,14 +256,22 @@ def _mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes
             return in_order, "the points of the meshes", ""
     box_a, area_a, volume_a = measures(ours[0], ours[1])
     box_b, area_b, volume_b = measures(theirs[0], theirs[1])
+    split = _POLYGONS if any(_has_polygons(shape, meshes) for shape in (*left, *right)) else 0.0
+    area = abs(area_a - area_b) / max(area_a, extent * extent * 1e-3)
+    volume = abs(abs(volume_a) - abs(volume_b)) / extent**3
     candidates = [
         (float(np.abs(box_a - box_b).max()) / extent, "the bounding box"),
-        (0.1 * abs(area_a - area_b) / max(area_a, extent * extent * 1e-3), "the area"),
-        (0.1 * abs(abs(volume_a) - abs(volume_b)) / extent**3, "the volume"),
+        (0.1 * area if area > split else 0.0, "the area"),
+        (0.1 * volume if volume > split else 0.0, "the volume"),
         (_points_distance(used(*ours), used(*theirs)) / extent, "the points"),
     ]
     difference, where = max(candidates)
     return difference, f"{where} of the meshes", ""
+
+
+def _has_polygons(shape: Shape, meshes: Meshes) -> bool:
+    surface = meshes.surface(shape.mesh)
+    return not isinstance(surface, str) and surface.polygons
 
 
 def _unreadable(shapes: Sequence[Shape], meshes: Meshes) -> str:
