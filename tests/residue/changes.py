@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from typing import Any, NamedTuple
@@ -71,6 +72,8 @@ def other_text(text: str) -> str:
 
 
 def _other_number(value: float) -> float:
+    if math.isinf(value):
+        return math.copysign(1.0, value)
     return value * 1.25 if value else 0.125
 
 
@@ -128,7 +131,7 @@ def _other_values(value: Any) -> Iterator[Any]:
 # ---- USD -------------------------------------------------------------------------------------------------------------------
 
 
-_AS_IF_NOT_THERE = frozenset({"0", "0.0", "(0, 0, 0)", "(1, 0, 0, 0)", "X", "Vt.Vec3fArray(0)"})
+_AS_IF_NOT_THERE = frozenset({"0", "inf", "-inf", "0.0", "(0, 0, 0)", "(1, 0, 0, 0)", "X", "Vt.Vec3fArray(0)"})
 """Values that mean the same as no value: no translation, no rotation, the first axis."""
 
 
@@ -143,6 +146,14 @@ def _usd(data: bytes) -> Iterator[Change]:
             yield _without(layer, path)
         elif path.IsPropertyPath():
             yield from _other_property(layer, path)
+
+
+def _says_no_more(layer: Any, spec: Any) -> bool:
+    """Whether a stage without it means the same: a default, a box that follows from sizes, an order of operations that do nothing."""
+    if spec.name == "xformOpOrder":
+        operations = (layer.GetAttributeAtPath(spec.owner.path.AppendProperty(name)) for name in spec.default)
+        return all(operation is None or str(operation.default) in _AS_IF_NOT_THERE for operation in operations)
+    return spec.name == "extent" or str(spec.default) in _AS_IF_NOT_THERE
 
 
 def _copy(layer: Any) -> Any:
@@ -164,7 +175,7 @@ def _without(layer: Any, path: Any) -> Change:
 def _other_property(layer: Any, path: Any) -> Iterator[Change]:
     copy = _copy(layer)
     spec = copy.GetObjectAtPath(path)
-    if not (isinstance(spec, Sdf.AttributeSpec) and str(spec.default) in _AS_IF_NOT_THERE):
+    if not (isinstance(spec, Sdf.AttributeSpec) and _says_no_more(copy, spec)):
         yield _without(layer, path)
     if isinstance(spec, Sdf.AttributeSpec) and spec.default is not None:
         old, spec.default = spec.default, _other_default(spec.default)
