@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, refuse
-from hymeko_x.formats.xml import COMMENT
+from hymeko_x.formats.xml import COMMENT, FOLLOWING, PRECEDING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -82,6 +82,8 @@ def foreign_text(extra: Extra, declared: Mapping[str, str]) -> str:
         return comment_markup(extra.text)
     from lxml import etree
 
+    if extra.path in (PRECEDING, FOLLOWING) and not extra.text.startswith("<?"):
+        raise _not_xml(extra, "outside the root there are only comments and instructions")
     spaces = attributes_text({name: uri for name, uri in declared.items() if _SPACE.fullmatch(name)})
     parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
     try:

@@ -9,8 +9,9 @@ import pytest
 from mjmodels import read_text
 
 from hymeko_x.diagnostics import Refusal
-from hymeko_x.ir.mechanism import WORLD, Id
+from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Actuator, Body, Box, Capsule, DofKind, Ellipsoid, Geometry, Loop, MeshShape, Plane, Role, Shape
+from hymeko_x.ir.values import compose, inverse
 
 
 def in_world(content: str, head: str = "") -> str:
@@ -202,3 +203,18 @@ def test_what_mujoco_refuses_is_refused_with_its_place(text: str, said: str) -> 
 
 def test_a_message_names_the_line_of_the_element() -> None:
     assert refused("<mujoco>\n<worldbody>\n<body pos='x'/>\n</worldbody>\n</mujoco>").startswith("robot.xml:3: ")
+
+
+def test_the_anchor_of_a_weld_goes_where_its_relative_pose_says() -> None:
+    """MuJoCo's residual is zero exactly where the two frames of our closure meet."""
+    text = (
+        '<mujoco><worldbody><body name="a"><freejoint/><geom size=".1"/></body><body name="b"><freejoint/><geom size=".1"/></body></worldbody>'
+        '<equality><weld name="w" body1="a" body2="b" relpose="0.5 0 0 1 -.3 0 0" anchor="0 -2 0"/></equality></mujoco>'
+    )
+    first, second = (pose_weight(arc) for arc in read_text(text).graph.edges[Id("loop", "w")].arcs)
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    placed = compose(first, inverse(second))
+    data.qpos[7:] = [*placed.xyz, *placed.quat]
+    mujoco.mj_forward(model, data)
+    assert abs(data.efc_pos[: model.neq * 6]).max() < 1e-12

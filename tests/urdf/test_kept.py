@@ -199,6 +199,7 @@ def test_the_order_of_the_author_is_kept() -> None:
         (Extra("urdf", "limit/<", "<a/>"), "<a/>"),
         (Extra("urdf", "@a b", "c"), "c"),
         (Extra("urdf", "preceding", "text"), "text"),
+        (Extra("urdf", "following", "<a/>"), "<a/>"),
     ],
 )
 def test_an_extra_that_is_not_xml_is_refused(extra: Extra, why: str) -> None:

@@ -129,8 +129,8 @@ def _body_arcs(element: Element, key: Id, draft: Draft, placed: dict[Id, Pose]) 
     between = compose(inverse(_in_world(first, draft, placed)), _in_world(second, draft, placed))
     if element.tag == "connect":
         return Arc(first, 0, at), Arc(second, 0, compose(inverse(between), at))
-    if relative is not None and any(relative[3:]):
-        between = pose((relative[0], relative[1], relative[2]), relative[3:])  # type: ignore[arg-type]
+    if relative is not None and any(relative[3:]):  # its position is where the anchor goes, as MuJoCo computes it
+        return Arc(first, 0, pose((relative[0], relative[1], relative[2]), relative[3:])), Arc(second, 0, at)  # type: ignore[arg-type]
     return Arc(first, 0, compose(between, at)), Arc(second, 0, at)
 
 

@@ -11,7 +11,7 @@ from hymeko_x.formats.mjcf_joints import TENDON
 from hymeko_x.formats.mjcf_words import shifted
 from hymeko_x.ir.mechanism import WORLD, numbers_weight, pose_weight
 from hymeko_x.ir.parts import Contact, Coupling, DofKind, Joint, Loop, Tendon
-from hymeko_x.ir.values import compose, inverse, number_text, numbers_text
+from hymeko_x.ir.values import number_text, numbers_text
 
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.native.sheet import Sheet
@@ -123,12 +123,7 @@ def _closure(sheet: Sheet, key: Id, loop: Loop, first: RobotArc, second: RobotAr
     said: Attributes = {"anchor": notes["@anchor"] if noted == anchor else numbers_text(anchor) if any(anchor) else None}
     if loop.kind == "connect":
         return {"anchor": said["anchor"] or "0 0 0"}
-    if "@relpose" in notes:
-        said["relpose"] = notes["@relpose"]
-        return said
-    if "@anchor" not in notes and key not in sheet.mechanism.notations:
-        relative = compose(pose_weight(first), inverse(pose_weight(second)))
-        del relative
+    said["relpose"] = notes.get("@relpose")
     return said
 
 
