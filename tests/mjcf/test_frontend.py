@@ -208,7 +208,8 @@ def test_a_message_names_the_line_of_the_element() -> None:
 def test_the_anchor_of_a_weld_goes_where_its_relative_pose_says() -> None:
     """MuJoCo's residual is zero exactly where the two frames of our closure meet."""
     text = (
-        '<mujoco><worldbody><body name="a"><freejoint/><geom size=".1"/></body><body name="b"><freejoint/><geom size=".1"/></body></worldbody>'
+        '<mujoco><worldbody><body name="a"><freejoint/><geom size=".1"/></body>'
+        '<body name="b"><freejoint/><geom size=".1"/></body></worldbody>'
         '<equality><weld name="w" body1="a" body2="b" relpose="0.5 0 0 1 -.3 0 0" anchor="0 -2 0"/></equality></mujoco>'
     )
     first, second = (pose_weight(arc) for arc in read_text(text).graph.edges[Id("loop", "w")].arcs)
