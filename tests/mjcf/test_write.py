@@ -10,6 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import hymeko_x as hx
 from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.graph import Arc, Edge
@@ -392,3 +393,9 @@ def test_a_chain_of_many_bodies_is_printed_without_recursion() -> None:
     text = printed(chain(*[hinge(axis=Z)] * count))
     assert text.count("<body ") == text.count("</body>") == count + 1
     assert SOLID.mass is not None
+
+
+def test_a_layer_without_a_texture_says_nothing() -> None:
+    text = "r : robot { steel : material {} weave : texture {} b { shape { box [1 1 1], -> steel } } @layered : layer { - steel } }"
+    robot = hx.loads(text, "hymeko")
+    assert "texture=" not in hx.dumps(robot, "mjcf", pure=True)

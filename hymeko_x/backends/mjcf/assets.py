@@ -73,11 +73,11 @@ def _mesh_attributes(mechanism: Mechanism, key: Id, mesh: Mesh, names: Printed) 
 
 
 def _layers(mechanism: Mechanism) -> dict[Id, list[tuple[str, Id]]]:
-    """For each material its textures with their use."""
+    """For each material its textures with their use; a layer that lacks one of both says nothing."""
     found: dict[Id, list[tuple[str, Id]]] = {}
     for _, layer, arcs in mechanism.edges(Layer):
-        texture = next(arc.target for arc in arcs if arc.sign > 0)
-        material = next(arc.target for arc in arcs if arc.sign < 0)
-        if texture in mechanism.graph.vertices:
+        texture = next((arc.target for arc in arcs if arc.sign > 0), None)
+        material = next((arc.target for arc in arcs if arc.sign < 0), None)
+        if material is not None and texture is not None and texture in mechanism.graph.vertices:
             found.setdefault(material, []).append((layer.use, texture))
     return found
