@@ -30,15 +30,20 @@ def applied_to_stage(text: str, edits: list[Edit]) -> tuple[str, list[str]]:
     return layer.ExportToString(), done
 
 
+@st.composite
+def _edits(draw: st.DrawFn, kinds: dict[str, Callable[[Any, float, int], str]]) -> Edit:
+    """One edit of one of these kinds."""
+    kind = draw(st.sampled_from(sorted(kinds)))
+    value, place = draw(_VALUES), draw(st.integers(0, 1000))
+    return lambda target: f"{kind}: {kinds[kind](target, value, place)}"
+
+
 # ---- URDF ------------------------------------------------------------------------------------------------------------------
 
 
-@st.composite
-def urdf_edits(draw: st.DrawFn) -> Edit:
+def urdf_edits() -> st.SearchStrategy[Edit]:
     """One edit of a URDF text."""
-    kind = draw(st.sampled_from(sorted(_URDF)))
-    value, place = draw(_VALUES), draw(st.integers(0, 1000))
-    return lambda root: f"{kind}: {_URDF[kind](root, value, place)}"
+    return _edits(_URDF)
 
 
 def _chosen(items: list[Any], place: int) -> Any:
@@ -150,12 +155,9 @@ _URDF: dict[str, Callable[[Any, float, int], str]] = {
 # ---- MJCF ------------------------------------------------------------------------------------------------------------------
 
 
-@st.composite
-def mjcf_edits(draw: st.DrawFn) -> Edit:
+def mjcf_edits() -> st.SearchStrategy[Edit]:
     """One edit of an MJCF text."""
-    kind = draw(st.sampled_from(sorted(_MJCF)))
-    value, place = draw(_VALUES), draw(st.integers(0, 1000))
-    return lambda root: f"{kind}: {_MJCF[kind](root, value, place)}"
+    return _edits(_MJCF)
 
 
 def _range(root: Any, value: float, place: int) -> str:
@@ -228,12 +230,9 @@ _MJCF: dict[str, Callable[[Any, float, int], str]] = {
 _XACRO_NAME = "{http://www.ros.org/wiki/xacro}"
 
 
-@st.composite
-def xacro_edits(draw: st.DrawFn) -> Edit:
+def xacro_edits() -> st.SearchStrategy[Edit]:
     """One edit of a xacro text: of what calls of macros say, and of links that stand by themselves."""
-    kind = draw(st.sampled_from(sorted(_XACRO)))
-    value, place = draw(_VALUES), draw(st.integers(0, 1000))
-    return lambda root: f"{kind}: {_XACRO[kind](root, value, place)}"
+    return _edits(_XACRO)
 
 
 def _call(root: Any, value: float, place: int) -> str:
@@ -256,12 +255,9 @@ _XACRO: dict[str, Callable[[Any, float, int], str]] = {"call": _call, "add": _ad
 # ---- USD -------------------------------------------------------------------------------------------------------------------
 
 
-@st.composite
-def usd_edits(draw: st.DrawFn) -> Edit:
+def usd_edits() -> st.SearchStrategy[Edit]:
     """One edit of the layer of a stage with flat bodies."""
-    kind = draw(st.sampled_from(sorted(_USD)))
-    value, place = draw(_VALUES), draw(st.integers(0, 1000))
-    return lambda layer: f"{kind}: {_USD[kind](layer, value, place)}"
+    return _edits(_USD)
 
 
 def _prims(layer: Any, *types: str) -> list[Any]:

@@ -50,32 +50,32 @@ def macros() -> str:
     return hx.dumps(hx.loads(PLAIN_MJCF, "mjcf"), "xacro")
 
 
+def _back_from(carrier: str, format: str, edits: list[Edit], source: Mechanism) -> Mechanism:
+    """The robot that an edited file gives back, when it has all edits and misses nothing else."""
+    text, done = applied(carrier, edits)
+    back = hx.loads(text, format)
+    _expect_same(_native(text.encode(), format), _written_again(back, format), done)
+    _expect_only_edits(source, back, done)
+    return back
+
+
 @settings(max_examples=40, deadline=None)
 @given(st.lists(urdf_edits(), min_size=1, max_size=3))
 def test_edits_of_a_urdf_survive_and_the_rest_of_the_mjcf_is_restored(walker: str, edits: list[Edit]) -> None:
-    text, done = applied(walker, edits)
-    back = hx.loads(text, "urdf")
-    _expect_same(_native(text.encode(), "urdf"), _written_again(back, "urdf"), done)
-    _expect_only_edits(hx.loads(PLAIN_MJCF, "mjcf"), back, done)
+    back = _back_from(walker, "urdf", edits, hx.loads(PLAIN_MJCF, "mjcf"))
     mujoco.MjModel.from_xml_string(hx.dumps(back, "mjcf", pure=True))
 
 
 @settings(max_examples=40, deadline=None)
 @given(st.lists(mjcf_edits(), min_size=1, max_size=3))
 def test_edits_of_an_mjcf_survive_and_the_rest_of_the_urdf_is_restored(arm: str, edits: list[Edit]) -> None:
-    text, done = applied(arm, edits)
-    back = hx.loads(text, "mjcf")
-    _expect_same(_native(text.encode(), "mjcf"), _written_again(back, "mjcf"), done)
-    _expect_only_edits(hx.loads(URDF, "urdf"), back, done)
+    _back_from(arm, "mjcf", edits, hx.loads(URDF, "urdf"))
 
 
 @settings(max_examples=25, deadline=None)
 @given(st.lists(xacro_edits(), min_size=1, max_size=3))
 def test_edits_of_a_xacro_survive_and_the_rest_of_the_mjcf_is_restored(macros: str, edits: list[Edit]) -> None:
-    text, done = applied(macros, edits)
-    back = hx.loads(text, "xacro")
-    _expect_same(_native(text.encode(), "xacro"), _written_again(back, "xacro"), done)
-    _expect_only_edits(hx.loads(PLAIN_MJCF, "mjcf"), back, done)
+    _back_from(macros, "xacro", edits, hx.loads(PLAIN_MJCF, "mjcf"))
 
 
 @settings(max_examples=40, deadline=None)
