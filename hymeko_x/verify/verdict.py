@@ -23,7 +23,7 @@ class Check:
     @property
     def passed(self) -> bool:
         """Whether the worst difference is allowed; what is not a number never is."""
-        return self.worst <= self.allowed
+        return bool(self.worst <= self.allowed)  # numbers of numpy make a truth of numpy, which is none in JSON
 
     def as_json(self) -> dict[str, str | float | bool | None]:
         """The keys of the ``--json`` contract. Infinity has no spelling in JSON and becomes null."""

@@ -7,12 +7,14 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import hymeko_x as hx
 from hymeko_x import codes
 from hymeko_x.cli import exits, main
 from hymeko_x.diagnostics import Refusal
+from hymeko_x.verify.verdict import Check
 from tests.verify.robots import ARM_MJCF, ARM_URDF, RIG_MJCF
 
 Write = Callable[[str, str], Path]
@@ -130,6 +132,11 @@ def test_a_seed_gives_the_same_verdict_again(arm: str, longer_arm: str) -> None:
     first, again, other = (hx.verify(arm, longer_arm, samples=7, seed=seed).as_json() for seed in (3, 3, 4))
     assert first == again
     assert first != other
+
+
+def test_a_check_of_numbers_of_numpy_is_json() -> None:
+    check = Check("mass", "kg", np.float64(1.0), "body 'a'", np.float64(0.5))
+    assert json.loads(json.dumps(check.as_json()))["passed"] is False
 
 
 def test_a_mechanism_in_memory_is_verified_and_not_trusted(arm: str) -> None:
