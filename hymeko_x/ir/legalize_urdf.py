@@ -52,9 +52,10 @@ def stands_for_world(root: Id, mechanism: Mechanism) -> bool:
 def make_world_a_link(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """The world, if anything hangs on it, is a link called ``world`` without mass: URDF's usual way to fix a base.
 
-    So is the world of a mechanism without bodies: URDF wants a link.
+    So is the world of a mechanism without bodies: URDF wants a link. A link that stands for the world already needs no other.
     """
     del options, report
+    mechanism = _without_held_worlds(mechanism)
     there, alone = WORLD in mechanism.graph.vertices, not any(True for _ in mechanism.vertices(Body))
     used = any(arc.target == WORLD for edge in mechanism.graph.edges.values() for arc in edge.arcs)
     if not used and not (there and alone):
@@ -62,6 +63,16 @@ def make_world_a_link(mechanism: Mechanism, options: Options, report: Report) ->
     link = names_in_use(mechanism).take("body", WORLD.name)
     mechanism = rename(mechanism, {WORLD: link})
     return mechanism.with_graph(mechanism.graph.replace(vertices={link: Body()}))
+
+
+def _without_held_worlds(mechanism: Mechanism) -> Mechanism:
+    """Without the joints that hold a link which stands for the world right there."""
+    idle = [
+        joint.id
+        for joint in mechanism.children.get(WORLD, ())
+        if not joint.joint.dofs and joint.parent_pose == joint.child_pose and stands_for_world(joint.child, mechanism)
+    ]
+    return mechanism.with_graph(mechanism.graph.replace(without=idle)) if idle else mechanism
 
 
 def join_roots(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from pxr import Sdf, Usd, UsdGeom, UsdPhysics
 
+import hymeko_x as hx
 from hymeko_x import formats, pipeline
 from hymeko_x.backends.usd.carrier import carry_in_text
 from hymeko_x.diagnostics import Report
@@ -110,6 +111,19 @@ def test_a_root_link_that_stands_for_the_world_does_not_fall(tmp_path: Path) -> 
         "/r/joints/j": ("FixedJoint", "/r/world"),
     }
     assert diff(mechanism, again(mechanism)) == ()
+
+
+def test_without_a_residue_too_the_link_that_stands_for_the_world_is_held(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(
+        """<robot name="r"><link name="world"/><link name="a"/>
+      <joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint></robot>"""
+    )
+    hx.convert(tmp_path / "r.urdf", tmp_path / "r.usda", pure=True)
+    stage = hx.load(tmp_path / "r.usda")
+    assert [view.joint.dofs for view in stage.joints.values()] == [(), ()]
+    hx.convert(tmp_path / "r.usda", tmp_path / "back.urdf", pure=True)
+    back = hx.load(tmp_path / "back.urdf")
+    assert ([root.name for root in back.roots], list(back.joints)) == (["world"], [Id("joint", "j")])
 
 
 # ---- edits win -----------------------------------------------------------------------------------------------------------------

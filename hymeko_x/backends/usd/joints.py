@@ -40,11 +40,10 @@ def write_joints(sheet: Sheet) -> None:
 
 
 def _hold(sheet: Sheet, root: Id) -> None:
-    """Fix a root that stands for the world to it, as UsdPhysics has to be told. No element says that, so the reader overlooks it."""
+    """Fix a root that stands for the world to it, as UsdPhysics has to be told."""
     path = sheet.free_path(sheet.scope("joints"), f"{root.name}_base")
     prim = sheet.define(path, "PhysicsFixedJoint")
     point(prim, "physics:body1", sheet.homes[root])
-    put(prim, f"{words.PREFIX}scope", T.Bool, True)
 
 
 def _floats(view: JointView) -> bool:
