@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
+from hypothesis.internal.conjecture import providers
+from hypothesis.internal.constants_ast import Constants
 
 from hymeko_x import codes
 from hymeko_x.corpus import cache, catalog
@@ -18,7 +20,14 @@ settings.register_profile("same", derandomize=True, database=None)
 settings.register_profile("search", derandomize=False)
 settings.register_profile("ci", derandomize=False, max_examples=200)
 settings.register_profile("nightly", derandomize=False, max_examples=20_000)
-settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
+PROFILE = os.environ.get("HYPOTHESIS_PROFILE", "same")
+settings.load_profile(PROFILE)
+
+
+def pytest_configure() -> None:
+    """Draw the same examples whatever was imported before: Hypothesis also draws the constants that it finds in imported modules."""
+    if PROFILE == "same":
+        pytest.MonkeyPatch().setattr(providers, "_get_local_constants", Constants)
 
 
 @pytest.fixture(scope="session")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from typing import Any
 
@@ -50,6 +51,11 @@ def _chosen(items: list[Any], place: int) -> Any:
     return items[place % len(items)] if items else None
 
 
+def _free_name(taken: set[str]) -> str:
+    """What a new body may be called: a name is free again once its body was removed, so that counting them is not enough."""
+    return next(name for name in (f"tool{count}" for count in itertools.count()) if name not in taken)
+
+
 def _limit(root: Any, value: float, place: int) -> str:
     limit = _chosen(root.findall("joint/limit"), place)
     if limit is None:
@@ -86,7 +92,7 @@ def _place(root: Any, value: float, place: int) -> str:
 
 def _add(root: Any, value: float, place: int) -> str:
     parent = _chosen(root.findall("link"), place).get("name")
-    name = f"tool{len(root)}"
+    name = _free_name({link.get("name") for link in root.iter("link")})
     link = etree.SubElement(root, "link", name=name)
     inertial = etree.SubElement(link, "inertial")
     etree.SubElement(inertial, "mass", value=str(value))
@@ -188,7 +194,8 @@ def _weigh(root: Any, value: float, place: int) -> str:
 
 def _add_body(root: Any, value: float, place: int) -> str:
     parent = _chosen(root.findall(".//worldbody//body"), place)
-    body = etree.SubElement(parent, "body", name=f"tool{len(list(root.iter()))}", pos=f"0 {value} 0")
+    name = _free_name({body.get("name") for body in root.iter("body")})
+    body = etree.SubElement(parent, "body", name=name, pos=f"0 {value} 0")
     etree.SubElement(body, "geom", type="sphere", size=str(value), mass="1")
     return str(body.get("name"))
 
@@ -306,7 +313,7 @@ def _slide(layer: Any, value: float, place: int) -> str:
 
 def _add_prim(layer: Any, value: float, place: int) -> str:
     parent = _chosen(_bodies(layer), place)
-    name = f"tool{len(_prims(layer, 'Xform'))}"
+    name = _free_name({prim.name for prim in _prims(layer, "Xform")})
     body = Sdf.PrimSpec(parent.nameParent, name, Sdf.SpecifierDef, "Xform")
     schemas = Sdf.TokenListOp()
     schemas.prependedItems = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]
