@@ -10,7 +10,7 @@ import argparse
 import os
 import random
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import chdir
 from pathlib import Path
@@ -38,22 +38,69 @@ def silent_changes(
     nothing, *tried = changes(data, own)
     if most is not None and len(tried) > most:
         tried = random.Random(len(tried)).sample(tried, most)
-    before = {target: outcome(nothing, own, target, files) for target in targets}
+    before = Conversions(nothing, own, files)
     for change in tried:
-        silent = [target for target in targets if outcome(change, own, target, files) == before[target]]
+        after = Conversions(change, own, files)
+        silent = [target for target in targets if after.shows_the_same_as(before, target)]
         if silent and own == "mjcf" and is_same_to_mujoco(change, nothing, files):
             silent = []  # the axis of a free joint, a direction of another length
         yield change.what, silent
 
 
-def outcome(change: Change, own: str, target: str, files: Files) -> Outcome:
-    """Everything that a user sees of a pure conversion; places in the source do not count."""
-    report = Report()
-    try:
-        robot = pipeline.read(Source("robot", change.data, files), formats.by_name(own), report)
-        return _converted(robot, target, files, report)
-    except Refusal as refusal:
-        return ("refused", refusal.diagnostic.message)
+class Conversions:
+    """All that a user sees of the pure conversions of a text; places in the source do not count."""
+
+    def __init__(self, text: Change, own: str, files: Files) -> None:
+        self._files = files
+        self._report = Report()
+        try:
+            source = Source("robot", text.data, files)
+            self._robot: Mechanism | Outcome = pipeline.read(source, formats.by_name(own), self._report)
+        except Refusal as refusal:
+            self._robot = _refused(refusal)
+        self._written: dict[str, Outcome] = {}
+        self._lost: dict[str, Outcome] = {}
+
+    def shows_the_same_as(self, other: Conversions, target: str) -> bool:
+        """Whether files, diagnostics and ledger are the same; the ledger, which takes longest, is only measured where the files are."""
+        return self.written(target) == other.written(target) and self.lost(target) == other.lost(target)
+
+    def written(self, target: str) -> Outcome:
+        """The files of a format and what was said."""
+        if target not in self._written:
+            self._written[target] = self._outcome(target, _files_of)
+        return self._written[target]
+
+    def lost(self, target: str) -> Outcome:
+        """The ledger, and what was said while it was measured."""
+        if target not in self._lost:
+            self._lost[target] = self._outcome(target, _ledger_of)
+        return self._lost[target]
+
+    def _outcome(self, target: str, of: Callable[[Mechanism, str, Files, Report], Outcome]) -> Outcome:
+        if isinstance(self._robot, tuple):
+            return self._robot
+        report = Report()
+        report.extend(self._report)
+        try:
+            found = of(self._robot, target, self._files, report)
+        except Refusal as refusal:
+            return _refused(refusal)
+        return (*found, *((item.code.id, item.message) for item in report))
+
+
+def _refused(refusal: Refusal) -> Outcome:
+    return ("refused", refusal.diagnostic.message)
+
+
+def _files_of(robot: Mechanism, target: str, files: Files, report: Report) -> Outcome:
+    package = pipeline.write(robot, formats.by_name(target), Options(pure=True), files, report)
+    return package.main, tuple(package.files.items())
+
+
+def _ledger_of(robot: Mechanism, target: str, files: Files, report: Report) -> Outcome:
+    result = pipeline.convert(robot, formats.by_name(target), Options(pure=True), files, report)
+    return tuple((loss.element, loss.field, loss.before, loss.after) for loss in result.losses or ())
 
 
 def is_same_to_mujoco(a: Change, b: Change, files: Files) -> bool:
@@ -71,13 +118,6 @@ def _compiled(data: bytes) -> bytes:
     buffer = np.zeros(mujoco.mj_sizeModel(model), dtype=np.uint8)
     mujoco.mj_saveModel(model, None, buffer)
     return buffer.tobytes()
-
-
-def _converted(robot: Mechanism, target: str, files: Files, report: Report) -> Outcome:
-    result = pipeline.convert(robot, formats.by_name(target), Options(pure=True), files, report)
-    losses = [(loss.element, loss.field, loss.before, loss.after) for loss in result.losses or ()]
-    said = [(item.code.id, item.message) for item in report]
-    return result.package.main, tuple(result.package.files.items()), tuple(losses), tuple(said)
 
 
 def _of_file(path: Path, targets: Sequence[str], most: int | None) -> tuple[int, list[str]]:
