@@ -212,7 +212,7 @@ def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report
     from hymeko_x.frontends.mjcf.weigh import weigh
 
     native = legalize(mechanism, formats.MJCF.name, Options(), Report())
-    return weigh(mechanism, writer(formats.MJCF)(native, Report()).main, files, report)
+    return weigh(mechanism, native, writer(formats.MJCF)(native, Report()).main, files, report)
 
 
 def read_back(package: Package, format: Format, files: Files) -> Mechanism:

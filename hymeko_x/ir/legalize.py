@@ -12,7 +12,7 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.legalize_native import is_native
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -66,7 +66,7 @@ def legalize(mechanism: Mechanism, target: str, options: Options, report: Report
 
     What came from MJCF, directly, through HyMeKo text or carried by another file, is legal there but for what was edited since.
     """
-    native = target == "mjcf" and mechanism.notation(ROOT, target) is not None
+    native = target == "mjcf" and is_native(mechanism)
     for rule in rules_of(target, native=native):
         mechanism = rule(mechanism, options, report)
     return mechanism

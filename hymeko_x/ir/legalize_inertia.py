@@ -8,6 +8,7 @@ from itertools import combinations
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.ir.legalize_native import engine_mends_inertias
 from hymeko_x.ir.parts import Body, Inertial
 from hymeko_x.ir.values import numbers_text
 
@@ -42,6 +43,8 @@ _NOTHING: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 def make_tensors_physical(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """No negative mass, and principal moments A, B, C >= 0 with A + B >= C in any order, by the smallest change."""
     del options
+    if engine_mends_inertias(mechanism):
+        return mechanism
     changed: dict[Id, Body] = {}
     for key, body in mechanism.vertices(Body):
         if body.inertial is None:

@@ -53,7 +53,7 @@ def _interval(dof: Dof, said: Said) -> tuple[float | None, float | None]:
         said.append((True, "position limits on a free joint have no meaning; they are left out"))
         return None, None
     if dof.kind is DofKind.BALL:
-        return None, upper
+        return None if lower else lower, upper  # the angle from straight, of which MJCF says the lower bound 0
     if lower is None or upper is None:
         side = "lower" if lower is None else "upper"
         said.append((False, f"has no {side} limit; {FAR:g} stands for the missing bound"))

@@ -16,13 +16,29 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.legalize import Options
-    from hymeko_x.ir.mechanism import Extra, Mechanism
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+
+
+def is_native(mechanism: Mechanism) -> bool:
+    """Whether a mechanism came from MJCF: directly, through HyMeKo text, or carried by another file."""
+    return mechanism.notation(ROOT, "mjcf") is not None
+
+
+def engine_mends_inertias(mechanism: Mechanism) -> bool:
+    """Whether the file tells MuJoCo to repair inertias that it would refuse otherwise."""
+    return any(extra.format == "mjcf" and _MENDS.match(extra.text) for extra in mechanism.extras.get(ROOT, ()))
+
+
+def is_shape_of_mujoco(mechanism: Mechanism, shape: Id) -> bool:
+    """Whether a shape without a geometry has one in MJCF: a height field, a distance function, a primitive fitted to a mesh."""
+    said = any(extra.format == "mjcf" for extra in mechanism.extras.get(shape, ()))
+    return is_native(mechanism) and (said or mechanism.notation(shape, "@type") is not None)
 
 
 def drop_shapes_of_mujoco(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """Height fields, distance functions, and primitives that MuJoCo fits to meshes have no word elsewhere."""
     del options
-    if mechanism.notation(ROOT, "mjcf") is None:
+    if not is_native(mechanism):
         return mechanism
     gone = [view.id for views in mechanism.shapes.values() for view in views if isinstance(view.shape.geometry, NoShape)]
     for key in gone:
@@ -31,6 +47,7 @@ def drop_shapes_of_mujoco(mechanism: Mechanism, options: Options, report: Report
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 
+_MENDS = re.compile(r"<compiler\b[^>]*\b(balanceinertia|boundinertia)=")
 _COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})
 """How many numbers place a dof, and how many say how fast it moves; one of each for all others."""
 _KEY = re.compile(r"<key\b[^>]*?/>|<key\b.*?</key>", re.DOTALL)

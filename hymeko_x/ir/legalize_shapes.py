@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, assert_never
 
 from hymeko_x import codes
+from hymeko_x.ir.legalize_native import is_shape_of_mujoco
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Geometry, MeshShape, NoShape, Plane, Shape, Sphere
 
@@ -20,13 +21,13 @@ _NO_LENGTH = 1e-12
 
 
 def drop_empty_shapes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
-    """A shape without a geometry, or of a mesh that is not there, is left out."""
+    """A shape without a geometry, or of a mesh that is not there, is left out; what came from MJCF has geometries of its own."""
     del options
     gone = []
     for views in mechanism.shapes.values():
         for view in views:
             lost = isinstance(view.shape.geometry, MeshShape) and view.mesh not in mechanism.graph.vertices
-            if not lost and not isinstance(view.shape.geometry, NoShape):
+            if not lost and (not isinstance(view.shape.geometry, NoShape) or is_shape_of_mujoco(mechanism, view.id)):
                 continue
             gone.append(view.id)
             what = "has no mesh" if lost else "has no geometry that the target knows"

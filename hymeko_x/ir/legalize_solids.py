@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Role, Sphere
 from hymeko_x.ir.values import ZERO, add, rotate_tensor, scaled
 
@@ -33,7 +33,7 @@ def fill_tensors(mechanism: Mechanism, options: Options, report: Report) -> Mech
     The centre of mass stays as it is. MJCF means zero where it says nothing, and URDF no inertial at all: those stay.
     """
     del options
-    if mechanism.notation(ROOT, "mjcf") is not None:
+    if is_native(mechanism):
         return mechanism
     changed: dict[Id, Body] = {}
     for key, body in mechanism.vertices(Body):

@@ -44,5 +44,8 @@ RULES: tuple[Rule, ...] = (
     make_names_usable,  # once more, for what the rules have added
 )
 
-NATIVE: tuple[Rule, ...] = (name_shapes_once, drop_stale_keyframes)
-"""The rules for what came from MJCF."""
+_FOREIGN = (anchor_closures, name_dofs, give_moving_bodies_mass)
+"""What MJCF says in more ways than others, and what MuJoCo finds out itself or the model that a part is made for."""
+
+NATIVE: tuple[Rule, ...] = (*(rule for rule in RULES if rule not in _FOREIGN), drop_stale_keyframes)
+"""The rules for what came from MJCF: none changes what MuJoCo reads, all hold for what was edited in another format since."""

@@ -10,6 +10,7 @@ from mjmodels import compiled, differences, read, read_text, through_hymeko, wri
 
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.ir.diff import diff
+from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.parts import Body
 
 if TYPE_CHECKING:
@@ -142,6 +143,20 @@ def test_real_models_are_the_same_bit_for_bit(robot: Path) -> None:
     back = through_hymeko(mechanism)
     assert list(diff(mechanism, back)) == []
     assert write(back) == write(mechanism)
+
+
+@pytest.mark.robots("mjcf")
+def test_no_rule_touches_what_came_from_mjcf(robot: Path) -> None:
+    report = Report()
+    mechanism = read(robot)
+    assert legalize(mechanism, "mjcf", Options(), report) == mechanism
+    assert list(report) == []
+
+
+def test_inertias_that_mujoco_is_told_to_mend_stay() -> None:
+    inertial = '<body><joint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 9"/></body>'
+    robot = read_text(f'<mujoco><compiler balanceinertia="true"/><worldbody>{inertial}</worldbody></mujoco>')
+    assert 'diaginertia="1 1 9"' in write(legalize(robot, "mjcf", Options(), Report()))
 
 
 # ---- files that are large or deep ---------------------------------------------------------------------------------------------

@@ -117,6 +117,50 @@ def _expect_only_edits(source: Mechanism, back: Mechanism, done: list[str]) -> N
         assert missing == [], done
 
 
+# ---- what MJCF cannot say ------------------------------------------------------------------------------------------------
+
+_LINK = '<link name="tool"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="{izz}" ixy="0" ixz="0" iyz="0"/></inertial></link>'
+_JOINT = '<joint name="tool" type="{type}"><parent link="{parent}"/><child link="{child}"/>{more}</joint>'
+
+
+def _tool(type: str, more: str = "", izz: float = 1.0) -> str:
+    return _LINK.format(izz=izz) + _JOINT.format(type=type, parent="torso", child="tool", more=more)
+
+
+@pytest.mark.parametrize(
+    "added",
+    [
+        pytest.param(_tool("planar"), id="two slides and a hinge"),
+        pytest.param(_tool("floating"), id="a body that floats below another"),
+        pytest.param(_tool("continuous", '<mimic joint="left_knee" multiplier="2"/>'), id="a mimic"),
+        pytest.param(_tool("revolute", '<limit lower="2" upper="-1" effort="1" velocity="1"/>'), id="limits the wrong way round"),
+        pytest.param(_tool("fixed", izz=9.0), id="a tensor of no body"),
+        pytest.param(_LINK.format(izz=1.0), id="another root"),
+        pytest.param('<link name="torso"/>', id="a name twice"),
+        pytest.param(_JOINT.format(type="fixed", parent="torso", child="left_shin", more=""), id="a second parent, fixed"),
+        pytest.param(_JOINT.format(type="continuous", parent="torso", child="left_shin", more=""), id="a second parent, a hinge"),
+        pytest.param(_JOINT.format(type="fixed", parent="left_shin", child="torso", more=""), id="a cycle without a root"),
+        pytest.param('<link name=""/>' + _JOINT.format(type="fixed", parent="torso", child="", more=""), id="no names"),
+        pytest.param(
+            '<link name="left_sole"/>' + _JOINT.format(type="fixed", parent="torso", child="left_sole", more=""), id="a site's name"
+        ),
+    ],
+)
+def test_what_an_editor_adds_becomes_legal_mjcf(walker: str, added: str) -> None:
+    """What came from MJCF goes back as it was; what was added in a URDF goes through the rules that every URDF goes through."""
+    back = hx.loads(walker.replace("<hymeko:residue", f"{added}<hymeko:residue"), "urdf")
+    mujoco.MjModel.from_xml_string(hx.dumps(back, "mjcf"))
+
+
+def test_a_shape_without_a_geometry_is_left_out_of_mjcf_and_a_height_field_is_not() -> None:
+    field = '<hfield name="hill" nrow="2" ncol="2" size="1 1 1 1" elevation="0 1 1 0"/>'
+    source = f'<mujoco><asset>{field}</asset><worldbody><geom name="hill" type="hfield" hfield="hill"/></worldbody></mujoco>'
+    bare = '<link name="base"><visual name="bare"><geometry/></visual></link>'
+    carrier = hx.dumps(hx.loads(source, "mjcf"), "urdf").replace("<hymeko:residue", f"{bare}<hymeko:residue")
+    model = mujoco.MjModel.from_xml_string(hx.dumps(hx.loads(carrier, "urdf"), "mjcf"))
+    assert [model.geom(number).name for number in range(model.ngeom)] == ["hill"]
+
+
 # ---- one by one ------------------------------------------------------------------------------------------------------------
 
 

@@ -27,11 +27,11 @@ _SCALES = ("settotalmass", "boundmass", "boundinertia", "balanceinertia")
 """Attributes of <compiler> that change inertias which are said."""
 
 
-def weigh(mechanism: Mechanism, text: bytes, files: Files, report: Report) -> Mechanism:
-    """The mechanism, which came from MJCF and is ``text`` in it, with the mass, centre of mass and tensor of every body.
+def weigh(mechanism: Mechanism, native: Mechanism, text: bytes, files: Files, report: Report) -> Mechanism:
+    """The mechanism, which came from MJCF and goes there as ``native``, printed as ``text``, with what only MuJoCo knows.
 
-    So are the points of meshes and the sizes of primitives that only MuJoCo knows. Bodies that weigh nothing stay
-    without. Where MuJoCo is not there or refuses the text, nothing changes, with a warning.
+    That is the mass, centre of mass and tensor of every body, the points of meshes and the sizes of primitives. Bodies
+    that weigh nothing stay without. Where MuJoCo is not there or refuses the text, nothing changes, with a warning.
     """
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
     scaled = _is_scaled(mechanism)
@@ -50,8 +50,8 @@ def weigh(mechanism: Mechanism, text: bytes, files: Files, report: Report) -> Me
         said = str(error).strip().splitlines()[0]
         report.warn(codes.ENGINE_REFUSED, f"MuJoCo refuses the model, so that inertias and meshes that it computes are left out: {said}")
         return mechanism
-    order = {key: number for number, key in enumerate(mechanism.depth_first(), 1)}
-    chosen = [key for key, _ in mechanism.vertices(Body)] if scaled else wanted
+    order = {key: number for number, key in enumerate(native.depth_first(), 1)}
+    chosen = [key for key in ([key for key, _ in mechanism.vertices(Body)] if scaled else wanted) if key in order]
     bodies = {key: _weighed(mechanism, model, key, order[key]) for key in chosen}
     edges = _sprung(mechanism, model, order) if sprung else {}
     edges |= _fitted(mechanism, mujoco, model, fitted, order)

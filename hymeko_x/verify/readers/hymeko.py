@@ -34,5 +34,5 @@ def read(path: Path, places: Places) -> KinematicModel:
     if next(mechanism.vertices(Body), None) is None:
         raise refuse(codes.ENGINE_REFUSED, "the HyMeKo text describes a hypergraph without bodies, which is no robot", Origin(str(path)))
     if mechanism.notation(ROOT, "mjcf") is not None:
-        mechanism = weigh(mechanism, mjcf.write(mechanism, Report()).main, files, Report())
+        mechanism = weigh(mechanism, mechanism, mjcf.write(mechanism, Report()).main, files, Report())
     return from_mechanism(mechanism, format="hymeko")
