@@ -39,9 +39,14 @@ def letters(text: str) -> int:
 
 def ratio(robot: Path, form: str) -> float:
     """The letters of the robot's HyMeKo text for one letter of its source; included files count as well."""
-    said = write(_READERS[form](open_source(str(robot)), Report()), Report()).main.decode()
+    said = _said(robot, form)
     plain = TOKENS.sub(lambda token: "" if token[0].startswith(("#", "//", "/*")) else token[0], said)
     return letters(plain) / _source_letters(robot)
+
+
+def _said(robot: Path, form: str) -> str:
+    """The HyMeKo text of a robot, with the names of its files as its author wrote them."""
+    return write(_READERS[form](open_source(str(robot)), Report()), Report()).main.decode()
 
 
 _MESH_ARRAY = re.compile(
@@ -53,9 +58,8 @@ _MESH_ARRAY = re.compile(
 
 def usda_ratio(robot: Path) -> float:
     """The letters of a URDF's HyMeKo text for one letter of its USD text, in which no array of a mesh is counted."""
-    mechanism = hx.load(robot)
-    stage = _MESH_ARRAY.sub("", hx.dumps(mechanism, "usd", pure=True))
-    return _code(hx.dumps(mechanism, "hymeko"), "hymeko") / _code(stage, "usda")
+    stage = _MESH_ARRAY.sub("", hx.dumps(hx.load(robot), "usd", pure=True))
+    return _code(_said(robot, "urdf"), "hymeko") / _code(stage, "usda")
 
 
 def _code(text: str, form: str) -> int:

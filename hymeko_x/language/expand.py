@@ -6,7 +6,7 @@ An element keeps the chain of types that it was made from and the scope in which
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib.resources import files
@@ -60,13 +60,16 @@ class Scope:
 
     def resolve(self, path: tuple[str, ...]) -> str | None:
         """The full name behind a path, looked up here and then outwards; None when there is none."""
+        return next(self.meanings(path), None)
+
+    def meanings(self, path: tuple[str, ...]) -> Iterator[str]:
+        """The full names that a path may mean, from here outwards: elements of different kinds may share a name."""
         here: Scope | None = self
         while here is not None:
             found = here._inside(path)
             if found is not None:
-                return found
+                yield found
             here = here.parent
-        return None
 
     def _inside(self, path: tuple[str, ...]) -> str | None:
         scope = self
@@ -230,40 +233,46 @@ class _Expansion:
 
     # ---- elements ----------------------------------------------------------------------------------------------------------
 
-    def elements(self, items: list[Item], environment: Environment, scope: Scope, depth: int = 0) -> list[Element | Statement]:
-        """The elements of a block, with those of the assemblies in it in their place."""
+    def elements(
+        self, items: list[Item], environment: Environment, scope: Scope, depth: int = 0, *, made: bool = False
+    ) -> list[Element | Statement]:
+        """The elements of a block, with those of the assemblies in it in their place. ``made``: a template put them there."""
         found: list[Element | Statement] = []
         for item in items:
             if isinstance(item, Import) or (isinstance(item, Node) and item.parameters is not None):
                 continue
             if isinstance(item, Node):
-                found.extend(self._element(item, environment, scope, depth))
+                found.extend(self._element(item, environment, scope, depth, made=made))
             else:
                 found.append(Statement(self._plain(item, environment), scope))
         return found
 
-    def _element(self, node: Node, environment: Environment, scope: Scope, depth: int) -> list[Element | Statement]:
-        if depth:
+    def _element(self, node: Node, environment: Environment, scope: Scope, depth: int, *, made: bool) -> list[Element | Statement]:
+        if made:
             self._count(node, 1)
         name = self._text(node.name, environment, node)
         kind = self.type_of(node, environment)
         merged = _merge(kind.items, node.items)
         if "assembly" in kind.names:
-            return self._assembly(node, name, merged, environment, scope, depth)
+            return self._assembly(node, name, merged, environment, scope, depth, made=made)
         scope.elements.add(name)
         plain = tuple(self._plain(self._refined(item, environment), environment) for item in merged if not isinstance(item, Import))
         return [Element(scope.full(name), node._replace(name=name, items=plain, stereotypes=()), kind.names, scope)]
 
     def _assembly(
-        self, node: Node, name: str, items: tuple[Item, ...], environment: Environment, scope: Scope, depth: int
+        self, node: Node, name: str, items: tuple[Item, ...], environment: Environment, scope: Scope, depth: int, *, made: bool
     ) -> list[Element | Statement]:
+        """What an assembly holds: its own nodes and comments, and the nodes of its template. One of the same name is continued."""
         if depth > MAX_DEPTH:
             hint = "an assembly that holds an instance of itself never ends"
             raise self._refuse(node, f"'{name}' is nested more than {MAX_DEPTH} levels deep", hint)
-        inner = Scope(f"{scope.full(name)}_", scope)
-        scope.scopes[name] = inner
-        nodes: list[Item] = [item for item in items if isinstance(item, Node)]
-        return self.elements(nodes, environment, inner, depth + 1)
+        inner = scope.scopes.setdefault(name, Scope(f"{scope.full(name)}_", scope))
+        own = set(map(id, node.items))
+        found: list[Element | Statement] = []
+        for item in items:
+            if isinstance(item, Node) or (isinstance(item, Comment) and id(item) in own):
+                found.extend(self.elements([item], environment, inner, depth + 1, made=made or id(item) not in own))
+        return found
 
     def _count(self, node: Node, items: int) -> None:
         self._made += items

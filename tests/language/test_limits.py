@@ -132,12 +132,18 @@ def test_templates_that_double_forty_times_are_stopped(body: str, monkeypatch: p
 
 
 def test_templates_stop_at_the_bound_and_not_before(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each instance takes three: the element, and its template with one field."""
-    text = "arm : robot {{ part() : link {{ mass 1 }} all : assembly {{ {} }} }}"
-    monkeypatch.setattr(expand, "MAX_ITEMS", 30)
+    """The assembly takes one for itself and one for each item, and each item three: itself, and its template with one field."""
+    text = "arm : robot {{ part() : link {{ mass 1 }} parts() : assembly {{ {} }} all : parts {{}} }}"
+    monkeypatch.setattr(expand, "MAX_ITEMS", 41)
     assert len(read_text(text.format(" ".join(f"p{number} : part {{}}" for number in range(10)))).graph.vertices) == 10
     said = refusal_of(text.format(" ".join(f"p{number} : part {{}}" for number in range(11))))
-    assert "error[HX007]: the templates make more than 30 items" in said
+    assert "error[HX007]: the templates make more than 41 items" in said
+
+
+def test_what_an_assembly_says_itself_is_bounded_by_the_text_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(expand, "MAX_ITEMS", 5)
+    parts = " ".join(f"p{number} {{}}" for number in range(10))
+    assert len(read_text(f"arm : robot {{ all : assembly {{ {parts} }} }}").graph.vertices) == 10
 
 
 def test_texts_that_double_forty_times_are_stopped() -> None:

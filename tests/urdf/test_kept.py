@@ -132,7 +132,7 @@ def test_what_the_author_wrote_in_vain_is_written_again() -> None:
         '<link name="b"/>' + joint('<origin xyz="0 0 0"/><dynamics damping="0.0" friction="0"/>' + LIMIT)
     )
     mechanism = load(robot(body, ' name="r" version="1.0"'))
-    style = "dynamics inertial-origin joint-origin scale version visual-origin"
+    style = "dynamics inertial joint scale version visual"
     assert mechanism.notation(ROOT, "urdf.style") == style
     written = dump(mechanism)
     assert written.count("<origin ") == 3

@@ -159,6 +159,20 @@ def test_xacro_through_a_mechanism_and_back_is_the_expansion_of_the_source(robot
     assert diff(mechanism, read(Source("again.xacro", text.encode()), Report())) == ()
 
 
+@pytest.mark.robots("xacro")
+def test_macros_in_a_file_of_their_own_expand_to_the_same(robot: Path, tmp_path: Path) -> None:
+    source = disk.open_source(str(robot))
+    mechanism = read(source, Report())
+    options = Options(split=True, pure=True)
+    package = pipeline.write(mechanism, formats.by_name("xacro"), options, source.files, Report())
+    (tmp_path / "robot.xacro").write_bytes(package.main)
+    for name, data in package.files.items():
+        (tmp_path / name).write_bytes(data)
+    assert (b"<xacro:include" in package.main, b"<xacro:macro" in package.main) == (bool(package.files), False)
+    written = pipeline.write(mechanism, formats.by_name("urdf"), Options(pure=True), source.files, Report()).main
+    assert elements(xacro.process_file(str(tmp_path / "robot.xacro"))) == elements(minidom.parseString(written))
+
+
 @pytest.mark.corpus
 @pytest.mark.slow
 def test_xacro_is_shorter_than_urdf(real_robot: RealRobots) -> None:

@@ -5,9 +5,11 @@ Elements stand in the order in which their author wrote them (``Mechanism.layout
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.hymeko.angles import shortest
+from hymeko_x.backends.hymeko.assemblies import assemblies, in_assemblies
 from hymeko_x.backends.hymeko.attached import attached_arcs
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
 from hymeko_x.backends.hymeko.foreign import foreign_items, is_standing, sound_comment, standing_items
@@ -22,6 +24,9 @@ from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, Ref, 
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.backends.hymeko.assemblies import Row
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Mechanism
 
@@ -48,7 +53,7 @@ def document(mechanism: Mechanism) -> Document:
         attached_arcs(mechanism),
         shortest(mechanism),
     )
-    items = [*_settings(context, plain), *(_elements(context) if plain else with_stereotypes(_elements(context)))]
+    items = [*_settings(context, plain), *(_elements(context) if plain else _grouped(context))]
     root = mechanism.notation(ROOT, "hymeko.root")
     name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""
@@ -91,10 +96,25 @@ def _settings(context: Context, plain: bool) -> list[Item]:
     return items
 
 
-def _elements(context: Context) -> list[Item]:
+def _grouped(context: Context) -> list[Item]:
+    """The elements with their stereotypes, those of one prefix in assemblies."""
+    rows = _rows(context)
+    refused: frozenset[str] = frozenset()
+    while True:
+        homes = assemblies(rows, context, refused)
+        names = {key.name: home for key, home in homes.items()}
+        within = {home: replace(context, homes=names, inside=home) for home in ("", *names.values())}
+        texts = [_texts(within, row, homes) for row in rows]
+        if not context.clashes:
+            return in_assemblies(with_stereotypes([item for text in texts for item in text]), rows, texts, homes)
+        refused |= context.clashes
+        context.clashes.clear()
+
+
+def _rows(context: Context) -> list[Row]:
     """The elements in layout order, with what a format said about the whole mechanism in its place among them."""
     standing, _ = _in_place(context.mechanism)
-    items: list[Item] = []
+    rows: list[Row] = []
     place = 0
     queue = list(reversed(standing))
     for key in _order(context):
@@ -102,11 +122,20 @@ def _elements(context: Context) -> list[Item]:
         while queue and queue[-1].index <= place:
             here.append(queue.pop())
             place += not here[-1].path
-        items.extend(standing_items(here))
-        items.append(_element(context, key))
+        rows.extend([here] if here else [])
+        rows.append(key)
         place += 2 if key in context.attached else 1
-    items.extend(standing_items(queue[::-1]))
-    return items
+    return [*rows, queue[::-1]] if queue else rows
+
+
+def _texts(within: Mapping[str, Context], row: Row, homes: Mapping[Id, str]) -> list[Item]:
+    """The items of a row, as they stand in its assembly."""
+    return standing_items(row) if isinstance(row, list) else [_element(within[homes.get(row, "")], row)]
+
+
+def _elements(context: Context) -> list[Item]:
+    """The elements one after the other."""
+    return [item for row in _rows(context) for item in _texts({"": context}, row, {})]
 
 
 def _in_place(mechanism: Mechanism) -> tuple[list[Extra], list[Extra]]:

@@ -49,7 +49,8 @@ class Context:
     ``inline``: meshes and colours that are defined where a shape uses them, with the shape that uses them first;
     ``given_names``: those among them that say their id; ``mimics``: couplings that are said in the joint that follows;
     ``attached``: the arcs of mounts, drives and the like that are said in the block of the vertex that they put to use;
-    ``angles``: the unit of plain angles.
+    ``angles``: the unit of plain angles; ``homes``: the assemblies in which elements stand, by the elements' names, and
+    ``inside``: the one that is being printed; ``clashes`` collects those in which a reference would mean another element.
     """
 
     mechanism: Mechanism
@@ -59,11 +60,16 @@ class Context:
     mimics: Mapping[Id, tuple[RobotArc, ...]]
     attached: Mapping[Id, tuple[RobotArc, ...]]
     angles: Angles
+    homes: Mapping[str, str] = field(default_factory=dict)
+    inside: str = ""
+    clashes: set[str] = field(default_factory=set)
     names: dict[str, list[str]] = field(default_factory=dict)
 
     attached_edges: set[Id] = field(default_factory=set)
 
     def __post_init__(self) -> None:
+        if self.names:
+            return  # a copy, which shares what is known of the mechanism
         graph = self.mechanism.graph
         self.attached_edges.update(key for vertex in self.attached if (key := attached_key(vertex)) is not None)
         for key in (*graph.vertices, *graph.edges):
@@ -82,7 +88,7 @@ class Context:
         items.extend(foreign_items(self.mechanism.extras.get(key, ())))
         path, items = typed(kind, items)
         stereotypes = (Stereotype(Ref(path)),) if kind else ()
-        name = key.name if key == WORLD else name_of(key.name)
+        name = key.name if key == WORLD else name_of(key.name.removeprefix(f"{self.inside}_" if self.inside else ""))
         return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
 
     def class_items(self, key: Id) -> list[Item]:
@@ -95,11 +101,27 @@ class Context:
     def ref(self, target: Id, kinds: tuple[str, ...], direction: str = "") -> Ref:
         """A reference: by name alone where the name means the target, else with its kind before it."""
         if target == WORLD:
+            self._look_out("world", kinds)
             alone = self.names.get("world") == ["world"]
             return Ref(("world",) if alone else ("world", "world"), direction)
         first = next((kind for kind in kinds or _ALL_KINDS if kind in self.names.get(target.name, ())), None)
-        name = name_of(target.name)
-        return Ref((name,) if first == target.kind else (target.kind, name), direction)
+        path = self._path(target.name, kinds)
+        return Ref(path if first == target.kind else (target.kind, *path), direction)
+
+    def _path(self, name: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
+        """A name as it is called where the printer is: ``foot`` in the assembly ``left``, ``left.foot`` elsewhere."""
+        home = self.homes.get(name)
+        if home is None:
+            self._look_out(name, kinds)
+            return (name_of(name),)
+        short = name_of(name.removeprefix(f"{home}_"))
+        return (short,) if home == self.inside else (name_of(home), short)
+
+    def _look_out(self, name: str, kinds: tuple[str, ...]) -> None:
+        """Note if a name from outside means something else in the assembly that is being printed."""
+        full = f"{self.inside}_{name}"
+        if self.inside and self.homes.get(full) == self.inside and not {*(kinds or _ALL_KINDS)}.isdisjoint(self.names[full]):
+            self.clashes.add(self.inside)
 
     def arc(self, kind: str, arc: RobotArc) -> ArcItem:
         """An arc of an edge of this kind."""

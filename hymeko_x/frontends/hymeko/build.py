@@ -114,13 +114,13 @@ class Build:
         path = ref.path
         if len(path) > 1 and path[0] in _ALL_KINDS and (not kinds or path[0] in kinds):
             kinds, path = (path[0],), path[1:]
-        name = scope.resolve(path) or ".".join(path)
-        for kind in kinds or _ALL_KINDS:
-            if kind in self.kinds.get(name, ()):
-                return Id(kind, name)
-            if kind == "world" and name == "world" and not isinstance(path[-1], QuotedName):
-                self.vertices.setdefault(WORLD, World())
-                return WORLD
+        for name in (*scope.meanings(path), ".".join(path)):
+            for kind in kinds or _ALL_KINDS:
+                if kind in self.kinds.get(name, ()):
+                    return Id(kind, name)
+                if kind == "world" and name == "world" and not isinstance(path[-1], QuotedName):
+                    self.vertices.setdefault(WORLD, World())
+                    return WORLD
         return None
 
     def _near(self, name: str, kinds: tuple[str, ...]) -> str:

@@ -1,0 +1,135 @@
+"""Elements side by side whose names begin alike are printed in an assembly, and mean the same there."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from hymeko_x.backends.hymeko import write
+from hymeko_x.diagnostics import Report
+from hymeko_x.frontends.hymeko import read
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, Names
+from hymeko_x.ir.rename import rename
+from hymeko_x.source import Source
+from hymeko_x.testing import mechanisms
+
+
+def read_text(text: str) -> Mechanism:
+    report = Report()
+    mechanism = read(Source("robot.hymeko", text.encode()), report)
+    assert not report.diagnostics, [str(diagnostic) for diagnostic in report]
+    return mechanism
+
+
+def canonical(text: str) -> str:
+    """The text as hymeko-x prints it, which says the same."""
+    mechanism = read_text(text)
+    printed = write(mechanism, Report()).main.decode()
+    back = read_text(printed)
+    assert back == mechanism
+    assert (back.layout, back.extras) == (mechanism.layout, mechanism.extras)
+    return printed
+
+
+LEG = """
+robot : robot {
+  pelvis {}
+  %s {}
+  @left_hip { + pelvis - left_thigh axis=Y }
+  left_thigh { mass 2 collision { sphere 0.1 material=left_skin } }
+  // the lower leg
+  left_shin { mass 1 collision "meshes/shin.stl" }
+  @left_knee { [0 0 -0.4] + left_thigh - left_shin axis=Y }
+  @left_ankle : fixed { [0 0 -0.4] + left_shin - %s }
+  left_skin : material { rgba [1 0 0] }
+  @off : exclude { ~ pelvis ~ left_shin }
+}
+"""
+
+
+def test_what_begins_alike_stands_in_an_assembly() -> None:
+    assert canonical(LEG % ("foot", "foot")) == (
+        "robot : robot {\n"
+        "  pelvis {}\n"
+        "  foot {}\n"
+        "  left : assembly {\n"
+        "    @hip { + pelvis - thigh axis=Y }\n"
+        "    thigh { mass 2 collision { sphere 0.1 material=skin } }\n"
+        "    // the lower leg\n"
+        '    shin { mass 1 collision "meshes/shin.stl" }\n'
+        "    @knee { [0 0 -0.4] + thigh - shin axis=Y }\n"
+        "    @ankle : fixed { [0 0 -0.4] + shin - foot }\n"
+        "    skin : material { rgba [1 0 0] }\n"
+        "  }\n"
+        "  @off : exclude { ~ pelvis ~ left.shin }\n"
+        "}\n"
+    )
+
+
+def test_there_is_no_assembly_where_a_name_from_outside_would_mean_something_in_it() -> None:
+    assert "assembly" not in canonical(LEG % ("thigh", "thigh"))
+
+
+def test_a_name_of_another_kind_is_no_obstacle() -> None:
+    """Inside of `left`, the mesh `shin` is not taken for the body."""
+    text = LEG.replace('collision "meshes/shin.stl"', 'visual "meshes/shin.stl" collision=shin') % ("foot", "foot")
+    assert 'shin { mass 1 visual "meshes/shin.stl" collision=shin }' in canonical(text)
+    assert "left : assembly" in canonical(text)
+
+
+def test_an_assembly_may_stand_in_pieces() -> None:
+    """As in files that list all links before all joints."""
+    names = ("thigh", "shin", "foot_link", "toe_link")
+    bodies = [f"{side}_{name} {{}}" for side in ("left", "right") for name in names]
+    joints = [
+        f"@{side}_{name} {{ + {side}_{names[place]} - {side}_{names[place + 1]} }}"
+        for side in ("left", "right")
+        for place, name in enumerate(("knee", "ankle", "ball"))
+    ]
+    assert canonical("\n".join(("r : robot {", *bodies, *joints, "}"))) == (
+        "r : robot {\n"
+        "  left : assembly { thigh {} shin {} foot_link {} toe_link {} }\n"
+        "  right : assembly { thigh {} shin {} foot_link {} toe_link {} }\n"
+        "  left : assembly { @knee { + thigh - shin } @ankle { + shin - foot_link } @ball { + foot_link - toe_link } }\n"
+        "  right : assembly { @knee { + thigh - shin } @ankle { + shin - foot_link } @ball { + foot_link - toe_link } }\n"
+        "}\n"
+    )
+
+
+@pytest.mark.parametrize("prefix", ["joint", "world", "urdf"])
+def test_words_with_a_meaning_in_references_are_no_assemblies(prefix: str) -> None:
+    assert "assembly" not in canonical((LEG % ("foot", "foot")).replace("left_", f"{prefix}_"))
+
+
+def test_comments_inside_elements_stay() -> None:
+    text = (LEG % ("foot", "foot")).replace("left_thigh { mass 2", "left_thigh { // as weighed\n mass 2")
+    assert "// as weighed" in canonical(text)
+
+
+def test_comments_of_a_template_are_not_repeated() -> None:
+    text = "r : robot { leg() : assembly { // thigh\n thigh {} } left : leg { // mine\n } right : leg {} }"
+    assert [extra.text for extra in read_text(text).extras[Id("mechanism", "")]] == ["mine"]
+
+
+@st.composite
+def _mechanisms(draw: st.DrawFn) -> Mechanism:
+    """Any mechanism under names that begin alike, in which the same words come back."""
+    mechanism = draw(mechanisms())
+    names = Names()
+    renamed: dict[Id, Id] = {}
+    start = st.sampled_from(("left_", "left_", "left_", "left_arm_", "right_", "joint_", "left_left_", ""))
+    for key in (*mechanism.graph.vertices, *mechanism.graph.edges):
+        if key != WORLD and key.kind not in ("shape", "coupling"):
+            renamed[key] = names.take(key.kind, draw(start) + draw(st.sampled_from(("a", "b", "left", "world", "X", "arm_a"))))
+    return rename(mechanism, renamed)
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@given(_mechanisms())
+def test_whatever_names_begin_alike_reads_back_equal(mechanism: Mechanism) -> None:
+    printed = write(mechanism, Report()).main
+    back = read(Source("robot.hymeko", printed), Report())
+    assert back == mechanism
+    assert back.layout[: len(mechanism.layout)] == mechanism.layout
+    assert write(back, Report()).main == printed
