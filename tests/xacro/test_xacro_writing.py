@@ -211,9 +211,14 @@ LIMBED = (
 
 
 def test_macros_in_a_file_of_their_own(tmp_path: Path) -> None:
-    (tmp_path / "in.urdf").write_text(PAIR)
+    """What they say may have a prefix that the robot declares."""
+    pair = PAIR.replace('<robot name="r"', '<robot name="r" xmlns:sensor="http://sensor"').replace(
+        "<visual>", '<sensor:skin kind="soft"/><visual>'
+    )
+    assert "xmlns:sensor" in pair
+    (tmp_path / "in.urdf").write_text(pair)
     assert main(["convert", str(tmp_path / "in.urdf"), str(tmp_path / "out.xacro"), "--split", "--fail-on", "loss"]) == 0
     text, macros = ((tmp_path / name).read_text() for name in ("out.xacro", "r.macros.xacro"))
     assert '<xacro:include filename="r.macros.xacro"/>' in text
     assert ["<xacro:macro" in text, "<xacro:macro" in macros] == [False, True]
-    assert diff(load(PAIR), hx.load(tmp_path / "out.xacro")) == ()
+    assert diff(load(pair), hx.load(tmp_path / "out.xacro")) == ()

@@ -40,7 +40,7 @@ def write(mechanism: Mechanism, report: Report) -> Package:
         return Package(print_file(draft, factored, placed(factored, remarks)).encode(), draft.meshes)
     beside = macros_file(mechanism.name)
     main = print_file(draft, factored, placed(factored, remarks), beside)
-    return Package(main.encode(), {**draft.meshes, beside: print_macros(factored, placed(factored, remarks)).encode()})
+    return Package(main.encode(), {**draft.meshes, beside: print_macros(draft, factored, placed(factored, remarks)).encode()})
 
 
 def carry_residue(package: Package, text: str) -> Package:

@@ -35,18 +35,18 @@ def print_file(draft: Draft, factored: Factored, remarks: Placed, included: str 
     return "\n".join(page.lines)
 
 
-def print_macros(factored: Factored, remarks: Placed) -> str:
-    """The file that is included: properties and macros."""
+def print_macros(draft: Draft, factored: Factored, remarks: Placed) -> str:
+    """The file that is included: properties and macros, under the prefixes that the robot declares."""
     page = Page(factored, remarks)
-    page.lines += ['<?xml version="1.0"?>', f'<robot xmlns:xacro="{NAMESPACE}">']
+    page.lines += ['<?xml version="1.0"?>', root_start(draft, "xmlns:")]
     page.definitions()
     page.lines += ["</robot>", ""]
     return "\n".join(page.lines)
 
 
-def root_start(draft: Draft) -> str:
-    """The start tag of the root, which declares xacro's prefix."""
-    own = {name: value for name, value in draft.root.attributes.items() if name != "xmlns:xacro"}
+def root_start(draft: Draft, beginning: str = "") -> str:
+    """The start tag of the root, which declares xacro's prefix; of its attributes those whose names begin so."""
+    own = {name: value for name, value in draft.root.attributes.items() if name != "xmlns:xacro" and name.startswith(beginning)}
     said = "".join([f' {name}="{escaped(spelled(value))}"' for name, value in own.items()])
     return f'<robot{said} xmlns:xacro="{NAMESPACE}">'
 
