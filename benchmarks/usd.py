@@ -12,6 +12,7 @@ does; its time is printed in brackets.
 from __future__ import annotations
 
 import gc
+import re
 import statistics
 import sys
 import tempfile
@@ -72,6 +73,7 @@ def _compare(paths: list[Path], peers: list[Peer], folder: Path, *, meshes: bool
         theirs: dict[str, float] = {}
         for peer in peers:
             job = {"source": str(path), "folder": str(folder / peer.name / path.stem), "meshes": meshes, "repeat": ROUNDS + 1}
+            job["packages"] = _packages(path)
             answer = peer.run([job])[0]
             if "seconds" in answer:
                 theirs[peer.name] = answer["seconds"]
@@ -85,6 +87,16 @@ def _compare(paths: list[Path], peers: list[Peer], folder: Path, *, meshes: bool
         ratios.append(ours / theirs[fastest])
         print(f"{ours * 1e3:8.1f} ms ({measured * 1e3:8.1f} measured), {fastest} {theirs[fastest] * 1e3:8.1f} ms  {path.name}", flush=True)
     return statistics.median(ratios)
+
+
+def _packages(path: Path) -> dict[str, str]:
+    """Where the ROS packages are whose meshes a URDF names: who is not told finds none of them, and has nothing to convert."""
+    files, found = DiskFiles(path.parent), {}
+    for name, rest in re.findall(r"""package://([^/"']+)/([^"']+)""", path.read_text(errors="replace")):
+        mesh = files.find(f"package://{name}/{rest}") if name not in found else None
+        if mesh is not None:
+            found[name] = mesh.removesuffix(f"/{rest}")
+    return found
 
 
 def _converted(path: Path, out: Path) -> None:

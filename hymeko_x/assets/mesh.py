@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 READABLE = (".stl", ".obj", ".dae", ".glb", ".gltf", ".ply", ".off")
 """The types of mesh files that can be read, by suffix."""
+_IN_SEVERAL_FILES = (".gltf", ".glb")
+"""Types whose triangles may stand in files of their own."""
 
 MOST_BYTES = 2**28
 MOST_FACES = 20_000_000
@@ -144,23 +146,23 @@ def _text_corners(data: bytes) -> NDArray[np.float64]:
 # ---- reading with trimesh ----------------------------------------------------------------------------------------------------
 
 
-def _loaded(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> list[Part]:
-    """Every geometry of the file where its node puts it, in m."""
+def _loaded(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, looks: bool = True) -> list[Part]:
+    """Every geometry of the file where its node puts it, in m; with its look, if that matters."""
     if suffix == ".dae":
         _check_collada(data)
     import trimesh
 
     try:
         if suffix == ".dae":
-            return _collada_parts(data, fetch)
+            return _collada_parts(data, fetch, looks=looks)
         scene = trimesh.load_scene(io.BytesIO(data), suffix[1:], resolver=_resolver(fetch), process=False)
         placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
-        return [part for matrix, name in placed for part in _placed_part(scene.geometry[name], matrix)]
+        return [part for matrix, name in placed for part in _placed_part(scene.geometry[name], matrix, looks=looks)]
     except _raised_by_loaders(suffix) as error:
         raise Unreadable(str(error).split("\n")[0][:200] or type(error).__name__) from error
 
 
-def _collada_parts(data: bytes, fetch: Callable[[str], bytes]) -> list[Part]:
+def _collada_parts(data: bytes, fetch: Callable[[str], bytes], *, looks: bool) -> list[Part]:
     """The same for COLLADA, of which a scene would merge points that are close to one another, and take its time for that."""
     import trimesh
     from trimesh.exchange.dae import load_collada
@@ -170,7 +172,7 @@ def _collada_parts(data: bytes, fetch: Callable[[str], bytes]) -> list[Part]:
         name: trimesh.Trimesh(**{**said, "vertex_normals": None}, process=False, validate=False)
         for name, said in loaded["geometry"].items()
     }
-    return [part for node in loaded["graph"] for part in _placed_part(meshes[node["geometry"]], node["matrix"])]
+    return [part for node in loaded["graph"] for part in _placed_part(meshes[node["geometry"]], node["matrix"], looks=looks)]
 
 
 def _check_collada(data: bytes) -> None:
@@ -181,7 +183,7 @@ def _check_collada(data: bytes) -> None:
         raise Unreadable("it is a ZIP archive, which is not unpacked")
 
 
-def _placed_part(mesh: Any, matrix: Any) -> Iterable[Part]:
+def _placed_part(mesh: Any, matrix: Any, *, looks: bool) -> Iterable[Part]:
     import trimesh
 
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
@@ -194,7 +196,7 @@ def _placed_part(mesh: Any, matrix: Any) -> Iterable[Part]:
         raise Unreadable("a triangle has a corner that does not exist")
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         faces = faces[:, ::-1]
-    look, uv = _look_of(mesh)
+    look, uv = _look_of(mesh) if looks else (None, None)
     yield Part(points, faces, uv, look)
 
 
@@ -334,9 +336,13 @@ def _welded(corners: NDArray[np.float64], uv: NDArray[np.float64] | None, look: 
     flat = corners.reshape(-1, 3)
     rows = flat if uv is None else np.hstack([flat, uv.reshape(-1, 2)])
     unique, index = _unique_rows(rows)
-    faces = index.reshape(-1, 3)
-    whole = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
-    return Part(unique[:, :3], faces[whole], unique[:, 3:] if uv is not None else None, look)
+    return Part(unique[:, :3], _without_degenerate(index.reshape(-1, 3)), unique[:, 3:] if uv is not None else None, look)
+
+
+def _without_degenerate(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The triangles with three different corners."""
+    first, second, third = faces.T
+    return np.asarray(faces[(first != second) & (second != third) & (third != first)])
 
 
 def _unique_rows(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -398,20 +404,55 @@ def inline_part(points: tuple[float, ...], faces: tuple[int, ...]) -> Part:
 
 
 def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Part:
-    """All triangles of a mesh file as one part without a look: ``merged(read_parts(...))``, sorted once.
+    """All triangles of a mesh file as one part without a look, in the order of the file; no image is opened for that.
 
     Raises: Unreadable.
     """
     _check_file(data, suffix)
     if suffix == ".stl":
         return _welded(read_stl(data), None)
-    groups = _by_look(_loaded(data, suffix, fetch))
-    if len(groups) == 1:
-        return _sound((_welded(*_corners(groups[0]), None),))[0]
-    corners = np.concatenate([part.points[part.faces] for group in groups for part in group]) if groups else np.zeros((0, 3, 3))
-    whole = (corners[:, 0] != corners[:, 1]).any(axis=1) & (corners[:, 1] != corners[:, 2]).any(axis=1)
-    whole &= (corners[:, 2] != corners[:, 0]).any(axis=1)
-    return _sound((_welded(corners[whole], None),) if groups else ())[0]
+    if suffix == ".dae":
+        _check_collada(data)
+    tables = _plain_tables(data, suffix)
+    if tables is None:
+        parts = _loaded(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, looks=False)
+        tables = [(part.points, part.faces) for part in parts]
+    tables = [table for table in tables if len(table[1])]
+    return _sound((_put_together(tables),) if tables else ())[0]
+
+
+def _put_together(tables: list[tuple[NDArray[np.float64], NDArray[Any]]]) -> Part:
+    """Points and triangles of several meshes as one; common points are shared, and those of no triangle are left out."""
+    starts = np.cumsum([0, *(len(points) for points, _ in tables)])
+    points = np.concatenate([points for points, _ in tables])
+    faces = np.concatenate([rows.astype(np.int64) + start for (_, rows), start in zip(tables, starts[:-1], strict=True)])
+    if len(faces) > MOST_FACES:
+        raise Unreadable(f"it has {len(faces)} triangles, at most {MOST_FACES} are read")
+    used = np.zeros(len(points), dtype=bool)
+    used[faces] = True
+    unique, index = _unique_rows(points[used])
+    places = np.zeros(len(points), dtype=np.int64)
+    places[used] = index
+    return Part(unique, _without_degenerate(places[faces]))
+
+
+def _plain_tables(data: bytes, suffix: str) -> list[tuple[NDArray[np.float64], NDArray[Any]]] | None:
+    """Points and triangles of the two text formats that most robots use, where nothing about them is unusual."""
+    if suffix == ".dae":
+        from hymeko_x.assets.collada import collada_tables
+
+        return list(collada_tables(data) or ()) or None
+    if suffix == ".obj":
+        from hymeko_x.assets.obj import obj_table
+
+        table = obj_table(data)
+        return None if table is None else [table]
+    return None
+
+
+def _nothing_beside(name: str) -> bytes:
+    """What a mesh refers to, where only its triangles matter."""
+    raise FileNotFoundError(name)
 
 
 def merged(parts: tuple[Part, ...]) -> Part:

@@ -98,6 +98,8 @@ def _read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | No
     """The points of a mesh prim in metres with the mesh's id. Equal meshes at equal scale share one; polygons become fans."""
     import numpy as np
 
+    from hymeko_x.assets.polygons import fans
+
     points, counts, indices = (prim.value(name) for name in ("points", "faceVertexCounts", "faceVertexIndices"))
     if points is None or counts is None or indices is None:
         return _refused(prim, "has no points or no faces", draft)
@@ -109,7 +111,7 @@ def _read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | No
         return _refused(prim, "has a face with a point that does not exist", draft)
     if not np.isfinite(vertices).all():
         return _refused(prim, "has points that are not finite", draft)
-    faces = triangles(sizes, corners)
+    faces = fans(sizes, corners)
     if not prim.is_animated("points"):
         draft.take(prim, "points")
     _take_mesh_extent(prim, vertices, draft)
@@ -153,18 +155,6 @@ def _refused(prim: Prim, why: str, draft: Draft) -> tuple[None, None]:
     said = f"mesh '{prim.path}' {why}; it is kept as written"
     draft.report.error(codes.ASSET_UNREADABLE, said, draft.origin, element=prim.path)
     return None, None
-
-
-def triangles(sizes: NDArray[Any], corners: NDArray[Any]) -> NDArray[Any]:
-    """Polygons as fans of triangles, n x 3."""
-    import numpy as np
-
-    if (sizes == 3).all():
-        return corners.reshape(-1, 3)
-    fans = np.maximum(sizes - 2, 0)
-    starts = np.repeat(np.cumsum(sizes) - sizes, fans)
-    step = np.arange(int(fans.sum())) - np.repeat(np.cumsum(fans) - fans, fans)
-    return corners[np.stack([starts, starts + step + 1, starts + step + 2], axis=1)] if len(step) else corners[:0].reshape(0, 3)
 
 
 def _shared_mesh(prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], scale: Vec3, draft: Draft) -> Id:

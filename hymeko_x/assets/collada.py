@@ -1,0 +1,230 @@
+"""The triangles of plain COLLADA files, straight into arrays: what a robot's mesh files say apart from their looks.
+
+Normals, texture coordinates and materials, most of the text of such a file, are not even turned into numbers. Whatever is not
+plain (skins, instances of nodes, other primitives than triangles and polygons, other transformations than the usual ones, damage
+of any kind) is left to the loader that knows all of COLLADA.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from lxml import etree
+
+from hymeko_x.assets.polygons import fans
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element as Element
+    from numpy.typing import NDArray
+
+    Table = tuple[NDArray[np.float64], NDArray[np.int32]]
+    """Points (n, 3), and triangles (m, 3) as rows of them."""
+
+_DEEPEST = 1000
+_NEAR_ONE = 1e-5
+_COMPONENTS = 3
+_PASSED_OVER = frozenset({"extra", "lines", "linestrips"})
+_NOT_SHOWN = frozenset({"extra", "asset", "instance_camera", "instance_light"})
+_INDEX = np.int32  # as in the file format's own reader
+_SINGLE = np.float32
+
+
+class NotPlain(Exception):
+    """The file has something that this reader leaves to others."""
+
+
+def collada_tables(data: bytes) -> list[Table] | None:
+    """The points in m and the triangles of all that the scene of a COLLADA file shows; None where the file is not plain.
+
+    Nodes move what is below them and the file's unit counts; its up axis does not. Numbers are read in single precision.
+    Source: COLLADA 1.4.1, sections 5 and 6 (core elements, geometry).
+    """
+    try:
+        return _File(_root(data)).tables()
+    except (NotPlain, ValueError, OverflowError):  # what is not a number, and numbers that are too large
+        return None
+
+
+def _root(data: bytes) -> Element:
+    try:
+        return etree.fromstring(data, etree.XMLParser(huge_tree=True, resolve_entities=False, remove_comments=True, remove_pis=True))
+    except etree.XMLSyntaxError as error:
+        raise NotPlain from error
+
+
+@dataclass(slots=True)
+class _File:
+    """One file while it is read: the numbers of each geometry are read once, however often it is shown."""
+
+    root: Element
+    known: dict[str, list[Table]] = field(default_factory=dict)
+
+    def tables(self) -> list[Table]:
+        metres = self._metres()
+        return [_placed(table, matrix, metres) for name, matrix in _shown(self._scene()) for table in self._geometry(name)]
+
+    def _metres(self) -> float:
+        unit = self.root.find("{*}asset/{*}unit")
+        metres = 1.0 if unit is None else float(unit.get("meter", "1"))
+        return 1.0 if abs(metres - 1.0) <= _NEAR_ONE else metres
+
+    def _scene(self) -> Element:
+        shown = self.root.find("{*}scene/{*}instance_visual_scene")
+        wanted = _reference(shown.get("url") if shown is not None else None)
+        return _only([scene for scene in self.root.iterfind("{*}library_visual_scenes/{*}visual_scene") if scene.get("id") == wanted])
+
+    def _geometry(self, name: str) -> list[Table]:
+        if name not in self.known:
+            found = [item for item in self.root.iterfind("{*}library_geometries/{*}geometry") if item.get("id") == name]
+            self.known[name] = _mesh_tables(_only(_only(found).findall("{*}mesh")))
+        return self.known[name]
+
+
+# ---- scene -------------------------------------------------------------------------------------------------------------------
+
+
+def _shown(scene: Element) -> list[tuple[str, NDArray[np.float64]]]:
+    """Every geometry that a scene shows, in its order, with where it is."""
+    found = []
+    waiting = [(node, np.eye(4), 0) for node in reversed(scene.findall("{*}node"))]
+    while waiting:
+        element, matrix, depth = waiting.pop()
+        if _tag(element) == "instance_geometry":
+            found.append((_reference(element.get("url")), matrix))
+            continue
+        if depth > _DEEPEST:
+            raise NotPlain
+        moved, below = _moved(element, matrix)
+        waiting += [(child, moved, depth + 1) for child in reversed(below)]
+    return found
+
+
+def _moved(node: Element, matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], list[Element]]:
+    """Where the content of a node is, and its content."""
+    own = np.eye(4, dtype=_SINGLE)
+    below = []
+    for child in node:
+        tag = _tag(child)
+        if tag in ("node", "instance_geometry"):
+            below.append(child)
+        elif tag in _MOVES:
+            own = own @ _MOVES[tag](_numbers(child, _SINGLE))
+        elif tag not in _NOT_SHOWN:
+            raise NotPlain
+    return matrix @ own, below
+
+
+def _matrix(said: NDArray[Any]) -> NDArray[Any]:
+    return said.reshape(4, 4)
+
+
+def _translation(said: NDArray[Any]) -> NDArray[Any]:
+    matrix = np.eye(4, dtype=_SINGLE)
+    matrix[:3, 3] = said.reshape(3)
+    return matrix
+
+
+def _scaling(said: NDArray[Any]) -> NDArray[Any]:
+    return np.diag([*said.reshape(3), 1.0]).astype(_SINGLE)
+
+
+def _rotation(said: NDArray[Any]) -> NDArray[Any]:
+    """A turn by an angle in degrees about an axis, a unit vector."""
+    x, y, z, angle = said.reshape(4).astype(np.float64).tolist()
+    if abs(math.hypot(x, y, z) - 1.0) > _NEAR_ONE:
+        raise NotPlain
+    matrix = np.eye(4, dtype=_SINGLE)
+    axis, turn = np.array([x, y, z]), math.radians(angle)
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    matrix[:3, :3] = math.cos(turn) * np.eye(3) + math.sin(turn) * across + (1.0 - math.cos(turn)) * np.outer(axis, axis)
+    return matrix
+
+
+_MOVES = {"matrix": _matrix, "translate": _translation, "scale": _scaling, "rotate": _rotation}
+
+
+def _placed(table: Table, matrix: NDArray[np.float64], metres: float) -> Table:
+    """The triangles where a node puts them, in m; a mirror turns them around, so that they still look outwards."""
+    points, faces = table
+    if not np.array_equal(matrix, np.eye(4)):
+        points = points @ matrix[:3, :3].T + matrix[:3, 3]
+    return points * metres, faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else faces
+
+
+# ---- geometry ----------------------------------------------------------------------------------------------------------------
+
+
+def _mesh_tables(mesh: Element) -> list[Table]:
+    """One table for each primitive."""
+    sources = {f"#{child.get('id')}": child for child in mesh if _tag(child) in ("source", "vertices")}
+    found = []
+    for child in mesh:
+        tag = _tag(child)
+        if tag in ("triangles", "polylist"):
+            points, index = _points(child, sources), _index(child)
+            faces = index.reshape(-1, 3) if tag == "triangles" else fans(_numbers(_only(child.findall("{*}vcount")), _INDEX), index)
+            if faces.size and (faces.min() < 0 or faces.max() >= len(points)):
+                raise NotPlain
+            found.append((points, faces))
+        elif tag not in ("source", "vertices") and tag not in _PASSED_OVER:
+            raise NotPlain
+    return found
+
+
+def _index(primitive: Element) -> NDArray[Any]:
+    """For each corner of a primitive the row of its point; the rows of its normals and the rest stand between them."""
+    inputs = [(int(item.get("offset", "")), item.get("semantic")) for item in primitive.iterfind("{*}input")]
+    places = [offset for offset, semantic in inputs if semantic == "VERTEX"]
+    if len(places) != 1 or min(offset for offset, _ in inputs) < 0:
+        raise NotPlain
+    width = max(offset for offset, _ in inputs) + 1
+    lists = [_numbers(item, _INDEX).reshape(-1, width)[:, places[0]] for item in primitive.iterfind("{*}p")]
+    return np.concatenate(lists) if lists else np.zeros(0, dtype=_INDEX)
+
+
+def _points(primitive: Element, sources: dict[str, Element]) -> NDArray[np.float64]:
+    vertices = sources.get(_input(primitive, "VERTEX"))
+    source = sources.get(_input(vertices, "POSITION")) if vertices is not None else None
+    if source is None:
+        raise NotPlain
+    accessor = _only(source.findall("{*}technique_common/{*}accessor"))
+    is_plain = accessor.get("stride", "1") == str(_COMPONENTS) and accessor.get("offset", "0") == "0"
+    if not is_plain or len(accessor.findall("{*}param")) != _COMPONENTS:
+        raise NotPlain
+    points = _numbers(_only(source.findall("{*}float_array")), _SINGLE)
+    if not np.isfinite(points).all():
+        raise NotPlain
+    return points.reshape(-1, _COMPONENTS).astype(np.float64)
+
+
+def _input(element: Element, semantic: str) -> str:
+    return _only([item for item in element.iterfind("{*}input") if item.get("semantic") == semantic]).get("source", "")
+
+
+def _numbers(element: Element, kind: Any) -> NDArray[Any]:
+    """The numbers of an element. Raises: ValueError where there is anything else."""
+    text = element.text or ""
+    return np.zeros(0, dtype=kind) if not text or text.isspace() else np.fromstring(text, dtype=kind, sep=" ")
+
+
+# ---- elements ----------------------------------------------------------------------------------------------------------------
+
+
+def _tag(element: Element) -> str:
+    name: str = element.tag
+    return name.rpartition("}")[2]
+
+
+def _reference(url: str | None) -> str:
+    if url is None or not url.startswith("#"):
+        raise NotPlain
+    return url[1:]
+
+
+def _only(found: list[Element]) -> Element:
+    if len(found) != 1:
+        raise NotPlain
+    return found[0]

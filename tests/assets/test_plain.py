@@ -1,0 +1,95 @@
+"""The readers of plain COLLADA and OBJ files: the same triangles as the loader that knows all of these formats, or none."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from hymeko_x.assets.collada import collada_tables
+from hymeko_x.assets.mesh import merged, read_parts, read_whole
+from hymeko_x.assets.obj import obj_table
+from tests.assets.test_mesh import IN_PLACE, dae, nothing_else
+
+POLYGONS = (
+    '<polylist count="2" material="s0"><input semantic="VERTEX" source="#v" offset="1"/><input semantic="NORMAL" source="#p" offset="0"/>'
+    "<vcount>4 3</vcount><p>0 0 0 1 0 2 0 3 0 4 0 5 0 6</p></polylist>"
+)
+MOVES = (
+    f"<matrix>{IN_PLACE}</matrix>",
+    "<translate>1 2 3</translate><scale>2 1 -1</scale>",
+    "<rotate>0 0.6 0.8 30</rotate><matrix>0 -1 0 5 1 0 0 0 0 0 1 0 0 0 0 1</matrix>",
+)
+CUBE = b"v 0 0 0\nv 1 0 0 \nv 1 1 0\nv 0 1 0\nv 0 0 1\nvn 0 0 1\nvt 0 0\n"
+
+
+def moved(said: str) -> bytes:
+    return dae().replace(f"<matrix>{IN_PLACE}</matrix>".encode(), said.encode())
+
+
+@pytest.mark.parametrize("said", MOVES)
+def test_nodes_move_a_plain_collada_file_as_the_general_loader_does(said: str) -> None:
+    data = moved(said)
+    assert collada_tables(data) is not None
+    whole, parts = read_whole(data, ".dae", nothing_else), merged(read_parts(data, ".dae", nothing_else))
+    assert np.allclose(whole.points, parts.points, rtol=0.0, atol=1e-6)
+    assert len(whole.faces) == len(parts.faces) == 6
+
+
+def test_polygons_of_a_plain_collada_file_are_fans() -> None:
+    data = dae().replace(b"</mesh>", POLYGONS.encode() + b"</mesh>")
+    tables = collada_tables(data)
+    assert tables is not None
+    assert tables[-1][1].tolist() == [[0, 1, 2], [0, 2, 3], [4, 5, 6]]
+    whole, parts = read_whole(data, ".dae", nothing_else), merged(read_parts(data, ".dae", nothing_else))
+    assert sorted(whole.faces.tolist()) == sorted(parts.faces.tolist())
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (f"<matrix>{IN_PLACE}</matrix>", "<rotate>0 0 2 30</rotate>"),
+        (f"<matrix>{IN_PLACE}</matrix>", "<lookat>1 0 0 0 0 0 0 0 1</lookat>"),
+        (f"<matrix>{IN_PLACE}</matrix>", "<matrix>1 0 0</matrix>"),
+        ("<instance_geometry", '<instance_node url="#n"/><instance_geometry'),
+        ('url="#g"', 'url="other.dae#g"'),
+        ('stride="3"', 'stride="4"'),
+        ("0 0 500 1000", "0 0 nan 1000"),
+        ("0 0 500 1000", "0 0 x 1000"),
+        ("<p>0 1 2", "<p>0 1 9"),
+        ("<p>0 1 2", "<p>0 1 -2"),
+        ("<triangles", "<tristrips"),
+        ("</COLLADA>", ""),
+    ],
+)
+def test_what_is_not_plain_collada_is_left_to_others(old: str, new: str) -> None:
+    data = dae().replace(old.encode(), new.encode())
+    assert data != dae()
+    assert collada_tables(data) is None
+
+
+def test_what_a_node_shows_besides_geometry_is_passed_over() -> None:
+    data = dae().replace(b"<instance_geometry", b'<instance_camera url="#c"/><extra/><!-- c --><node/><instance_geometry')
+    tables = collada_tables(data)
+    assert tables is not None
+    assert [len(faces) for _, faces in tables] == [2, 2, 2]
+
+
+@pytest.mark.parametrize("faces", [b"f 1 2 3 4\nf 1 2 5", b"f 1/1 2/1 3/1 4/1\nf 1/1 2/1 5/1", b"f 1//1 2//1 3//1 4//1\nf 1//1 2//1 5//1 "])
+def test_a_plain_obj_file_says_its_corners_in_any_form(faces: bytes) -> None:
+    table = obj_table(CUBE + faces)
+    assert table is not None
+    assert table[1].tolist() == [[0, 1, 2], [0, 2, 3], [0, 1, 4]]
+    assert table[0].tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1]]
+
+
+@pytest.mark.parametrize(
+    "faces",
+    [b"f -5 -4 -3", b"f 1 2 \\\n 3", b" f 1 2 3", b"f 1 2 9", b"f 1 2 x", b"f 1 2/1 3", b"f 1 2 3\nv 1 2\n", b"f 1 2.5 3"],
+)
+def test_what_is_not_plain_obj_is_left_to_others(faces: bytes) -> None:
+    assert obj_table(CUBE + faces) is None
+
+
+def test_corners_from_the_end_of_an_obj_file_count_too() -> None:
+    whole = read_whole(CUBE + b"f -5 -4 -3\n", ".obj", nothing_else)
+    assert whole.points.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
