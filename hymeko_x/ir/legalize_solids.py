@@ -12,7 +12,7 @@ from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Role, Sph
 from hymeko_x.ir.values import ZERO, add, rotate_tensor, scaled
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Mapping
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.legalize import Options
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.values import Tensor, Vec3
 
 UNSAID_NOTATION = "urdf.tensor"
+UNSAID = "unsaid"
 """The notation of a body from a URDF file whose <inertial> has no <inertia>: urdfdom takes nothing of it."""
 
 _Solid = tuple[float, "Vec3"]
@@ -30,23 +31,28 @@ _Solid = tuple[float, "Vec3"]
 def fill_tensors(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """A body with a mass and no tensor gets that of its shapes: of those that collide, else of those that are seen.
 
-    The centre of mass stays as it is. MJCF means zero where it says nothing, and URDF no inertial at all: those stay.
+    The centre of mass stays as it is. MJCF means zero where it says nothing, and URDF no inertial at all: those stay,
+    and so does what has no solid, of which the notation says so: a plane that becomes a thin box later is none.
     """
     del options
     if is_native(mechanism):
         return mechanism
     changed: dict[Id, Body] = {}
+    unsaid: dict[Id, Mapping[str, str]] = {}
     for key, body in mechanism.vertices(Body):
         inertial = body.inertial
         if inertial is None or not inertial.mass or inertial.tensor is not None or mechanism.notation(key, UNSAID_NOTATION):
             continue
         unit = unit_tensor(mechanism.shapes.get(key, ()))
         if unit is None:
+            unsaid[key] = {**mechanism.notations.get(key, {}), UNSAID_NOTATION: UNSAID}
             continue
         xx, yy, zz, xy, xz, yz = (inertial.mass * value for value in unit)
         changed[key] = replace(body, inertial=replace(inertial, tensor=(xx, yy, zz, xy, xz, yz)))
         said = f"{key} has a mass and no inertia tensor; that of its geometry is written"
         report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
+    if unsaid:
+        mechanism = replace(mechanism, notations={**mechanism.notations, **unsaid})
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 

@@ -14,7 +14,7 @@ from hymeko_x.frontends import hymeko, urdf
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Id, Mechanism, shape_edge
-from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Geometry, Inertial, MeshShape, Role, Shape, Sphere
+from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Geometry, Inertial, MeshShape, Plane, Role, Shape, Sphere
 from hymeko_x.ir.values import IDENTITY, Pose, Tensor, pose_from_rpy
 from hymeko_x.source import Source
 from tests.robots import MemoryFiles
@@ -101,3 +101,9 @@ def test_what_nobody_said_is_unsaid_again_after_the_way_back(name: str, tmp_path
     source.write_text("robot { base { mass 2 shape { box [0.1 0.2 0.3] } } }")
     hx.convert(source, target)
     assert hx.load(target) == hx.load(source)
+
+
+def test_a_plane_gives_no_tensor_even_where_it_became_a_thin_box() -> None:
+    legal = legalize(heavy((Plane((1.0, 1.0)), IDENTITY, Role.VISUAL)), "urdf", Options(), Report())
+    assert legalize(legal, "urdf", Options(), Report()).graph == legal.graph
+    assert tensor_of(legal) is None
