@@ -43,7 +43,7 @@ test-full: lint types
 	$(BIN)/python -m pytest -W error -n $(JOBS) tests
 
 bench: $(STAMP)
-	@for name in parse load load_mjcf chain residue speed whole $$(test -d .peers && echo usd); do $(BIN)/python benchmarks/$$name.py || failed=1; done; exit $${failed:-0}
+	@for name in parse load load_mjcf chain residue speed whole $$(test -d .peers && echo usd); do $(BIN)/python -m benchmarks.$$name || failed=1; done; exit $${failed:-0}
 
 peers: $(STAMP)
 	$(BIN)/python -m peers

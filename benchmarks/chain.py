@@ -1,6 +1,6 @@
 """A chain of 100,000 links through URDF -> HyMeKo -> URDF: the time per link must not grow with the length.
 
-python benchmarks/chain.py [LINKS]
+python -m benchmarks.chain [LINKS]
 """
 
 from __future__ import annotations
@@ -8,9 +8,8 @@ from __future__ import annotations
 import sys
 import time
 
-from yardstick import verdict
-
 import hymeko_x as hx
+from benchmarks.yardstick import verdict
 
 
 def main() -> int:

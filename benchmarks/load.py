@@ -1,6 +1,6 @@
 """Loading URDF: `hymeko_x.load` against `yourdfpy.URDF.load` without meshes, on all development URDFs.
 
-python benchmarks/load.py
+python -m benchmarks.load
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ import statistics
 import sys
 
 import yourdfpy
-from robots import robots
-from yardstick import best_of, verdict
 
 import hymeko_x as hx
+from benchmarks.robots import robots
+from benchmarks.yardstick import best_of, verdict
 
 
 def main() -> int:

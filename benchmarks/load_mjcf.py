@@ -1,6 +1,6 @@
 """Loading MJCF: `hymeko_x.load` against `mujoco.MjSpec.from_file`, which parses without meshes, on all development MJCFs.
 
-python benchmarks/load_mjcf.py
+python -m benchmarks.load_mjcf
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ import statistics
 import sys
 
 import mujoco
-from robots import robots
-from yardstick import best_of, verdict
 
 import hymeko_x as hx
+from benchmarks.robots import robots
+from benchmarks.yardstick import best_of, verdict
 
 BOUND = 15.0
 """MuJoCo's parser is C++ and keeps no places, no notations and no typed values."""

@@ -1,6 +1,6 @@
 """Robots per second with one worker and with two, in local processes and on a Ray cluster that this program starts.
 
-python benchmarks/pace.py [COUNT]   (default 24 robots, drawn from the whole catalogue with a fixed seed; every pair, verified)
+python -m benchmarks.pace [COUNT]   (default 24 robots, drawn from the whole catalogue with a fixed seed; every pair, verified)
 
 Writes `corpus/results/pace.csv`, from which `hymeko-x corpus stats --page docs/scale.md` takes the table.
 """

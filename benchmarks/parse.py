@@ -1,6 +1,6 @@
 """Reading HyMeKo: our parser against lark with the plain grammar, on the printed texts of all development URDFs.
 
-python benchmarks/parse.py
+python -m benchmarks.parse
 """
 
 from __future__ import annotations
@@ -9,10 +9,10 @@ import sys
 from pathlib import Path
 
 from lark import Lark
-from robots import robots
-from yardstick import best_of, verdict
 
 import hymeko_x as hx
+from benchmarks.robots import robots
+from benchmarks.yardstick import best_of, verdict
 from hymeko_x.backends.hymeko import document
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document

@@ -1,6 +1,6 @@
 """Reading a file back with its residue, against the conversion that wrote it: URDF to MJCF and MJCF to URDF, meshes left where they are.
 
-python benchmarks/residue.py
+python -m benchmarks.residue
 """
 
 from __future__ import annotations
@@ -9,9 +9,8 @@ import statistics
 import sys
 from typing import TYPE_CHECKING
 
-from robots import robots
-from yardstick import best_of, verdict
-
+from benchmarks.robots import robots
+from benchmarks.yardstick import best_of, verdict
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report

@@ -1,7 +1,7 @@
 """How long HyMeKo text is: letters without white space and comments, against URDF and MJCF as their authors wrote them, and
 against the USD text that hymeko-x writes of the same URDF (without what it carries, and without the arrays of meshes).
 
-python benchmarks/size.py
+python -m benchmarks.size
 """
 
 from __future__ import annotations
@@ -12,6 +12,8 @@ import sys
 from typing import TYPE_CHECKING
 
 import hymeko_x as hx
+from benchmarks.robots import robots
+from benchmarks.yardstick import verdict
 from hymeko_x.backends.hymeko import write
 from hymeko_x.corpus.lengths import tokens_of
 from hymeko_x.diagnostics import Report
@@ -74,9 +76,6 @@ def _source_letters(robot: Path) -> int:
 
 def main() -> int:
     """Every development file of both formats; the bounds are on the medians."""
-    from robots import robots
-    from yardstick import verdict
-
     good = True
     for form, bound in BOUNDS.items():
         ratios = []

@@ -1,6 +1,6 @@
 """URDF -> MJCF and MJCF -> URDF in process, against MuJoCo's own parse + compile + write of the same text without meshes.
 
-python benchmarks/speed.py [NAME ...]
+python -m benchmarks.speed [NAME ...]
 
 Both run in turns, and every figure is a ratio of processor times. ``write`` is reading and writing alone, ``measured`` is all
 that `convert` does: the ledger and the residue too. The bounds are on the medians over the robots.
@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import mujoco
 from lxml import etree
-from robots import robots
-from yardstick import in_turns, verdict
 
+from benchmarks.robots import robots
+from benchmarks.yardstick import in_turns, verdict
 from hymeko_x import formats, pipeline
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.legalize import Options

@@ -1,6 +1,6 @@
 """URDF to USD against the other converters, each in its own environment: processor time of warm processes, in turns.
 
-python benchmarks/usd.py [NAME ...]     (after `make peers`)
+python -m benchmarks.usd [NAME ...]     (after `make peers`)
 
 Without meshes: the development URDFs with every visual and collision that is a mesh taken out, for all alike. With meshes: a
 few of them as they are, written as a crate, in which the fastest converter keeps its meshes too. The bound is on the median,
@@ -21,12 +21,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lxml import etree
-from robots import robots
-from yardstick import verdict
-
-sys.path.insert(0, str(Path(__file__).parents[1]))
 
 import hymeko_x as hx
+from benchmarks.robots import robots
+from benchmarks.yardstick import verdict
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report

@@ -1,6 +1,6 @@
 """`hymeko-x convert robot.urdf robot.xml` as a whole process, against a Python script that does the same with MuJoCo.
 
-python benchmarks/whole.py [NAME]     (POSIX; the robot is taken without its meshes, by default a Panda)
+python -m benchmarks.whole [NAME]     (POSIX; the robot is taken without its meshes, by default a Panda)
 
 Processor time and peak memory of whole processes, run in turns, medians; after one round in which Python compiles our modules.
 """
@@ -14,9 +14,9 @@ import sys
 import tempfile
 from pathlib import Path
 
-from robots import robots
-from speed import without_meshes
-from yardstick import verdict
+from benchmarks.robots import robots
+from benchmarks.speed import without_meshes
+from benchmarks.yardstick import verdict
 
 ROUNDS = 9
 SCRIPT = """\

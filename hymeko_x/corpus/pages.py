@@ -171,7 +171,7 @@ def _duration(hours: float) -> str:
 def _pace(pace: pl.DataFrame | None) -> str:
     """Robots per second by engine and number of workers."""
     if pace is None:
-        return "Not measured yet: `python benchmarks/pace.py` does."
+        return "Not measured yet: `python -m benchmarks.pace` does."
     alone = {row["engine"]: row["robots_per_second"] for row in pace.iter_rows(named=True) if row["workers"] == 1}
     lines = [
         [
