@@ -7,13 +7,12 @@ Processor time and peak memory of whole processes, run in turns, medians; after 
 
 from __future__ import annotations
 
-import os
 import statistics
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from benchmarks import process
 from benchmarks.robots import robots
 from benchmarks.speed import without_meshes
 from benchmarks.yardstick import verdict
@@ -27,14 +26,6 @@ spec.compile()
 with open(sys.argv[2], "w") as out:
     out.write(spec.to_xml())
 """
-STARTER = """\
-import os, sys
-null = os.open(os.devnull, os.O_WRONLY)
-actions = [(os.POSIX_SPAWN_DUP2, null, 1), (os.POSIX_SPAWN_DUP2, null, 2)]
-_, status, usage = os.wait4(os.posix_spawn(sys.argv[1], sys.argv[1:], os.environ, file_actions=actions), 0)
-assert status == 0, sys.argv
-print(usage.ru_utime + usage.ru_stime, usage.ru_maxrss)
-"""
 
 
 def main(name: str) -> int:
@@ -46,20 +37,12 @@ def main(name: str) -> int:
         source.write_text(text)
         ours = [sys.executable, "-m", "hymeko_x.cli", "convert", str(source), out]
         theirs = [sys.executable, "-c", SCRIPT, str(source), out]
-        runs = [(_run(ours), _run(theirs)) for _ in range(ROUNDS + 1)][1:]
+        runs = [(process.run(ours), process.run(theirs)) for _ in range(ROUNDS + 1)][1:]
     seconds = [statistics.median(run[side][0] for run in runs) for side in (0, 1)]
     memory = [statistics.median(run[side][1] for run in runs) for side in (0, 1)]
     print(f"{seconds[0]:.3f} s and {memory[0]:.1f} MB, MuJoCo {seconds[1]:.3f} s and {memory[1]:.1f} MB")
     kept = verdict("whole process, ours / MuJoCo, time", seconds[0] / seconds[1], 0.6, at_least=False)
     return 0 if verdict("whole process, ours / MuJoCo, peak memory", memory[0] / memory[1], 1.0, at_least=False) and kept else 1
-
-
-def _run(command: list[str]) -> tuple[float, float]:
-    """The processor time in s and the peak memory in MB of a process, which a small one starts: it would begin with our memory else."""
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    done = subprocess.run([sys.executable, "-S", "-c", STARTER, *command], capture_output=True, env=environment, check=True)
-    seconds, memory = map(float, done.stdout.split())
-    return seconds, memory / (2**20 if sys.platform == "darwin" else 2**10)
 
 
 if __name__ == "__main__":

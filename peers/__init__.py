@@ -22,7 +22,10 @@ _DRIVERS = Path(__file__).parent / "drivers"
 
 @dataclass(frozen=True, slots=True)
 class Peer:
-    """A program: what the package index calls it and needs beside it, and the driver that runs in its environment."""
+    """A program: what the package index calls it and needs beside it, and the driver that runs in its environment.
+
+    One without requirements runs in our environment, which has it.
+    """
 
     name: str
     requirements: tuple[str, ...]
@@ -31,11 +34,17 @@ class Peer:
     @property
     def python(self) -> Path:
         """The interpreter of its environment, which need not exist."""
+        if not self.requirements:
+            return Path(sys.executable)
         return ROOT / self.name / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
 
     def is_installed(self) -> bool:
         """Whether ``python -m peers`` has made its environment."""
-        return (ROOT / self.name / ".installed").exists()
+        return not self.requirements or (ROOT / self.name / ".installed").exists()
+
+    def command(self, *jobs: Mapping[str, Any]) -> list[str]:
+        """The command line of its driver: a process that does these jobs, or those that it reads from stdin if there is none."""
+        return [str(self.python), str(_DRIVERS / self.driver), *map(json.dumps, jobs)]
 
     def install(self) -> None:
         """Make the environment from the package index. Raises: subprocess.CalledProcessError."""
@@ -50,8 +59,7 @@ class Peer:
         A job that fails has ``error``. When the process dies, so have all jobs that it did not answer.
         """
         asked = [json.dumps(job) for job in jobs]
-        command = [str(self.python), str(_DRIVERS / self.driver)]
-        done = subprocess.run(command, input="\n".join(asked), capture_output=True, text=True, timeout=timeout, check=False)
+        done = subprocess.run(self.command(), input="\n".join(asked), capture_output=True, text=True, timeout=timeout, check=False)
         answers = [json.loads(line[2:]) for line in done.stdout.splitlines() if line.startswith("> ")]
         said = done.stderr.strip().splitlines()[-1:] or [f"exit {done.returncode}"]
         return answers + [{"error": f"the process died: {said[0]}"}] * (len(asked) - len(answers))
@@ -77,6 +85,13 @@ NEWTON = Peer(
     "newton_models.py",
 )
 VALIDATOR = Peer("omniverse-asset-validator", ("omniverse-asset-validator==1.18.0", "usd-core==26.11"), "validator.py")
-PEERS = (URDF_USD_CONVERTER, MUJOCO_USD_CONVERTER, CYBERWAVE, SCIKIT_ROBOT, NEWTON, VALIDATOR)
+URDF2MJCF = Peer("urdf2mjcf", ("urdf2mjcf==0.2.39",), "urdf2mjcf_run.py")
+URDF_TO_MJCF = Peer("urdf-to-mjcf", ("urdf-to-mjcf==0.1.1",), "urdf_to_mjcf_run.py")
+MJCF_URDF = Peer("mjcf-urdf-simple-converter", ("mjcf-urdf-simple-converter==0.7.3",), "mjcf_urdf.py")
+IDYNTREE = Peer("idyntree", ("idyntree==15.1.0",), "idyntree_urdf.py")
+HYMEKO_X = Peer("hymeko-x", (), "hymeko.py")
+MUJOCO = Peer("mujoco", (), "mujoco_import.py")
+YOURDFPY = Peer("yourdfpy", (), "yourdfpy_load.py")
+PEERS = (URDF_USD_CONVERTER, MUJOCO_USD_CONVERTER, CYBERWAVE, SCIKIT_ROBOT, NEWTON, VALIDATOR, URDF2MJCF, URDF_TO_MJCF, MJCF_URDF, IDYNTREE)
 CONVERTERS = {"urdf": (URDF_USD_CONVERTER, CYBERWAVE, SCIKIT_ROBOT), "mjcf": (MUJOCO_USD_CONVERTER, CYBERWAVE)}
 """Who converts which format to USD."""

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
-from hymeko_x.corpus import statistics
+from hymeko_x.corpus import blocks, statistics
 from hymeko_x.corpus.report import matrix, table
 from hymeko_x.corpus.statistics import FOUND, PRINTED
 
@@ -16,8 +15,6 @@ if TYPE_CHECKING:
 
     from hymeko_x.corpus.statistics import Shortness
     from hymeko_x.corpus.tables import Tables
-
-_BLOCK = re.compile(r"<!-- (?P<name>[a-z]+): written by `hymeko-x corpus stats` -->\n.*?<!-- end of (?P=name) -->", re.DOTALL)
 
 ENOUGH = 99.0
 """What percentage of the accepted files each pair of formats should bring over."""
@@ -35,22 +32,15 @@ def renewed(text: str, tables: Tables, pace: pl.DataFrame | None = None) -> str:
 
     Raises: ValueError when it has no block, or one that nobody knows.
     """
-    if not _BLOCK.search(text):
-        known = ", ".join(_WRITERS)
-        raise ValueError(
-            f"the page has no block <!-- NAME: written by `hymeko-x corpus stats` --> ... <!-- end of NAME -->; names: {known}"
-        )
-    return _BLOCK.sub(lambda block: _block(block["name"], tables, pace), text)
+    return blocks.renewed(text, "hymeko-x corpus stats", lambda name: _content(name, tables, pace))
 
 
-def _block(name: str, tables: Tables, pace: pl.DataFrame | None) -> str:
+def _content(name: str, tables: Tables, pace: pl.DataFrame | None) -> str:
     if name == "pace":
-        content = _pace(pace)
-    elif name in _WRITERS:
-        content = _WRITERS[name](tables)
-    else:
+        return _pace(pace)
+    if name not in _WRITERS:
         raise ValueError(f"nobody knows what '{name}' is; known: {', '.join((*_WRITERS, 'pace'))}")
-    return f"<!-- {name}: written by `hymeko-x corpus stats` -->\n\n{content}\n\n<!-- end of {name} -->"
+    return _WRITERS[name](tables)
 
 
 # ---- robots ----------------------------------------------------------------------------------------------------------

@@ -1,4 +1,8 @@
-"""What all drivers do: one job per line in, one answer per line out, with the processor time that the work took."""
+"""What all drivers do: one job per line in, one answer per line out, with the processor time that the work took.
+
+Jobs that stand on the command line are done instead of those from stdin, for the time and memory of a whole process, which
+fails with the first of them that does.
+"""
 
 from __future__ import annotations
 
@@ -13,11 +17,14 @@ if TYPE_CHECKING:
 
 
 def answer_all(work: Callable[[dict[str, Any]], dict[str, Any] | None]) -> None:
-    """Answer every line of stdin. ``repeat`` in a job runs it so often; ``seconds`` is the least processor time."""
-    for line in sys.stdin:
+    """Answer every job. ``repeat`` in a job runs it so often; ``seconds`` is the least processor time."""
+    for line in sys.argv[1:] or sys.stdin:
         if line.strip():
             job = json.loads(line)
-            print("> " + json.dumps(_answer(work, job)), flush=True)
+            answer = _answer(work, job)
+            print("> " + json.dumps(answer), flush=True)
+            if "error" in answer and sys.argv[1:]:
+                sys.exit(answer["error"])
 
 
 def _answer(work: Callable[[dict[str, Any]], dict[str, Any] | None], job: dict[str, Any]) -> dict[str, Any]:

@@ -25,7 +25,9 @@ def test_the_numbers_in_a_page_are_those_of_the_results(page: str) -> None:
     text = (ROOT / page).read_text("utf-8")
     store = Store(str(RESULTS))
     assert pages.renewed(text, load(store), load_pace(store)) == text
-    assert [line.split()[1].rstrip(":") for line in text.splitlines() if line.startswith("<!-- ") and "written by" in line] == PAGES[page]
+    assert [
+        line.split()[1].rstrip(":") for line in text.splitlines() if line.startswith("<!-- ") and "by `hymeko-x corpus" in line
+    ] == PAGES[page]
 
 
 def test_a_page_without_a_known_block_is_not_renewed() -> None:
