@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
 RESULTS = Path(__file__).parents[1] / "results/contest.csv"
 
@@ -49,8 +49,12 @@ def as_csv(rows: Sequence[Row]) -> str:
 
 def from_csv(text: str) -> tuple[Row, ...]:
     """What `as_csv` wrote."""
-    lines = csv.DictReader(io.StringIO(text))
-    return tuple(Row(**{**line, "seconds": _read(line["seconds"]), "megabytes": _read(line["megabytes"])}) for line in lines)
+    return tuple(_row(line) for line in csv.DictReader(io.StringIO(text)))
+
+
+def _row(line: Mapping[str, str]) -> Row:
+    seconds, megabytes = _read(line["seconds"]), _read(line["megabytes"])
+    return Row(line["way"], line["program"], line["version"], line["robot"], line["kind"], seconds, megabytes, line["reason"])
 
 
 def _written(number: float | None) -> str:
