@@ -201,7 +201,7 @@ def _points(primitive: Element, sources: dict[str, Element]) -> NDArray[np.float
 
 
 def _input(element: Element, semantic: str) -> str:
-    return _only([item for item in element.iterfind("{*}input") if item.get("semantic") == semantic]).get("source", "")
+    return str(_only([item for item in element.iterfind("{*}input") if item.get("semantic") == semantic]).get("source", ""))
 
 
 def _numbers(element: Element, kind: Any) -> NDArray[Any]:
