@@ -353,18 +353,19 @@ def _unique_rows(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArra
     rows = np.ascontiguousarray(rows + 0.0)  # so that the zeros of both signs are the same
     keys = _keys(rows)
     order = np.argsort(keys)
-    ordered, keys = rows[order], keys[order]
+    keys = keys[order]
     starts = np.ones(len(rows), dtype=bool)
-    starts[1:] = np.logical_or.reduce([column[1:] != column[:-1] for column in ordered.T])
-    if len(rows) and not np.array_equal(starts[1:], keys[1:] != keys[:-1]):  # different rows with one key, or not a number
-        return _sorted_rows(rows)
-    unique = ordered[starts]
+    starts[1:] = keys[1:] != keys[:-1]
+    unique = rows[order[starts]]
     second = np.lexsort(unique.T[::-1])
     places = np.empty(len(unique), dtype=np.int64)
     places[second] = np.arange(len(unique))
     index = np.empty(len(rows), dtype=np.int64)
     index[order] = places[np.cumsum(starts) - 1]
-    return unique[second], index
+    unique = unique[second]
+    if not np.array_equal(unique[index], rows):  # different rows with one key, or not a number
+        return _sorted_rows(rows)
+    return unique, index
 
 
 def _keys(rows: NDArray[np.float64]) -> NDArray[np.uint64]:
