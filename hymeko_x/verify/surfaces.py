@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -79,7 +79,16 @@ def _load(path: Path) -> Surface | str:
     if len(whole.faces) == 0:
         return f"the mesh '{path.name}' {EMPTY}"
     polygons = path.suffix.lower() == ".obj" and _POLYGON.search(path.read_bytes()) is not None
-    return Surface(np.asarray(whole.vertices, dtype=float), np.asarray(whole.faces, dtype=np.intp), polygons)
+    points = np.asarray(whole.vertices, dtype=float) * (_metres(loaded) if path.suffix.lower() == ".dae" else 1.0)
+    return Surface(points, np.asarray(whole.faces, dtype=np.intp), polygons)
+
+
+def _metres(scene: Any) -> float:
+    """The length in m of the unit of a COLLADA file, which says it once for all of its geometry."""
+    import trimesh
+
+    units = next((mesh.units for mesh in scene.geometry.values() if mesh.units), None)
+    return 1.0 if units is None else float(trimesh.units.unit_conversion(units, "meters"))
 
 
 def used(vertices: Array, faces: Index) -> Array:
