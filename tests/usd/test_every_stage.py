@@ -13,12 +13,14 @@ from hymeko_x.corpus import catalog
 from hymeko_x.ir.diff import diff
 from tests.conftest import RealRobots
 from tests.usd.stages import again, opened, parsed, read_file, written
-from tests.usd.test_real_stages import differing
+from tests.usd.test_real_stages import differing, lost_properties
 
 FEW = ("boxes_fourbar.usda", "test_joint_revolute_actuated_unary.usda", "mjc_schema_import.usda")
 """One that closes a loop, one with a balanced torque, one with MuJoCo's schemas."""
 JOINT = re.compile(r'def Physics\w*Joint "')
-LEAST = 61
+BY_REFERENCE = ("ant_multi.usda",)
+"""Its joints stand in another file."""
+LEAST = 62
 """How many of them there are: fewer would mean that they are not found."""
 
 pytestmark = pytest.mark.corpus
@@ -26,7 +28,9 @@ pytestmark = pytest.mark.corpus
 
 def stages(real_robot: RealRobots) -> list[Path]:
     package = next(package for package in catalog.load() if package.name == "newton")
-    found = sorted(path for path in real_robot.package(package).rglob("*.usda") if JOINT.search(path.read_text()))
+    found = sorted(
+        path for path in real_robot.package(package).rglob("*.usda") if path.name in BY_REFERENCE or JOINT.search(path.read_text())
+    )
     assert len(found) >= LEAST
     return found
 
@@ -60,9 +64,13 @@ def test_every_stage_comes_back_from_what_is_written_of_it(real_robot: RealRobot
     wrong = {}
     for path in stages(real_robot):
         mechanism = read_file(path)
-        source, result = parsed(Usd.Stage.Open(str(path))), parsed(opened(written(mechanism), tmp_path, f"{path.stem}.usda"))
-        found = [str(item) for item in diff(mechanism, again(mechanism))]
-        found += [str(item) for item in (*differing(source.bodies, result.bodies), *differing(source.joints, result.joints))]
+        before, after = Usd.Stage.Open(str(path)), opened(written(mechanism), tmp_path, f"{path.stem}.usda")
+        source, result = parsed(before), parsed(after)
+        found = [str(item) for item in diff(mechanism, again(mechanism))] + lost_properties(before, after)
+        said = {body: mass for body, mass in source.masses.items() if mass}  # others are computed, and written
+        found += [f"mass: {item}" for item in differing(said, {body: result.masses.get(body, ()) for body in said}).items()]
+        for aspect in ("bodies", "joints", "shapes"):
+            found += [f"{aspect}: {item}" for item in differing(getattr(source, aspect), getattr(result, aspect)).items()]
         if found:
             wrong[str(path)] = found
     assert wrong == {}

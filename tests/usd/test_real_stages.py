@@ -42,9 +42,11 @@ def test_the_parser_of_usd_physics_sees_the_same_bodies_joints_and_masses(robot:
 
 
 def test_no_attribute_of_any_prim_is_lost(robot: Path, tmp_path: Path) -> None:
+    assert lost_properties(Usd.Stage.Open(str(robot)), opened(written(read_file(robot)), tmp_path)) == []
+
+
+def lost_properties(source: Usd.Stage, result: Usd.Stage) -> list[str]:
     """What is typed may be said in other words; everything else is there as it was, at the same path."""
-    source = Usd.Stage.Open(str(robot))
-    result = opened(written(read_file(robot)), tmp_path)
     lost = []
     for prim in source.Traverse():
         other = result.GetPrimAtPath(prim.GetPath())
@@ -53,7 +55,7 @@ def test_no_attribute_of_any_prim_is_lost(robot: Path, tmp_path: Path) -> None:
             continue
         names = {str(name) for name in prim.GetAuthoredPropertyNames() if not str(name).startswith("xformOp")}
         lost += [f"{prim.GetPath()}.{name}" for name in names if not other.HasProperty(name) and not _is_default(prim, name)]
-    assert lost == []
+    return lost
 
 
 def _is_default(prim: Usd.Prim, name: str) -> bool:
