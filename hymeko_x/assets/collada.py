@@ -1,15 +1,15 @@
-"""The triangles of plain COLLADA files, straight into arrays: what a robot's mesh files say apart from their looks.
+"""The triangles of plain COLLADA files, straight into arrays, and the colours that they are shown in.
 
-Normals, texture coordinates and materials, most of the text of such a file, are not even turned into numbers. Whatever is not
-plain (skins, instances of nodes, other primitives than triangles and polygons, other transformations than the usual ones, damage
-of any kind) is left to the loader that knows all of COLLADA.
+Normals and texture coordinates, most of the text of such a file, are not even turned into numbers, and of materials only their
+colour counts. Whatever is not plain (skins, instances of nodes, other primitives than triangles and polygons, other
+transformations than the usual ones, damage of any kind) is left to the loader that knows all of COLLADA.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from lxml import etree
@@ -20,8 +20,7 @@ if TYPE_CHECKING:
     from lxml.etree import _Element as Element
     from numpy.typing import NDArray
 
-    Table = tuple[NDArray[np.float64], NDArray[np.int32]]
-    """Points (n, 3), and triangles (m, 3) as rows of them."""
+    from hymeko_x.ir.parts import Rgba
 
 _DEEPEST = 1000
 _NEAR_ONE = 1e-5
@@ -30,6 +29,15 @@ _PASSED_OVER = frozenset({"extra", "lines", "linestrips"})
 _NOT_SHOWN = frozenset({"extra", "asset", "instance_camera", "instance_light"})
 _INDEX = np.int32  # as in the file format's own reader
 _SINGLE = np.float32
+
+
+class Table(NamedTuple):
+    """A primitive: points (n, 3), triangles (m, 3) as rows of them, and the name and colour of its material, if it has any."""
+
+    points: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    material: str = ""
+    rgba: Rgba | None = None
 
 
 class NotPlain(Exception):
@@ -64,7 +72,30 @@ class _File:
 
     def tables(self) -> list[Table]:
         metres = self._metres()
-        return [_placed(table, matrix, metres) for name, matrix in _shown(self._scene()) for table in self._geometry(name)]
+        return [
+            self._coloured(_placed(table, matrix, metres), shown)
+            for shown, matrix in _shown(self._scene())
+            for table in self._geometry(_reference(shown.get("url")))
+        ]
+
+    def _coloured(self, table: Table, shown: Element) -> Table:
+        """With the material that an instance of a geometry gives to the name that a primitive has for it."""
+        for item in shown.iterfind("{*}bind_material/{*}technique_common/{*}instance_material"):
+            if item.get("symbol") == table.material:
+                name = _reference(item.get("target"))
+                return table._replace(material=name, rgba=self._colour(name))
+        return table._replace(material="")
+
+    def _colour(self, name: str) -> Rgba | None:
+        """The diffuse colour of a material; None where it is an image or is not said."""
+        effects = {item.get("id"): item.find("{*}instance_effect") for item in self.root.iterfind("{*}library_materials/{*}material")}
+        effect = effects.get(name)
+        wanted = "" if effect is None else _reference(effect.get("url"))
+        for item in self.root.iterfind("{*}library_effects/{*}effect"):
+            if item.get("id") == wanted:
+                colour = item.find("{*}profile_COMMON/{*}technique/*/{*}diffuse/{*}color")
+                return None if colour is None else _rgba(_numbers(colour, np.float64).tolist())
+        return None
 
     def _metres(self) -> float:
         unit = self.root.find("{*}asset/{*}unit")
@@ -86,14 +117,14 @@ class _File:
 # ---- scene -------------------------------------------------------------------------------------------------------------------
 
 
-def _shown(scene: Element) -> list[tuple[str, NDArray[np.float64]]]:
-    """Every geometry that a scene shows, in its order, with where it is."""
-    found = []
+def _shown(scene: Element) -> list[tuple[Element, NDArray[np.float64]]]:
+    """Every instance of a geometry in a scene, in its order, with where it is."""
+    found: list[tuple[Element, NDArray[np.float64]]] = []
     waiting = [(node, np.eye(4), 0) for node in reversed(scene.findall("{*}node"))]
     while waiting:
         element, matrix, depth = waiting.pop()
         if _tag(element) == "instance_geometry":
-            found.append((_reference(element.get("url")), matrix))
+            found.append((element, matrix))
             continue
         if depth > _DEEPEST:
             raise NotPlain
@@ -148,10 +179,10 @@ _MOVES = {"matrix": _matrix, "translate": _translation, "scale": _scaling, "rota
 
 def _placed(table: Table, matrix: NDArray[np.float64], metres: float) -> Table:
     """The triangles where a node puts them, in m; a mirror turns them around, so that they still look outwards."""
-    points, faces = table
+    points, faces = table.points, table.faces
     if not np.array_equal(matrix, np.eye(4)):
         points = points @ matrix[:3, :3].T + matrix[:3, 3]
-    return points * metres, faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else faces
+    return table._replace(points=points * metres, faces=faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else faces)
 
 
 # ---- geometry ----------------------------------------------------------------------------------------------------------------
@@ -168,7 +199,7 @@ def _mesh_tables(mesh: Element) -> list[Table]:
             faces = index.reshape(-1, 3) if tag == "triangles" else fans(_numbers(_only(child.findall("{*}vcount")), _INDEX), index)
             if faces.size and (faces.min() < 0 or faces.max() >= len(points)):
                 raise NotPlain
-            found.append((points, faces))
+            found.append(Table(points, faces, child.get("material", "")))
         elif tag not in ("source", "vertices") and tag not in _PASSED_OVER:
             raise NotPlain
     return found
@@ -208,6 +239,13 @@ def _numbers(element: Element, kind: Any) -> NDArray[Any]:
     """The numbers of an element. Raises: ValueError where there is anything else."""
     text = element.text or ""
     return np.zeros(0, dtype=kind) if not text or text.isspace() else np.fromstring(text, dtype=kind, sep=" ")
+
+
+def _rgba(said: list[float]) -> Rgba | None:
+    if len(said) not in (3, 4) or not all(0.0 <= value <= 1.0 for value in said):
+        return None
+    r, g, b, a = (*said, 1.0)[:4]
+    return (r, g, b, a)
 
 
 # ---- elements ----------------------------------------------------------------------------------------------------------------

@@ -70,21 +70,24 @@ def read_parts(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple
 
     Raises: Unreadable.
     """
-    _check_file(data, suffix)
+    check_file(data, suffix)
     if suffix == ".stl":
         return (_welded(read_stl(data), None),)
     groups = _by_look(_loaded(data, suffix, fetch))
-    return _sound(tuple(_welded(*_corners(group), group[0].look) for group in groups))
+    return sound(tuple(_welded(*_corners(group), group[0].look) for group in groups))
 
 
-def _check_file(data: bytes, suffix: str) -> None:
+def check_file(data: bytes, suffix: str) -> None:
+    """Raises: Unreadable for what is too large, of a type that is not read, or made to do harm."""
     if len(data) > MOST_BYTES:
         raise Unreadable(f"it has {len(data)} bytes, at most {MOST_BYTES} are read")
     if suffix not in READABLE:
         raise Unreadable(f"meshes of type '{suffix}' are not read; known: {', '.join(READABLE)}")
+    if suffix == ".dae":
+        _check_collada(data)
 
 
-def _sound(parts: tuple[Part, ...]) -> tuple[Part, ...]:
+def sound(parts: tuple[Part, ...]) -> tuple[Part, ...]:
     """The parts, if there are any and every coordinate is a number."""
     if not parts:
         raise Unreadable("it has no triangles")
@@ -148,8 +151,6 @@ def _text_corners(data: bytes) -> NDArray[np.float64]:
 
 def _loaded(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, looks: bool = True) -> list[Part]:
     """Every geometry of the file where its node puts it, in m; with its look, if that matters."""
-    if suffix == ".dae":
-        _check_collada(data)
     import trimesh
 
     try:
@@ -409,21 +410,23 @@ def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Part:
 
     Raises: Unreadable.
     """
-    _check_file(data, suffix)
+    check_file(data, suffix)
     if suffix == ".stl":
         return _welded(read_stl(data), None)
-    if suffix == ".dae":
-        _check_collada(data)
     tables = _plain_tables(data, suffix)
     if tables is None:
         parts = _loaded(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, looks=False)
         tables = [(part.points, part.faces) for part in parts]
-    tables = [table for table in tables if len(table[1])]
-    return _sound((_put_together(tables),) if tables else ())[0]
+    return sound((put_together(tables),))[0]
 
 
-def _put_together(tables: list[tuple[NDArray[np.float64], NDArray[Any]]]) -> Part:
-    """Points and triangles of several meshes as one; common points are shared, and those of no triangle are left out."""
+def put_together(tables: list[tuple[NDArray[np.float64], NDArray[Any]]]) -> Part:
+    """Points and triangles of several meshes as one; common points are shared, and those of no triangle are left out.
+
+    Raises: Unreadable when there is no triangle, or there are too many.
+    """
+    if not any(len(faces) for _, faces in tables):
+        raise Unreadable("it has no triangles")
     starts = np.cumsum([0, *(len(points) for points, _ in tables)])
     points = np.concatenate([points for points, _ in tables])
     faces = np.concatenate([rows.astype(np.int64) + start for (_, rows), start in zip(tables, starts[:-1], strict=True)])
@@ -442,7 +445,7 @@ def _plain_tables(data: bytes, suffix: str) -> list[tuple[NDArray[np.float64], N
     if suffix == ".dae":
         from hymeko_x.assets.collada import collada_tables
 
-        return list(collada_tables(data) or ()) or None
+        return [(table.points, table.faces) for table in collada_tables(data) or ()] or None
     if suffix == ".obj":
         from hymeko_x.assets.obj import obj_table
 

@@ -39,7 +39,7 @@ def test_polygons_of_a_plain_collada_file_are_fans() -> None:
     data = dae().replace(b"</mesh>", POLYGONS.encode() + b"</mesh>")
     tables = collada_tables(data)
     assert tables is not None
-    assert tables[-1][1].tolist() == [[0, 1, 2], [0, 2, 3], [4, 5, 6]]
+    assert tables[-1].faces.tolist() == [[0, 1, 2], [0, 2, 3], [4, 5, 6]]
     whole, parts = read_whole(data, ".dae", nothing_else), merged(read_parts(data, ".dae", nothing_else))
     assert sorted(whole.faces.tolist()) == sorted(parts.faces.tolist())
 
@@ -71,7 +71,7 @@ def test_what_a_node_shows_besides_geometry_is_passed_over() -> None:
     data = dae().replace(b"<instance_geometry", b'<instance_camera url="#c"/><extra/><!-- c --><node/><instance_geometry')
     tables = collada_tables(data)
     assert tables is not None
-    assert [len(faces) for _, faces in tables] == [2, 2, 2]
+    assert [len(table.faces) for table in tables] == [2, 2, 2]
 
 
 @pytest.mark.parametrize("faces", [b"f 1 2 3 4\nf 1 2 5", b"f 1/1 2/1 3/1 4/1\nf 1/1 2/1 5/1", b"f 1//1 2//1 3//1 4//1\nf 1//1 2//1 5//1 "])

@@ -1,0 +1,61 @@
+"""Colours of mesh files in a stage: what a COLLADA file shows in several colours is a mesh for each, with its material."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from pxr import Usd, UsdShade
+
+import hymeko_x as hx
+from tests.assets.test_mesh import dae
+
+URDF = """<robot name="r"><link name="a">
+<visual name="shell"><geometry><mesh filename="a.dae" scale="2 2 2"/></geometry>
+  <material name="grey"><color rgba="0.5 0.5 0.5 1"/></material></visual>
+{collision}</link></robot>"""
+COLLISION = '<collision><geometry><mesh filename="a.dae" scale="2 2 2"/></geometry></collision>'
+
+
+def converted(folder: Path, data: bytes, collision: str = COLLISION) -> Usd.Stage:
+    (folder / "a.dae").write_bytes(data)
+    (folder / "r.urdf").write_text(URDF.format(collision=collision))
+    hx.convert(folder / "r.urdf", folder / "r.usdc")
+    return Usd.Stage.Open(str(folder / "r.usdc"))
+
+
+def shown(stage: Usd.Stage) -> list[tuple[int, tuple[float, ...] | None]]:
+    """How many triangles each mesh that is drawn has, and in which colour."""
+    found = []
+    for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
+        if prim.GetTypeName() == "Mesh" and prim.GetAttribute("purpose").Get() != "guide":
+            material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
+            surface = material.ComputeSurfaceSource()[0] if material else None
+            colour = surface.GetInput("diffuseColor").Get() if surface else None
+            found.append((len(prim.GetAttribute("faceVertexCounts").Get()), None if colour is None else tuple(colour)))
+    return found
+
+
+def test_each_colour_of_a_collada_file_is_a_mesh_with_that_material(tmp_path: Path) -> None:
+    stage = converted(tmp_path, dae())
+    assert shown(stage) == [(2, (1.0, 0.0, 0.0)), (2, (0.0, 1.0, 0.0)), (2, (0.0, 0.0, 1.0))]
+    guides = [prim for prim in stage.Traverse() if prim.GetTypeName() == "Mesh" and prim.GetAttribute("purpose").Get() == "guide"]
+    assert [len(prim.GetAttribute("faceVertexCounts").Get()) for prim in guides] == [6]
+
+
+def test_a_file_without_colours_is_shown_in_the_colour_of_its_shape(tmp_path: Path) -> None:
+    assert shown(converted(tmp_path, dae(materials=0))) == [(6, (0.5, 0.5, 0.5))]
+
+
+def test_the_robot_comes_back_with_the_one_visual_that_it_had(tmp_path: Path) -> None:
+    for collision in (COLLISION, ""):
+        converted(tmp_path, dae(), collision)
+        hx.convert(tmp_path / "r.usdc", tmp_path / "back.urdf")
+        assert hx.diff(hx.load(tmp_path / "r.urdf"), hx.load(tmp_path / "back.urdf")) == ()
+        assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.usdc").verdict == "same"
+
+
+def test_the_colours_reach_mjcf_too(tmp_path: Path) -> None:
+    converted(tmp_path, dae())
+    hx.convert(tmp_path / "r.usdc", tmp_path / "r.xml", pure=True)
+    text = (tmp_path / "r.xml").read_text()
+    assert all(f'rgba="{colour} 1"' in text for colour in ("1 0 0", "0 1 0", "0 0 1"))
