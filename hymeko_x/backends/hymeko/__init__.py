@@ -9,13 +9,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.hymeko.angles import shortest
-from hymeko_x.backends.hymeko.assemblies import assemblies, in_assemblies
+from hymeko_x.backends.hymeko.assemblies import assemblies, pieces_of
 from hymeko_x.backends.hymeko.attached import attached_arcs
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
 from hymeko_x.backends.hymeko.foreign import foreign_items, is_standing, sound_comment, standing_items
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.parts import Context, name_of, part_items, written_items
 from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
+from hymeko_x.backends.hymeko.templates import Instance, templates
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -24,12 +25,15 @@ from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, Ref, 
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from hymeko_x.backends.hymeko.assemblies import Row
+    from hymeko_x.backends.hymeko.templates import Piece
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Mechanism
 
+_MOST_TRIES = 4
+"""How often assemblies are chosen anew because names in them would hide others, before there are none."""
 _INLINE_EDGES = frozenset({"shape"})
 _PLAIN = frozenset({"datum", "relation"})
 _ORDER = ("world", "material", "texture", "layer", "mesh", "body", "joint", "frame", "camera", "light", "sensor", "mount")
@@ -100,15 +104,36 @@ def _grouped(context: Context) -> list[Item]:
     """The elements with their stereotypes, those of one prefix in assemblies."""
     rows = _rows(context)
     refused: frozenset[str] = frozenset()
-    while True:
-        homes = assemblies(rows, context, refused)
+    for tries in range(_MOST_TRIES + 1):
+        homes = assemblies(rows, context, refused) if tries < _MOST_TRIES else {}
         names = {key.name: home for key, home in homes.items()}
         within = {home: replace(context, homes=names, inside=home) for home in ("", *names.values())}
         texts = [_texts(within, row, homes) for row in rows]
         if not context.clashes:
-            return in_assemblies(with_stereotypes([item for text in texts for item in text]), rows, texts, homes)
+            break
         refused |= context.clashes
         context.clashes.clear()
+    return _assembled(pieces_of(rows, texts, homes))
+
+
+def _assembled(pieces: Sequence[Piece]) -> list[Item]:
+    """The stereotypes and templates, then the pieces: as they are, in assemblies, or as instances."""
+    taken: set[str] = set()
+    defined, placed = templates(pieces, taken)
+    blocks = [*(node.items for node in defined), *(() if isinstance(piece, Instance) else piece.items for piece in placed)]
+    items = with_stereotypes([item for block in blocks for item in block], taken)
+    first = len(items) - sum(map(len, blocks))
+    found = items[:first]
+    for block, piece in zip(blocks, (*defined, *placed), strict=True):
+        inner = tuple(items[first : first + len(block)])
+        first += len(block)
+        if isinstance(piece, Instance):
+            found.append(piece.node)
+        elif isinstance(piece, Node):
+            found.append(piece._replace(items=inner))
+        else:
+            found.extend([Node(piece.home, inner, (Stereotype(Ref(("assembly",))),))] if piece.home else inner)
+    return found
 
 
 def _rows(context: Context) -> list[Row]:

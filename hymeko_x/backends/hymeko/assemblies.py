@@ -10,9 +10,10 @@ from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
+from hymeko_x.backends.hymeko.templates import Piece
 from hymeko_x.formats.hymeko import AXES, RESERVED
 from hymeko_x.ir.mechanism import KINDS, Id
-from hymeko_x.language.syntax import Comment, Node, Ref, Stereotype
+from hymeko_x.language.syntax import Comment
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -26,10 +27,10 @@ Row = Id | list["Extra"]
 
 _FRAME = 11
 """Letters of `` : assembly { }``."""
-_LEAST = 24
-"""Letters that an assembly must save."""
 _FEWEST = 3
 """Elements of a piece of an assembly."""
+_MOST_WORDS = 4
+"""Of a name that the beginning may have."""
 _BARE = "datum"
 """What may be a name alone, which has no place in an assembly."""
 _NO_NAMES = {*KINDS.values(), *RESERVED, *AXES}
@@ -42,13 +43,13 @@ def assemblies(rows: Sequence[Row], context: Context, refused: frozenset[str]) -
     queue = [(-_saving(prefix, _pieces(places, rows), weight), prefix) for prefix, places in members.items()]
     heapq.heapify(queue)
     found: dict[int, str] = {}
-    while queue and -queue[0][0] >= _LEAST:
+    while queue and queue[0][0] < 0:
         before, prefix = heapq.heappop(queue)
         pieces = _pieces([place for place in members[prefix] if place not in found], rows)
         saving = _saving(prefix, pieces, weight)
         if saving == -before:
             found.update({place: prefix for piece in _worth(prefix, pieces, weight) for place in piece})
-        elif saving >= _LEAST:
+        elif saving > 0:
             heapq.heappush(queue, (-saving, prefix))
     return {row: found[place] for place, row in enumerate(rows) if isinstance(row, Id) and place in found}
 
@@ -67,7 +68,9 @@ def _members(rows: Sequence[Row], context: Context, refused: frozenset[str]) -> 
 
 def _prefixes(name: str) -> Iterator[str]:
     cut = name.find("_")
-    while 0 < cut < len(name) - 1:
+    for _ in range(_MOST_WORDS):
+        if not 0 < cut < len(name) - 1:
+            return
         prefix, short = name[:cut], name[cut + 1 :]
         if prefix not in _NO_NAMES and short not in AXES and not short.startswith(f"{prefix}_"):
             yield prefix
@@ -118,16 +121,10 @@ def _saved(prefix: str, piece: list[int], weight: Mapping[int, tuple[str, ...]])
     return count * len(start) - len(prefix) - _FRAME
 
 
-def in_assemblies(items: Sequence[Item], rows: Sequence[Row], texts: Sequence[list[Item]], homes: Mapping[Id, str]) -> list[Item]:
-    """The items of a robot, the last of which are those of the rows, with the elements in their assemblies."""
-    first = len(items) - sum(map(len, texts))
-    found = list(items[:first])
-    for home, run in groupby(zip(_homes(rows, texts, homes), texts, strict=True), key=itemgetter(0)):
-        behind = first + sum(len(text) for _, text in run)
-        inner = tuple(items[first:behind])
-        found.extend([Node(home, inner, (Stereotype(Ref(("assembly",))),))] if home else inner)
-        first = behind
-    return found
+def pieces_of(rows: Sequence[Row], texts: Sequence[list[Item]], homes: Mapping[Id, str]) -> list[Piece]:
+    """The items of the rows in order, those of one assembly together."""
+    runs = groupby(zip(_homes(rows, texts, homes), texts, strict=True), key=itemgetter(0))
+    return [Piece(home, tuple(item for _, text in run for item in text)) for home, run in runs]
 
 
 def _homes(rows: Sequence[Row], texts: Sequence[list[Item]], homes: Mapping[Id, str]) -> list[str]:

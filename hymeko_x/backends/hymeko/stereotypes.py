@@ -114,7 +114,7 @@ class _Definition:
 class _Names:
     """Names that are taken."""
 
-    taken: set[str] = field(default_factory=lambda: {*standard_templates(), *RESERVED})
+    taken: set[str]
 
     def free(self, wanted: str) -> str:
         """The name, with a number behind it when somebody has it."""
@@ -125,12 +125,12 @@ class _Names:
         return name
 
 
-def with_stereotypes(items: Sequence[Item]) -> list[Item]:
-    """The items of a robot, behind the stereotypes that say what several of them share."""
+def with_stereotypes(items: Sequence[Item], taken: Iterable[str] = ()) -> list[Item]:
+    """The items of a robot, behind the stereotypes that say what several of them share. ``taken`` are names of other templates."""
     groups: dict[tuple[str, str], list[_Carrier]] = {}
     for carrier in _carriers(items):
         groups.setdefault(_group(carrier), []).append(carrier)
-    names = _Names()
+    names = _Names({*standard_templates(), *RESERVED, *taken})
     definitions: list[_Definition] = []
     for (kind, _), carriers in groups.items():
         definitions.extend(_stereotypes(kind, carriers, names))
@@ -151,7 +151,7 @@ def _carriers(items: Sequence[Item]) -> Iterable[_Carrier]:
         if item.name in ("units", "written", "world") and not isinstance(item.name, QuotedName) and not item.edge:
             continue
         outer = _Carrier((number,), item, _units(item))
-        if not (_is_open(_group(outer)[0]) and any(isinstance(inner, Field) and inner.name in _ONE_OF_A_KIND for inner in item.items)):
+        if not (_is_open(_group(outer)[0]) and any(isinstance(inner, Field) and not _is_sayable(inner) for inner in item.items)):
             yield outer  # parameters are in order, also those that no stereotype may say
         for place, inner in enumerate(item.items):
             if isinstance(inner, Node) and (inner.name in _SHAPES or (item.edge and inner.stereotypes)):
@@ -186,8 +186,15 @@ def _by_item(node: Node) -> Iterable[tuple[Item, list[_Unit]]]:
         yield item, units
 
 
+def _is_sayable(item: Field) -> bool:
+    """Whether a stereotype could say a field: it is not one of a kind, and holds no parameter of a template around it."""
+    return item.name not in _ONE_OF_A_KIND and "${" not in print_item(item)
+
+
 def _units_of(item: Item) -> Iterable[_Unit]:
-    if isinstance(item, Field) and item.name not in _ONE_OF_A_KIND and item.name not in FOREIGN:
+    if isinstance(item, Node) and item.name in FOREIGN | _WHOLE and "${" in print_item(item):
+        return
+    if isinstance(item, Field) and item.name not in FOREIGN and _is_sayable(item):
         yield _Unit(f"`{item.name}" if isinstance(item.name, QuotedName) else item.name, print_item(item), item)
     elif isinstance(item, Node) and not isinstance(item.name, QuotedName) and item.name in FOREIGN | _WHOLE:
         if item.name in FOREIGN and item.parameters is None and all(isinstance(inner, Field) for inner in item.items):

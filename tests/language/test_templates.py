@@ -1,0 +1,147 @@
+"""Assemblies that are the same up to numbers, signs and words are printed as instances of a template, and mean the same."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from hymeko_x.backends.hymeko import write
+from hymeko_x.diagnostics import Report
+from hymeko_x.frontends.hymeko import read
+from hymeko_x.ir import parts
+from hymeko_x.ir.graph import Edge, Hypergraph
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, RobotArc, RobotEdge
+from hymeko_x.ir.parts import VertexPart
+from hymeko_x.ir.rename import rename
+from hymeko_x.ir.values import Pose
+from hymeko_x.language.printer import print_text
+from hymeko_x.source import Source
+from hymeko_x.testing import mechanisms
+
+
+def canonical(text: str) -> str:
+    """The text as hymeko-x prints it, which says the same."""
+    mechanism = read(Source("robot.hymeko", text.encode()), Report())
+    printed = write(mechanism, Report()).main
+    report = Report()
+    back = read(Source("robot.hymeko", printed), report)
+    assert not report.diagnostics
+    assert (back, back.layout, back.extras) == (mechanism, mechanism.layout, mechanism.extras)
+    assert write(back, Report()).main == printed
+    return printed.decode()
+
+
+def leg(side: str, sign: str, file: str = "shin", lower: str = "-10") -> str:
+    return f"""
+  {side}_thigh {{ mass 5 com [0.25 {sign}0.125 -0.2] inertia [0.07 0.07 0.01] }}
+  {side}_shin {{ mass 3 com [0.5 {sign}0.0625 -0.3] inertia [0.04 0.04 0.005] visual "meshes/{file}_{side}.stl" }}
+  @{side}_hip {{ [0 {sign}0.1 0] + pelvis - {side}_thigh axis=Y limit [{lower} 40] effort 90 velocity 500 }}
+  @{side}_knee {{ [0 0 -0.4] + {side}_thigh - {side}_shin axis=Y limit [0 140] effort 90 velocity 500 }}
+"""
+
+
+def test_left_and_right_are_instances_of_one_template() -> None:
+    text = canonical(f"biped : robot {{ pelvis {{}} {leg('left', '')} {leg('right', '-')} @off : exclude {{ ~ left_shin ~ right_shin }} }}")
+    assert text == (
+        "biped : robot {\n"
+        "  thigh_to_knee(name, side=1) : assembly {\n"
+        "    thigh { mass 5 com [0.25 ${side*0.125} -0.2] inertia [0.07 0.07 0.01] }\n"
+        '    shin { mass 3 com [0.5 ${side*0.0625} -0.3] inertia [0.04 0.04 0.005] visual "meshes/shin_${name}.stl" }\n'
+        "    @hip { [0 ${side*0.1} 0] + pelvis - thigh axis=Y limit [-10 40] velocity 500 effort 90 }\n"
+        "    @knee { [0 0 -0.4] + thigh - shin axis=Y limit [0 140] velocity 500 effort 90 }\n"
+        "  }\n"
+        "  pelvis {}\n"
+        "  left : thigh_to_knee(name=left) {}\n"
+        "  right : thigh_to_knee(name=right side=-1) {}\n"
+        "  @off : exclude { ~ left.shin ~ right.shin }\n"
+        "}\n"
+    )
+
+
+def test_what_most_instances_give_is_the_default() -> None:
+    legs = "".join(leg(side, "", lower=lower) for side, lower in (("a", "-20"), ("b", "-10"), ("c", "-10")))
+    text = canonical(f"tripod : robot {{ pelvis {{}} {legs} }}")
+    assert "thigh_to_knee(name, limit=-10) : assembly {" in text
+    assert "a : thigh_to_knee(name=a limit=-20) {}\n  b : thigh_to_knee(name=b) {}" in text
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        leg("right", "-").replace("right_thigh {", "right_thigh { // weighed\n"),
+        leg("right", "-").replace("  @right_knee", "  // the knee\n  @right_knee"),
+        leg("right", "-").replace("inertia [0.04 0.04 0.005]", ""),
+        leg("right", "-", file="${shin}"),
+    ],
+    ids=["a comment in an element", "a comment between elements", "another structure", "a text like an expression"],
+)
+def test_what_a_template_could_not_say_is_written_out(other: str) -> None:
+    assert "thigh_to_knee" not in canonical(f"biped : robot {{ pelvis {{}} {leg('left', '')} {other} }}")
+
+
+@pytest.mark.parametrize("word", ["0.10", "1e-05", "007", "true", "in f", 'a"b', "-", "", "a\nb", "inf"])
+def test_words_stay_words(word: str) -> None:
+    first, second = (
+        leg(side, "").replace("mass 3", f"mass 3 urdf {{ note {print_text(text)} }}") for side, text in (("left", "1"), ("right", word))
+    )
+    canonical(f"biped : robot {{ pelvis {{}} {first} {second} }}")
+
+
+@pytest.mark.parametrize("numbers", [("0", "-0"), ("inf", "-inf"), ("1e-300", "-1e-300"), ("0.1", "0.30000000000000004"), ("7", "-7")])
+def test_numbers_stay_the_same_to_the_last_bit(numbers: tuple[str, str]) -> None:
+    first, second = (
+        leg(side, "").replace("effort 90", f"effort {number}") for side, number in zip(("left", "right"), numbers, strict=True)
+    )
+    canonical(f"biped : robot {{ pelvis {{}} {first} {second} }}")
+
+
+def _mirrored(pose: Pose) -> Pose:
+    x, y, z = pose.xyz
+    return pose if pose.written is not None else replace(pose, xyz=(x, -y, z))
+
+
+def _under(mechanism: Mechanism, side: str) -> Mechanism:
+    every = (*mechanism.graph.vertices, *mechanism.graph.edges)
+    return rename(mechanism, {key: Id(key.kind, f"{side}_{key.name}") for key in every if key != WORLD and key.kind != "shape"})
+
+
+def _other_side(key: Id, edge: RobotEdge) -> RobotEdge:
+    def mirror(arc: RobotArc) -> RobotArc:
+        return replace(arc, weight=_mirrored(arc.weight)) if isinstance(arc.weight, Pose) else arc
+
+    return Edge(edge.data, tuple(map(mirror, edge.arcs))) if key.kind == "joint" else edge
+
+
+@st.composite
+def _twins(draw: st.DrawFn) -> Mechanism:
+    """A mechanism and its other side: other masses, places mirrored."""
+    one = draw(mechanisms())
+    mass = draw(st.floats(0, 10))
+    left, right = _under(one, "left"), _under(one, "right")
+    vertices: dict[Id, VertexPart] = dict(left.graph.vertices)
+    for key, part in right.graph.vertices.items():
+        if isinstance(part, parts.Body) and part.inertial is not None and part.inertial.mass is not None:
+            part = replace(part, inertial=replace(part.inertial, mass=mass))
+        vertices[key] = part
+    twin = rename(right, {key: Id("shape", f"{key.name}'") for key in right.graph.edges if key.kind == "shape"})
+    edges = {**left.graph.edges, **{key: _other_side(key, edge) for key, edge in twin.graph.edges.items()}}
+    layout = tuple(key for key in (*left.layout, *twin.layout) if key != WORLD)
+    return Mechanism(
+        one.name,
+        Hypergraph(vertices, edges),
+        {**left.extras, **twin.extras},
+        notations={**left.notations, **twin.notations},
+        layout=layout,
+    )
+
+
+@settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
+@given(_twins())
+def test_whatever_repeats_reads_back_equal(mechanism: Mechanism) -> None:
+    printed = write(mechanism, Report()).main
+    back = read(Source("robot.hymeko", printed), Report())
+    assert back == mechanism
+    assert write(back, Report()).main == printed
