@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.hymeko.foreign import foreign_items
+from hymeko_x.backends.hymeko.foreign import foreign_items, verbatim
 from hymeko_x.backends.hymeko.parts import Context, pose_value, short_uri, word_fields, written_items
 from hymeko_x.formats.hymeko import SHAPE_WORDS
 from hymeko_x.ir import parts
@@ -73,7 +73,9 @@ def _shape(context: Context, view: ShapeView, names: Names) -> Item:
     notations = context.mechanism.notations.get(view.id)
     if notations:
         items.extend(written_items(notations))
-    items.extend(foreign_items(context.mechanism.extras.get(view.id, ())))
+    extras = context.mechanism.extras.get(view.id, ())
+    items.extend(foreign_items(extra for extra in extras if extra.format != "comment"))
+    items.extend(verbatim(extra) for extra in extras if extra.format == "comment")  # this deep in a text comments are not kept
     if len(items) == 1 and isinstance(items[0], Field) and items[0].name == "mesh":
         return Field(word, items[0].value)
     return Node(word, tuple(items))
