@@ -64,7 +64,7 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> st
     if path is None:
         return None
     if shelf.mode == "reference":
-        return shelf.way_to(path)
+        return shelf.way_to(path, uri)
     plain = posixpath.normpath(uri)
     if keep is Keep.PACKAGES_AND_PATHS and _is_below(uri) and shelf.copy_as(plain, path):
         return uri

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
 
 import mujoco
 import pytest
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from hymeko_x.assets.pack import Mode, pack
+from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.assets.shelf import Shelf, safe_name, stem_of
 from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Report
@@ -258,6 +260,16 @@ def test_hymeko_refers_to_relative_files_and_keeps_packages() -> None:
     names = ["package://p/a.stl", "/r/meshes/c.stl"]
     result, _, copies, _ = packed(with_meshes(*map(Mesh, names)), {names[1]: STL}, "hymeko", out_dir="/r/out")
     assert (uris(result), copies) == (["package://p/a.stl", "../meshes/c.stl"], {})
+
+
+def test_the_author_s_own_way_to_a_file_is_kept_where_it_leads_there_from_the_output_too(tmp_path: Path) -> None:
+    (tmp_path / "meshes").mkdir()
+    (tmp_path / "meshes" / "c.stl").write_bytes(STL)
+    robot = with_meshes(*map(Mesh, ("./meshes/c.stl", "meshes/../meshes/c.stl", str(tmp_path / "meshes/c.stl"))))
+    beside = pack(robot, "hymeko", DiskFiles(tmp_path), None, Report(), out_dir=str(tmp_path))[0]
+    assert uris(beside) == ["./meshes/c.stl", "meshes/../meshes/c.stl", "meshes/c.stl"]
+    below = pack(robot, "hymeko", DiskFiles(tmp_path), None, Report(), out_dir=str(tmp_path / "out"))[0]
+    assert uris(below) == ["../meshes/c.stl"] * 3
 
 
 def test_urdf_can_be_made_self_contained() -> None:

@@ -8,7 +8,9 @@ from hymeko_x.backends.hymeko import write
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir import parts
-from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.ir.fields import identical
+from hymeko_x.ir.graph import Hypergraph
+from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Document, Field, Import, Item, Node
@@ -42,6 +44,13 @@ def test_notations_survive(mechanism: Mechanism) -> None:
     assert {key: dict(said) for key, said in back.notations.items()} == {key: dict(said) for key, said in mechanism.notations.items()}
     written = [(key, *_written(part)) for key, part in _parts(mechanism)]
     assert written == [(key, *_written(part)) for key, part in _parts(back)]
+
+
+def test_the_sign_of_zero_survives() -> None:
+    inertial = parts.Inertial(1.0, (-0.0, 0.0, 0.0), (1.0, 1.0, 1.0, -0.0, -0.0, 0.0))
+    body = Id("body", "a")
+    back = read_text(text_of(Mechanism("r", Hypergraph({body: parts.Body(inertial)}))))
+    assert identical(back.vertex(body, parts.Body).inertial, inertial)
 
 
 @FEW

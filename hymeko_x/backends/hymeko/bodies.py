@@ -8,6 +8,7 @@ from hymeko_x.backends.hymeko.foreign import foreign_items, verbatim
 from hymeko_x.backends.hymeko.parts import Context, pose_value, short_uri, word_fields, written_items
 from hymeko_x.formats.hymeko import SHAPE_WORDS
 from hymeko_x.ir import parts
+from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import Id, Names, file_stem
 from hymeko_x.ir.values import IDENTITY, ZERO
 from hymeko_x.ir.written import length_of
@@ -38,14 +39,14 @@ def _inertial_items(inertial: parts.Inertial, angles: Angles) -> list[Item]:
     items: list[Item] = []
     if inertial.mass is not None:
         items.append(Field("mass", inertial.mass))
-    if inertial.com != ZERO:
+    if not identical(inertial.com, ZERO):
         items.append(Field("com", inertial.com))
     tensor = inertial.tensor
     if tensor is not None:
         if inertial.written is not None:
             items.append(Field("axes", _axes(inertial.written.frame, angles)))
             tensor = inertial.written.tensor
-        items.append(Field("inertia", tensor[:3] if tensor[3:] == ZERO else tensor))
+        items.append(Field("inertia", tensor[:3] if identical(tensor[3:], ZERO) else tensor))
     return items or [Node("inertial")]
 
 
@@ -83,7 +84,7 @@ def _shape(context: Context, view: ShapeView, names: Names) -> Item:
 
 def _shape_items(context: Context, view: ShapeView) -> list[Item]:
     items = _geometry(context, view)
-    if view.pose != IDENTITY or view.pose.written is not None:
+    if not identical(view.pose, IDENTITY):
         items.append(_place(view.pose, context.angles))
     if view.material is not None:
         items.append(_material(context, view.material))

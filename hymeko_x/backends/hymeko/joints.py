@@ -18,6 +18,7 @@ from hymeko_x.formats.hymeko import (
     default_axis,
 )
 from hymeko_x.ir import parts
+from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import Id, numbers_weight
 from hymeko_x.ir.values import IDENTITY, Pose
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype
@@ -37,7 +38,7 @@ def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
     """The type's name (empty for a hinge) and the block of a joint: ends, dofs, what it follows."""
     view = context.mechanism.joints[key]
     items: list[Item] = [_end(context, view.parent, "+", view.parent_pose, "")]
-    framed = view.child_pose != IDENTITY or view.child_pose.written is not None
+    framed = not identical(view.child_pose, IDENTITY)
     if framed or view.child != Id("body", key.name):  # a joint without a child leads to the body of its name
         items.append(_end(context, view.child, "-", view.child_pose, "at" if framed else ""))
     dofs = view.joint.dofs
@@ -51,13 +52,13 @@ def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
 
 
 def _end(context: Context, body: Id, direction: str, pose: Pose, role: str) -> ArcItem:
-    said = pose != IDENTITY or pose.written is not None
+    said = not identical(pose, IDENTITY)
     return ArcItem(context.ref(body, _BODIES, direction), role, pose_value(pose, context.angles) if said else None)
 
 
 def _mimic(context: Context, arc: RobotArc) -> ArcItem:
     coefficients = numbers_weight(arc)
-    weight = None if coefficients == (0.0, 1.0) else coefficients
+    weight = None if identical(coefficients, (0.0, 1.0)) else coefficients
     return ArcItem(context.ref(arc.target, TARGETS["coupling"], "-"), "mimic", weight)
 
 
