@@ -14,7 +14,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.diff import diff
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.legalize import Options
-from hymeko_x.ir.mechanism import Id, Mechanism
+from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
 from hymeko_x.ir.rename import rename
 from hymeko_x.ir.residue.align import aligned
 from hymeko_x.source import NoFiles, Source
@@ -67,10 +67,15 @@ def test_converting_what_was_renamed_is_renaming_what_was_converted(format: str,
 def _named_by_place(mechanism: Mechanism, renamed: frozenset[Id]) -> Mechanism:
     """What takes its name from a body or joint (shapes, mimics, bases, the dofs of a joint that has several), by its place instead."""
     derived = {key: Id(key.kind, str(number)) for number, key in enumerate(key for key in mechanism.graph.edges if key not in renamed)}
-    extras = {key: found for key, found in mechanism.extras.items() if key not in derived}
+    extras = {key: found for key, found in mechanism.extras.items() if key != ROOT or not _has_classes(found)}
     found = rename(replace(mechanism, extras=extras), derived)
     edges = {key: replace(edge, data=_without_dof_names(edge.data)) for key, edge in found.graph.edges.items()}
     return replace(found, graph=Hypergraph(found.graph.vertices, edges))
+
+
+def _has_classes(extras: tuple[Extra, ...]) -> bool:
+    """Whether these are MJCF's default classes, which the writer calls after what shares them."""
+    return all(extra.format == "mjcf" for extra in extras)
 
 
 def _without_dof_names(part: parts.EdgePart) -> parts.EdgePart:

@@ -27,9 +27,6 @@ WHOLE = ("Panda", "1,000 links")
 
 ROUNDS = 5
 PROCESS_ROUNDS = 3
-PATIENCE = 10.0
-"""How many times as long as the others we may take: without our time a column has no unit."""
-
 ENOUGH = 5.0
 """After so many seconds of work on one robot a program is not asked again; what takes longer is measured once, without warming up."""
 
@@ -117,7 +114,7 @@ def measured(way: Way, robots: Sequence[Input], folder: Path, limit: float, tell
 
 def _runner(way: Way, number: int, session: Session, folder: Path, limit: float) -> _Runner:
     entrant = way.entrants[number]
-    return _Runner(way, entrant, session, folder / f"entrant{number}", limit * (PATIENCE if entrant.is_ours else 1.0))
+    return _Runner(way, entrant, session, folder / f"entrant{number}", limit)
 
 
 def _calls(runners: Sequence[_Runner], robot: Input) -> Iterator[Row]:
