@@ -89,13 +89,17 @@ def _hymeko(data: bytes) -> Iterator[Change]:
             yield Change(what, print_document(document._replace(items=items)).encode())
 
 
+_ANYWAY = (("moves", Ref(("hinge",))), ("axis", Ref(("Z",))))
+"""Fields that say what a dof does without them."""
+
+
 def _around(item: Any) -> Iterator[tuple[str, tuple[Any, ...]]]:
     """What may stand instead of an item: nothing, or the item with one change in it. Depth is that of the text."""
     if isinstance(item, Node):
         own = f"without {item.name}"  # a joint moves the body that bears its name anyway
         yield from ((f"{item.name}: {what}", (item._replace(items=items),)) for what, items in _inside(item.items) if what != own)
     elif isinstance(item, Field):
-        if item != item._replace(name="moves", value=Ref(("hinge",))):  # which is what a dof does anyway
+        if (item.name, item.value) not in _ANYWAY:
             yield f"without {item.name}", ()
         yield from ((f"{item.name}: {item.value} -> {value}", (item._replace(value=value),)) for value in _other_values(item.value))
     elif isinstance(item, ArcItem):
