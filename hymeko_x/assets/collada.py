@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from lxml import etree
 
+from hymeko_x.assets.numerals import numbers_in
 from hymeko_x.assets.polygons import fans
 
 if TYPE_CHECKING:
@@ -237,8 +238,7 @@ def _input(element: Element, semantic: str) -> str:
 
 def _numbers(element: Element, kind: Any) -> NDArray[Any]:
     """The numbers of an element. Raises: ValueError where there is anything else."""
-    text = element.text or ""
-    return np.zeros(0, dtype=kind) if not text or text.isspace() else np.fromstring(text, dtype=kind, sep=" ")
+    return numbers_in(element.text or "", kind)
 
 
 def _rgba(said: list[float]) -> Rgba | None:

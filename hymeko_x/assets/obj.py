@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hymeko_x.assets.numerals import numbers_in
 from hymeko_x.assets.polygons import fans
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def _points(lines: list[bytes]) -> NDArray[np.float64] | None:
     widths = set(map(len, map(bytes.split, lines)))
     if len(widths) != 1 or not widths <= set(_WIDTHS):
         return None
-    return np.fromstring(b" ".join(lines), sep=" ").reshape(len(lines), -1)[:, :3]
+    return numbers_in(b" ".join(lines)).reshape(len(lines), -1)[:, :3]
 
 
 def _faces(lines: list[bytes]) -> NDArray[np.int64] | None:
@@ -50,5 +51,4 @@ def _faces(lines: list[bytes]) -> NDArray[np.int64] | None:
     if not np.array_equal(strokes, sizes * (width - 1)):
         return None
     text = b" ".join(lines).replace(b"//", b" 0 ").replace(b"/", b" ")
-    numbers = np.fromstring(text, dtype=np.int64, sep=" ") if text else np.zeros(0, dtype=np.int64)
-    return fans(sizes, numbers.reshape(-1, width)[:, 0] - 1)
+    return fans(sizes, numbers_in(text, np.int64).reshape(-1, width)[:, 0] - 1)

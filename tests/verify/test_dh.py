@@ -87,7 +87,7 @@ def test_tables_of_500_random_chains_are_exact() -> None:
     assert max(errors) < 1e-9
 
 
-@pytest.mark.slow
+@pytest.mark.full
 def test_tables_of_ten_thousand_random_chains_are_exact() -> None:
     errors = [worst_error(seed, (list(Convention)[seed % 3],)) for seed in range(1000, 11000)]
     assert max(errors) < 1e-9

@@ -1,0 +1,26 @@
+"""Numbers of texts straight into arrays."""
+
+from __future__ import annotations
+
+import warnings
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+def numbers_in(text: str | bytes, kind: Any = np.float64) -> NDArray[Any]:
+    """The numbers of a text, with blanks between them.
+
+    Raises: ValueError where there is anything else, OverflowError for whole numbers that are too large.
+    """
+    if not text or text.isspace():
+        return np.zeros(0, dtype=kind)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            return np.fromstring(text, dtype=kind, sep=" ")
+        except DeprecationWarning as warned:  # as numpy said it before it was an error
+            raise ValueError(str(warned)) from warned
