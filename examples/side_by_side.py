@@ -28,7 +28,7 @@ def main() -> None:
     """Print the page."""
     file = next(file for file in catalog.development_files("urdf") if file.path.endswith("newton/examples/assets/quadruped.urdf"))
     robot = hx.load(cache.fetch(file.package, cache.cache_root(os.environ)) / file.path)
-    texts = {name: hx.dumps(robot, name) for name, _ in FORMATS}
+    texts = {name: hx.dumps(robot, name, pure=True) for name, _ in FORMATS}
     print(HEAD.format(path=file.path, package=file.package.name), end="")
     for name, text in texts.items():
         print(f"| {name} | {characters(text)} | {characters(text) / characters(texts['urdf']):.0%} |")
@@ -43,12 +43,12 @@ def characters(text: str) -> int:
 
 
 def excerpt(text: str) -> str:
-    """The lines from the first leg on; in xacro its macro, and then its calls."""
+    """The lines from the first leg on; in xacro and HyMeKo what stands for all of them, and then its uses."""
     lines = [line if len(line) <= 160 else f"{line[:157]}..." for line in text.splitlines()]
-    start = next(number for number, line in enumerate(lines) if re.search(r"(LF|\$\{prefix\})_HAA", line))
+    start = next(number for number, line in enumerate(lines) if "HAA" in line)
     shown = lines[max(0, start - 1) : start + LINES]
     calls = [line for line in lines[start + LINES :] if re.match(r"\s*<xacro:.*(LF|RF|LH|RH)", line)]
-    return "\n".join([*shown, "  ...", *calls])
+    return "\n".join([*shown, *(["  ..."] if start + LINES < len(lines) else []), *calls])
 
 
 if __name__ == "__main__":

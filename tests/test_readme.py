@@ -9,8 +9,14 @@ import shlex
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
+
+from hymeko_x.corpus import catalog
+
+if TYPE_CHECKING:
+    from tests.conftest import RealRobots
 
 README = Path(__file__).parents[1] / "README.md"
 PAGES = (README, README.parent / "docs" / "lossless.md")
@@ -47,6 +53,14 @@ def session(text: str, folder: Path) -> str:
 def test_the_session_in_a_page_is_what_really_happens(page: Path, tmp_path: Path) -> None:
     text = page.read_text("utf-8")
     assert session(text, tmp_path) == text
+
+
+@pytest.mark.corpus
+def test_the_quadruped_in_four_formats_is_what_the_example_prints(real_robot: RealRobots) -> None:
+    real_robot(next(file for file in catalog.development_files("urdf") if file.path.endswith("assets/quadruped.urdf")))
+    page = README.parent / "docs" / "side-by-side.md"
+    printed = shell(f"{shlex.quote(sys.executable)} examples/side_by_side.py", README.parent)
+    assert printed == page.read_text()
 
 
 def test_the_python_in_the_readme_is_what_really_happens(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
