@@ -67,7 +67,7 @@ def other_text(text: str) -> str:
     if found is None or not re.fullmatch(r"[-+.\deE\s]+", text):
         return f"{text}_other"
     value = float(found[0])
-    is_whole = "." not in found[0] and value and value == int(value)
+    is_whole = "." not in found[0] and value and value == int(value) and value + 1.0 != value
     return f"{text[: found.start()]}{int(value) + 1 if is_whole else _other_number(value)}{text[found.end() :]}"
 
 
