@@ -36,7 +36,7 @@ class Table(NamedTuple):
     """A primitive: points (n, 3), triangles (m, 3) as rows of them, and the name and colour of its material, if it has any."""
 
     points: NDArray[np.float64]
-    faces: NDArray[np.int32]
+    faces: NDArray[Any]
     material: str = ""
     rgba: Rgba | None = None
 
@@ -66,37 +66,43 @@ def _root(data: bytes) -> Element:
 
 @dataclass(slots=True)
 class _File:
-    """One file while it is read: the numbers of each geometry are read once, however often it is shown."""
+    """One file while it is read: its libraries by id, and the numbers of each geometry, which are read once."""
 
     root: Element
+    geometries: dict[str | None, list[Element]] = field(init=False)
+    materials: dict[str | None, list[Element]] = field(init=False)
+    effects: dict[str | None, list[Element]] = field(init=False)
     known: dict[str, list[Table]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.geometries = _by_id(self.root, "{*}library_geometries/{*}geometry")
+        self.materials = _by_id(self.root, "{*}library_materials/{*}material")
+        self.effects = _by_id(self.root, "{*}library_effects/{*}effect")
 
     def tables(self) -> list[Table]:
         metres = self._metres()
-        return [
-            self._coloured(_placed(table, matrix, metres), shown)
-            for shown, matrix in _shown(self._scene())
-            for table in self._geometry(_reference(shown.get("url")))
-        ]
+        found = []
+        for shown, matrix in _shown(self._scene()):
+            given = _given_materials(shown)
+            tables = self._geometry(_reference(shown.get("url")))
+            found += [self._coloured(_placed(table, matrix, metres), given) for table in tables]
+        return found
 
-    def _coloured(self, table: Table, shown: Element) -> Table:
+    def _coloured(self, table: Table, given: dict[str | None, Element]) -> Table:
         """With the material that an instance of a geometry gives to the name that a primitive has for it."""
-        for item in shown.iterfind("{*}bind_material/{*}technique_common/{*}instance_material"):
-            if item.get("symbol") == table.material:
-                name = _reference(item.get("target"))
-                return table._replace(material=name, rgba=self._colour(name))
-        return table._replace(material="")
+        if table.material not in given:
+            return table._replace(material="")
+        name = _reference(given[table.material].get("target"))
+        return table._replace(material=name, rgba=self._colour(name))
 
     def _colour(self, name: str) -> Rgba | None:
         """The diffuse colour of a material; None where it is an image or is not said."""
-        effects = {item.get("id"): item.find("{*}instance_effect") for item in self.root.iterfind("{*}library_materials/{*}material")}
-        effect = effects.get(name)
+        effect = self.materials[name][-1].find("{*}instance_effect") if name in self.materials else None
         wanted = "" if effect is None else _reference(effect.get("url"))
-        for item in self.root.iterfind("{*}library_effects/{*}effect"):
-            if item.get("id") == wanted:
-                colour = item.find("{*}profile_COMMON/{*}technique/*/{*}diffuse/{*}color")
-                return None if colour is None else _rgba(_numbers(colour, np.float64).tolist())
-        return None
+        if wanted not in self.effects:
+            return None
+        colour = self.effects[wanted][0].find("{*}profile_COMMON/{*}technique/*/{*}diffuse/{*}color")
+        return None if colour is None else _rgba(_numbers(colour, np.float64).tolist())
 
     def _metres(self) -> float:
         unit = self.root.find("{*}asset/{*}unit")
@@ -110,9 +116,24 @@ class _File:
 
     def _geometry(self, name: str) -> list[Table]:
         if name not in self.known:
-            found = [item for item in self.root.iterfind("{*}library_geometries/{*}geometry") if item.get("id") == name]
-            self.known[name] = _mesh_tables(_only(_only(found).findall("{*}mesh")))
+            self.known[name] = _mesh_tables(_only(_only(self.geometries.get(name, [])).findall("{*}mesh")))
         return self.known[name]
+
+
+def _by_id(root: Element, path: str) -> dict[str | None, list[Element]]:
+    """The elements of a library by id, which damaged files give twice."""
+    found: dict[str | None, list[Element]] = {}
+    for item in root.iterfind(path):
+        found.setdefault(item.get("id"), []).append(item)
+    return found
+
+
+def _given_materials(shown: Element) -> dict[str | None, Element]:
+    """What an instance of a geometry gives to each name of a material, the first one where there are several."""
+    found: dict[str | None, Element] = {}
+    for item in shown.iterfind("{*}bind_material/{*}technique_common/{*}instance_material"):
+        found.setdefault(item.get("symbol"), item)
+    return found
 
 
 # ---- scene -------------------------------------------------------------------------------------------------------------------
@@ -192,18 +213,30 @@ def _placed(table: Table, matrix: NDArray[np.float64], metres: float) -> Table:
 def _mesh_tables(mesh: Element) -> list[Table]:
     """One table for each primitive."""
     sources = {f"#{child.get('id')}": child for child in mesh if _tag(child) in ("source", "vertices")}
+    known: dict[str, NDArray[np.float64]] = {}
     found = []
     for child in mesh:
         tag = _tag(child)
         if tag in ("triangles", "polylist"):
-            points, index = _points(child, sources), _index(child)
+            name, index = _input(child, "VERTEX"), _index(child)
+            if name not in known:
+                known[name] = _points(sources.get(name), sources)
+            points = known[name]
             faces = index.reshape(-1, 3) if tag == "triangles" else fans(_numbers(_only(child.findall("{*}vcount")), _INDEX), index)
             if faces.size and (faces.min() < 0 or faces.max() >= len(points)):
                 raise NotPlain
-            found.append(Table(points, faces, child.get("material", "")))
+            found.append(Table(*_used(points, faces), child.get("material", "")))
         elif tag not in ("source", "vertices") and tag not in _PASSED_OVER:
             raise NotPlain
     return found
+
+
+def _used(points: NDArray[np.float64], faces: NDArray[Any]) -> tuple[NDArray[np.float64], NDArray[Any]]:
+    """Where a primitive shares many points with others, its own ones."""
+    if len(points) <= faces.size:
+        return points, faces
+    rows, index = np.unique(faces, return_inverse=True)
+    return points[rows], index.reshape(faces.shape)
 
 
 def _index(primitive: Element) -> NDArray[Any]:
@@ -217,8 +250,7 @@ def _index(primitive: Element) -> NDArray[Any]:
     return np.concatenate(lists) if lists else np.zeros(0, dtype=_INDEX)
 
 
-def _points(primitive: Element, sources: dict[str, Element]) -> NDArray[np.float64]:
-    vertices = sources.get(_input(primitive, "VERTEX"))
+def _points(vertices: Element | None, sources: dict[str, Element]) -> NDArray[np.float64]:
     source = sources.get(_input(vertices, "POSITION")) if vertices is not None else None
     if source is None:
         raise NotPlain

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import numpy as np
 import pytest
 
@@ -93,3 +95,44 @@ def test_what_is_not_plain_obj_is_left_to_others(faces: bytes) -> None:
 def test_corners_from_the_end_of_an_obj_file_count_too() -> None:
     whole = read_whole(CUBE + b"f -5 -4 -3\n", ".obj", nothing_else)
     assert whole.points.tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0]]
+
+
+# ---- files that are large --------------------------------------------------------------------------------------------------
+
+
+def shown_alone(number: int) -> tuple[str, str, str, str]:
+    """A triangle with a material of its own: geometry, material, effect and node."""
+    points = f'<source id="s{number}"><float_array>0 0 0 1 0 0 0 1 0</float_array><technique_common><accessor stride="3">'
+    points += "<param/><param/><param/></accessor></technique_common></source>"
+    corners = f'<vertices id="v{number}"><input semantic="POSITION" source="#s{number}"/></vertices>'
+    corners += f'<triangles material="m"><input semantic="VERTEX" offset="0" source="#v{number}"/><p>0 1 2</p></triangles>'
+    look = f'<instance_material symbol="m" target="#m{number}"/>'
+    bound = f"<bind_material><technique_common>{look}</technique_common></bind_material>"
+    colour = "<profile_COMMON><technique><phong><diffuse><color>1 0 0 1</color></diffuse></phong></technique></profile_COMMON>"
+    return (
+        f'<geometry id="g{number}"><mesh>{points}{corners}</mesh></geometry>',
+        f'<material id="m{number}"><instance_effect url="#e{number}"/></material>',
+        f'<effect id="e{number}">{colour}</effect>',
+        f'<node><instance_geometry url="#g{number}">{bound}</instance_geometry></node>',
+    )
+
+
+def test_thousands_of_geometries_with_their_materials_take_linear_time() -> None:
+    geometries, materials, effects, nodes = map("".join, zip(*map(shown_alone, range(3000)), strict=True))
+    libraries = f"<library_geometries>{geometries}</library_geometries><library_materials>{materials}</library_materials>"
+    libraries += f"<library_effects>{effects}</library_effects>"
+    scenes = f'<library_visual_scenes><visual_scene id="v">{nodes}</visual_scene></library_visual_scenes>'
+    begin = time.process_time()
+    tables = collada_tables(f'<COLLADA>{libraries}{scenes}<scene><instance_visual_scene url="#v"/></scene></COLLADA>'.encode())
+    assert time.process_time() - begin < 5.0
+    assert tables is not None
+    assert [table.rgba for table in tables] == [(1.0, 0.0, 0.0, 1.0)] * 3000
+
+
+def test_primitives_that_share_points_keep_their_own() -> None:
+    alone = '<triangles><input semantic="VERTEX" offset="0" source="#v"/><p>3 1 2</p></triangles>'
+    tables = collada_tables(dae().replace(b"</mesh>", (alone * 3).encode() + b"</mesh>"))
+    assert tables is not None
+    assert [len(table.points) for table in tables[-3:]] == [3, 3, 3]
+    whole = tables[0].points
+    assert np.array_equal(tables[-1].points[tables[-1].faces], whole[[[3, 1, 2]]])
