@@ -14,6 +14,7 @@ from hymeko_x.formats.carrier import taken_off
 from hymeko_x.formats.usd import POSE
 from hymeko_x.ir.diff import Difference, Tolerance, diff
 from hymeko_x.ir.legalize import Options, legalize
+from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.ir.residue.align import aligned
@@ -207,7 +208,7 @@ def _written(
 
 def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
     """What came from MJCF, with what MuJoCo computes from shapes, for formats in which it has to be said."""
-    if format in (formats.MJCF, formats.HYMEKO) or mechanism.notation(ROOT, formats.MJCF.name) is None:
+    if format in (formats.MJCF, formats.HYMEKO) or not is_native(mechanism):
         return mechanism
     from hymeko_x.frontends.mjcf.weigh import weigh
 

@@ -11,7 +11,7 @@ from hymeko_x import codes
 from hymeko_x.assets.shelf import Shelf, read_file, stem_of, suffix_of
 from hymeko_x.assets.texture import UnreadableImage, png_bytes
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
-from hymeko_x.formats.mjcf_words import is_native
+from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import Extra, Id, layer_edge, shape_edge
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.ir.rename import names_in_use

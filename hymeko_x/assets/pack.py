@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Literal
 
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import Shelf
-from hymeko_x.formats.mjcf_words import is_native
+from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.parts import Mesh, Texture
 
 if TYPE_CHECKING:

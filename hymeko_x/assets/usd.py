@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import read_file, stem_of, suffix_of
-from hymeko_x.formats.mjcf_words import is_native
+from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.parts import Material, Mesh, Role, Texture
 from hymeko_x.ir.rename import names_in_use

@@ -8,13 +8,11 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.mjcf import NAME as NAME
 from hymeko_x.formats.mjcf_codec import Settings
-from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Role
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from hymeko_x.ir.mechanism import Mechanism
 
 VERSION = "4.0"
 """The version of MuJoCo whose MJCF is read; a mechanism that came from MJCF has it as its notation ``mjcf``."""
@@ -76,11 +74,6 @@ KINDS: Mapping[str, str] = MappingProxyType(
 
 DELEGATED = frozenset(("replicate", "attach", "flexcomp"))
 """Elements that only MuJoCo can expand."""
-
-
-def is_native(mechanism: Mechanism) -> bool:
-    """Whether a mechanism came from MJCF, directly or through HyMeKo text."""
-    return mechanism.notation(ROOT, NAME) is not None
 
 
 def kind_of(tag: str, section: str) -> str | None:

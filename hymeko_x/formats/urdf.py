@@ -90,10 +90,6 @@ STYLE_VERSION = "version"
 FIXED = "urdf.fixed"
 """Mechanism: the meaningless elements that most fixed joints carry, verbatim."""
 
-TENSOR = "urdf.tensor"
-UNSAID = "unsaid"
-"""Body: its <inertial> has no <inertia>, which for urdfdom is no inertial at all."""
-
 TYPE = "urdf.type"
 """Joint: the word of its type where another one would be written by default."""
 

@@ -12,11 +12,14 @@ from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Actuator, DofKind, NoShape
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.legalize import Options
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+
+
+_MENDS = ("balanceinertia", "boundinertia")
 
 
 def is_native(mechanism: Mechanism) -> bool:
@@ -26,7 +29,17 @@ def is_native(mechanism: Mechanism) -> bool:
 
 def engine_mends_inertias(mechanism: Mechanism) -> bool:
     """Whether the file tells MuJoCo to repair inertias that it would refuse otherwise."""
-    return any(extra.format == "mjcf" and _MENDS.match(extra.text) for extra in mechanism.extras.get(ROOT, ()))
+    return compiler_says(mechanism, _MENDS)
+
+
+def compiler_says(mechanism: Mechanism, names: Iterable[str]) -> bool:
+    """Whether a <compiler> of the file has one of these attributes."""
+    return any(f"{name}=" in text for text in compilers(mechanism) for name in names)
+
+
+def compilers(mechanism: Mechanism) -> list[str]:
+    """The <compiler> elements of the file that a mechanism came from, verbatim."""
+    return [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.format == "mjcf" and extra.text.startswith("<compiler")]
 
 
 def is_shape_of_mujoco(mechanism: Mechanism, shape: Id) -> bool:
@@ -47,7 +60,6 @@ def drop_shapes_of_mujoco(mechanism: Mechanism, options: Options, report: Report
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 
-_MENDS = re.compile(r"<compiler\b[^>]*\b(balanceinertia|boundinertia)=")
 _COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})
 """How many numbers place a dof, and how many say how fast it moves; one of each for all others."""
 _KEY = re.compile(r"<key\b[^>]*?/>|<key\b.*?</key>", re.DOTALL)

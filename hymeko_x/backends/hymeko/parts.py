@@ -21,7 +21,8 @@ from hymeko_x.formats.hymeko import (
     Word,
 )
 from hymeko_x.ir import parts
-from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
+from hymeko_x.ir.legalize_native import is_native
+from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
 from hymeko_x.language.markup import value_of_text
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value
@@ -94,7 +95,7 @@ class Context:
     def class_items(self, key: Id) -> list[Item]:
         """``class "a"``: the default classes that MJCF's author gave an element, of a joint one for each of its dofs."""
         classes = self.mechanism.stereotypes.get(key)
-        if not classes or self.mechanism.notation(ROOT, "mjcf") is None:
+        if not classes or not is_native(self.mechanism):
             return []
         return [Field("class", value_of(classes[0]) if len(classes) == 1 else classes)]
 

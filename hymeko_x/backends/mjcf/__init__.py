@@ -17,8 +17,8 @@ from hymeko_x.backends.mjcf.names import printed_names
 from hymeko_x.backends.mjcf.relations import write_actuators, write_contacts, write_equalities
 from hymeko_x.backends.mjcf.text import Text
 from hymeko_x.formats import carrier
-from hymeko_x.formats.mjcf_words import is_native
 from hymeko_x.formats.xml_print import escaped
+from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:

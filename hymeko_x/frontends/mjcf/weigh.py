@@ -13,6 +13,7 @@ from hymeko_x import codes
 from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.formats.mjcf_words import NAME, joined, settings_of
 from hymeko_x.frontends.mjcf.solids import fitted_shape, solid_mesh, unsolid
+from hymeko_x.ir.legalize_native import compiler_says, compilers
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
 from hymeko_x.ir.parts import Body, DofKind, Inertial, Joint, Mesh
 from hymeko_x.ir.values import rotate_tensor, unit_quat
@@ -34,7 +35,7 @@ def weigh(mechanism: Mechanism, native: Mechanism, text: bytes, files: Files, re
     that weigh nothing stay without. Where MuJoCo is not there or refuses the text, nothing changes, with a warning.
     """
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
-    scaled = _is_scaled(mechanism)
+    scaled = compiler_says(mechanism, _SCALES)
     sprung = b"springdamper=" in text
     meshes, fitted = unsolid(mechanism)
     if not (wanted or scaled or sprung or meshes or fitted):
@@ -51,17 +52,12 @@ def weigh(mechanism: Mechanism, native: Mechanism, text: bytes, files: Files, re
         report.warn(codes.ENGINE_REFUSED, f"MuJoCo refuses the model, so that inertias and meshes that it computes are left out: {said}")
         return mechanism
     order = {key: number for number, key in enumerate(native.depth_first(), 1)}
-    chosen = [key for key in ([key for key, _ in mechanism.vertices(Body)] if scaled else wanted) if key in order]
-    bodies = {key: _weighed(mechanism, model, key, order[key]) for key in chosen}
+    chosen = [key for key, _ in mechanism.vertices(Body)] if scaled else wanted
+    bodies = {key: _weighed(mechanism, model, key, order[key]) for key in chosen if key in order}
     edges = _sprung(mechanism, model, order) if sprung else {}
     edges |= _fitted(mechanism, mujoco, model, fitted, order)
     solid = {key: solid_mesh(mechanism, mujoco, model, key) for key in meshes}
     return mechanism.with_graph(mechanism.graph.replace(vertices={**bodies, **solid}, edges=edges))
-
-
-def _is_scaled(mechanism: Mechanism) -> bool:
-    texts = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.format == NAME and extra.text.startswith("<compiler")]
-    return any(f"{name}=" in text for text in texts for name in _SCALES)
 
 
 def _compiled(mujoco: Any, text: bytes, assets: dict[str, bytes]) -> Any:
@@ -110,8 +106,7 @@ def _assets(mechanism: Mechanism, files: Files) -> dict[str, bytes]:
 
 
 def _settings(mechanism: Mechanism) -> Any:
-    texts = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.format == NAME and extra.text.startswith("<compiler")]
-    return settings_of([parse_text(text).attributes for text in texts])
+    return settings_of([parse_text(text).attributes for text in compilers(mechanism)])
 
 
 def _weighed(mechanism: Mechanism, model: Any, key: Id, number: int) -> Body:

@@ -10,6 +10,7 @@ from hymeko_x.formats.xml import take_number
 from hymeko_x.frontends.urdf.draft import read_origin, take_name
 from hymeko_x.frontends.urdf.geometry import read_geometry
 from hymeko_x.frontends.urdf.materials import read_shape_material
+from hymeko_x.ir.legalize_solids import UNSAID, UNSAID_NOTATION
 from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Shape
 from hymeko_x.ir.values import rotate_tensor
@@ -31,7 +32,7 @@ def read_link(node: Node, draft: Draft) -> None:
     inertial = _read_inertial(node, draft)
     draft.vertices[key] = Body(inertial)
     if inertial is not None and inertial.tensor is None:
-        draft.note(key, words.TENSOR, words.UNSAID)
+        draft.note(key, UNSAID_NOTATION, UNSAID)
     for tag, role in words.ROLES.items():
         for shape in node.children(tag):
             _read_shape(shape, role, key, draft)

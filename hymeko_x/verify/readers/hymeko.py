@@ -12,7 +12,7 @@ from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.frontends import hymeko
 from hymeko_x.frontends.mjcf.weigh import weigh
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.parts import Body
 from hymeko_x.source import Source
 from hymeko_x.verify.readers.mechanism import from_mechanism
@@ -33,6 +33,6 @@ def read(path: Path, places: Places) -> KinematicModel:
         raise refuse(codes.ENGINE_REFUSED, f"the HyMeKo text cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
     if next(mechanism.vertices(Body), None) is None:
         raise refuse(codes.ENGINE_REFUSED, "the HyMeKo text describes a hypergraph without bodies, which is no robot", Origin(str(path)))
-    if mechanism.notation(ROOT, "mjcf") is not None:
+    if is_native(mechanism):
         mechanism = weigh(mechanism, mechanism, mjcf.write(mechanism, Report()).main, files, Report())
     return from_mechanism(mechanism, format="hymeko")
