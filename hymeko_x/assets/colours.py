@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.assets.mesh import Look, Part, check_file, put_together, read_whole, sound
+from hymeko_x.assets.mesh import check_file, put_together, read_whole, sound
+from hymeko_x.assets.part import Look, Part
 
 if TYPE_CHECKING:
     from collections.abc import Callable

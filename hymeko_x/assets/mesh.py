@@ -1,25 +1,19 @@
-"""Mesh files: reading any type that robots use, and writing the two that every engine reads (binary STL and OBJ).
-
-The only place that knows trimesh. Nothing is loaded from a network, and sizes are checked before anything is allocated.
-"""
+"""Mesh files: reading any type that robots use, by look or as a whole. Sizes are checked before anything is allocated."""
 
 from __future__ import annotations
 
-import io
-import struct
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
-from xml.etree.ElementTree import ParseError
 
 import numpy as np
 
+from hymeko_x.assets.part import MOST_FACES, Look, Part, Unreadable
+from hymeko_x.assets.scene import read_scene
+from hymeko_x.assets.stl import read_stl
+
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable
+    from collections.abc import Callable
 
     from numpy.typing import NDArray
-
-    from hymeko_x.ir.parts import Rgba
-    from hymeko_x.ir.values import Vec3
 
 READABLE = (".stl", ".obj", ".dae", ".glb", ".gltf", ".ply", ".off")
 """The types of mesh files that can be read, by suffix."""
@@ -27,38 +21,6 @@ _IN_SEVERAL_FILES = (".gltf", ".glb")
 """Types whose triangles may stand in files of their own."""
 
 MOST_BYTES = 2**28
-MOST_FACES = 20_000_000
-_STL_HEADER = 80
-_STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
-
-
-class Unreadable(Exception):
-    """The bytes are not the mesh that their name says; the text says why."""
-
-
-@dataclass(frozen=True, slots=True)
-class Look:
-    """A surface as a mesh file describes it: its name there, its colour, and its image as PNG bytes."""
-
-    name: str
-    rgba: Rgba | None
-    image: bytes | None = None
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Part:
-    """The triangles of a mesh file that have one look (None = the file says nothing about it).
-
-    ``points`` is (n, 3) in m in the frame of the file, ``faces`` (m, 3) rows of ``points``, ``uv`` (n, 2) or None.
-    """
-
-    points: NDArray[np.float64]
-    faces: NDArray[np.int64]
-    uv: NDArray[np.float64] | None = None
-    look: Look | None = None
-
-
-# ---- reading ---------------------------------------------------------------------------------------------------------------
 
 
 def read_parts(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple[Part, ...]:
@@ -73,7 +35,7 @@ def read_parts(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple
     check_file(data, suffix)
     if suffix == ".stl":
         return (_welded(read_stl(data), None),)
-    groups = _by_look(_loaded(data, suffix, fetch))
+    groups = _by_look(read_scene(data, suffix, fetch))
     return sound(tuple(_welded(*_corners(group), group[0].look) for group in groups))
 
 
@@ -96,222 +58,12 @@ def sound(parts: tuple[Part, ...]) -> tuple[Part, ...]:
     return parts
 
 
-def read_stl(data: bytes) -> NDArray[np.float64]:
-    """The corners of the triangles of an STL file, binary or text, as (faces, 3, 3) in its own unit.
-
-    Raises: Unreadable.
-    """
-    corners = _binary_corners(data) if not _is_text_stl(data) else _text_corners(data)
-    if len(corners) == 0:
-        raise Unreadable("it has no triangles")
-    if not np.isfinite(corners).all():
-        raise Unreadable("a coordinate is not a finite number")
-    return corners
-
-
-def stl_is_exact(data: bytes) -> bool:
-    """Whether the bytes are a binary STL file whose length is what its header says."""
-    return len(data) > _STL_HEADER + 4 and len(data) == _STL_HEADER + 4 + stl_faces(data) * _STL_FACE.itemsize
-
-
-def stl_faces(data: bytes) -> int:
-    """The number of triangles in the header of a binary STL file."""
-    (count,) = struct.unpack_from("<I", data, _STL_HEADER)
-    return int(count)
-
-
-def _is_text_stl(data: bytes) -> bool:
-    """Text begins with ``solid``, but so do some binary files: those have the length that their header says."""
-    return data[:80].lstrip().lower().startswith(b"solid") and not stl_is_exact(data) and b"facet" in data[:4096].lower()
-
-
-def _binary_corners(data: bytes) -> NDArray[np.float64]:
-    if len(data) < _STL_HEADER + 4:
-        raise Unreadable(f"it has {len(data)} bytes, and an STL file has at least {_STL_HEADER + 4}")
-    count, room = stl_faces(data), (len(data) - _STL_HEADER - 4) // _STL_FACE.itemsize
-    if count > room:
-        raise Unreadable(f"its header promises {count} triangles, and there is room for {room}")
-    faces = np.frombuffer(data, _STL_FACE, count, _STL_HEADER + 4)
-    return faces["corners"].astype(np.float64)
-
-
-def _text_corners(data: bytes) -> NDArray[np.float64]:
-    rows = [line.split()[1:4] for line in data.splitlines() if line.lstrip()[:7].lower() == b"vertex "]
-    try:
-        values = np.array(rows, dtype=np.float64)
-    except ValueError as error:
-        raise Unreadable(f"a vertex is not three numbers ({error})") from error
-    if values.size % 9:
-        raise Unreadable("the number of its vertices is not a multiple of three")
-    return values.reshape(-1, 3, 3)
-
-
-# ---- reading with trimesh ----------------------------------------------------------------------------------------------------
-
-
-def _loaded(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, looks: bool = True) -> list[Part]:
-    """Every geometry of the file where its node puts it, in m; with its look, if that matters."""
-    import trimesh
-
-    try:
-        if suffix == ".dae":
-            return _collada_parts(data, fetch, looks=looks)
-        scene = trimesh.load_scene(io.BytesIO(data), suffix[1:], resolver=_resolver(fetch), process=False)
-        placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
-        return [part for matrix, name in placed for part in _placed_part(scene.geometry[name], matrix, looks=looks)]
-    except _raised_by_loaders(suffix) as error:
-        raise Unreadable(str(error).split("\n")[0][:200] or type(error).__name__) from error
-
-
-def _collada_parts(data: bytes, fetch: Callable[[str], bytes], *, looks: bool) -> list[Part]:
-    """The same for COLLADA, of which a scene would merge points that are close to one another, and take its time for that."""
-    import trimesh
-    from trimesh.exchange.dae import load_collada
-
-    loaded = load_collada(io.BytesIO(data), resolver=_resolver(fetch))  # type: ignore[no-untyped-call]
-    meshes = {
-        name: trimesh.Trimesh(**{**said, "vertex_normals": None}, process=False, validate=False)
-        for name, said in loaded["geometry"].items()
-    }
-    return [part for node in loaded["graph"] for part in _placed_part(meshes[node["geometry"]], node["matrix"], looks=looks)]
-
-
 def _check_collada(data: bytes) -> None:
     """Entities would be expanded, and an archive unpacked to any size."""
     if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
         raise Unreadable("it declares XML entities, which are not expanded")
     if b"PK\x05\x06" in data[-70_000:]:
         raise Unreadable("it is a ZIP archive, which is not unpacked")
-
-
-def _placed_part(mesh: Any, matrix: Any, *, looks: bool) -> Iterable[Part]:
-    import trimesh
-
-    if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
-        return
-    if len(mesh.faces) > MOST_FACES:
-        raise Unreadable(f"it has {len(mesh.faces)} triangles, at most {MOST_FACES} are read")
-    points = trimesh.transform_points(mesh.vertices, matrix) * _metres(mesh.units)
-    faces = np.asarray(mesh.faces, dtype=np.int64)
-    if faces.min() < 0 or faces.max() >= len(points):
-        raise Unreadable("a triangle has a corner that does not exist")
-    if np.linalg.det(matrix[:3, :3]) < 0.0:
-        faces = faces[:, ::-1]
-    look, uv = _look_of(mesh) if looks else (None, None)
-    yield Part(points, faces, uv, look)
-
-
-def _metres(units: str | None) -> float:
-    """The length of the file's unit in m; 1 where it says nothing."""
-    import trimesh
-
-    return 1.0 if units is None else float(trimesh.units.unit_conversion(units, "meters"))
-
-
-def _look_of(mesh: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
-    """The material of a geometry and its texture coordinates; colours of vertices or faces become their mean."""
-    visual = mesh.visual
-    if not visual.defined:
-        return None, None
-    if visual.kind in ("vertex", "face"):
-        return Look("", _rgba(visual.main_color)), None
-    material = visual.material
-    name = str(getattr(material, "name", None) or "")
-    if type(material).__name__ == "SimpleMaterial":
-        return _simple_look(name, material, visual.uv)
-    image = _png(material.baseColorTexture)
-    look = Look(name, None if image else _rgba(material.main_color), image)
-    return look, _uv(visual.uv) if image else None
-
-
-def _simple_look(name: str, material: Any, uv: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
-    """The look of an OBJ material. One without colour and without a named image is what trimesh makes up itself."""
-    image = _png(material.image) if material.image is not None and "file_path" in material.image.info else None
-    color = material.kwargs.get("kd")
-    rgba = (float(color[0]), float(color[1]), float(color[2]), 1.0) if isinstance(color, list) and len(color) == 3 else None
-    if image is None and rgba is None:
-        return None, None
-    return Look(name, None if image else rgba, image), _uv(uv) if image else None
-
-
-def _uv(uv: Any) -> NDArray[np.float64] | None:
-    return None if uv is None else np.asarray(uv, dtype=np.float64)[:, :2]
-
-
-def _rgba(color: Any) -> Rgba | None:
-    """A colour of 0..255 as 0..1, with as many digits as 8 bits are worth."""
-    if color is None:
-        return None
-    r, g, b, a = (round(float(value) / 255.0, 4) for value in color)
-    return (r, g, b, a)
-
-
-def _png(image: Any) -> bytes | None:
-    """The image as PNG bytes: those of the file where it is PNG and was not decoded yet, else encoded anew."""
-    if image is None:
-        return None
-    stream = getattr(image, "fp", None)
-    if image.format == "PNG" and isinstance(stream, io.BytesIO):
-        data = stream.getvalue()
-        image.load()
-        return data
-    out = io.BytesIO()
-    image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG", compress_level=3)
-    return out.getvalue()
-
-
-def _resolver(fetch: Callable[[str], bytes]) -> Any:
-    """What trimesh asks for the files that a mesh refers to."""
-    from trimesh.resolvers import Resolver
-
-    class Fetching(Resolver):
-        def __init__(self) -> None:
-            self._found: dict[str, bytes] = {}
-
-        def get(self, key: str) -> bytes:
-            name = str(key).strip()
-            if name not in self._found:
-                self._found[name] = fetch(name)
-            return self._found[name]
-
-        def write(self, name: str, data: Any) -> None:
-            raise OSError(f"'{name}' is not written")
-
-        def namespaced(self, namespace: str) -> Resolver:
-            del namespace
-            return self
-
-        def keys(self) -> list[str]:
-            return list(self._found)
-
-    return Fetching()
-
-
-_DAMAGED = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    EOFError,
-    ImportError,
-    LookupError,
-    MemoryError,
-    OSError,
-    ParseError,
-    RuntimeError,
-    SyntaxError,
-    TypeError,
-    ValueError,
-    struct.error,
-)
-"""What the loaders behind trimesh raise on damaged files; they check little before they index."""
-
-
-def _raised_by_loaders(suffix: str) -> tuple[type[Exception], ...]:
-    if suffix != ".dae":
-        return _DAMAGED
-    from collada.common import DaeError
-
-    return (*_DAMAGED, DaeError)
 
 
 # ---- parts -------------------------------------------------------------------------------------------------------------------
@@ -415,7 +167,7 @@ def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Part:
         return _welded(read_stl(data), None)
     tables = _plain_tables(data, suffix)
     if tables is None:
-        parts = _loaded(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, looks=False)
+        parts = read_scene(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, looks=False)
         tables = [(part.points, part.faces) for part in parts]
     return sound((put_together(tables),))[0]
 
@@ -464,72 +216,3 @@ def merged(parts: tuple[Part, ...]) -> Part:
     if len(parts) == 1:
         return parts[0]
     return _welded(np.concatenate([part.points[part.faces] for part in parts]), None)
-
-
-def face_normals(points: NDArray[np.float32], corners: NDArray[Any]) -> NDArray[np.float32]:
-    """The unit normal of each triangle (n x 3, single precision), by the right hand; z where a triangle has none.
-
-    ``points`` is (m, 3), ``corners`` the rows of ``points`` of all triangles, flat.
-    """
-    first, second, third = (points[corners[corner::3]].astype(np.float64) for corner in range(3))
-    (ax, ay, az), (bx, by, bz) = (second - first).T, (third - first).T
-    normals = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
-    lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
-    flat = ~(lengths > 0.0)
-    normals[flat], lengths[flat] = (0.0, 0.0, 1.0), 1.0
-    return np.asarray(normals / lengths[:, None], dtype=np.float32)
-
-
-# ---- measures ------------------------------------------------------------------------------------------------------------------
-
-
-def volume_of_sheets(part: Part) -> float:
-    """The sum of the volumes of the pyramids from the mean point to all triangles, in m^3; zero for a flat mesh.
-
-    Source: MuJoCo's volume of a mesh with ``inertia="legacy"``.
-    """
-    a, b, c = (part.points[part.faces[:, corner]] - part.points.mean(axis=0) for corner in range(3))
-    return float(np.abs(np.einsum("ij,ij->i", a, np.cross(b, c))).sum() / 6.0)
-
-
-def extents(part: Part) -> Vec3:
-    """The lengths in m of the box along the principal axes of the points, ascending."""
-    centred = part.points - part.points.mean(axis=0)
-    _, axes = np.linalg.eigh(centred.T @ centred)
-    low, middle, high = sorted(np.ptp(centred @ axes, axis=0).tolist())
-    return (low, middle, high)
-
-
-def thickened(part: Part, share: float) -> Part:
-    """A flat part as a thin solid: a second layer lies below the first one, ``share`` of the largest extent away."""
-    centred = part.points - part.points.mean(axis=0)
-    _, axes = np.linalg.eigh(centred.T @ centred)
-    below = part.points - axes[:, 0] * share * np.ptp(centred @ axes, axis=0).max()
-    faces = np.concatenate([part.faces, part.faces[:, ::-1] + len(part.points)])
-    uv = None if part.uv is None else np.concatenate([part.uv, part.uv])
-    return Part(np.concatenate([part.points, below]), faces, uv, part.look)
-
-
-# ---- writing -------------------------------------------------------------------------------------------------------------------
-
-
-def obj_bytes(part: Part) -> bytes:
-    """The part as a Wavefront OBJ file: points to float32 precision, texture coordinates, triangles."""
-    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (part.points + 0.0).tolist()]
-    if part.uv is not None:
-        lines += [f"vt {u:.7g} {v:.7g}" for u, v in (part.uv + 0.0).tolist()]
-        lines += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in (part.faces + 1).tolist()]
-    else:
-        lines += [f"f {a} {b} {c}" for a, b, c in (part.faces + 1).tolist()]
-    return ("\n".join(lines) + "\n").encode()
-
-
-def stl_bytes(part: Part) -> bytes:
-    """The part as a binary STL file; its normals are computed."""
-    corners = part.points[part.faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    faces = np.zeros(len(corners), _STL_FACE)
-    faces["corners"] = corners
-    faces["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0.0)
-    return b"binary STL".ljust(_STL_HEADER) + struct.pack("<I", len(faces)) + faces.tobytes()

@@ -19,7 +19,7 @@ from hymeko_x.ir.rename import names_in_use
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hymeko_x.assets.mesh import Look, Part
+    from hymeko_x.assets.part import Look, Part
     from hymeko_x.diagnostics import Code, Report
     from hymeko_x.ir.mechanism import Mechanism, Names, RobotEdge, ShapeView
     from hymeko_x.ir.parts import VertexPart
@@ -129,7 +129,8 @@ def _pack_meshes(run: _Packing) -> None:
 
 def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
     """Data that stands in the mechanism itself stays there, unless MuJoCo would refuse it."""
-    from hymeko_x.assets.mesh import Unreadable, inline_part
+    from hymeko_x.assets.mesh import inline_part
+    from hymeko_x.assets.part import Unreadable
 
     solid = any(view.shape.role is not Role.VISUAL for view in users)
     try:
@@ -146,7 +147,8 @@ def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> 
 
 
 def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
-    from hymeko_x.assets.mesh import Unreadable, read_parts
+    from hymeko_x.assets.mesh import read_parts
+    from hymeko_x.assets.part import Unreadable
 
     found = read_file(run.files, mesh.uri or "")
     if found is None:
@@ -248,7 +250,8 @@ def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Part, file: _Fi
 
 def _check_surface(part: Part) -> None:
     """Raises: Unreadable for a mesh that has no surface at all, which nothing can repair."""
-    from hymeko_x.assets.mesh import Unreadable, extents
+    from hymeko_x.assets.measures import extents
+    from hymeko_x.assets.part import Unreadable
 
     _, middle, high = extents(part)
     if middle <= _FLAT * high:
@@ -257,7 +260,7 @@ def _check_surface(part: Part) -> None:
 
 def _refusal(part: Part, suffix: str, data: bytes, *, solid: bool) -> str | None:
     """Why MuJoCo would not take the file as it is, or None when it would."""
-    from hymeko_x.assets.mesh import stl_is_exact
+    from hymeko_x.assets.stl import stl_is_exact
 
     if suffix not in (".stl", ".obj"):
         return f"is a {suffix[1:].upper()} file, which MuJoCo does not read"
@@ -281,7 +284,9 @@ def _objects_in(obj: bytes) -> int:
 
 def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part, stem: str, *, solid: bool, stl: bool = False) -> None:
     """A converted file: STL stays STL where that is enough, all else becomes OBJ."""
-    from hymeko_x.assets.mesh import obj_bytes, stl_bytes, thickened
+    from hymeko_x.assets.measures import thickened
+    from hymeko_x.assets.obj import obj_bytes
+    from hymeko_x.assets.stl import stl_bytes
 
     if (solid and _is_flat(part)) or len(part.points) < _FEWEST_POINTS:
         part = thickened(part, _THICKNESS)
@@ -302,7 +307,7 @@ def _add_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part) -> None:
 
 
 def _is_flat(part: Part) -> bool:
-    from hymeko_x.assets.mesh import extents
+    from hymeko_x.assets.measures import extents
 
     low, _, high = extents(part)
     return low <= _FLAT * high
@@ -310,7 +315,7 @@ def _is_flat(part: Part) -> bool:
 
 def _is_sheet(part: Part, mesh: Mesh) -> bool:
     """Whether MuJoCo would find no volume, so that the mesh has to be declared a surface."""
-    from hymeko_x.assets.mesh import volume_of_sheets
+    from hymeko_x.assets.measures import volume_of_sheets
 
     x, y, z = mesh.scale
     return volume_of_sheets(part) * abs(x * y * z) < _LEAST_VOLUME

@@ -12,6 +12,8 @@ from hymeko_x.assets.polygons import fans
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from hymeko_x.assets.part import Part
+
 _ODD = (b"\\\n", b"\\\r\n", b"\n ", b"\n\t", b"\nv\t", b"\nf\t")
 """Lines that go on in the next one, and lines that do not begin as nearly all do."""
 _WIDTHS = (3, 6)
@@ -52,3 +54,14 @@ def _faces(lines: list[bytes]) -> NDArray[np.int64] | None:
         return None
     text = b" ".join(lines).replace(b"//", b" 0 ").replace(b"/", b" ")
     return fans(sizes, numbers_in(text, np.int64).reshape(-1, width)[:, 0] - 1)
+
+
+def obj_bytes(part: Part) -> bytes:
+    """The part as a Wavefront OBJ file: points to float32 precision, texture coordinates, triangles."""
+    lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (part.points + 0.0).tolist()]
+    if part.uv is not None:
+        lines += [f"vt {u:.7g} {v:.7g}" for u, v in (part.uv + 0.0).tolist()]
+        lines += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in (part.faces + 1).tolist()]
+    else:
+        lines += [f"f {a} {b} {c}" for a, b, c in (part.faces + 1).tolist()]
+    return ("\n".join(lines) + "\n").encode()

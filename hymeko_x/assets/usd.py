@@ -16,7 +16,7 @@ from hymeko_x.ir.rename import names_in_use
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hymeko_x.assets.mesh import Part
+    from hymeko_x.assets.part import Part
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism, Names, RobotEdge, ShapeView
@@ -113,7 +113,7 @@ def _filled(mesh: Mesh, part: Part) -> Mesh:
 
 def _read(mechanism: Mechanism, key: Id, mesh: Mesh, files: Files, report: Report) -> tuple[Part, ...] | None:
     from hymeko_x.assets.colours import read_colours
-    from hymeko_x.assets.mesh import Unreadable
+    from hymeko_x.assets.part import Unreadable
 
     found = read_file(files, mesh.uri or "")
     if found is None:

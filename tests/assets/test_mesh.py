@@ -10,21 +10,11 @@ import pytest
 import trimesh
 from PIL import Image
 
-from hymeko_x.assets.mesh import (
-    Part,
-    Unreadable,
-    extents,
-    inline_part,
-    merged,
-    obj_bytes,
-    read_parts,
-    read_stl,
-    read_whole,
-    stl_bytes,
-    stl_is_exact,
-    thickened,
-    volume_of_sheets,
-)
+from hymeko_x.assets.measures import extents, thickened, volume_of_sheets
+from hymeko_x.assets.mesh import inline_part, merged, read_parts, read_whole
+from hymeko_x.assets.obj import obj_bytes
+from hymeko_x.assets.part import Part, Unreadable
+from hymeko_x.assets.stl import read_stl, stl_bytes, stl_is_exact
 
 BOX = trimesh.creation.box((1.0, 2.0, 3.0))
 STL: bytes = BOX.export(file_type="stl")

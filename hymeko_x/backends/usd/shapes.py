@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Vt
 
-from hymeko_x.assets.mesh import face_normals
+from hymeko_x.assets.measures import face_normals
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put
 from hymeko_x.backends.usd.surfaces import surface_of

@@ -140,7 +140,7 @@ def _says_normals(prim: Prim, draft: Draft) -> bool:
         return False
     import numpy as np
 
-    from hymeko_x.assets.mesh import face_normals
+    from hymeko_x.assets.measures import face_normals
 
     spec = prim.spec.attributes["normals"]
     is_plain = set(spec.ListInfoKeys()) <= _OF_NORMALS and spec.GetInfo("interpolation") == "uniform" and not prim.is_animated("normals")
