@@ -251,7 +251,7 @@ def _direction(build: Build, element: Element) -> tuple[float, float, float]:
 def _read_element(build: Build, key: Id, element: Element) -> None:
     if key.kind in ("body", "world"):
         read_body(build, key, _without(element, "kind"))
-    elif key.kind == "joint" and not element.node.edge:
+    elif key.kind == "joint" and not element.node.edge and _preset(element, "kind") != "joint":
         read_fixed(build, key, element)
     elif key.kind == "joint":
         moves = _preset(element, "moves")

@@ -73,6 +73,13 @@ class Context:
             return value.number * factor_of_unit
         raise self.refuse(item, f"{_name_of(item)} takes a number, not {describe(value)}")
 
+    def whole(self, value: Value | None, item: Item) -> int:
+        """A whole number."""
+        number = self.number(value, "", item)
+        if not number.is_integer():
+            raise self.refuse(item, f"{_name_of(item)} takes whole numbers, not {number}")
+        return int(number)
+
     def numbers(self, value: Value | None, dimension: str, item: Item, count: int | None = None) -> tuple[float, ...]:
         """A list of numbers in SI, of the given length if there is one."""
         if not is_list(value):
@@ -270,16 +277,11 @@ class Block:
                 return context.rgba(value, item)
             case "integers" | "pixels":
                 count = 2 if word.form == "pixels" else None
-                return tuple(self._integer(number, item) for number in context.numbers(value, "", item, count))
+                return tuple(context.whole(part, item) for part in context.numbers(value, "", item, count))
             case "flag":
                 return self._flag(item)
             case _:
                 return context.text(value, item)
-
-    def _integer(self, number: float, item: Field) -> int:
-        if not number.is_integer():
-            raise self.context.refuse(item, f"{_name_of(item)} takes whole numbers, not {number}")
-        return int(number)
 
     def _flag(self, item: Field) -> bool:
         word = "true" if item.value is None else self.context.text(item.value, item)

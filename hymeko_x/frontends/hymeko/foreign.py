@@ -55,7 +55,7 @@ def _read_place(home: _Home, block: Node, place: int, context: Context) -> list[
         if _is_step(item):
             continue
         if isinstance(item, Field) and item.name == PLACE and not isinstance(item.name, QuotedName):
-            place = int(context.number(item.value, "", item))
+            place = context.whole(item.value, item)
         elif isinstance(item, Field) and item.name == INDENT and not isinstance(item.name, QuotedName):
             spacing = _read_indent(item, context)
         elif isinstance(item, Field) and block.parameters is None:
@@ -120,5 +120,5 @@ def read_extra(item: Field, context: Context) -> Extra:
     if len(parts) == 2:
         return Extra(name, context.text(parts[0], item), context.text(parts[1], item))
     if len(parts) == 3:
-        return Extra(name, context.text(parts[0], item), context.text(parts[2], item), int(context.number(parts[1], "", item)))
+        return Extra(name, context.text(parts[0], item), context.text(parts[2], item), context.whole(parts[1], item))
     raise context.refuse(item, f"'{item.name}' takes a text, [path text] or [path place text]")
