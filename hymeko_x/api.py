@@ -84,8 +84,9 @@ def dump(
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
     files = _files_of(robot, packages)
     options = Options(base, actuators, layout, nested, pure=pure, beside=Path(path).stem)
-    result = pipeline.convert(robot, target, options, files, report, _place(path, assets))
-    disk.write_package(result.package, os.fspath(path), files)
+    place = _place(path, assets)
+    result = pipeline.convert(robot, target, options, files, report, place)
+    disk.write_package(result.package, os.fspath(path), files, lambda folder: pipeline.within(folder, robot, target, options, files, place))
     return report
 
 
@@ -139,8 +140,9 @@ def convert(
     robot = pipeline.read(given, _input_format(given, from_format), report)
     form = formats.of_output(os.fspath(target), to_format)
     options = Options(base, actuators, layout, nested, pure=pure, beside=Path(target).stem)
-    result = pipeline.convert(robot, form, options, given.files, report, _place(target, assets))
-    disk.write_package(result.package, os.fspath(target), given.files)
+    place, files = _place(target, assets), given.files
+    result = pipeline.convert(robot, form, options, files, report, place)
+    disk.write_package(result.package, os.fspath(target), files, lambda folder: pipeline.within(folder, robot, form, options, files, place))
     return result
 
 

@@ -5,21 +5,28 @@ from __future__ import annotations
 import errno
 import os
 import stat
+from collections.abc import Callable
 from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
+from shutil import rmtree
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.source import Source
+from hymeko_x.diagnostics import Origin, Refusal, refuse
+from hymeko_x.source import Package, Source
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from hymeko_x.source import Files, Package
+    from hymeko_x.source import Files
 
 MOST_BYTES = 2**30
+
+Move = tuple[Path, Path]
+"""A temporary file, and the place for which it is meant."""
+Within = Callable[[str], Package]
+"""The same output with every file beside the main one below a folder, which ends in a slash."""
 
 
 def open_source(
@@ -55,13 +62,16 @@ def _content(place: Path, origin: Origin) -> bytes:
     return data
 
 
-def write_package(package: Package, path: str, files: Files) -> None:
-    """Write the main file to ``path`` and its assets beside it: first everything as temporary siblings, then all renamed.
+def write_package(package: Package, path: str, files: Files, within: Within | None = None) -> None:
+    """Write the main file to ``path`` and its assets beside it. Who is killed at it leaves the old output or the new one, whole.
+
+    First everything is there as temporary siblings, then all is renamed, the main file last. ``within`` gives the same
+    output with its assets below a folder: such a main file stands in while assets are replaced that the old one refers to.
 
     Raises: Refusal HX002; then no file of an earlier run has been touched, unless the very renaming failed.
     """
     target = Path(path)
-    staged: list[tuple[Path, Path]] = []
+    staged: list[Move] = []
     made: list[Path] = []
     try:
         if not target.parent.is_dir():
@@ -74,12 +84,41 @@ def write_package(package: Package, path: str, files: Files) -> None:
         else:
             staged.append(_stage(target, package.main))
         with _alone_in(target.parent):
+            needed = within if target.is_file() and any(map(_is_replaced, staged[:-1])) else None
+            stand_in = _put_stand_in(target, files, needed) if needed else None
             for temporary, final in staged:
                 temporary.replace(final)
+            if stand_in:
+                rmtree(stand_in, ignore_errors=True)
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
     finally:
         _clean([temporary for temporary, _ in staged], made)
+
+
+def _is_replaced(move: Move) -> bool:
+    """Whether there is a file already, with another content."""
+    temporary, final = move
+    return final.exists() and (temporary.stat().st_size != final.stat().st_size or temporary.read_bytes() != final.read_bytes())
+
+
+def _put_stand_in(target: Path, files: Files, within: Within) -> Path:
+    """Replace the main file by one whose assets are in the folder that is returned, so that those beside it are free."""
+    folder = target.parent / f".hymeko-{os.urandom(6).hex()}.part"
+    staged: list[Move] = []
+    try:
+        package = within(f"{folder.name}/")
+        for name, data in _assets(package, target, files):
+            place = _beside(target, name)
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_bytes(data)
+        staged.append(_stage(target, package.main))
+        staged[0][0].replace(staged[0][1])
+    except (OSError, ValueError, Refusal):
+        rmtree(folder, ignore_errors=True)
+        _clean([temporary for temporary, _ in staged], [])
+        raise
+    return folder
 
 
 @contextmanager
@@ -114,7 +153,7 @@ def _make_folders(folder: Path, made: list[Path]) -> None:
     made += missing
 
 
-def _stage(final: Path, data: bytes) -> tuple[Path, Path]:
+def _stage(final: Path, data: bytes) -> Move:
     """Put the data into a temporary sibling with the permissions of the file that it replaces, or of a new file."""
     real = final.resolve() if final.is_symlink() else final
     if real.is_dir():

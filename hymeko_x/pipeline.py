@@ -174,15 +174,21 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
         return Result(mechanism, package, report, None)
     image = read_back(package, format, files)
     bridge, crossed = aligned(image, mechanism)
-    losses = ledger(with_references_of(packed, mechanism), crossed, bridge, format)
+    moved = with_references_of(packed, mechanism)
+    losses = ledger(moved, crossed, bridge, format)
     carry = None if options.pure else carrier_of(format)
     if carry is None:
         return Result(mechanism, package, report, losses)
-    residue = residue_behind(mechanism, image, bridge, crossed)
+    residue = residue_behind(_standing_in(moved, packed) if options.within else mechanism, image, bridge, crossed)
     bare = package.main
     if not residue.is_empty:
         package = carry(package, print_residue(residue))
     return Result(mechanism, package, report, tuple(replace(loss, fate="carried") for loss in losses), bare)
+
+
+def within(folder: str, mechanism: Mechanism, format: Format, options: Options, files: Files, place: Place = HERE) -> Package:
+    """The package that :func:`convert` makes, with every file beside the main one below this folder, which ends in a slash."""
+    return convert(mechanism, format, replace(options, within=folder), files, Report(), place).package
 
 
 def write_unmeasured(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
@@ -259,6 +265,11 @@ def with_references_of(packed: Mechanism, mechanism: Mechanism) -> Mechanism:
         if isinstance(part, Mesh | Texture) and isinstance(other, Mesh | Texture) and part.uri != other.uri:
             moved[key] = replace(part, uri=other.uri)
     return mechanism.with_graph(mechanism.graph.replace(vertices=moved)) if moved else mechanism
+
+
+def _standing_in(moved: Mechanism, packed: Mechanism) -> Mechanism:
+    """What a file carries that stands in for another one: nothing that leads back to the files which are being replaced."""
+    return replace(moved, extras=packed.extras) if is_native(moved) else moved
 
 
 def _loss(difference: Difference, mechanism: Mechanism) -> Loss:

@@ -14,7 +14,9 @@ from typing import TYPE_CHECKING, Literal
 
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import Shelf
+from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.legalize_native import is_native
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Mesh, Texture
 
 if TYPE_CHECKING:
@@ -83,7 +85,7 @@ def pack(
     """
     policy = POLICIES.get(target, _TEXT)
     chosen = mode or policy.default
-    shelf = Shelf(chosen, out_dir)
+    shelf = Shelf(chosen, out_dir, mechanism.notation(ROOT, WITHIN) or "")
     packer = policy.copy if chosen == "copy" else policy.reference
     packed = packer(mechanism, shelf, files, report)
     return packed, shelf.files, shelf.copies

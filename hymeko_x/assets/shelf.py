@@ -16,10 +16,14 @@ _DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)", re.IGNORECASE)
 
 
 class Shelf:
-    """Where packers put files. ``files`` and ``copies`` are what `source.Package` wants, in the order of arrival."""
+    """Where packers put files. ``files`` and ``copies`` are what `source.Package` wants, in the order of arrival.
 
-    def __init__(self, mode: Literal["copy", "reference"], out_dir: str | None) -> None:
+    With ``within``, which ends in a slash, all of them are below that folder.
+    """
+
+    def __init__(self, mode: Literal["copy", "reference"], out_dir: str | None, within: str = "") -> None:
         self.mode = mode
+        self.within = within
         self.files: dict[str, bytes] = {}
         self.copies: dict[str, str] = {}
         self._out_dir = out_dir
@@ -43,10 +47,10 @@ class Shelf:
         return path
 
     def copy_as(self, path: str, source: str) -> bool:
-        """Let ``source`` be copied to this very relative path; False when another file has the path already."""
+        """Let ``source`` be copied to this very relative path; False when another file has the path already, or all go elsewhere."""
         if self.copies.get(path) == source:
             return True
-        if path.lower() in self._taken:
+        if self.within or path.lower() in self._taken:
             return False
         self._taken.add(path.lower())
         self.copies[path] = source
@@ -73,10 +77,10 @@ class Shelf:
         key = (suffix, sha256(data).hexdigest())
         if key in self._by_content:
             return self._by_content[key], False
-        path, number = f"{folder}/{safe_name(stem)}{suffix}", 1
+        path, number = f"{self.within}{folder}/{safe_name(stem)}{suffix}", 1
         while path.lower() in self._taken:
             number += 1
-            path = f"{folder}/{safe_name(stem)}_{number}{suffix}"
+            path = f"{self.within}{folder}/{safe_name(stem)}_{number}{suffix}"
         self._taken.add(path.lower())
         self._by_content[key] = path
         return path, True

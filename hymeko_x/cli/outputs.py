@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
     from hymeko_x.pipeline import Loss
+    from hymeko_x.source import Files
 
 FAIL_ON = ("error", "loss", "warning")
 
@@ -55,15 +56,15 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
     """
     stem = "" if output.path == "-" else Path(output.path).stem
     options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, stem)
-    what = (given.mechanism, output.format, options, given.source.files, report, _place(output, chosen.assets))
-    result = pipeline.convert(*what) if measured else pipeline.write_unmeasured(*what)
+    what, place = (given.mechanism, output.format, options, given.source.files), _place(output, chosen.assets)
+    result = pipeline.convert(*what, report, place) if measured else pipeline.write_unmeasured(*what, report, place)
     beside = [*result.package.files, *result.package.copies]
     if output.path == "-" and beside:
         names = ", ".join(beside[:3]) + (f" and {len(beside) - 3} more" if len(beside) > 3 else "")
         report.warn(codes.ASSET_NOT_WRITTEN, f"standard output cannot carry {names}", hint="-o FILE writes them beside the file")
     failed = is_reached(chosen.fail_on, report, result.losses)
     if not failed:
-        _write(result.package, output.path, given)
+        _write(result.package, output.path, given.source.files, lambda folder: pipeline.within(folder, *what, place))
     show(report)
     _show_losses(result.losses or ())
     wants_json = getattr(chosen, "json", False)
@@ -82,9 +83,9 @@ def _place(output: Output, assets: Literal["copy", "reference"] | None) -> pipel
     return pipeline.Place(os.path.dirname(output.path) or ".", assets)
 
 
-def _write(package: Package, path: str, given: Input) -> None:
+def _write(package: Package, path: str, files: Files, within: disk.Within) -> None:
     if path != "-":
-        return disk.write_package(package, path, given.source.files)
+        return disk.write_package(package, path, files, within)
     sys.stdout.buffer.write(package.main)
     return None
 

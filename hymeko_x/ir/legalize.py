@@ -7,12 +7,13 @@ second application changes nothing. Backends receive the result and only print.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from hymeko_x.ir.legalize_native import is_native
+from hymeko_x.ir.mechanism import ROOT
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -28,6 +29,7 @@ class Options:
     ``nested``: how a stage of USD is laid out (None = as it was, else one file with flat bodies). ``split``: whether the
     macros of xacro go into a file of their own. ``pure``: whether the output carries nothing but what its format says.
     ``beside``: how files of our own that may stand beside the output begin, which is its own name; empty = there is no place.
+    ``within``: the folder below the output's own that holds every file beside it, and ends in a slash; empty = each where it belongs.
     """
 
     base: Literal["fixed", "free"] | None = None
@@ -37,6 +39,11 @@ class Options:
     split: bool = False
     pure: bool = False
     beside: str = ""
+    within: str = ""
+
+
+WITHIN = "files.within"
+"""The notation of a mechanism whose files stand below a folder of their own; see :class:`Options`."""
 
 
 Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]
@@ -69,4 +76,7 @@ def legalize(mechanism: Mechanism, target: str, options: Options, report: Report
     native = target == "mjcf" and is_native(mechanism)
     for rule in rules_of(target, native=native):
         mechanism = rule(mechanism, options, report)
+    if options.within:
+        own = {**mechanism.notations.get(ROOT, {}), WITHIN: options.within}
+        return replace(mechanism, notations={**mechanism.notations, ROOT: own})
     return mechanism

@@ -19,6 +19,7 @@ from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
 from hymeko_x.backends.hymeko.templates import Instance, templates
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
+from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, Ref, Stereotype
@@ -93,7 +94,7 @@ def _settings(context: Context, plain: bool) -> list[Item]:
         items.append(Node("units", (Field("angle"), Field("rad"))))
     if context.files:
         items.append(Field("files", context.files))
-    notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key != "hymeko.root"}
+    notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key not in ("hymeko.root", WITHIN)}
     if notations:
         items.extend(written_items(notations, flags=False))
     items.extend(foreign_items(_in_place(context.mechanism)[1], at_root=True))

@@ -6,6 +6,8 @@ import re
 from itertools import count
 from typing import TYPE_CHECKING
 
+from hymeko_x.ir.legalize import WITHIN
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Mesh
 from hymeko_x.ir.values import number_text
 
@@ -19,6 +21,7 @@ FOLDER = "shapes"
 
 def files_of_meshes(mechanism: Mechanism) -> dict[Id, str]:
     """The relative path of every mesh that carries its points, made of what is harmless in its name. Equal points share a file."""
+    within = mechanism.notation(ROOT, WITHIN) or ""
     found: dict[Id, str] = {}
     taken: set[str] = set()
     known: dict[tuple[tuple[float, ...], tuple[int, ...]], str] = {}
@@ -31,7 +34,7 @@ def files_of_meshes(mechanism: Mechanism) -> dict[Id, str]:
             stem = re.sub(r"[^A-Za-z0-9_-]+", "_", key.name).strip("_") or "mesh"
             name = next(name for name in _numbered(stem) if name.lower() not in taken)
             taken.add(name.lower())
-            found[key] = known[content] = f"{FOLDER}/{name}.obj"
+            found[key] = known[content] = f"{within}{FOLDER}/{name}.obj"
     return found
 
 

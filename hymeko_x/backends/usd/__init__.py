@@ -22,6 +22,7 @@ from hymeko_x.backends.usd.relations import write_drives, write_mimics
 from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
 from hymeko_x.formats import usd as words
+from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.legalize_usd import LAYOUT, POINTS
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
@@ -53,7 +54,7 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     layers = write_layers(mechanism, report, ".usda")
     beside = mechanism.notation(ROOT, POINTS)
     if beside is not None and len(layers) == 1:
-        layers |= set_points_aside(layers[""], beside)
+        layers |= set_points_aside(layers[""], _within(mechanism) + beside)
     written = {name: encoded(layer) if name.endswith(".usdc") else layer.ExportToString().encode() for name, layer in layers.items()}
     return Package(written.pop(""), written)
 
@@ -63,7 +64,12 @@ def write_layers(mechanism: Mechanism, report: Report, suffix: str) -> dict[str,
     layer = write_layer(mechanism, report)
     if mechanism.notation(ROOT, LAYOUT) != "layered":
         return {"": layer}
-    return split(layer, f"{valid_name(mechanism.name)}_payload", suffix)
+    return split(layer, f"{_within(mechanism)}{valid_name(mechanism.name)}_payload", suffix)
+
+
+def _within(mechanism: Mechanism) -> str:
+    """The folder that holds every file beside the stage."""
+    return mechanism.notation(ROOT, WITHIN) or ""
 
 
 def write_layer(mechanism: Mechanism, report: Report) -> Any:

@@ -18,6 +18,7 @@ from hymeko_x.backends.xacro.remarks import placed
 from hymeko_x.formats import carrier
 from hymeko_x.formats.xacro import macros_file
 from hymeko_x.ir.factor import factor
+from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.legalize_xacro import SPLIT
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
@@ -38,7 +39,7 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     factored = factor(forms, DIALECT)
     if not factored.macros or mechanism.notation(ROOT, SPLIT) is None:
         return Package(print_file(draft, factored, placed(factored, remarks)).encode(), draft.meshes)
-    beside = macros_file(mechanism.name)
+    beside = f"{mechanism.notation(ROOT, WITHIN) or ''}{macros_file(mechanism.name)}"
     main = print_file(draft, factored, placed(factored, remarks), beside)
     return Package(main.encode(), {**draft.meshes, beside: print_macros(draft, factored, placed(factored, remarks)).encode()})
 
