@@ -56,6 +56,8 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
         sheet.homes[view.id] = body
     else:
         spec = sheet.place(view.id, body, "Xform", view.shape.name or view.shape.role.value, below=view.body != WORLD)
+        if view.shape.name is None:  # nobody calls it so
+            spec.info.pop("displayName", None)
     if prim is not None:
         _write_primitive(spec, prim)
     scale = _write_mesh_shape(sheet, spec, view, users, shared) if isinstance(view.shape.geometry, MeshShape) else None

@@ -55,7 +55,7 @@ def read(source: Source, report: Report) -> Mechanism:
                 read_body(prim, draft)
         bare = read_bare_links(prims, draft)
         for prim in prims:
-            if prim.kind == "Material":
+            if prim.kind == "Material" and not prim.is_ours:
                 read_material(prim, draft)
         _read_shapes(prims, draft)
         _read_things(prims, _read_joints(prims, bare, draft), draft)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bindings import bound_to
+from hymeko_x.frontends.usd.prims import BINDING
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Contact
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 PAIRS = "PhysicsFilteredPairsAPI"
 _TARGETS = "physics:filteredPairs"
+_BINDING = f"{BINDING}:physics"
 _FRICTIONS = (
     ("physics:dynamicFriction",),
     ("mjc:torsionalfriction", "newton:torsionalFriction"),
@@ -46,4 +48,8 @@ def friction_of(prim: Prim, draft: Draft) -> tuple[float, ...]:
         if said is None:
             break
         found.append(single(float(said)))
+    if bound.is_ours and prim.targets(_BINDING):
+        draft.take(prim, _BINDING)
+        if BINDING not in prim.properties:
+            draft.take(prim, "@MaterialBindingAPI")
     return tuple(found)

@@ -93,6 +93,11 @@ class Draft:
             return own
         return prim.display_name or prim.name
 
+    def part_name(self, prim: Prim) -> str:
+        """The name that a part keeps by itself, whatever its id is: what people call the prim."""
+        self.take(prim, "displayName")
+        return prim.display_name or prim.name
+
     def note(self, key: Id, name: str, text: str) -> None:
         """Keep how the author wrote something."""
         self.notations.setdefault(key, {})[name] = text

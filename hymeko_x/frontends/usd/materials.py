@@ -30,10 +30,10 @@ def read_material(prim: Prim, draft: Draft) -> None:
     surface = UsdShade.Material(prim.composed).ComputeSurfaceSource()[0]
     shader = surface.GetPrim() if surface else None
     if shader is None or surface.GetShaderId() != PREVIEW:
-        draft.vertices[key] = Material(prim.name)
+        draft.vertices[key] = Material(draft.part_name(prim))
         draft.take(prim, "@type")
         return
-    draft.vertices[key] = _looks(prim, shader)
+    draft.vertices[key] = _looks(draft.part_name(prim), shader)
     draft.take(prim, "@type")
     if _is_plain(prim.composed, shader):
         _take_network(prim, shader, key, draft)
@@ -45,12 +45,13 @@ def bound_material(prim: Prim, draft: Draft) -> Id | None:
     key = draft.materials.get(bound.path) if bound is not None else None
     if key is not None and prim.targets(BINDING) and not prim.composed.GetRelationship(BINDING).GetMetadata("bindMaterialAs"):
         draft.take(prim, BINDING)
-        if not any(name.startswith(f"{BINDING}:") for name in prim.properties):
+        taken = draft.taken.get(prim.path, ())
+        if all(name in taken for name in prim.properties if name.startswith(f"{BINDING}:")):
             draft.take(prim, "@MaterialBindingAPI")
     return key
 
 
-def _looks(prim: Prim, shader: Any) -> Material:
+def _looks(name: str, shader: Any) -> Material:
     colour, opacity = _constant(shader, "diffuseColor"), _constant(shader, "opacity")
     rgba = None
     if colour is not None:
@@ -58,7 +59,7 @@ def _looks(prim: Prim, shader: Any) -> Material:
         rgba = (r, g, b, single(float(opacity)) if opacity is not None else 1.0)
     metallic, roughness = _constant(shader, "metallic"), _constant(shader, "roughness")
     return Material(
-        prim.name,
+        name,
         rgba,
         metallic=None if metallic is None else single(float(metallic)),
         roughness=None if roughness is None else single(float(roughness)),

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 _TYPES = ("PhysicsRevoluteJoint", "PhysicsPrismaticJoint", "PhysicsSphericalJoint")
 _SAME = 1e-5
+"""In rad, and in m or of the distance where that is longer: frames of joints have single precision."""
 
 
 def merge_parallel(joints: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
@@ -39,6 +40,9 @@ def _merged(group: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
         return group
     dofs = tuple(_dof_seen_from(first, joint) for joint in agreeing)
     draft.note(first.id, words.PATH, " ".join(joint.prim.path for joint in agreeing))
+    for joint in agreeing:
+        if joint.prim.display_name == joint.id.name:  # which the dof is called
+            draft.take(joint.prim, "displayName")
     for joint in agreeing[1:]:
         draft.elements[joint.prim.path] = [first.id]
         draft.notations.pop(joint.id, None)
@@ -52,7 +56,8 @@ def _child_at(joint: ReadJoint) -> Pose:
 
 
 def _is_close(a: Pose, b: Pose) -> bool:
-    return max(abs(p - q) for p, q in zip(a.xyz, b.xyz, strict=True)) < _SAME and rotation_angle(a.quat, b.quat) < _SAME
+    size = max(1.0, *map(abs, (*a.xyz, *b.xyz)))
+    return max(abs(p - q) for p, q in zip(a.xyz, b.xyz, strict=True)) < _SAME * size and rotation_angle(a.quat, b.quat) < _SAME
 
 
 def _dof_seen_from(first: ReadJoint, joint: ReadJoint) -> Dof:
@@ -62,7 +67,8 @@ def _dof_seen_from(first: ReadJoint, joint: ReadJoint) -> Dof:
         return dof
     frame = compose(inverse(first.ends[0].pose), joint.ends[0].pose)
     anchor = (0.0, 0.0, 0.0) if dof.kind is DofKind.SLIDE else frame.xyz
-    return replace(dof, axis=unit(rotate(frame.quat, dof.axis)), anchor=_tidy(anchor))
+    axis = dof.axis if dof.kind is DofKind.BALL else unit(rotate(frame.quat, dof.axis))
+    return replace(dof, axis=axis, anchor=_tidy(anchor))
 
 
 def _tidy(vector: tuple[float, float, float]) -> tuple[float, float, float]:

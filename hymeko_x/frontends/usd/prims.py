@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Tf, Usd, Vt
 
+from hymeko_x.formats.usd import PREFIX
+
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
@@ -69,6 +71,11 @@ class Prim:
         """What people call it; empty where nothing is said."""
         shown = self.spec.GetInfo("displayName") if "displayName" in self.said else ""
         return shown if isinstance(shown, str) else ""
+
+    @property
+    def is_ours(self) -> bool:
+        """Whether it stands in a group that our writer made up, and says nothing but what the elements that use it say."""
+        return self.parent is not None and f"{PREFIX}scope" in self.parent.types
 
     @property
     def custom_data(self) -> dict[str, Any]:

@@ -60,7 +60,7 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
     draft.take(prim, "@type", *(name for name in prim.properties if name.startswith(_XFORM)))
     role = _role(prim, draft)
     friction = friction_of(prim, draft) if role is not Role.VISUAL else ()
-    shape = Shape(geometry, role, name=prim.name, rgba=_colour(prim, draft), friction=friction)
+    shape = Shape(geometry, role, name=draft.part_name(prim), rgba=_colour(prim, draft), friction=friction)
     key = draft.own(prim, "shape")
     if said is not None and said != gprims.chosen(geometry):
         draft.note(key, gprims.NOTATION, str(said))
