@@ -9,6 +9,7 @@ import numpy as np
 from hymeko_x.assets.part import MOST_FACES, Look, Part, Unreadable
 from hymeko_x.assets.scene import read_scene
 from hymeko_x.assets.stl import read_stl
+from hymeko_x.assets.weld import joined
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -84,61 +85,19 @@ def _corners(group: list[Part]) -> tuple[NDArray[np.float64], NDArray[np.float64
     return corners, np.concatenate(maps) if len(maps) == len(group) else None
 
 
-def _welded(corners: NDArray[np.float64], uv: NDArray[np.float64] | None, look: Look | None = None) -> Part:
+def _welded(corners: NDArray[Any], uv: NDArray[np.float64] | None, look: Look | None = None) -> Part:
     """Triangles with their common points shared; triangles with two equal corners are left out."""
     flat = corners.reshape(-1, 3)
-    rows = flat if uv is None else np.hstack([flat, uv.reshape(-1, 2)])
-    unique, index = _unique_rows(rows)
-    return Part(unique[:, :3], _without_degenerate(index.reshape(-1, 3)), unique[:, 3:] if uv is not None else None, look)
+    unique, index = joined(flat if uv is None else np.hstack([flat, uv.reshape(-1, 2)]))
+    points, maps = unique[:, :3].astype(np.float64), None if uv is None else unique[:, 3:]
+    return Part(points, _without_degenerate(index.reshape(-1, 3)), maps, look)
 
 
-def _without_degenerate(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+def _without_degenerate(faces: NDArray[Any]) -> NDArray[Any]:
     """The triangles with three different corners."""
     first, second, third = faces.T
-    return np.asarray(faces[(first != second) & (second != third) & (third != first)])
-
-
-def _unique_rows(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The different rows in lexical order, and for each given row its place there.
-
-    Equal rows are brought together by one key for each, so that only the different ones, which are few, are sorted column by column.
-    """
-    rows = np.ascontiguousarray(rows + 0.0)  # so that the zeros of both signs are the same
-    keys = _keys(rows)
-    order = np.argsort(keys)
-    keys = keys[order]
-    starts = np.ones(len(rows), dtype=bool)
-    starts[1:] = keys[1:] != keys[:-1]
-    unique = rows[order[starts]]
-    second = np.lexsort(unique.T[::-1])
-    places = np.empty(len(unique), dtype=np.int64)
-    places[second] = np.arange(len(unique))
-    index = np.empty(len(rows), dtype=np.int64)
-    index[order] = places[np.cumsum(starts) - 1]
-    unique = unique[second]
-    if not np.array_equal(unique[index], rows):  # different rows with one key, or not a number
-        return _sorted_rows(rows)
-    return unique, index
-
-
-def _keys(rows: NDArray[np.float64]) -> NDArray[np.uint64]:
-    """A number for each row that is the same for equal rows, and hardly ever for others."""
-    keys = np.zeros(len(rows), dtype=np.uint64)
-    for column in rows.view(np.uint64).T:
-        keys = (keys ^ column ^ (column >> np.uint64(31))) * np.uint64(0x9E3779B97F4A7C15)
-        keys ^= keys >> np.uint64(32)
-    return keys
-
-
-def _sorted_rows(rows: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """The same by sorting all rows."""
-    order = np.lexsort(rows.T[::-1])
-    ordered = rows[order]
-    starts = np.ones(len(rows), dtype=bool)
-    starts[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
-    index = np.empty(len(rows), dtype=np.int64)
-    index[order] = np.cumsum(starts) - 1
-    return ordered[starts], index
+    is_good = (first != second) & (second != third) & (third != first)
+    return faces if is_good.all() else np.asarray(faces[is_good])
 
 
 def inline_part(points: tuple[float, ...], faces: tuple[int, ...]) -> Part:
@@ -179,17 +138,23 @@ def put_together(tables: list[tuple[NDArray[np.float64], NDArray[Any]]]) -> Part
     """
     if not any(len(faces) for _, faces in tables):
         raise Unreadable("it has no triangles")
-    starts = np.cumsum([0, *(len(points) for points, _ in tables)])
-    points = np.concatenate([points for points, _ in tables])
-    faces = np.concatenate([rows.astype(np.int64) + start for (_, rows), start in zip(tables, starts[:-1], strict=True)])
+    points, faces = tables[0] if len(tables) == 1 else _in_one_table(tables)
     if len(faces) > MOST_FACES:
         raise Unreadable(f"it has {len(faces)} triangles, at most {MOST_FACES} are read")
     used = np.zeros(len(points), dtype=bool)
     used[faces] = True
-    unique, index = _unique_rows(points[used])
-    places = np.zeros(len(points), dtype=np.int64)
-    places[used] = index
-    return Part(unique, _without_degenerate(places[faces]))
+    unique, index = joined(points[used])
+    if len(unique) < len(points):
+        places = np.zeros(len(points), dtype=index.dtype)
+        places[used] = index
+        faces = places[faces]
+    return Part(unique, _without_degenerate(faces))
+
+
+def _in_one_table(tables: list[tuple[NDArray[np.float64], NDArray[Any]]]) -> tuple[NDArray[np.float64], NDArray[Any]]:
+    starts = np.cumsum([0, *(len(points) for points, _ in tables)])
+    points = np.concatenate([points for points, _ in tables])
+    return points, np.concatenate([rows.astype(np.int64) + start for (_, rows), start in zip(tables, starts[:-1], strict=True)])
 
 
 def _plain_tables(data: bytes, suffix: str) -> list[tuple[NDArray[np.float64], NDArray[Any]]] | None:

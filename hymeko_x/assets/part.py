@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,6 +35,6 @@ class Part:
     """
 
     points: NDArray[np.float64]
-    faces: NDArray[np.int64]
+    faces: NDArray[np.signedinteger[Any]]
     uv: NDArray[np.float64] | None = None
     look: Look | None = None

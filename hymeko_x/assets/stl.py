@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,8 +18,8 @@ _STL_HEADER = 80
 _STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
 
 
-def read_stl(data: bytes) -> NDArray[np.float64]:
-    """The corners of the triangles of an STL file, binary or text, as (faces, 3, 3) in its own unit.
+def read_stl(data: bytes) -> NDArray[Any]:
+    """The corners of the triangles of an STL file, binary (single precision) or text (double), as (faces, 3, 3) in its own unit.
 
     Raises: Unreadable.
     """
@@ -47,14 +47,14 @@ def _is_text_stl(data: bytes) -> bool:
     return data[:80].lstrip().lower().startswith(b"solid") and not stl_is_exact(data) and b"facet" in data[:4096].lower()
 
 
-def _binary_corners(data: bytes) -> NDArray[np.float64]:
+def _binary_corners(data: bytes) -> NDArray[np.float32]:
     if len(data) < _STL_HEADER + 4:
         raise Unreadable(f"it has {len(data)} bytes, and an STL file has at least {_STL_HEADER + 4}")
     count, room = stl_faces(data), (len(data) - _STL_HEADER - 4) // _STL_FACE.itemsize
     if count > room:
         raise Unreadable(f"its header promises {count} triangles, and there is room for {room}")
     faces = np.frombuffer(data, _STL_FACE, count, _STL_HEADER + 4)
-    return faces["corners"].astype(np.float64)
+    return faces["corners"].astype(np.float32)
 
 
 def _text_corners(data: bytes) -> NDArray[np.float64]:

@@ -1,0 +1,92 @@
+"""Joining points: equal rows of a table become one.
+
+Arrays are changed in place where that is possible: what a large mesh costs is mostly the memory that is touched.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_ROUNDS = 8
+"""How often rows that share a slot with others look for a new one, before all are sorted instead."""
+_BITS, _HALF = 64, np.uint64(32)
+_ODD = 0x9E3779B97F4A7C15
+
+
+def joined(rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int32]]:
+    """The different rows of floats (n, k) in the order of their first appearance, and for each given row its place there.
+
+    The zeros of both signs are the same; what is not a number equals nothing.
+    """
+    rows = np.ascontiguousarray(rows + rows.dtype.type(0.0))
+    first = _first_equal(rows)
+    new = np.flatnonzero(first == np.arange(len(rows)))
+    places = np.empty(len(rows), dtype=np.int32)
+    places[new] = np.arange(len(new), dtype=np.int32)
+    return rows.take(new, axis=0), places[first]
+
+
+def _first_equal(rows: NDArray[Any]) -> NDArray[np.intp]:
+    """For each row the number of the first one that equals it.
+
+    Equal rows share a slot, and the first row of a slot stands for all in it. Rows that differ from the one that stands for them
+    look for other slots among themselves; that those are few is likely, not certain.
+    """
+    first = _first_in_slots(rows, 0)
+    rest = _strangers(rows, rows, first)
+    for turn in range(1, _ROUNDS):
+        if not len(rest):
+            return first
+        others = rows[rest]
+        own = _first_in_slots(others, turn)
+        first[rest] = rest[own]
+        rest = rest[_strangers(others, others, own)]
+    return _first_by_sorting(rows) if len(rest) else first
+
+
+def _strangers(rows: NDArray[Any], others: NDArray[Any], first: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Which rows differ from those that stand for them."""
+    found = np.flatnonzero(others.take(first, axis=0) != rows) // rows.shape[1]
+    return found[np.diff(found, prepend=-1) > 0]
+
+
+def _first_in_slots(rows: NDArray[Any], turn: int) -> NDArray[np.intp]:
+    """For each row the first one in the same slot. There are as many slots as rows or more; each turn shares them out anew."""
+    bits = len(rows).bit_length()
+    slots = _keys(rows, np.uint64(_ODD + (turn << 33)))
+    slots >>= np.uint64(_BITS - bits)
+    places = slots.view(np.intp)
+    table = np.empty(1 << bits, dtype=np.intp)
+    table[places[::-1]] = np.arange(len(rows) - 1, -1, -1)
+    return table[places]
+
+
+def _keys(rows: NDArray[Any], odd: np.uint64) -> NDArray[np.uint64]:
+    """A number for each row, the same for equal rows, whose leading bits hardly ever are the same for others.
+
+    Source: multiplicative hashing, D. Knuth, The Art of Computer Programming 3, section 6.4.
+    """
+    keys = np.zeros(len(rows), dtype=np.uint64)
+    high = np.empty_like(keys)
+    for column in rows.view(f"u{rows.itemsize}").T:
+        keys += column
+        keys *= odd
+        keys ^= np.right_shift(keys, _HALF, out=high)
+    keys *= odd
+    return keys
+
+
+def _first_by_sorting(rows: NDArray[Any]) -> NDArray[np.intp]:
+    """The same by sorting all rows, whatever they are."""
+    order = np.lexsort(rows.T[::-1])
+    ordered = rows[order]
+    starts = np.ones(len(rows), dtype=bool)
+    starts[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    first = np.empty(len(rows), dtype=np.intp)
+    first[order] = order[starts][np.cumsum(starts) - 1]
+    return first
