@@ -18,19 +18,23 @@ _ODD = (b"\\\n", b"\\\r\n", b"\n ", b"\n\t", b"\nv\t", b"\nf\t")
 """Lines that go on in the next one, and lines that do not begin as nearly all do."""
 _WIDTHS = (3, 6)
 """A point, or a point with a colour."""
+_END, _BLANK, _STROKE, _POINT, _FACE = b"\n /vf"
 
 
 def obj_table(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
     """The points (n, 3) of an OBJ file and its triangles (m, 3) as rows of them; polygons as fans. None where it is not plain.
 
+    Of the corners of a polygon only their points count; normals and texture coordinates are not even turned into numbers.
     Source: B1. Object Files (.obj), Advanced Visualizer Manual.
     """
     if any(odd in data for odd in _ODD):
         return None
-    lines = data.splitlines()
+    text = np.frombuffer(b"\n".join([*(data.splitlines() if b"\r" in data else [data]), b""]), dtype=np.uint8)
+    starts = np.concatenate(([0], np.flatnonzero(text == _END) + 1))
+    is_said = text.take(starts[:-1] + 1, mode="clip") == _BLANK
     try:
-        points = _points([line[2:] for line in lines if line[:2] == b"v "])
-        faces = _faces([line[2:] for line in lines if line[:2] == b"f "])
+        points = _points(*_lines(text, starts, is_said & (text[starts[:-1]] == _POINT)))
+        faces = _faces(*_lines(text, starts, is_said & (text[starts[:-1]] == _FACE)))
     except (ValueError, OverflowError):  # what is not a number, and numbers that are too large
         return None
     if points is None or faces is None or (faces.size and (faces.min() < 0 or faces.max() >= len(points))):
@@ -38,22 +42,47 @@ def obj_table(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]] | No
     return points, faces
 
 
-def _points(lines: list[bytes]) -> NDArray[np.float64] | None:
-    widths = set(map(len, map(bytes.split, lines)))
-    if len(widths) != 1 or not widths <= set(_WIDTHS):
+def _lines(text: NDArray[np.uint8], starts: NDArray[np.intp], is_wanted: NDArray[np.bool_]) -> tuple[NDArray[np.uint8], NDArray[np.intp]]:
+    """Some lines of a text, each with a blank for its first letter, and where each of them begins; at last, where they end."""
+    lengths = np.diff(starts)
+    wanted = text[np.repeat(is_wanted, lengths)]
+    begins = np.concatenate(([0], np.cumsum(lengths[is_wanted])))
+    wanted[begins[:-1]] = _BLANK
+    return wanted, begins
+
+
+def _points(text: NDArray[np.uint8], starts: NDArray[np.intp]) -> NDArray[np.float64] | None:
+    widths = np.diff(np.searchsorted(_words(text), starts))
+    if not len(widths) or widths[0] not in _WIDTHS or (widths != widths[0]).any():
         return None
-    return numbers_in(b" ".join(lines)).reshape(len(lines), -1)[:, :3]
+    return numbers_in(text.tobytes()).reshape(len(widths), int(widths[0]))[:, :3]
 
 
-def _faces(lines: list[bytes]) -> NDArray[np.int64] | None:
+def _faces(text: NDArray[np.uint8], starts: NDArray[np.intp]) -> NDArray[np.int64] | None:
     """Rows of points, from 0; what counts from the end of the file so far comes out below 0. None where corners differ in form."""
-    sizes = np.fromiter(map(len, map(bytes.split, lines)), np.int64, len(lines))
-    strokes = np.fromiter((line.count(b"/") for line in lines), np.int64, len(lines))
-    width = int(strokes[0] // sizes[0]) + 1 if len(lines) and sizes[0] else 1
-    if not np.array_equal(strokes, sizes * (width - 1)):
+    words, strokes = _words(text), np.flatnonzero(text == _STROKE)
+    points = text if not len(strokes) else _before_strokes(text, words, strokes)
+    return None if points is None else fans(np.diff(np.searchsorted(words, starts)), numbers_in(points.tobytes(), np.int64) - 1)
+
+
+def _before_strokes(text: NDArray[np.uint8], words: NDArray[np.intp], strokes: NDArray[np.intp]) -> NDArray[np.uint8] | None:
+    """A text without what stands behind the first stroke of each word; None where not all have equally many strokes."""
+    if not len(words) or len(strokes) % len(words):
         return None
-    text = b" ".join(lines).replace(b"//", b" 0 ").replace(b"/", b" ")
-    return fans(sizes, numbers_in(text, np.int64).reshape(-1, width)[:, 0] - 1)
+    strokes = strokes.reshape(len(words), -1)
+    blanks = np.flatnonzero(text <= _BLANK)
+    ends = blanks[np.searchsorted(blanks, words)]
+    if (strokes[:, 0] < words).any() or (strokes[:, -1] >= ends).any():
+        return None
+    edges = np.stack([strokes[:, 0], ends], axis=1).ravel()
+    lengths = np.diff(edges, prepend=0, append=len(text))
+    return text[np.repeat(np.arange(len(lengths)) % 2 == 0, lengths)]
+
+
+def _words(text: NDArray[np.uint8]) -> NDArray[np.intp]:
+    """Where the words of a text begin that itself begins with a blank."""
+    is_blank = text <= _BLANK
+    return np.flatnonzero(is_blank[:-1] > is_blank[1:]) + 1
 
 
 def obj_bytes(part: Part) -> bytes:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from hymeko_x.ir.parts import Mesh
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
@@ -38,3 +40,10 @@ class Part:
     faces: NDArray[np.signedinteger[Any]]
     uv: NDArray[np.float64] | None = None
     look: Look | None = None
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class FilledMesh(Mesh):
+    """A mesh on its way to a format that holds triangles itself, with those of its file; its own lists stay empty."""
+
+    part: Part

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.assets.part import FilledMesh
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import read_file, stem_of, suffix_of
 from hymeko_x.ir.legalize_native import is_native
@@ -69,7 +70,7 @@ def _pack(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], views: li
     """The mesh as a whole, and for the eye one for each colour; colours of the file count where it has some, as in RViz."""
     seen = [view for view in views if view.shape.role is Role.VISUAL]
     if len(parts) == 1 or len(seen) < len(views) or not views:
-        run.vertices[key] = _filled(mesh, _merged(parts))
+        run.vertices[key] = FilledMesh(mesh.uri, mesh.scale, mesh.name, part=_merged(parts))
     if not seen or not any(part.look for part in parts):
         return
     pieces = [(key if len(parts) == 1 else _own_mesh(run, mesh, part), _material(run, part)) for part in parts]
@@ -92,7 +93,7 @@ def _merged(parts: tuple[Part, ...]) -> Part:
 def _own_mesh(run: _Packing, mesh: Mesh, part: Part) -> Id:
     """What a file shows in one colour, as a mesh of its own."""
     key = run.names.take("mesh", f"{stem_of(mesh.uri or '')}_{part.look.name if part.look else 'plain'}")
-    run.vertices[key] = _filled(Mesh(None, mesh.scale), part)
+    run.vertices[key] = FilledMesh(None, mesh.scale, part=part)
     return key
 
 
@@ -105,10 +106,6 @@ def _material(run: _Packing, part: Part) -> Id | None:
         known = run.materials[part.look.rgba] = run.names.take("material", part.look.name or "material")
         run.vertices[known] = Material(known.name, part.look.rgba)
     return known
-
-
-def _filled(mesh: Mesh, part: Part) -> Mesh:
-    return replace(mesh, vertices=tuple(part.points.ravel().tolist()), faces=tuple(part.faces.ravel().tolist()))
 
 
 def _read(mechanism: Mechanism, key: Id, mesh: Mesh, files: Files, report: Report) -> tuple[Part, ...] | None:

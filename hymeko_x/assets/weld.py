@@ -63,7 +63,7 @@ def _first_in_slots(rows: NDArray[Any], turn: int) -> NDArray[np.intp]:
     places = slots.view(np.intp)
     table = np.empty(1 << bits, dtype=np.intp)
     table[places[::-1]] = np.arange(len(rows) - 1, -1, -1)
-    return table[places]
+    return np.asarray(table[places])
 
 
 def _keys(rows: NDArray[Any], odd: np.uint64) -> NDArray[np.uint64]:

@@ -1,10 +1,12 @@
-"""The triangles of meshes as arrays, once for each mesh: a mesh keeps its numbers as plain tuples, which are slow to turn."""
+"""The triangles of meshes as arrays, once for each mesh: of a file they are arrays already, of a mechanism plain tuples."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+
+from hymeko_x.assets.part import FilledMesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -17,11 +19,19 @@ if TYPE_CHECKING:
 
 def surface_of(mesh: Mesh) -> Surface | None:
     """What of a mesh can be drawn; None without points, with one that single precision cannot hold, or with a broken triangle."""
-    if not mesh.vertices or len(mesh.vertices) % 3 or len(mesh.faces) % 3:
+    table = (mesh.part.points, mesh.part.faces.ravel()) if isinstance(mesh, FilledMesh) else _listed(mesh)
+    if table is None or not len(table[0]):
         return None
     with np.errstate(over="ignore"):
-        points = np.fromiter(mesh.vertices, np.float64, len(mesh.vertices)).astype(np.float32).reshape(-1, 3)
-    faces = np.fromiter(mesh.faces, np.int64, len(mesh.faces))
+        points = table[0].astype(np.float32)
+    faces = table[1]
     if not np.isfinite(points).all() or (faces.size and (faces.min() < 0 or faces.max() >= len(points))):
         return None
     return points, faces.astype(np.int32)
+
+
+def _listed(mesh: Mesh) -> Surface | None:
+    if len(mesh.vertices) % 3 or len(mesh.faces) % 3:
+        return None
+    points = np.fromiter(mesh.vertices, np.float64, len(mesh.vertices)).reshape(-1, 3)
+    return points, np.fromiter(mesh.faces, np.int64, len(mesh.faces))
