@@ -13,19 +13,31 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.values import Vec3
 
+_AT_ONCE = 4096
+"""How many triangles are computed at once: so many that all of it stays in the nearest cache."""
+
 
 def face_normals(points: NDArray[np.float32], corners: NDArray[Any]) -> NDArray[np.float32]:
     """The unit normal of each triangle (n x 3, single precision), by the right hand; z where a triangle has none.
 
     ``points`` is (m, 3), ``corners`` the rows of ``points`` of all triangles, flat.
     """
-    first, second, third = (points[corners[corner::3]].astype(np.float64) for corner in range(3))
-    (ax, ay, az), (bx, by, bz) = (second - first).T, (third - first).T
+    normals = np.empty((len(corners) // 3, 3), dtype=np.float32)
+    for start in range(0, len(normals), _AT_ONCE):
+        some = corners[3 * start : 3 * (start + _AT_ONCE)]
+        normals[start : start + _AT_ONCE] = _normals(points.take(some, axis=0).reshape(-1, 3, 3))
+    return normals
+
+
+def _normals(triangles: NDArray[np.float32]) -> NDArray[np.float64]:
+    ax, ay, az = np.subtract(triangles[:, 1], triangles[:, 0], dtype=np.float64).T
+    bx, by, bz = np.subtract(triangles[:, 2], triangles[:, 0], dtype=np.float64).T
     normals = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
     lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
     flat = ~(lengths > 0.0)
     normals[flat], lengths[flat] = (0.0, 0.0, 1.0), 1.0
-    return np.asarray(normals / lengths[:, None], dtype=np.float32)
+    normals /= lengths[:, None]
+    return normals
 
 
 def volume_of_sheets(part: Part) -> float:

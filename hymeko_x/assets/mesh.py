@@ -61,9 +61,9 @@ def sound(parts: tuple[Part, ...]) -> tuple[Part, ...]:
 
 def _check_collada(data: bytes) -> None:
     """Entities would be expanded, and an archive unpacked to any size."""
-    if b"<!DOCTYPE" in data or b"<!ENTITY" in data:
+    if b"!" in data and (b"<!DOCTYPE" in data or b"<!ENTITY" in data):  # one letter is found much faster than a word
         raise Unreadable("it declares XML entities, which are not expanded")
-    if b"PK\x05\x06" in data[-70_000:]:
+    if data.find(b"PK\x05\x06", -70_000) >= 0:
         raise Unreadable("it is a ZIP archive, which is not unpacked")
 
 

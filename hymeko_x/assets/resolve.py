@@ -149,10 +149,15 @@ class DiskFiles:
         yield from (folder / name for folder in self.search_path)
         if name in self._named_on_search_path:
             yield self._named_on_search_path[name]
-        for folder in self._upwards:
-            if folder.name == name or self._package_name(folder) == name:
+        for folder, names in self._named_upwards:
+            if name in names:
                 yield folder
             yield folder / name
+
+    @cached_property
+    def _named_upwards(self) -> tuple[tuple[Path, tuple[str, str | None]], ...]:
+        """The description's folder and all above it, each with the names that it has as a package."""
+        return tuple((folder, (folder.name, self._package_name(folder))) for folder in self._upwards)
 
     @cached_property
     def _upwards(self) -> tuple[Path, ...]:
@@ -215,6 +220,8 @@ def _is_form(words: list[str], others: list[str]) -> bool:
 
 def _tidy(path: Path) -> Path:
     """The path without `..` where that does not lead through a link to another file."""
+    if ".." not in path.parts:
+        return path
     short = Path(os.path.normpath(path))
     return short if short.exists() and short.samefile(path) else path
 

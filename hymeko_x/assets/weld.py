@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 _ROUNDS = 8
 """How often rows that share a slot with others look for a new one, before all are sorted instead."""
+_LEAST_BITS = 12
+"""Of the number of a slot: a table that fits into the nearest cache costs nothing."""
 _BITS, _HALF = 64, np.uint64(32)
 _ODD = 0x9E3779B97F4A7C15
 
@@ -52,12 +54,14 @@ def _first_equal(rows: NDArray[Any]) -> NDArray[np.intp]:
 def _strangers(rows: NDArray[Any], others: NDArray[Any], first: NDArray[np.intp]) -> NDArray[np.intp]:
     """Which rows differ from those that stand for them."""
     found = np.flatnonzero(others.take(first, axis=0) != rows) // rows.shape[1]
-    return found[np.diff(found, prepend=-1) > 0]
+    is_new = np.ones(len(found), dtype=bool)
+    is_new[1:] = found[1:] != found[:-1]
+    return found[is_new]
 
 
 def _first_in_slots(rows: NDArray[Any], turn: int) -> NDArray[np.intp]:
-    """For each row the first one in the same slot. There are as many slots as rows or more; each turn shares them out anew."""
-    bits = len(rows).bit_length()
+    """For each row the first one in the same slot. There are at least as many slots as rows; each turn shares them out anew."""
+    bits = max(len(rows).bit_length(), _LEAST_BITS)
     slots = _keys(rows, np.uint64(_ODD + (turn << 33)))
     slots >>= np.uint64(_BITS - bits)
     places = slots.view(np.intp)
