@@ -14,11 +14,11 @@ if TYPE_CHECKING:
 
     from hymeko_x.assets.part import Part
 
-_ODD = (b"\\\n", b"\\\r\n", b"\n ", b"\n\t", b"\nv\t", b"\nf\t")
-"""Lines that go on in the next one, and lines that do not begin as nearly all do."""
+_GOES_ON = (b"\\\n", b"\\\r")
+"""The end of a line that goes on in the next one."""
 _WIDTHS = (3, 6)
 """A point, or a point with a colour."""
-_END, _BLANK, _STROKE, _POINT, _FACE = b"\n /vf"
+_END, _TAB, _BLANK, _STROKE, _POINT, _FACE = b"\n\t /vf"
 
 
 def obj_table(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
@@ -27,14 +27,16 @@ def obj_table(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]] | No
     Of the corners of a polygon only their points count; normals and texture coordinates are not even turned into numbers.
     Source: B1. Object Files (.obj), Advanced Visualizer Manual.
     """
-    if any(odd in data for odd in _ODD):
-        return None
     text = np.frombuffer(b"\n".join([*(data.splitlines() if b"\r" in data else [data]), b""]), dtype=np.uint8)
     starts = np.concatenate(([0], np.flatnonzero(text == _END) + 1))
-    is_said = text.take(starts[:-1] + 1, mode="clip") == _BLANK
+    first, second = text[starts[:-1]], text.take(starts[:-1] + 1, mode="clip")
+    is_point, is_face = first == _POINT, first == _FACE
+    is_odd = (first == _BLANK) | (first == _TAB) | ((is_point | is_face) & (second == _TAB))
+    if is_odd.any() or (b"\\" in data and any(end in data for end in _GOES_ON)):
+        return None
     try:
-        points = _points(*_lines(text, starts, is_said & (text[starts[:-1]] == _POINT)))
-        faces = _faces(*_lines(text, starts, is_said & (text[starts[:-1]] == _FACE)))
+        points = _points(*_lines(text, starts, is_point & (second == _BLANK)))
+        faces = _faces(*_lines(text, starts, is_face & (second == _BLANK)))
     except (ValueError, OverflowError):  # what is not a number, and numbers that are too large
         return None
     if points is None or faces is None or (faces.size and (faces.min() < 0 or faces.max() >= len(points))):
@@ -45,7 +47,9 @@ def obj_table(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]] | No
 def _lines(text: NDArray[np.uint8], starts: NDArray[np.intp], is_wanted: NDArray[np.bool_]) -> tuple[NDArray[np.uint8], NDArray[np.intp]]:
     """Some lines of a text, each with a blank for its first letter, and where each of them begins; at last, where they end."""
     lengths = np.diff(starts)
-    wanted = text[np.repeat(is_wanted, lengths)]
+    turns = np.flatnonzero(np.diff(is_wanted, prepend=False, append=False))
+    runs = [text[:0], *(text[first:last] for first, last in starts[turns].reshape(-1, 2).tolist())]
+    wanted = np.concatenate(runs)
     begins = np.concatenate(([0], np.cumsum(lengths[is_wanted])))
     wanted[begins[:-1]] = _BLANK
     return wanted, begins
@@ -66,7 +70,7 @@ def _faces(text: NDArray[np.uint8], starts: NDArray[np.intp]) -> NDArray[np.int6
 
 
 def _before_strokes(text: NDArray[np.uint8], words: NDArray[np.intp], strokes: NDArray[np.intp]) -> NDArray[np.uint8] | None:
-    """A text without what stands behind the first stroke of each word; None where not all have equally many strokes."""
+    """A text with blanks for what stands behind the first stroke of each word; None where not all have equally many strokes."""
     if not len(words) or len(strokes) % len(words):
         return None
     strokes = strokes.reshape(len(words), -1)
@@ -74,9 +78,10 @@ def _before_strokes(text: NDArray[np.uint8], words: NDArray[np.intp], strokes: N
     ends = blanks[np.searchsorted(blanks, words)]
     if (strokes[:, 0] < words).any() or (strokes[:, -1] >= ends).any():
         return None
-    edges = np.stack([strokes[:, 0], ends], axis=1).ravel()
-    lengths = np.diff(edges, prepend=0, append=len(text))
-    return text[np.repeat(np.arange(len(lengths)) % 2 == 0, lengths)]
+    is_behind = np.zeros(len(text), dtype=np.int8)
+    is_behind[strokes[:, 0]], is_behind[ends] = 1, -1
+    np.cumsum(is_behind, dtype=np.int8, out=is_behind)
+    return np.where(is_behind, np.uint8(_BLANK), text)
 
 
 def _words(text: NDArray[np.uint8]) -> NDArray[np.intp]:

@@ -1,6 +1,6 @@
 """Joining points: equal rows of a table become one.
 
-Arrays are changed in place where that is possible: what a large mesh costs is mostly the memory that is touched.
+Arrays are changed in place or made for a part at a time: what a large mesh costs is mostly the memory that is touched.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 _ROUNDS = 8
 """How often rows that share a slot with others look for a new one, before all are sorted instead."""
+_AT_ONCE = 16384
 _LEAST_BITS = 12
 """Of the number of a slot: a table that fits into the nearest cache costs nothing."""
 _BITS, _HALF = 64, np.uint64(32)
@@ -25,12 +26,11 @@ def joined(rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int32]]:
 
     The zeros of both signs are the same; what is not a number equals nothing.
     """
-    rows = np.ascontiguousarray(rows + rows.dtype.type(0.0))
     first = _first_equal(rows)
     new = np.flatnonzero(first == np.arange(len(rows)))
     places = np.empty(len(rows), dtype=np.int32)
     places[new] = np.arange(len(new), dtype=np.int32)
-    return rows.take(new, axis=0), places[first]
+    return rows.take(new, axis=0) + rows.dtype.type(0.0), places[first]
 
 
 def _first_equal(rows: NDArray[Any]) -> NDArray[np.intp]:
@@ -56,18 +56,19 @@ def _strangers(rows: NDArray[Any], others: NDArray[Any], first: NDArray[np.intp]
     found = np.flatnonzero(others.take(first, axis=0) != rows) // rows.shape[1]
     is_new = np.ones(len(found), dtype=bool)
     is_new[1:] = found[1:] != found[:-1]
-    return found[is_new]
+    return np.asarray(found[is_new])
 
 
 def _first_in_slots(rows: NDArray[Any], turn: int) -> NDArray[np.intp]:
     """For each row the first one in the same slot. There are at least as many slots as rows; each turn shares them out anew."""
     bits = max(len(rows).bit_length(), _LEAST_BITS)
-    slots = _keys(rows, np.uint64(_ODD + (turn << 33)))
-    slots >>= np.uint64(_BITS - bits)
-    places = slots.view(np.intp)
+    slots = np.empty(len(rows), dtype=np.intp)
+    for start in range(0, len(rows), _AT_ONCE):
+        keys = _keys(rows[start : start + _AT_ONCE], np.uint64(_ODD + (turn << 33)))
+        slots[start : start + _AT_ONCE] = keys >> np.uint64(_BITS - bits)
     table = np.empty(1 << bits, dtype=np.intp)
-    table[places[::-1]] = np.arange(len(rows) - 1, -1, -1)
-    return np.asarray(table[places])
+    table[slots[::-1]] = np.arange(len(rows) - 1, -1, -1)
+    return np.asarray(table[slots])
 
 
 def _keys(rows: NDArray[Any], odd: np.uint64) -> NDArray[np.uint64]:
@@ -77,8 +78,8 @@ def _keys(rows: NDArray[Any], odd: np.uint64) -> NDArray[np.uint64]:
     """
     keys = np.zeros(len(rows), dtype=np.uint64)
     high = np.empty_like(keys)
-    for column in rows.view(f"u{rows.itemsize}").T:
-        keys += column
+    for column in rows.T:
+        keys += (column + rows.dtype.type(0.0)).view(f"u{rows.itemsize}")
         keys *= odd
         keys ^= np.right_shift(keys, _HALF, out=high)
     keys *= odd
