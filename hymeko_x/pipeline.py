@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal, Protocol
 
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
+from hymeko_x.assets.stored import with_stored_points
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.carrier import taken_off
 from hymeko_x.formats.usd import POSE
@@ -205,7 +206,7 @@ def _written(
     """The package, and the mechanism as it was printed."""
     backend = writer(format)
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
-    mechanism = _explicit(mechanism, format, files, report)
+    mechanism = _explicit(with_stored_points(mechanism, format.name, files, report), format, files, report)
     legal = legalize(mechanism, format.name, options, report)
     packed, new, copies = pack(legal, format.name, files, place.assets, report, out_dir=place.folder)
     package = backend(packed, report)
@@ -262,7 +263,7 @@ def with_references_of(packed: Mechanism, mechanism: Mechanism) -> Mechanism:
     moved: dict[Id, VertexPart] = {}
     for key, part in mechanism.graph.vertices.items():
         other = packed.graph.vertices.get(key)
-        if isinstance(part, Mesh | Texture) and isinstance(other, Mesh | Texture) and part.uri != other.uri:
+        if isinstance(part, Mesh | Texture) and isinstance(other, Mesh | Texture) and other.uri and part.uri != other.uri:
             moved[key] = replace(part, uri=other.uri)
     return mechanism.with_graph(mechanism.graph.replace(vertices=moved)) if moved else mechanism
 

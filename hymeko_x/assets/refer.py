@@ -58,7 +58,7 @@ def keep_references(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
 
 def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> str | None:
     """The uri to write, or None when there is no such file. What is kept because it is a package's is not looked for."""
-    if _REMOTE.match(uri) or (keep is not Keep.NOTHING and _PACKAGE.match(uri)):
+    if _REMOTE.match(uri) or (keep is not Keep.NOTHING and is_of_package(uri)):
         return uri
     path = files.find(uri)
     if path is None:
@@ -70,6 +70,11 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> st
         return uri
     found = read_file(files, uri)
     return None if found is None else shelf.copy(folder, stem_of(uri), suffix_of(path), *found)
+
+
+def is_of_package(uri: str) -> bool:
+    """Whether the uri names a package, and means the same from everywhere."""
+    return _PACKAGE.match(uri) is not None
 
 
 def _is_below(uri: str) -> bool:

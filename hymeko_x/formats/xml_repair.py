@@ -102,8 +102,7 @@ def _tidy_attributes(element: Any) -> None:
     good = {name: value for name, value in reversed(items) if _NAME.fullmatch(name)}
     if len(good) == len(items):
         return
-    for name, _ in items:
-        del element.attrib[name]
+    element.attrib.clear()
     for name, value in reversed(good.items()):
         element.set(name, value)
 

@@ -100,7 +100,8 @@ class Mechanism:
     ``notations`` keeps, by element and key, how an author wrote what he wrote where the value itself cannot remember
     it; ``stereotypes`` the classes, macros and templates that elements were made from; ``layout`` the order in
     which the author wrote the elements (of any kind), as far as known; ``places`` by uri how the file that carried the
-    mechanism calls a mesh or an image, which may lie there and no longer where the uri says.
+    mechanism calls a mesh or an image, which may lie there and no longer where the uri says; ``stored`` the points that
+    this file itself has of a mesh by its uri, which stand in where there is no such file.
     """
 
     name: str
@@ -111,6 +112,7 @@ class Mechanism:
     stereotypes: Mapping[Id, tuple[str, ...]] = field(default_factory=dict, compare=False)
     layout: tuple[Id, ...] = field(default=(), compare=False)
     places: Mapping[str, str] = field(default_factory=dict, compare=False)
+    stored: Mapping[str, parts.Mesh] = field(default_factory=dict, compare=False)
 
     __hash__ = None  # type: ignore[assignment]
 

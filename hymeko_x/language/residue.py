@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 VERSION = 1.0
 _EDGES = frozenset(kind for part, kind in KINDS.items() if part in get_args(EdgePart))
 _SIGNS = {1: "+", -1: "-", 0: "~"}
+_SIGN_OF = {text: sign for sign, text in _SIGNS.items()}
 _CLASSES = {kind: part for part, kind in KINDS.items()}
 
 _NO_GROUP = "alone"
@@ -338,7 +339,9 @@ def _edge_part(data: EdgePart) -> EdgePart:
 
 def _arc(item: ArcItem) -> RobotArc:
     kind, name = map(str, item.ref.path)
-    sign = next(sign for sign, text in _SIGNS.items() if text == item.ref.direction)
+    sign = _SIGN_OF.get(item.ref.direction)
+    if sign is None:
+        raise ValueError(f"no direction of an arc: {item.ref.direction}")
     weight: Weight | None = None if item.weight is None else decoded(item.weight)
     return Arc(Id(kind, name), sign, weight, str(item.role))
 

@@ -16,6 +16,7 @@ from hymeko_x.ir.residue.follow import renamed_since, with_new_names, with_old_n
 from hymeko_x.ir.residue.order import by_kind, laid_out, moved
 from hymeko_x.ir.residue.paths import TURN, default_at, digest, get, guard_of, put
 from hymeko_x.ir.residue.prints import print_of, print_of_extra, shape_group, weight_print
+from hymeko_x.ir.residue.stored import stored_points
 from hymeko_x.ir.residue.types import is_sound, settled
 
 if TYPE_CHECKING:
@@ -64,7 +65,8 @@ class _Merge:
         removed = self._remove(kept)
         self._let_nothing_dangle(removed)
         merged = replace(self.image, name=name, graph=self._ordered(), places=dict(self._places()))
-        return _with_sides(merged, self.residue, self.image)
+        stored = stored_points(merged, self.image)
+        return _with_sides(replace(merged, stored=stored) if stored else merged, self.residue, self.image)
 
     # ---- fields ------------------------------------------------------------------------------------------------------------
 
@@ -149,7 +151,7 @@ class _Merge:
         gone: dict[Id, VertexPart | RobotEdge] = {}
         for removal in self.residue.removals:
             key = removal.element
-            if key in kept or key not in self.image.graph:
+            if key in kept or key in gone or key not in self.image.graph:
                 continue
             if not self._is_untouched(removal):
                 self._say(key, "was edited, and stays")

@@ -49,15 +49,19 @@ def hints_of(kind: Any) -> dict[str, Any]:
     return get_type_hints(kind, {**vars(graph), **vars(mechanism), **vars(parts), **vars(values)})
 
 
-_WHOLE = frozenset({tuple[int, ...], tuple[int, int] | None})
+_WHOLE = frozenset({int, tuple[int, ...], tuple[int, int] | None})
 """The types of fields that hold whole numbers."""
 
 
 def settled(owner: type, name: object, value: object) -> object:
     """A value for a field of a part, with whole numbers where the field has such: a text knows but one kind of number."""
-    if not isinstance(value, tuple) or hints_of(owner).get(name) not in _WHOLE:  # type: ignore[call-overload]
+    if not isinstance(value, tuple | float) or hints_of(owner).get(name) not in _WHOLE:  # type: ignore[call-overload]
         return value
-    return tuple(int(item) if isinstance(item, float) and item.is_integer() else item for item in value)
+    return tuple(map(_whole, value)) if isinstance(value, tuple) else _whole(value)
+
+
+def _whole(value: object) -> object:
+    return int(value) if isinstance(value, float) and value.is_integer() else value
 
 
 def fits(value: object, hint: Any) -> bool:

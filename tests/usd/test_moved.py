@@ -1,0 +1,69 @@
+"""A stage without the mesh files of its source: what it shows leaves it as files again."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+import hymeko_x as hx
+from tests.assets.test_mesh import dae
+
+URDF = """<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual><origin xyz="0 0 1" rpy="0 1 0"/><geometry><mesh filename="{visual}" scale="2 -3 1"/></geometry></visual>
+<collision><geometry><mesh filename="{collision}"/></geometry></collision></link></robot>"""
+
+
+def moved(folder: Path, visual: str = "a.dae", collision: str = "b.stl") -> tuple[Path, Path]:
+    """A URDF with its mesh files, and a stage that was made of it in another folder."""
+    (folder / "home").mkdir()
+    (folder / "away").mkdir()
+    source = folder / "home" / "r.urdf"
+    source.write_text(URDF.format(visual=visual, collision=collision))
+    (folder / "home" / "a.dae").write_bytes(dae())
+    ball = trimesh.creation.icosphere(subdivisions=2, radius=0.1)
+    ball.vertices += (0.123456789, 0.0, 0.0)
+    ball.export(folder / "home" / "b.stl")
+    stage = folder / "away" / "r.usdc"
+    hx.convert(source, stage, packages={"p": folder / "home"})
+    return source, stage
+
+
+@pytest.mark.parametrize("target", ["back.urdf", "back.xml", "back.usda"])
+def test_what_the_stage_has_of_a_mesh_stands_in_for_its_file(target: str, tmp_path: Path) -> None:
+    source, stage = moved(tmp_path)
+    result = hx.convert(stage, tmp_path / "away" / target)
+    assert [item.code.id for item in result.report if "becomes the points" in item.message] == ["HX201", "HX201"]
+    verdict = hx.verify(source, tmp_path / "away" / target)
+    assert (verdict.verdict, [note for note in verdict.not_compared if "not found" in note]) == ("same", [])
+
+
+def test_the_points_are_those_of_the_file_in_single_precision(tmp_path: Path) -> None:
+    _, stage = moved(tmp_path)
+    hx.convert(stage, tmp_path / "away" / "back.urdf")
+    (written,) = [path for path in (tmp_path / "away").rglob("*.obj") if path.stem == "b"]
+    before, after = (trimesh.load(path, process=False).triangles.astype(np.float32) for path in (tmp_path / "home" / "b.stl", written))
+    assert np.array_equal(before, after)
+
+
+def test_at_home_and_for_packages_of_ros_the_file_is_named_as_before(tmp_path: Path) -> None:
+    source, stage = moved(tmp_path, "package://p/a.dae", "package://p/b.stl")
+    hx.convert(stage, tmp_path / "away" / "back.urdf")
+    assert "package://p/a.dae" in (tmp_path / "away" / "back.urdf").read_text()
+    at_home = stage.rename(tmp_path / "home" / "r.usdc")
+    hx.convert(at_home, tmp_path / "home" / "back.urdf")
+    assert hx.diff(hx.load(source), hx.load(tmp_path / "home" / "back.urdf")) == ()
+    assert not (tmp_path / "home" / "shapes").exists()
+
+
+def test_several_meshes_in_several_colours_at_one_place_are_not_mixed_up(tmp_path: Path) -> None:
+    source, stage = moved(tmp_path)
+    twice = source.read_text().replace("<collision>", '<visual><geometry><mesh filename="c.dae"/></geometry></visual><collision>')
+    source.write_text(twice.replace('<origin xyz="0 0 1" rpy="0 1 0"/>', "").replace(' scale="2 -3 1"', ""))
+    (tmp_path / "home" / "c.dae").write_bytes(dae().replace(b"1 0 0 1", b"0.5 0.5 0 1"))
+    hx.convert(source, stage)
+    report = hx.convert(stage, tmp_path / "away" / "back.urdf").report
+    said = {item.element: "becomes the points" in item.message for item in report if item.code.id == "HX201"}
+    assert said == {"mesh 'a'": False, "mesh 'c'": False, "mesh 'b'": True}
