@@ -219,8 +219,11 @@ def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report
         return mechanism
     from hymeko_x.frontends.mjcf.weigh import weigh
 
-    native = legalize(mechanism, formats.MJCF.name, Options(), Report())
-    return weigh(mechanism, native, writer(formats.MJCF)(native, Report()).main, files, report)
+    def printed() -> tuple[Mechanism, bytes]:
+        native = legalize(mechanism, formats.MJCF.name, Options(), Report())
+        return native, writer(formats.MJCF)(native, Report()).main
+
+    return weigh(mechanism, printed, files, report)
 
 
 def read_back(package: Package, format: Format, files: Files) -> Mechanism:

@@ -30,6 +30,7 @@ FAMILIES: Mapping[str, str] = MappingProxyType(
 
 TURNS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
 """The attributes that say an orientation; an element's own replaces whichever the class has."""
+_TURNS = frozenset(TURNS)
 
 ACTUATORS = frozenset(
     ("general", "motor", "position", "velocity", "intvelocity", "orientation", "pid", "damper", "cylinder", "muscle", "adhesion", "dcmotor")
@@ -71,6 +72,7 @@ class Classes:
 
     def __init__(self, sections: Iterable[Element] = ()) -> None:
         self._classes: dict[str, dict[str, Attributes]] = {MAIN: {}}
+        self._given: dict[tuple[str, str], Mapping[str, str]] = {}
         for section in sections:
             self._add(section)
 
@@ -105,7 +107,14 @@ class Classes:
 
     def of(self, tag: str, name: str | None) -> Mapping[str, str]:
         """What the class gives to elements of this tag; nothing where there is no such class."""
-        found = self._classes.get(name or MAIN, {})
+        place = tag, name or MAIN
+        given = self._given.get(place)
+        if given is None:
+            given = self._given[place] = self._look_up(*place)
+        return given
+
+    def _look_up(self, tag: str, name: str) -> Mapping[str, str]:
+        found = self._classes.get(name, {})
         if tag in ACTUATORS and _ANY_ACTUATOR in found:
             return {**found[_ANY_ACTUATOR], **found.get(tag, _NOTHING)}
         return found.get(FAMILIES.get(tag, tag.partition("@")[0]), _NOTHING)
@@ -138,13 +147,12 @@ def merge(base: Mapping[str, str], own: Mapping[str, str]) -> Mapping[str, str]:
     if not own:
         return base
     merged = {**base, **own}
-    if any(turn in own for turn in TURNS):
-        for turn in TURNS:
-            if turn in base and turn not in own:
-                del merged[turn]
-    for name in PARTIAL:
-        if name in own and name in base:
-            merged[name] = _completed(own[name], base[name])
+    both = base.keys() & own.keys()
+    for name in PARTIAL & both:
+        merged[name] = _completed(own[name], base[name])
+    if not _TURNS.isdisjoint(own):
+        for turn in _TURNS & base.keys() - own.keys():
+            del merged[turn]
     return merged
 
 

@@ -7,7 +7,7 @@ MuJoCo makes of them, so that two ways of saying the same can be told from two w
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -76,36 +76,42 @@ class Group:
 class Plan:
     """How to read all groups of an element without asking each of them: most elements say few of their attributes.
 
-    ``silent`` are the values of the groups of which nothing is said; ``places`` are, by attribute, the groups that look at it,
-    and ``always`` those that have to be asked anyway.
+    ``silent`` are the values of the groups of which the element itself says nothing, only ``base``, which its class gives;
+    ``places`` are, by attribute, the groups that look at it, and ``always`` those that have to be asked anyway.
     """
 
     groups: tuple[Group, ...]
+    base: Mapping[str, str]
     silent: dict[str, Any]
     places: Mapping[str, tuple[int, ...]]
     always: frozenset[int]
+    known: dict[tuple[str, ...], list[Group]] = field(default_factory=dict)
 
     def said_in(self, attributes: Iterable[str]) -> list[Group]:
         """The groups that these attributes are for, in order."""
-        found = set(self.always)
-        for name in attributes:
-            found.update(self.places.get(name, ()))
-        return [self.groups[place] for place in sorted(found)]
+        names = tuple(attributes)
+        groups = self.known.get(names)
+        if groups is None:
+            found = set(self.always)
+            for name in names:
+                found.update(self.places.get(name, ()))
+            groups = self.known[names] = [self.groups[place] for place in sorted(found)]
+        return groups
 
 
-def plan_of(groups: tuple[Group, ...], settings: Settings) -> Plan:
-    """The plan of a file with these settings."""
+def plan_of(groups: tuple[Group, ...], settings: Settings, base: Mapping[str, str]) -> Plan:
+    """The plan for elements to which their class gives ``base``, in a file with these settings."""
     silent: dict[str, Any] = {}
     places: dict[str, tuple[int, ...]] = {}
     always: set[int] = set()
     for place, group in enumerate(groups):
         try:
-            silent[group.key] = group.read({}, settings)
+            silent[group.key] = group.read(base, settings)
         except BadAttribute:
             always.add(place)
         for name in (*group.names, *group.needs):
             places[name] = (*places.get(name, ()), place)
-    return Plan(groups, silent, places, frozenset(always))
+    return Plan(groups, base, silent, places, frozenset(always))
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from xml.parsers import expat
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.formats.xml_parse import MAX_BYTES
+from hymeko_x.formats.xml_parse import MAX_BYTES, has_words
 from hymeko_x.formats.xml_parse import parse as parse_leniently
 from hymeko_x.formats.xml_print import escaped
 
@@ -87,37 +87,44 @@ class _Builder:
         self._stack: list[Element] = [Element("", {})]
         parser = expat.ParserCreate()
         parser.buffer_text = True
-        parser.StartElementHandler = self._start
-        parser.EndElementHandler = self._end
         parser.CommentHandler = self._comment
-        parser.CharacterDataHandler = self._characters
         parser.EntityDeclHandler = self._entity
         parser.ProcessingInstructionHandler = self._instruction
         self._parser = parser
 
     def read(self, data: bytes) -> Element:
+        self._set_handlers(data)
         self._parser.Parse(data, True)
         around = self._stack[0].children
         root = next(child for child in around if child.tag != COMMENT)
         root.children[:0] = [child for child in around if child.tag == COMMENT]
         return root
 
-    def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        element = Element(tag, attributes, self._file, self._parser.CurrentLineNumber)
-        self._stack[-1].children.append(element)
-        self._stack.append(element)
+    def _set_handlers(self, data: bytes) -> None:
+        """The handlers of elements and text; called for every element, so they are closures."""
+        parser, file, stack, make = self._parser, self._file, self._stack, Element
 
-    def _end(self, tag: str) -> None:
-        self._stack.pop()
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            element = make(tag, attributes, file, parser.CurrentLineNumber)
+            stack[-1].children.append(element)
+            stack.append(element)
+
+        def end(tag: str) -> None:
+            stack.pop()
+
+        def characters(text: str) -> None:
+            if not text.isspace():
+                stack[-1].words += text
+
+        parser.StartElementHandler = start
+        parser.EndElementHandler = end
+        if has_words(data):  # else there is nothing but blanks, of which a file has thousands
+            parser.CharacterDataHandler = characters
 
     def _comment(self, text: str) -> None:
         element = Element(COMMENT, {}, self._file, self._parser.CurrentLineNumber)
         element.words = text.strip()
         self._stack[-1].children.append(element)
-
-    def _characters(self, text: str) -> None:
-        if text.strip():
-            self._stack[-1].words += text
 
     def _instruction(self, target: str, data: str) -> None:
         """Before the root they are read over; inside of it MuJoCo stops reading."""

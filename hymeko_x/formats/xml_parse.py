@@ -74,6 +74,13 @@ def _utf8(source: Source, report: Report) -> bytes:
 
 
 _WORDS = re.compile(rb">\s*[^\s<]|<!\[CDATA\[")
+
+
+def has_words(data: bytes) -> bool:
+    """Whether there is anything but blanks between elements; in doubt, as in UTF-16, there is."""
+    return _WORDS.search(data) is not None
+
+
 _ENCODING = re.compile(rb"""\s*<\?xml[^?>]*encoding\s*=\s*["']([\w.-]+)""")
 
 
@@ -141,7 +148,7 @@ class Builder:
 
         parser.StartElementHandler = start
         parser.EndElementHandler = end
-        if _WORDS.search(self._data):  # else there is nothing but blanks, of which a file has thousands
+        if has_words(self._data):  # else there is nothing but blanks, of which a file has thousands
             parser.CharacterDataHandler = characters
         parser.CommentHandler = lambda text: aside(COMMENT_NODE, text)
         parser.ProcessingInstructionHandler = lambda target, text: aside(INSTRUCTION_NODE, f"{target} {text}".strip())

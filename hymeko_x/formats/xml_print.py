@@ -128,24 +128,35 @@ def without_declared(text: str, declared: Mapping[str, str]) -> str:
 
 def render(tag: Tag, depth: int = 0) -> list[str]:
     """The lines of a tag, two blanks per level. Foreign text keeps its own inner indentation."""
-    indent = _INDENT * depth
-    start = f"{indent}<{tag.name}{attributes_text(tag.attributes)}"
-    if not tag.children:
-        return [start + "/>"]
-    if len(tag.children) == 1 and isinstance(tag.children[0], str) and not tag.children[0].startswith("<"):
-        return [f"{start}>{tag.children[0]}</{tag.name}>"]
-    lines = [start + ">"]
-    for child in tag.children:
-        if isinstance(child, Tag):
-            lines += render(child, depth + 1)
-        else:
-            lines.append(f"{indent}{_INDENT}{child}")
-    lines.append(f"{indent}</{tag.name}>")
+    lines: list[str] = []
+    _render(tag, _INDENT * depth, lines)
     return lines
+
+
+def _render(tag: Tag, indent: str, lines: list[str]) -> None:
+    name, children = tag.name, tag.children
+    start = f"{indent}<{name}{attributes_text(tag.attributes)}"
+    if not children:
+        lines.append(start + "/>")
+        return
+    first = children[0]
+    if len(children) == 1 and isinstance(first, str) and not first.startswith("<"):
+        lines.append(f"{start}>{first}</{name}>")
+        return
+    lines.append(start + ">")
+    inner = indent + _INDENT
+    for child in children:
+        if isinstance(child, str):
+            lines.append(inner + child)
+        else:
+            _render(child, inner, lines)
+    lines.append(f"{indent}</{name}>")
 
 
 def attributes_text(attributes: dict[str, str]) -> str:
     """Attributes as they stand in a start tag, each with a blank before it."""
+    if _SPECIAL.search("".join(attributes.values())) is None:
+        return "".join([f' {name}="{value}"' for name, value in attributes.items()])
     return "".join([f' {name}="{escaped(value)}"' for name, value in attributes.items()])
 
 

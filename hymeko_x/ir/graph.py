@@ -22,6 +22,7 @@ K = TypeVar("K", bound=Hashable)
 V = TypeVar("V")
 E = TypeVar("E")
 W = TypeVar("W")
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,11 +106,15 @@ class Hypergraph(Generic[K, V, E, W]):
         edges: Mapping[K, Edge[K, E, W]] | None = None,
         without: Iterable[K] = (),
     ) -> Hypergraph[K, V, E, W]:
-        """A graph with these elements added or exchanged in their place, and without the ones named."""
+        """A graph with these elements added or exchanged in their place, and without the ones named.
+
+        The table of vertices or of edges in which nothing changes is the same object as before.
+        """
         gone = set(without)
-        new_vertices = {**self.vertices, **(vertices or {})}
-        new_edges = {**self.edges, **(edges or {})}
-        return Hypergraph({k: v for k, v in new_vertices.items() if k not in gone}, {k: e for k, e in new_edges.items() if k not in gone})
+        changed: Hypergraph[K, V, E, W] = Hypergraph()
+        object.__setattr__(changed, "vertices", _changed(self.vertices, vertices, gone))
+        object.__setattr__(changed, "edges", _changed(self.edges, edges, gone))
+        return changed
 
     # ---- the formalism's matrices (scipy.sparse) -----------------------------------------------------------------------------
 
@@ -194,6 +199,14 @@ class Hypergraph(Generic[K, V, E, W]):
         tensor = coo_array(([1] * len(first), (first, second, third)), shape=(size, size, len(self.edges)), dtype="int64")
         tensor.sum_duplicates()
         return tensor
+
+
+def _changed(table: Mapping[K, T], new: Mapping[K, T] | None, gone: set[K]) -> Mapping[K, T]:
+    """A table of a graph with these entries, and without those."""
+    if not new and gone.isdisjoint(table):
+        return table
+    merged = {**table, **(new or {})}
+    return MappingProxyType(merged if gone.isdisjoint(merged) else {key: value for key, value in merged.items() if key not in gone})
 
 
 def _square(incidence: csr_array, *, transpose_first: bool) -> csr_array:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import cache
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
@@ -107,6 +108,7 @@ def _in_place(view: ShapeView, geometry: Geometry, pose: Pose, mesh: Id | None) 
     return shape_edge(replace(view.shape, geometry=geometry), view.body, compose(view.pose, pose), mesh, view.material)
 
 
+@cache
 def _unit_sphere() -> tuple[tuple[float, ...], tuple[int, ...]]:
     """Points and triangles of a sphere of radius 1 m, in rings about z; a pole is a point, a ring has twice as many as rings."""
     around = 2 * _RINGS

@@ -5,7 +5,7 @@ Everything that a frontend returns and a backend takes. Ids are unique per kind,
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
@@ -15,7 +15,7 @@ from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.values import IDENTITY, Pose
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.diagnostics import Origin
 
@@ -143,8 +143,7 @@ class Mechanism:
         """Every joint with its two ends, in order. Joints without exactly one parent and one child arc are left out."""
         found: dict[Id, JointView] = {}
         for key, joint, arcs in self.edges(parts.Joint):
-            above = next((arc for arc in arcs if arc.sign > 0), None)
-            below = next((arc for arc in arcs if arc.sign < 0), None)
+            above, below = _end(arcs, 1), _end(arcs, -1)
             if above is not None and below is not None:
                 found[key] = JointView(key, joint, above.target, below.target, pose_weight(above), pose_weight(below))
         return found
@@ -190,12 +189,16 @@ class Mechanism:
         """For each body (and the world) its shapes in order."""
         found: dict[Id, list[ShapeView]] = {}
         for key, shape, arcs in self.edges(parts.Shape):
-            body = next((arc for arc in arcs if arc.sign > 0), None)
+            body = _end(arcs, 1)
             if body is None:
                 continue
-            roles = {arc.role: arc.target for arc in arcs if arc.role}
-            view = ShapeView(key, shape, body.target, pose_weight(body), roles.get("mesh"), roles.get("material"))
-            found.setdefault(body.target, []).append(view)
+            mesh = material = None
+            for arc in arcs:
+                if arc.role == "mesh":
+                    mesh = arc.target
+                elif arc.role == "material":
+                    material = arc.target
+            found.setdefault(body.target, []).append(ShapeView(key, shape, body.target, pose_weight(body), mesh, material))
         return {key: tuple(views) for key, views in found.items()}
 
     @cached_property
@@ -203,8 +206,7 @@ class Mechanism:
         """For each body (and the world) the frames, cameras, lights and sensors on it, in order."""
         found: dict[Id, list[MountView]] = {}
         for key, _, arcs in self.edges(parts.Mount):
-            body = next((arc for arc in arcs if arc.sign > 0), None)
-            thing = next((arc for arc in arcs if arc.sign < 0), None)
+            body, thing = _end(arcs, 1), _end(arcs, -1)
             if body is not None and thing is not None:
                 found.setdefault(body.target, []).append(MountView(key, thing.target, body.target, pose_weight(body)))
         return {key: tuple(views) for key, views in found.items()}
@@ -228,8 +230,16 @@ class Mechanism:
         return self.notations.get(key, {}).get(name)
 
     def with_graph(self, graph: RobotGraph) -> Mechanism:
-        """The same mechanism with another graph."""
-        return replace(self, graph=graph)
+        """The same mechanism with another graph. What is known of its edges stays known where they are the same table."""
+        changed = Mechanism(self.name, graph, self.extras, self.origins, self.notations, self.stereotypes, self.layout, self.places)
+        if graph.edges is self.graph.edges:
+            known = self.__dict__
+            changed.__dict__.update({name: known[name] for name in _OF_EDGES if name in known})
+        return changed
+
+
+_OF_EDGES = ("joints", "children", "parent_joint", "shapes", "mounts")
+"""What a mechanism computes of its edges alone."""
 
 
 def _sorted(extras: Mapping[Id, tuple[Extra, ...]]) -> dict[Id, list[Extra]]:
@@ -269,6 +279,14 @@ class MountView(NamedTuple):
 
 
 # ---- making edges --------------------------------------------------------------------------------------------------------
+
+
+def _end(arcs: tuple[RobotArc, ...], sign: int) -> RobotArc | None:
+    """The first arc of this sign."""
+    for arc in arcs:
+        if arc.sign * sign > 0:
+            return arc
+    return None
 
 
 def pose_weight(arc: RobotArc) -> Pose:
@@ -322,8 +340,8 @@ def _posed(target: Id, sign: int, pose: Pose) -> RobotArc:
 class Names:
     """Gives out ids that are unique per kind: a name that is taken gets ``#2``, ``#3``, ... behind it."""
 
-    def __init__(self) -> None:
-        self._taken: set[Id] = set()
+    def __init__(self, taken: Iterable[Id] = ()) -> None:
+        self._taken = set(taken)
         self._next: dict[Id, int] = {}
 
     def take(self, kind: str, name: str) -> Id:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import chain
 from typing import TYPE_CHECKING, TypeVar
 
 from hymeko_x.ir.graph import Hypergraph
@@ -56,7 +57,4 @@ def _rekeyed(table: Mapping[Id, T], names: Mapping[Id, Id]) -> dict[Id, T]:
 
 def names_in_use(mechanism: Mechanism) -> Names:
     """A giver of new ids that knows every id of the mechanism."""
-    names = Names()
-    for key in (*mechanism.graph.vertices, *mechanism.graph.edges):
-        names.take(key.kind, key.name)
-    return names
+    return Names(chain(mechanism.graph.vertices, mechanism.graph.edges))

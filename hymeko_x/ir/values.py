@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import NamedTuple
 
 Vec3 = tuple[float, float, float]
@@ -150,6 +151,12 @@ def rpy_from_quat(quat: Quat) -> Vec3:
     """Fixed-axis roll, pitch, yaw in rad of a unit quaternion (w, x, y, z)."""
     if quat == NO_ROTATION:
         return ZERO
+    w, x, y, z = quat
+    return _rpy_from_quat((w + 0.0, x + 0.0, y + 0.0, z + 0.0))  # + 0.0: zeros of both signs are equal, and so are their angles
+
+
+@lru_cache(4096)
+def _rpy_from_quat(quat: Quat) -> Vec3:
     r = matrix_from_quat(quat)
     flat = math.hypot(r[0][0], r[1][0])
     pitch = math.atan2(-r[2][0], flat)
@@ -230,7 +237,8 @@ def compose(a: Pose, b: Pose) -> Pose:
         return a
     if a == IDENTITY:
         return b
-    return Pose(add(a.xyz, rotate(a.quat, b.xyz)), unit_quat(quat_product(a.quat, b.quat)))
+    quat = a.quat if b.quat == NO_ROTATION else quat_product(a.quat, b.quat)
+    return Pose(add(a.xyz, rotate(a.quat, b.xyz)), unit_quat(quat))
 
 
 def inverse(a: Pose) -> Pose:
@@ -253,10 +261,16 @@ def rotate_tensor(quat: Quat, tensor: Tensor) -> Tensor:
         return tensor
     r = matrix_from_quat(quat)
     xx, yy, zz, xy, xz, yz = tensor
-    rows = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
-    half = [[sum(r[i][k] * rows[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
-    full = [[sum(half[i][k] * r[j][k] for k in range(3)) for j in range(3)] for i in range(3)]
-    return (full[0][0], full[1][1], full[2][2], full[0][1], full[0][2], full[1][2])
+    columns = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+    (a, b, c), (d, e, f), (g, h, i) = [[_dot(row, column) for column in columns] for row in r]
+    first, second, third = r
+    x, y = (a, b, c), (d, e, f)
+    return (_dot(x, first), _dot(y, second), _dot((g, h, i), third), _dot(x, second), _dot(x, third), _dot(y, third))
+
+
+def _dot(a: Vec3, b: Vec3) -> float:
+    """The inner product, never a negative zero."""
+    return 0.0 + a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
 def same_rotation(a: Quat, b: Quat, tolerance: float) -> bool:
@@ -286,4 +300,13 @@ def number_text(value: float) -> str:
 
 def numbers_text(values: tuple[float, ...]) -> str:
     """Numbers separated by blanks, each as :func:`number_text` writes it."""
-    return " ".join([number_text(value) for value in values])
+    try:
+        text = " ".join(map(_exact, values))
+    except TypeError:  # whole numbers among them
+        return " ".join([number_text(value) for value in values])
+    if "e" in text:
+        return " ".join([number_text(value) for value in values])
+    return f"{text} ".replace(".0 ", " ")[:-1]
+
+
+_exact = float.__repr__

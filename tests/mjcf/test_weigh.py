@@ -21,7 +21,7 @@ CUBE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1"
 
 def weighed(content: str, head: str = "") -> Mechanism:
     robot = read_text(f"<mujoco>{head}<worldbody>{content}</worldbody></mujoco>")
-    return weigh(robot, robot, write(robot).encode(), NoFiles(), Report())
+    return weigh(robot, lambda: (robot, write(robot).encode()), NoFiles(), Report())
 
 
 def inertial(mechanism: Mechanism, body: str) -> Inertial:
@@ -63,7 +63,7 @@ def test_without_a_mesh_there_is_a_warning_and_no_inertia() -> None:
     asset = '<asset><mesh name="m" file="gone.stl"/></asset>'
     text = f'<mujoco>{asset}<worldbody><body name="b"><geom type="mesh" mesh="m"/></body></worldbody></mujoco>'
     robot, report = read_text(text), Report()
-    assert weigh(robot, robot, write(robot).encode(), NoFiles(), report) == robot
+    assert weigh(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
     assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
 
 
@@ -87,7 +87,7 @@ def test_a_capsule_around_a_mesh_has_its_size_in_every_format() -> None:
 def test_a_time_constant_and_a_damping_ratio_become_stiffness_and_damping() -> None:
     text = '<mujoco><worldbody><body><joint name="j" springdamper="1 1"/><geom size="1" mass="1"/></body></worldbody></mujoco>'
     robot = read_text(text)
-    dof = weigh(robot, robot, write(robot).encode(), NoFiles(), Report()).joints[Id("joint", "j")].joint.dofs[0]
+    dof = weigh(robot, lambda: (robot, write(robot).encode()), NoFiles(), Report()).joints[Id("joint", "j")].joint.dofs[0]
     assert dof.stiffness > 0.0
     assert dof.damping == pytest.approx(2.0 * (dof.stiffness * 0.4) ** 0.5)
 

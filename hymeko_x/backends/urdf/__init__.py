@@ -58,7 +58,8 @@ def draft(mechanism: Mechanism) -> Draft:
     sheet = Sheet(mechanism, _declared(root))
     extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.FORMAT, COMMENT)]
     root.children += _merged(_typed(sheet), extras, sheet)
-    meshes = {path: obj_text(mechanism.vertex(key, Mesh)) for key, path in sheet.mesh_files.items()}
+    shown = {path: key for key, path in sheet.mesh_files.items()}  # meshes of equal points share a file
+    meshes = {path: obj_text(mechanism.vertex(key, Mesh)) for path, key in shown.items()}
     return Draft(root, _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Mesh
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.values import numbers_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,7 +45,8 @@ def _numbered(stem: str) -> Iterator[str]:
 
 def obj_text(mesh: Mesh) -> bytes:
     """The points and faces of a mesh, unscaled, as Wavefront OBJ."""
-    points = [" ".join(map(number_text, mesh.vertices[at : at + 3])) for at in range(0, len(mesh.vertices), 3)]
-    faces = [" ".join(str(corner + 1) for corner in mesh.faces[at : at + 3]) for at in range(0, len(mesh.faces), 3)]
-    lines = [*(f"v {point}" for point in points), *(f"f {face}" for face in faces), ""]
+    points = [f"v {numbers_text(mesh.vertices[at : at + 3])}" for at in range(0, len(mesh.vertices), 3)]
+    corners = [str(corner + 1) for corner in mesh.faces]
+    faces = [f"f {' '.join(corners[at : at + 3])}" for at in range(0, len(corners), 3)]
+    lines = [*points, *faces, ""]
     return "\n".join(lines).encode()

@@ -47,7 +47,7 @@ def read(source: Source, report: Report) -> Mechanism:
     carried = list(_take_carried(root))
     root = expand_includes(root, source, report)
     words = check_words(root)
-    if any(element.tag in DELEGATED for element in root.walk()):
+    if words.tags & DELEGATED:
         from hymeko_x.frontends.mjcf.delegate import expand_by_mujoco
 
         root = expand_by_mujoco(root, source, report)

@@ -42,11 +42,14 @@ _WEIGHT = (INERTIAL,)
 def reserve_names(root: Element, draft: Draft) -> None:
     """Names that authors gave come before those that we make up."""
     for section in root.children:
-        for element in section.walk():
+        stack = [section]
+        while stack:
+            element = stack.pop()
             name = element.attributes.get("name")
             kind = kind_of(element.tag, section.tag) if name else None
             if name and kind:
                 draft.names.take(kind, name)
+            stack += element.children
 
 
 def read_worldbody(sections: list[Element], draft: Draft) -> None:

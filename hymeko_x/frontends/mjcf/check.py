@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import lru_cache
 from math import isinf
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -15,16 +16,17 @@ from hymeko_x.formats.mjcf_schema import CHILDREN, REMOVED, attributes_of
 from hymeko_x.formats.mjcf_tree import COMMENT
 from hymeko_x.formats.mjcf_types import EXCLUSIVE, REQUIRED, kinds_of
 from hymeko_x.formats.xml import read_numbers
-from hymeko_x.frontends.mjcf.references import Reference, references_of
-from hymeko_x.frontends.mjcf.rules import complaint
+from hymeko_x.frontends.mjcf.references import Reference, references_at, references_of
+from hymeko_x.frontends.mjcf.rules import complaint, rules_of
 from hymeko_x.ir.mechanism import file_stem
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from hymeko_x.diagnostics import Refusal
     from hymeko_x.formats.mjcf_tree import Element
     from hymeko_x.formats.mjcf_types import Kind
+    from hymeko_x.frontends.mjcf.rules import Rule
 
 _NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|0x[\da-f.]+(?:p[+-]?\d+)?|inf(?:inity)?|nan)", re.ASCII | re.IGNORECASE)
 _WHOLE = re.compile(r"[+-]?\d+", re.ASCII)
@@ -56,10 +58,37 @@ _TURNS = frozenset(TURNS)
 
 @dataclass(frozen=True, slots=True)
 class Words:
-    """The ``names`` of elements of which the IR has no part, by kind, with their places; and ``references`` that have no arc."""
+    """The ``names`` of elements of which the IR has no part, by kind, with their places; ``references`` that have no arc; all ``tags``."""
 
     names: Mapping[tuple[str, str], Origin]
     references: list[Reference]
+    tags: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """What is known of the elements of a place of the schema; ``named`` is the kind that their names must not be twice among."""
+
+    attributes: frozenset[str]
+    kinds: Mapping[str, Kind]
+    required: tuple[str, ...]
+    exclusive: Sequence[tuple[str, ...]]
+    rules: tuple[Rule, ...]
+    references: tuple[tuple[str, str], ...]
+    named: str | None
+
+
+@lru_cache(512)
+def _place_of(path: str) -> _Place:
+    return _Place(
+        attributes_of(path),
+        MappingProxyType({name: kind for name, kind in kinds_of(path).items() if name not in _READ_ELSEWHERE}),
+        REQUIRED.get(path, ()),
+        EXCLUSIVE.get(path, ()),
+        rules_of(path),
+        references_at(path),
+        _NAMED_APART.get(path),
+    )
 
 
 def check_words(root: Element) -> Words:
@@ -70,32 +99,42 @@ def check_words(root: Element) -> Words:
     stack = [(root, "mujoco")]
     names: dict[tuple[str, str], Origin] = {}
     references: list[Reference] = []
+    tags: set[str] = set()
     while stack:
         element, path = stack.pop()
-        _check_attributes(element, path)
-        _check_values(element, path)
-        said = complaint(element, path)
-        if said is not None:
-            raise refuse(codes.BAD_NUMBER, said, element.origin)
-        references += references_of(element, path)
-        if path in _NAMED_APART:
-            _check_name(element, _NAMED_APART[path], names)
-        known = CHILDREN.get(path, {})
-        below = []
-        for child in element.children:
-            if child.tag == COMMENT:
-                continue
-            place = known.get(child.tag)
-            if place is None:
-                changed = REMOVED.get(f"{element.tag}/{child.tag}") or REMOVED.get(child.tag)
-                raise _unknown(child, f"<{element.tag}> has no <{child.tag}>", child.tag, list(known), changed)
-            below.append((child, place))
-        stack.extend(reversed(below))
-    return Words(names, references)
+        place = _place_of(path)
+        tags.add(element.tag)
+        if element.attributes:
+            _check_attributes(element, path, place)
+            _check_values(element, place)
+        _check_needs(element, place)
+        if place.references:
+            references += references_of(element, place.references)
+        if place.named is not None:
+            _check_name(element, place.named, names)
+        if element.children:
+            stack += _known_children(element, path)
+    return Words(names, references, frozenset(tags))
 
 
-def _check_attributes(element: Element, path: str) -> None:
-    known = attributes_of(path)
+def _known_children(element: Element, path: str) -> list[tuple[Element, str]]:
+    """The elements inside with their places in the schema, the last one first."""
+    known = CHILDREN.get(path, {})
+    below = []
+    for child in element.children:
+        if child.tag == COMMENT:
+            continue
+        place = known.get(child.tag)
+        if place is None:
+            changed = REMOVED.get(f"{element.tag}/{child.tag}") or REMOVED.get(child.tag)
+            raise _unknown(child, f"<{element.tag}> has no <{child.tag}>", child.tag, list(known), changed)
+        below.append((child, place))
+    below.reverse()
+    return below
+
+
+def _check_attributes(element: Element, path: str, place: _Place) -> None:
+    known = place.attributes
     said = element.attributes.keys()
     if not said <= known:
         for name in said:
@@ -107,27 +146,34 @@ def _check_attributes(element: Element, path: str) -> None:
         raise refuse(codes.REPEATED, f"<{element.tag}> has more than one orientation: {found}", element.origin)
 
 
-def _check_values(element: Element, path: str) -> None:
-    kinds = kinds_of(path)
+def _check_values(element: Element, place: _Place) -> None:
     attributes = element.attributes
-    if attributes.get("plugin", "") in REMOVED:
+    if "plugin" in attributes and attributes["plugin"] in REMOVED:
         plugin = attributes["plugin"]
         raise refuse(codes.UNKNOWN_WORD, f"there is no plugin '{plugin}'", element.origin, hint=REMOVED[plugin])
-    for name, text in list(attributes.items()):
+    kinds = place.kinds
+    for name, text in tuple(attributes.items()):
         kind = kinds.get(name)
-        if kind is None or name in _READ_ELSEWHERE:
+        if kind is None:
             continue
         if not kind.words and not text.strip():
             del attributes[name]
         elif not _fits(text, kind):
             raise refuse(codes.BAD_NUMBER, f"<{element.tag} {name}> is '{_short(text)}', expected {kind}", element.origin)
-    for name in REQUIRED.get(path, ()):
+
+
+def _check_needs(element: Element, place: _Place) -> None:
+    attributes = element.attributes
+    for name in place.required:
         if name not in attributes:
             raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag}> needs {name}", element.origin)
-    for names in EXCLUSIVE.get(path, ()):
+    for names in place.exclusive:
         found = [name for name in names if name in attributes]
         if len(found) > 1:
             raise refuse(codes.REPEATED, f"<{element.tag}> has {' and '.join(found)}, of which it may have one", element.origin)
+    said = complaint(element, place.rules)
+    if said is not None:
+        raise refuse(codes.BAD_NUMBER, said, element.origin)
 
 
 _LONGEST = 1000

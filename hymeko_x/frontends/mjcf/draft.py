@@ -11,6 +11,7 @@ from hymeko_x.formats import mjcf_words as words
 from hymeko_x.formats.mjcf_classes import merge
 from hymeko_x.formats.mjcf_codec import BadAttribute, plan_of
 from hymeko_x.formats.mjcf_tree import COMMENT, verbatim
+from hymeko_x.formats.xml import read_numbers
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Mechanism, Names
 from hymeko_x.ir.parts import World
@@ -49,8 +50,8 @@ class Draft:
     named: dict[tuple[str, str], Id] = field(default_factory=dict)
     roles: dict[Id, dict[str, str]] = field(default_factory=dict)
     place: int = 0
-    plans: dict[int, Plan] = field(default_factory=dict)
-    """How to read the attributes of each kind of element, by the identity of its groups."""
+    plans: dict[tuple[int, int], Plan] = field(default_factory=dict)
+    """How to read the attributes of each kind of element, by the identities of its groups and of what its class gives."""
 
     # ---- names -----------------------------------------------------------------------------------------------------------
 
@@ -115,12 +116,15 @@ class Draft:
         Where printing the values again would not say the same, or ``always``, the attributes are noted as they are.
         """
         own = element.attributes
-        merged = merge(base, own)
-        plan = self._plan_of(groups)
+        plan = self._plan_of(groups, base)
         found = plan.silent.copy()
+        asked = plan.said_in(own)
+        if not asked:
+            return found
+        merged = merge(base, own)
         taken: list[str] = []
         try:
-            for group in plan.said_in(merged):
+            for group in asked:
                 value = found[group.key] = group.read(merged, self.settings)
                 touched = [name for name in group.names if name in own]
                 if not touched:
@@ -128,7 +132,7 @@ class Draft:
                 taken += touched
                 if group.exact and not always:
                     continue
-                if always or not self._says_again(group, value, base, merged):
+                if always or not self._says_again(group, value, base, own):
                     for name in touched:
                         self.note(key, f"{prefix}@{name}", own[name])
         except BadAttribute as error:
@@ -137,15 +141,22 @@ class Draft:
             own.pop(name, None)
         return found
 
-    def _plan_of(self, groups: tuple[Group, ...]) -> Plan:
-        plan = self.plans.get(id(groups))
+    def _plan_of(self, groups: tuple[Group, ...], base: Mapping[str, str]) -> Plan:
+        place = id(groups), id(base) if base else 0
+        plan = self.plans.get(place)
         if plan is None:
-            plan = self.plans[id(groups)] = plan_of(groups, self.settings)
+            plan = self.plans[place] = plan_of(groups, self.settings, base)
         return plan
 
-    def _says_again(self, group: Group, value: Any, base: Mapping[str, str], merged: Mapping[str, str]) -> bool:
-        """Whether printing a value would say the same as the attributes that it was read from."""
+    def _says_again(self, group: Group, value: Any, base: Mapping[str, str], own: Mapping[str, str]) -> bool:
+        """Whether printing a value would say the same as the element's own attributes that it was read from."""
         written = group.write(value, self.settings)
+        for name in group.names:
+            if not _say_the_same(written.get(name), own.get(name)):
+                break
+        else:
+            return True
+        merged = merge(base, own)
         context = {name: merged[name] for name in group.needs if name in merged}
         said = merge({**base, **context}, written)
         if all(said.get(name) == merged.get(name) for name in group.names):
@@ -204,6 +215,14 @@ class Draft:
         extras = {key: tuple(found) for key, found in self.extras.items() if found}
         graph = Hypergraph(self.vertices, self.edges)
         return Mechanism(name, graph, extras, self.origins, self.notations, self.stereotypes, tuple(self.layout))
+
+
+def _say_the_same(a: str | None, b: str | None) -> bool:
+    """Whether two texts of an attribute are the same, or the same numbers."""
+    if a == b:
+        return True
+    numbers = None if a is None or b is None else read_numbers(a)
+    return bool(numbers) and b is not None and numbers == read_numbers(b)
 
 
 def _extra(child: Element, path: str, index: int) -> Extra:

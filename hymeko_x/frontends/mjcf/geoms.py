@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_classes import merge
 from hymeko_x.formats.mjcf_places import FITTED_GEOM, GEOM, GRID, Place
 from hymeko_x.formats.mjcf_words import PLACES
 from hymeko_x.frontends.mjcf.spot import Spot, placed
@@ -25,7 +24,7 @@ _SHOWN = 3
 def read_geom(element: Element, spot: Spot, draft: Draft) -> None:
     """A shape on a body; what only MuJoCo knows of it stays with it as it is."""
     own_class = element.attributes.get("class")
-    said = merge(draft.classes.of("geom", own_class or spot.childclass), element.attributes)
+    said = {**draft.classes.of("geom", own_class or spot.childclass), **element.attributes}
     role = role_of(said)
     key = draft.names.take("shape", f"{spot.body.name}/{PLACES[role]}")
     draft.origins[key] = element.origin

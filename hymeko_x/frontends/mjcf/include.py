@@ -24,9 +24,11 @@ def expand_includes(root: Element, source: Source, report: Report) -> Element:
     stack = [root]
     while stack:
         parent = stack.pop()
-        if any(child.tag == "include" for child in parent.children):
-            parent.children = _expanded(parent.children, source, report, seen)
-        stack.extend(parent.children)
+        for child in parent.children:
+            if child.tag == "include":
+                parent.children = _expanded(parent.children, source, report, seen)
+                break
+        stack += [child for child in parent.children if child.children]
     return root
 
 

@@ -40,9 +40,14 @@ class Reference:
     name: str
 
 
-def references_of(element: Element, path: str) -> list[Reference]:
-    """What the element refers to without an arc."""
-    said = [(kind, element.attributes.get(attribute)) for attribute, kind in _REFERENCES.get(path, ())]
+def references_at(path: str) -> tuple[tuple[str, str], ...]:
+    """The attributes that refer without an arc, of the elements of this place of the schema, each with the kind that it refers to."""
+    return _REFERENCES.get(path, ())
+
+
+def references_of(element: Element, attributes: tuple[tuple[str, str], ...]) -> list[Reference]:
+    """What the element refers to by these attributes."""
+    said = [(kind, element.attributes.get(attribute)) for attribute, kind in attributes]
     return [Reference(element, kind, name) for kind, name in said if name]
 
 

@@ -5,7 +5,6 @@ Each rule gets an element and says what is wrong with it, or None. Numbers and w
 
 from __future__ import annotations
 
-from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -220,17 +219,17 @@ _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
 )
 
 
-def complaint(element: Element, path: str) -> str | None:
-    """What MuJoCo would refuse in this element, which stands at this place of the schema; None when it is fine."""
-    for rule in _rules_of(path):
+def complaint(element: Element, rules: tuple[Rule, ...]) -> str | None:
+    """What MuJoCo would refuse in this element by these rules; None when it is fine."""
+    for rule in rules:
         said = rule(element)
         if said is not None:
             return said
     return None
 
 
-@lru_cache(512)
-def _rules_of(path: str) -> tuple[Rule, ...]:
+def rules_of(path: str) -> tuple[Rule, ...]:
+    """The rules for the elements of this place of the schema."""
     rules = _RULES.get(path, ())
     if path.startswith("sensor/"):
         return (*rules, _NOT_NEGATIVE, *((_together("reftype", "refname"),) if path.startswith("sensor/frame") else ()))

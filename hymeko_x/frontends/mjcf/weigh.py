@@ -6,6 +6,7 @@ MuJoCo itself is asked, so that meshes, <compiler> and everything that changes m
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -24,22 +25,26 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Dof
     from hymeko_x.source import Files
 
+Printed = Callable[[], tuple[Mechanism, bytes]]
+"""Gives the mechanism as it is legal in MJCF, and its text; asked only where MuJoCo has to be."""
+
 _SCALES = ("settotalmass", "boundmass", "boundinertia", "balanceinertia")
 """Attributes of <compiler> that change inertias which are said."""
 
 
-def weigh(mechanism: Mechanism, native: Mechanism, text: bytes, files: Files, report: Report) -> Mechanism:
-    """The mechanism, which came from MJCF and goes there as ``native``, printed as ``text``, with what only MuJoCo knows.
+def weigh(mechanism: Mechanism, printed: Printed, files: Files, report: Report) -> Mechanism:
+    """The mechanism, which came from MJCF and goes there as it is ``printed``, with what only MuJoCo knows.
 
     That is the mass, centre of mass and tensor of every body, the points of meshes and the sizes of primitives. Bodies
     that weigh nothing stay without. Where MuJoCo is not there or refuses the text, nothing changes, with a warning.
     """
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
     scaled = compiler_says(mechanism, _SCALES)
-    sprung = b"springdamper=" in text
+    sprung = _may_be_sprung(mechanism)
     meshes, fitted = unsolid(mechanism)
     if not (wanted or scaled or sprung or meshes or fitted):
         return mechanism
+    native, text = printed()
     try:
         import mujoco
     except ImportError:
@@ -53,11 +58,16 @@ def weigh(mechanism: Mechanism, native: Mechanism, text: bytes, files: Files, re
         return mechanism
     order = {key: number for number, key in enumerate(native.depth_first(), 1)}
     chosen = [key for key, _ in mechanism.vertices(Body)] if scaled else wanted
-    bodies = {key: _weighed(mechanism, model, key, order[key]) for key in chosen if key in order}
-    edges = _sprung(mechanism, model, order) if sprung else {}
+    bodies = _weighed(mechanism, model, {key: order[key] for key in chosen if key in order})
+    edges = _sprung(mechanism, model, order) if sprung and b"springdamper=" in text else {}
     edges |= _fitted(mechanism, mujoco, model, fitted, order)
     solid = {key: solid_mesh(mechanism, mujoco, model, key) for key in meshes}
     return mechanism.with_graph(mechanism.graph.replace(vertices={**bodies, **solid}, edges=edges))
+
+
+def _may_be_sprung(mechanism: Mechanism) -> bool:
+    """Whether an element or a class says <joint springdamper>, as far as can be told without printing."""
+    return any("springdamper" in extra.path or "springdamper" in extra.text for own in mechanism.extras.values() for extra in own)
 
 
 def _compiled(mujoco: Any, text: bytes, assets: dict[str, bytes]) -> Any:
@@ -73,7 +83,7 @@ def _compiled(mujoco: Any, text: bytes, assets: dict[str, bytes]) -> Any:
         spec.compiler.fusestatic = False
         spec.compiler.alignfree = False
         spec.compiler.discardvisual = False
-        for joint in spec.joints:
+        for joint in spec.joints if b"align=" in text else ():
             with contextlib.suppress(AttributeError):
                 joint.align = 0
         return spec.compile()
@@ -109,16 +119,22 @@ def _settings(mechanism: Mechanism) -> Any:
     return settings_of([parse_text(text).attributes for text in compilers(mechanism)])
 
 
-def _weighed(mechanism: Mechanism, model: Any, key: Id, number: int) -> Body:
-    body = mechanism.vertex(key, Body)
-    mass = float(model.body_mass[number])
-    if mass == 0.0:
-        return body
-    w, x, y, z = model.body_iquat[number].tolist()
-    a, b, c = model.body_inertia[number].tolist()
-    px, py, pz = model.body_ipos[number].tolist()
-    tensor = rotate_tensor(unit_quat((w, x, y, z)), (a, b, c, 0.0, 0.0, 0.0))
-    return replace(body, inertial=Inertial(mass, (px, py, pz), tensor))
+def _weighed(mechanism: Mechanism, model: Any, numbers: dict[Id, int]) -> dict[Id, Body]:
+    """These bodies, which have these numbers in the model, with what they weigh there."""
+    masses, places = model.body_mass.tolist(), model.body_ipos.tolist()
+    turns, moments = model.body_iquat.tolist(), model.body_inertia.tolist()
+    found: dict[Id, Body] = {}
+    for key, number in numbers.items():
+        body = mechanism.vertex(key, Body)
+        if masses[number] == 0.0:
+            found[key] = body
+            continue
+        a, b, c = moments[number]
+        px, py, pz = places[number]
+        w, x, y, z = turns[number]
+        tensor = rotate_tensor(unit_quat((w, x, y, z)), (a, b, c, 0.0, 0.0, 0.0))
+        found[key] = replace(body, inertial=Inertial(masses[number], (px, py, pz), tensor))
+    return found
 
 
 def _fitted(mechanism: Mechanism, mujoco: Any, model: Any, views: list[ShapeView], order: dict[Id, int]) -> dict[Id, RobotEdge]:

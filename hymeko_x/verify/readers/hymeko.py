@@ -20,6 +20,8 @@ from hymeko_x.verify.readers.mechanism import from_mechanism
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.source import Files
     from hymeko_x.verify.model import KinematicModel
     from hymeko_x.verify.readers import Places
 
@@ -34,5 +36,10 @@ def read(path: Path, places: Places) -> KinematicModel:
     if next(mechanism.vertices(Body), None) is None:
         raise refuse(codes.ENGINE_REFUSED, "the HyMeKo text describes a hypergraph without bodies, which is no robot", Origin(str(path)))
     if is_native(mechanism):
-        mechanism = weigh(mechanism, mechanism, mjcf.write(mechanism, Report()).main, files, Report())
+        mechanism = _weighed(mechanism, files)
     return from_mechanism(mechanism, format="hymeko")
+
+
+def _weighed(mechanism: Mechanism, files: Files) -> Mechanism:
+    """What came from MJCF, with what only MuJoCo knows."""
+    return weigh(mechanism, lambda: (mechanism, mjcf.write(mechanism, Report()).main), files, Report())
