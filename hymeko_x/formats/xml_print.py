@@ -6,7 +6,6 @@ Shared by the backends of all XML formats.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
@@ -27,14 +26,16 @@ _SPECIAL = re.compile(r'[&<>"\x00-\x1f\ud800-\udfff\ufffe\uffff]')
 _ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 
 
-@dataclass(slots=True)
 class Tag:
     """An XML element to be: name, attributes in order, and children that are tags or ready text; whose it is, if known."""
 
-    name: str
-    attributes: dict[str, str] = field(default_factory=dict)
-    children: list[Tag | str] = field(default_factory=list)
-    owner: Id | None = None
+    __slots__ = ("attributes", "children", "name", "owner")
+
+    def __init__(self, name: str, attributes: dict[str, str], children: Iterable[Tag | str] = ()) -> None:
+        self.name = name
+        self.attributes = attributes
+        self.children = [*children]
+        self.owner: Id | None = None
 
     def add(self, name: str, /, **attributes: str) -> Tag:
         """A new child with these attributes."""
@@ -148,8 +149,10 @@ def _render(tag: Tag, indent: str, lines: list[str]) -> None:
     for child in children:
         if isinstance(child, str):
             lines.append(inner + child)
-        else:
+        elif child.children:
             _render(child, inner, lines)
+        else:
+            lines.append(f"{inner}<{child.name}{attributes_text(child.attributes)}/>")
     lines.append(f"{indent}</{name}>")
 
 

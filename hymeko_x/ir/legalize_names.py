@@ -24,9 +24,11 @@ def make_names_usable(mechanism: Mechanism, options: Options, report: Report) ->
     if not mechanism.name:
         mechanism = replace(mechanism, name="robot")
         report.note(codes.RENAMED, "the robot has no name; it is written as 'robot'")
-    unusable = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if not key.name or _NOT_XML.search(key.name)]
-    if not unusable:
+    keys = (*mechanism.graph.vertices, *mechanism.graph.edges)
+    said = [key.name for key in keys]
+    if all(said) and not _NOT_XML.search("".join(said)):
         return mechanism
+    unusable = [key for key in keys if not key.name or _NOT_XML.search(key.name)]
     names = names_in_use(mechanism)
     renamed: dict[Id, Id] = {}
     for key in unusable:

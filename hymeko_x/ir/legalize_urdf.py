@@ -57,7 +57,7 @@ def make_world_a_link(mechanism: Mechanism, options: Options, report: Report) ->
     del options, report
     mechanism = _without_held_worlds(mechanism)
     there, alone = WORLD in mechanism.graph.vertices, not any(True for _ in mechanism.vertices(Body))
-    used = any(arc.target == WORLD for edge in mechanism.graph.edges.values() for arc in edge.arcs)
+    used = any(WORLD in [arc.target for arc in edge.arcs] for edge in mechanism.graph.edges.values())
     if not used and not (there and alone):
         return mechanism.with_graph(mechanism.graph.replace(without=[WORLD])) if there else mechanism
     link = names_in_use(mechanism).take("body", WORLD.name)
@@ -120,18 +120,17 @@ class _Chains:
 def chain_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """Each joint that URDF cannot say becomes a chain of joints with one dof; balls become three hinges about x, y and z."""
     del options
+    unsayable = [view for view in mechanism.joints.values() if not _is_sayable(view, mechanism)]
+    if not unsayable:
+        return mechanism
     chains = _Chains(names_in_use(mechanism), {}, {}, {})
-    for view in mechanism.joints.values():
-        if _is_sayable(view, mechanism):
-            continue
+    for view in unsayable:
         count = _add_chain(view, chains)
         if count:
             said = f"{view.id} has dofs or a frame that URDF has no word for; it is written as a chain with {count} more links"
             report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
-    if not chains.edges:
-        return mechanism
     edges = dict(_following(mechanism, chains.moved)) | chains.edges
-    old = {view.id for view in mechanism.joints.values() if not _is_sayable(view, mechanism)}
+    old = {view.id for view in unsayable}
     return mechanism.with_graph(mechanism.graph.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges)))
 
 

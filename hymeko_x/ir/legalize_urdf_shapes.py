@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism, ShapeView, shape_edge
-from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, MeshShape, Plane, Role, Sphere
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, MeshShape, Plane, Role, Shape, Sphere
 from hymeko_x.ir.rename import names_in_use
 from hymeko_x.ir.values import Pose, compose
 
@@ -34,14 +34,15 @@ Piece = tuple["Geometry", Pose]
 def split_shared_shapes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """A shape that is seen and collides becomes a visual and a collision."""
     del options, report
+    shared = [view for view in _views(mechanism) if view.shape.role is Role.BOTH]
+    if not shared:
+        return mechanism
     names = names_in_use(mechanism)
     edges: dict[Id, RobotEdge] = {}
-    for view in _views(mechanism):
-        if view.shape.role is not Role.BOTH:
-            continue
+    for view in shared:
         for key, role in ((view.id, Role.VISUAL), (names.take("shape", f"{view.body.name}/collision"), Role.COLLISION)):
-            edges[key] = shape_edge(replace(view.shape, role=role), view.body, view.pose, view.mesh, view.material)
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+            edges[key] = Edge(_shape_as(view.shape, view.shape.geometry, role), mechanism.graph.edges[view.id].arcs)
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
 
 
 def prefer_own_colours(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
@@ -61,22 +62,25 @@ def approximate_shapes(mechanism: Mechanism, options: Options, report: Report) -
     """Capsules become a cylinder and two spheres, planes thin boxes, ellipsoids stretched sphere meshes."""
     del options
     keeps_capsules = CAPSULE_WORD in (mechanism.notation(ROOT, STYLE_NOTATION) or "").split()
+    unsayable = (Ellipsoid, Plane) if keeps_capsules else (Ellipsoid, Plane, Capsule)
+    found = [view for view in _views(mechanism) if isinstance(view.shape.geometry, unsayable)]
+    if not found:
+        return mechanism
     names = names_in_use(mechanism)
     edges: dict[Id, RobotEdge] = {}
     meshes: dict[Id, Mesh] = {}
-    for view in _views(mechanism):
+    places: dict[tuple[int, Pose], Pose] = {}
+    for view in found:
         geometry = view.shape.geometry
         if isinstance(geometry, Ellipsoid):
             meshes[names.take("mesh", f"{view.body.name}_ellipsoid")] = Mesh(None, geometry.radii, None, *_unit_sphere())
-            edges[view.id] = _in_place(view, MeshShape(), Pose(), next(reversed(meshes)))
-        elif isinstance(geometry, Plane) or (isinstance(geometry, Capsule) and not keeps_capsules):
-            edges |= _pieces(view, names)
+            edges[view.id] = _in_place(view, MeshShape(), view.pose, next(reversed(meshes)))
         else:
-            continue
+            edges |= _pieces(view, names, places)
         kind = type(geometry).__name__.lower()
         said = f"{view.id} is {'an' if kind[0] in 'aeiou' else 'a'} {kind}, for which URDF has no word; it is written as {_INSTEAD[kind]}"
         report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=meshes, edges=edges)) if edges else mechanism
+    return mechanism.with_graph(mechanism.graph.replace(vertices=meshes, edges=edges))
 
 
 _INSTEAD = {"capsule": "a cylinder and two spheres", "plane": "a thin box", "ellipsoid": "a mesh"}
@@ -86,8 +90,11 @@ def _views(mechanism: Mechanism) -> list[ShapeView]:
     return [view for views in mechanism.shapes.values() for view in views]
 
 
-def _pieces(view: ShapeView, names: Names) -> dict[Id, RobotEdge]:
-    """The shapes that stand for a capsule or a plane; the first one keeps the id."""
+def _pieces(view: ShapeView, names: Names, places: dict[tuple[int, Pose], Pose]) -> dict[Id, RobotEdge]:
+    """The shapes that stand for a capsule or a plane; the first one keeps the id.
+
+    ``places`` remembers where pieces stand: what is seen at a place and what collides there have the same pose, and so have theirs.
+    """
     match view.shape.geometry:
         case Capsule(radius, length):
             ends = [(Sphere(radius), Pose((0.0, 0.0, z))) for z in (length / 2.0, -length / 2.0)]
@@ -100,12 +107,20 @@ def _pieces(view: ShapeView, names: Names) -> dict[Id, RobotEdge]:
     found: dict[Id, RobotEdge] = {}
     for geometry, pose in pieces:
         key = view.id if not found else names.take("shape", f"{view.body.name}/{view.shape.role.value}")
-        found[key] = _in_place(view, geometry, pose, None)
+        place = id(view.pose), pose
+        if place not in places:
+            places[place] = compose(view.pose, pose)
+        found[key] = _in_place(view, geometry, places[place], None)
     return found
 
 
 def _in_place(view: ShapeView, geometry: Geometry, pose: Pose, mesh: Id | None) -> RobotEdge:
-    return shape_edge(replace(view.shape, geometry=geometry), view.body, compose(view.pose, pose), mesh, view.material)
+    return shape_edge(_shape_as(view.shape, geometry, view.shape.role), view.body, pose, mesh, view.material)
+
+
+def _shape_as(shape: Shape, geometry: Geometry, role: Role) -> Shape:
+    """The shape with another geometry or role."""
+    return Shape(geometry, role, shape.name, shape.rgba, shape.mass, shape.density, shape.friction)
 
 
 @cache

@@ -6,7 +6,7 @@ from dataclasses import replace
 from itertools import chain
 from typing import TYPE_CHECKING, TypeVar
 
-from hymeko_x.ir.graph import Hypergraph
+from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import Names
 
 if TYPE_CHECKING:
@@ -31,8 +31,8 @@ def rename(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
     vertices = {names.get(key, key): data for key, data in graph.vertices.items() if key not in merged}
     edges = {}
     for key, edge in graph.edges.items():
-        if any(arc.target in names for arc in edge.arcs):
-            edge = replace(edge, arcs=tuple(replace(arc, target=names.get(arc.target, arc.target)) for arc in edge.arcs))
+        if not names.keys().isdisjoint([arc.target for arc in edge.arcs]):
+            edge = Edge(edge.data, tuple([Arc(names.get(arc.target, arc.target), arc.sign, arc.weight, arc.role) for arc in edge.arcs]))
         edges[names.get(key, key)] = edge
     extras: dict[Id, tuple[Extra, ...]] = {}
     for key, found in mechanism.extras.items():

@@ -124,7 +124,10 @@ _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def _attributes_text(attributes: Mapping[str, str | None]) -> str:
-    return "".join([f" {name}={_quoted(value)}" for name, value in attributes.items() if value is not None])
+    said = [(name, value) for name, value in attributes.items() if value is not None]
+    if _PLAIN.fullmatch("".join([value for _, value in said])):
+        return "".join([f' {name}="{value}"' for name, value in said])
+    return "".join([f" {name}={_quoted(value)}" for name, value in said])
 
 
 def _quoted(value: str) -> str:

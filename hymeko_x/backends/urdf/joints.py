@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.backends.urdf.sheet import add_origin
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml_print import Tag
@@ -27,7 +26,7 @@ def joint_tag(key: Id, sheet: Sheet) -> Tag:
     view = sheet.mechanism.joints[key]
     word = _type(view, sheet)
     tag = Tag("joint", {"name": key.name, "type": word})
-    add_origin(tag, view.parent_pose, always=words.STYLE_JOINT_ORIGIN in sheet.style)
+    sheet.add_origin(tag, view.parent_pose, always=words.STYLE_JOINT_ORIGIN in sheet.style)
     tag.add("parent", link=view.parent.name)
     tag.add("child", link=view.child.name)
     if view.joint.dofs:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.backends.urdf.materials import add_shape_material
-from hymeko_x.backends.urdf.sheet import add_origin
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml_print import Tag
@@ -40,7 +39,7 @@ def link_tag(key: Id, sheet: Sheet) -> Tag:
 def _add_inertial(link: Tag, inertial: Inertial, sheet: Sheet) -> None:
     tag = link.add("inertial")
     frame, tensor = _as_written(inertial)
-    add_origin(tag, frame, always=words.STYLE_INERTIAL_ORIGIN in sheet.style)
+    sheet.add_origin(tag, frame, always=words.STYLE_INERTIAL_ORIGIN in sheet.style)
     if inertial.mass is not None:
         tag.add("mass", value=number_text(inertial.mass))
     if tensor is not None:
@@ -60,7 +59,7 @@ def _add_shape(link: Tag, name: str, view: ShapeView, sheet: Sheet) -> None:
     tag = link.add(name)
     if view.shape.name is not None:
         tag.attributes["name"] = view.shape.name
-    add_origin(tag, view.pose, always=_ORIGIN_STYLES[name] in sheet.style)
+    sheet.add_origin(tag, view.pose, always=_ORIGIN_STYLES[name] in sheet.style)
     _add_geometry(tag.add("geometry"), view, sheet)
     add_shape_material(tag, view, sheet)
     sheet.put_back(tag, view.id)

@@ -30,6 +30,7 @@ class Sheet:
         self.style = frozenset((mechanism.notation(ROOT, words.STYLE) or "").split())
         self._chosen = dict(word.split("=", 1) for word in self.style if "=" in word)
         self._defined_before: set[Id] = set()
+        self._origins: dict[int, tuple[Pose, dict[str, str]]] = {}
 
     # ---- style -----------------------------------------------------------------------------------------------------------
 
@@ -109,17 +110,27 @@ class Sheet:
 
     def put_back(self, tag: Tag, key: Id) -> None:
         """Write the extras of an element into its tag."""
-        extras = self.mechanism.extras.get(key)
-        if extras:
-            put_back(tag, [extra for extra in extras if extra.format == words.FORMAT], self.declared)
+        own = [extra for extra in self.mechanism.extras.get(key, ()) if extra.format == words.FORMAT]
+        if own:
+            put_back(tag, own, self.declared)
 
     def has_own(self, key: Id, tag: str) -> bool:
         """Whether an extra of the element is a child of this name."""
         start = re.compile(rf"<{re.escape(tag)}[\s/>]")
         return any(extra.path == "" and start.match(extra.text) for extra in self.mechanism.extras.get(key, ()))
 
+    # ---- poses -----------------------------------------------------------------------------------------------------------
 
-def add_origin(tag: Tag, pose: Pose, *, always: bool) -> None:
-    """Add <origin>: position in m and roll, pitch, yaw in rad, as written where they were written so."""
-    if always or pose.written is not None or pose != IDENTITY:
-        tag.add("origin", xyz=numbers_text(pose.xyz), rpy=numbers_text(rpy_of(pose)))
+    def add_origin(self, tag: Tag, pose: Pose, *, always: bool) -> None:
+        """Add <origin>: position in m and roll, pitch, yaw in rad, as written where they were written so."""
+        if pose is IDENTITY and not always:
+            return
+        if always or pose.written is not None or pose != IDENTITY:
+            tag.children.append(Tag("origin", self._origin(pose).copy()))
+
+    def _origin(self, pose: Pose) -> dict[str, str]:
+        """The attributes of <origin>; what is seen at a place often collides there too, and then both have the same pose."""
+        found = self._origins.get(id(pose))
+        if found is None:  # the pose is kept as well, so that its identity stays its own
+            found = self._origins[id(pose)] = pose, {"xyz": numbers_text(pose.xyz), "rpy": numbers_text(rpy_of(pose))}
+        return found[1]

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Inertial
 
 
+_PLACE = (POSE,)
+_WEIGHT = (INERTIAL,)
+
+
 def write_worldbody(sheet: Sheet) -> None:
     """The world's own geometry and every tree below it."""
     said = sheet.said(WORLD)
@@ -102,8 +106,8 @@ def _inertial_ops(sheet: Sheet, spot: Spot) -> list[Op]:
         return []
     notes = sheet.notes(spot.body)
     around = spot.around(notes.get("inertial/frame"))
-    group = INERTIAL if around is None else seen_from(INERTIAL, around.pose)
-    attributes = sheet.attributes({"inertial": inertial}, (group,), {}, notes, {}, "inertial/")
+    groups = _WEIGHT if around is None else (seen_from(INERTIAL, around.pose),)
+    attributes = sheet.attributes({"inertial": inertial}, groups, {}, notes, {}, "inertial/")
     return [Op("leaf", "inertial", {**attributes, **sheet.said(spot.body, "inertial")}, around=around)]
 
 
@@ -116,13 +120,13 @@ def _body_op(sheet: Sheet, spot: Spot, view: JointView | None, body: Id | None =
         pose = compose(pose, inverse(view.child_pose))
     notes = sheet.notes(key)
     around = spot.around(notes.get("frame"))
-    group = POSE if around is None else seen_from(POSE, around.pose)
+    groups = _PLACE if around is None else (seen_from(POSE, around.pose),)
     said = sheet.said(key)
     childclass = notes.get("childclass")
     attributes: Attributes = {
         "name": sheet.name(key),
         "childclass": childclass,
-        **sheet.attributes({"pose": pose}, (group,), {}, notes, said),
+        **sheet.attributes({"pose": pose}, groups, {}, notes, said),
         **said,
     }
     inner = spot_of(sheet, key, childclass or spot.childclass_in(around))

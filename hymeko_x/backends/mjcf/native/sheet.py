@@ -9,21 +9,23 @@ from xml.parsers.expat import ExpatError
 from hymeko_x.backends.mjcf.text import Text
 from hymeko_x.formats import mjcf_words as words
 from hymeko_x.formats.mjcf_classes import Classes, merge
-from hymeko_x.formats.mjcf_codec import BadAttribute
+from hymeko_x.formats.mjcf_codec import BadAttribute, plan_of
 from hymeko_x.formats.mjcf_places import same_value
 from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.ir.mechanism import ROOT, file_stem
 from hymeko_x.ir.parts import Joint, Mesh, Shape, Texture
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from hymeko_x.backends.mjcf.text import Attributes
-    from hymeko_x.formats.mjcf_codec import Group, Settings
+    from hymeko_x.formats.mjcf_codec import Group, Plan, Settings
     from hymeko_x.formats.mjcf_tree import Element
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotArc
 
 _NO_NOTES: Mapping[str, str] = {}
+_REFUSED = object()
+"""Is no value."""
 
 
 @dataclass(slots=True)
@@ -36,6 +38,7 @@ class Sheet:
     settings: Settings = field(init=False)
     classes: Classes = field(init=False)
     rank: dict[Id, int] = field(default_factory=dict)
+    plans: dict[tuple[int, int], Plan] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         standing = sorted(
@@ -95,12 +98,11 @@ class Sheet:
 
     def said(self, key: Id, path: str = "") -> dict[str, str]:
         """The attributes that MJCF alone has a word for, by the path of the node they stand on."""
+        own = self.mechanism.extras.get(key)
+        if not own:
+            return {}
         start = f"{path}/@" if path else "@"
-        return {
-            extra.path.removeprefix(start): extra.text
-            for extra in self.mechanism.extras.get(key, ())
-            if extra.format == words.NAME and extra.path.startswith(start)
-        }
+        return {extra.path.removeprefix(start): extra.text for extra in own if extra.format == words.NAME and extra.path.startswith(start)}
 
     def inside(self, key: Id, path: str = "") -> list[str]:
         """The elements and comments that stand inside an element, as they are."""
@@ -110,7 +112,7 @@ class Sheet:
     def attributes(
         self,
         values: Mapping[str, Any],
-        groups: Iterable[Group],
+        groups: tuple[Group, ...],
         base: Mapping[str, str],
         notes: Mapping[str, str],
         said: Mapping[str, str],
@@ -118,6 +120,7 @@ class Sheet:
     ) -> dict[str, str]:
         """The attributes that say what the class does not, in their author's way where it still says the same."""
         found: dict[str, str] = {}
+        inherited = self._inherited(groups, base)
         for group in groups:
             value = values[group.key]
             context = {name: text for name in group.needs if (text := found.get(name) or said.get(name)) is not None}
@@ -125,10 +128,18 @@ class Sheet:
             noted = {name: text for name in group.names if (text := notes.get(f"{prefix}@{name}")) is not None} if notes else {}
             if noted and self._means(group, merge(below, noted), value):
                 found |= noted
-            elif not self._means(group, below, value):
+            elif not (self._means(group, below, value) if context else same_value(inherited.get(group.key, _REFUSED), value)):
                 new = group.write(value, self.settings)
                 found |= {name: text for name, text in new.items() if base.get(name) != text}
         return found
+
+    def _inherited(self, groups: tuple[Group, ...], base: Mapping[str, str]) -> Mapping[str, Any]:
+        """What an element is that says nothing itself; without the values that MuJoCo would refuse."""
+        place = id(groups), id(base) if base else 0
+        plan = self.plans.get(place)
+        if plan is None:
+            plan = self.plans[place] = plan_of(groups, self.settings, base)
+        return plan.silent
 
     def _means(self, group: Group, said: Mapping[str, str], value: Any) -> bool:
         try:
