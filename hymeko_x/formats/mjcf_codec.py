@@ -56,9 +56,9 @@ class Settings:
     strip_path: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Group:
-    """Attributes that make one value.
+    """Attributes that make one value. Each is equal to itself alone.
 
     ``needs``: attributes of other groups on which their meaning depends. ``exact``: what is written always says the same.
     """
@@ -82,7 +82,7 @@ class Plan:
 
     groups: tuple[Group, ...]
     base: Mapping[str, str]
-    silent: dict[str, Any]
+    silent: Mapping[str, Any]
     places: Mapping[str, tuple[int, ...]]
     always: frozenset[int]
     known: dict[tuple[str, ...], list[Group]] = field(default_factory=dict)
@@ -101,17 +101,34 @@ class Plan:
 
 def plan_of(groups: tuple[Group, ...], settings: Settings, base: Mapping[str, str]) -> Plan:
     """The plan for elements to which their class gives ``base``, in a file with these settings."""
-    silent: dict[str, Any] = {}
+    silent, always = _said_by(base, groups, settings) if base else _unsaid(groups, settings)
+    return Plan(groups, base, silent, _places_of(groups), always)
+
+
+@lru_cache(256)
+def _places_of(groups: tuple[Group, ...]) -> Mapping[str, tuple[int, ...]]:
     places: dict[str, tuple[int, ...]] = {}
+    for place, group in enumerate(groups):
+        for name in (*group.names, *group.needs):
+            places[name] = (*places.get(name, ()), place)
+    return MappingProxyType(places)
+
+
+@lru_cache(256)
+def _unsaid(groups: tuple[Group, ...], settings: Settings) -> tuple[Mapping[str, Any], frozenset[int]]:
+    return _said_by({}, groups, settings)
+
+
+def _said_by(base: Mapping[str, str], groups: tuple[Group, ...], settings: Settings) -> tuple[Mapping[str, Any], frozenset[int]]:
+    """The values of the groups, and the places of those that have none."""
+    silent: dict[str, Any] = {}
     always: set[int] = set()
     for place, group in enumerate(groups):
         try:
             silent[group.key] = group.read(base, settings)
         except BadAttribute:
             always.add(place)
-        for name in (*group.names, *group.needs):
-            places[name] = (*places.get(name, ()), place)
-    return Plan(groups, base, silent, places, frozenset(always))
+    return MappingProxyType(silent), frozenset(always)
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------

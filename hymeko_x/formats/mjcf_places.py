@@ -223,12 +223,12 @@ def same_value(a: Any, b: Any) -> bool:
     """Whether two values are equal, and written alike where it is remembered."""
     if a != b:
         return False
-    if isinstance(a, Pose) and isinstance(b, Pose):
-        return a.written == b.written
-    if isinstance(a, Place) and isinstance(b, Place):
-        return a.pose.written == b.pose.written
-    if isinstance(a, Inertial) and isinstance(b, Inertial):
-        return a.written == b.written and (a.written is None or b.written is None or a.written.frame.written == b.written.frame.written)
+    if isinstance(a, Pose):
+        return bool(a.written == b.written)
+    if isinstance(a, Place):
+        return bool(a.pose.written == b.pose.written)
+    if isinstance(a, Inertial):
+        return a.written == b.written and (a.written is None or a.written.frame.written == b.written.frame.written)
     return True
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 _DEEPEST = 40
 """Deeper elements are not indented further, so that the text stays linear in their number."""
+_INDENTS = tuple("  " * depth for depth in range(_DEEPEST + 1))
 
 _NO_ATTRIBUTES: Mapping[str, str | None] = MappingProxyType({})
 
@@ -114,7 +115,7 @@ class Text:
         self._lines.append(self._indent() + text)
 
     def _indent(self) -> str:
-        return "  " * min(len(self._open), _DEEPEST)
+        return _INDENTS[min(len(self._open), _DEEPEST)]
 
 
 _ESCAPES = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}

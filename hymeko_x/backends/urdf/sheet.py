@@ -30,6 +30,7 @@ class Sheet:
         self.style = frozenset((mechanism.notation(ROOT, words.STYLE) or "").split())
         self._chosen = dict(word.split("=", 1) for word in self.style if "=" in word)
         self._defined_before: set[Id] = set()
+        self._places: dict[Id, Defined | None] = {}
         self._origins: dict[int, tuple[Pose, dict[str, str]]] = {}
 
     # ---- style -----------------------------------------------------------------------------------------------------------
@@ -81,7 +82,9 @@ class Sheet:
 
     def defined_now(self, key: Id) -> bool:
         """Whether a shape that uses the material has to define it; asked once for each shape, in printing order."""
-        place = self.place_of(key)
+        if key not in self._places:
+            self._places[key] = self.place_of(key)
+        place = self._places[key]
         first = key not in self._defined_before
         self._defined_before.add(key)
         return place in (Defined.INLINE, Defined.BOTH) or (place is Defined.FIRST and first)

@@ -117,7 +117,7 @@ class Draft:
         """
         own = element.attributes
         plan = self._plan_of(groups, base)
-        found = plan.silent.copy()
+        found = dict(plan.silent)
         asked = plan.said_in(own)
         if not asked:
             return found

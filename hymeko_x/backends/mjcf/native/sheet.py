@@ -121,11 +121,13 @@ class Sheet:
         """The attributes that say what the class does not, in their author's way where it still says the same."""
         found: dict[str, str] = {}
         inherited = self._inherited(groups, base)
+        start = f"{prefix}@"
+        written = {name.removeprefix(start): text for name, text in notes.items() if name.startswith(start)}
         for group in groups:
             value = values[group.key]
-            context = {name: text for name in group.needs if (text := found.get(name) or said.get(name)) is not None}
+            context = {name: text for name in group.needs if (text := found.get(name) or said.get(name)) is not None} if group.needs else {}
             below = {**base, **context} if context else base
-            noted = {name: text for name in group.names if (text := notes.get(f"{prefix}@{name}")) is not None} if notes else {}
+            noted = {name: written[name] for name in group.names if name in written} if written else {}
             if noted and self._means(group, merge(below, noted), value):
                 found |= noted
             elif not (self._means(group, below, value) if context else same_value(inherited.get(group.key, _REFUSED), value)):
