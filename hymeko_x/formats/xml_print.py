@@ -23,6 +23,7 @@ _STEP = re.compile(rf"{_NAME}(?:\[[1-9]\d*\])?|@{_NAME}|text\(\)")
 _SPACE = re.compile(r"xmlns(?::[^\W\d][\w.-]*)?")
 _UNSAYABLE = re.compile(r"[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
 _SPECIAL = re.compile(r'[&<>"\x00-\x1f\ud800-\udfff\ufffe\uffff]')
+_SPECIAL_BUT_QUOTE = re.compile(r"[&<>\x00-\x1f\ud800-\udfff\ufffe\uffff]")
 _ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 
 
@@ -158,8 +159,9 @@ def _render(tag: Tag, indent: str, lines: list[str]) -> None:
 
 def attributes_text(attributes: dict[str, str]) -> str:
     """Attributes as they stand in a start tag, each with a blank before it."""
-    if _SPECIAL.search("".join(attributes.values())) is None:
-        return "".join([f' {name}="{value}"' for name, value in attributes.items()])
+    text = "".join([f' {name}="{value}"' for name, value in attributes.items()])
+    if _SPECIAL_BUT_QUOTE.search(text) is None and text.count('"') == 2 * len(attributes):
+        return text
     return "".join([f' {name}="{escaped(value)}"' for name, value in attributes.items()])
 
 
