@@ -94,8 +94,10 @@ def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
     sharing: dict[Members, list[Pair]] = {}
     for pair, members in owners.items():
         sharing.setdefault(members, []).append(pair)
-    ranked = nsmallest(8 * _SEEDS, sharing.items(), key=lambda entry: (-_worth(*entry), sorted(entry[1])))
-    closed = {members: common(members) for members, _ in ranked}
+    ranked = list(sharing)
+    if len(sharing) > 8 * _SEEDS:
+        ranked = nsmallest(8 * _SEEDS, sharing, key=lambda members: (-_worth(members, sharing[members]), sorted(sharing[members])))
+    closed = {members: common(members) for members in ranked}
     seeds = sorted(closed, key=lambda members: (-_worth(members, closed[members]), sorted(closed[members])))[:_SEEDS]
     for first, second in combinations(seeds, 2):
         both = first & second
@@ -117,7 +119,7 @@ def _owners(rows: Sequence[Row]) -> dict[Pair, Members]:
 
 def _worth(members: Members, shared: Iterable[Pair]) -> int:
     """About how many letters a set saves."""
-    cost = sum(len(text) for _, text in shared)
+    cost = sum([len(text) for _, text in shared])
     return (len(members) - 1) * cost - 10
 
 

@@ -31,6 +31,8 @@ _LEAST_TURNED = 2e-14
 """The same for a tensor with products: MuJoCo wants its eigenvalues above 1e-14, and of static bodies too."""
 _ACCURACY = 1e-13
 """By which part of its largest moment a tensor with products must keep the triangle inequality, for a solver with rounding."""
+_WELL = 1e-6
+"""How far, as a part of its size, a tensor is from every bound when no eigenvalue has to be computed; roundings are far smaller."""
 _ROUNDING = 1e-10
 """A change of a tensor in kg m^2 up to this is worth a note and no warning."""
 
@@ -124,6 +126,8 @@ def physical(tensor: Tensor) -> Tensor:
     if not any(tensor[3:]) or max(map(abs, tensor)) < _LEAST_TURNED:
         x, y, z = _projected(tensor[:3])
         return (x, y, z, 0.0, 0.0, 0.0)
+    if _is_well_inside(tensor):
+        return tensor
     low, middle, high = principal_moments(tensor)
     if low >= _LEAST_TURNED and low + middle >= high + _ACCURACY * high:
         return tensor
@@ -135,6 +139,27 @@ def physical(tensor: Tensor) -> Tensor:
     new += max(2.0 * _ACCURACY * new.max(), 2.0 * _LEAST_TURNED - new.min(), 0.0)
     fixed = (axes * new) @ axes.T
     return tuple(float(fixed[i, k]) for i, k in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))  # type: ignore[return-value]
+
+
+def _is_well_inside(tensor: Tensor) -> bool:
+    """Whether a tensor is so far from every bound that this shows without its principal moments, as those of most bodies are.
+
+    With t = (A + B + C) / 2 the eigenvalues of J = t E - I are (A + B - C) / 2 and the like. I and J are well inside when the
+    leading minors of J and the determinants of both are: no eigenvalue exceeds t, so that each is at least the determinant / t^2.
+    """
+    xx, yy, zz, xy, xz, yz = tensor
+    t = (xx + yy + zz) / 2.0
+    if not 1e-7 < t < 1e90:
+        return False
+    least = _WELL * t * t * t
+    a, b, c = t - xx, t - yy, t - zz
+    squares = xy * xy, xz * xz, yz * yz
+    products = 2.0 * xy * xz * yz
+    if a <= _WELL * t or a * b - squares[0] <= _WELL * t * t:
+        return False
+    of_tensor = xx * yy * zz + products - xx * squares[2] - yy * squares[1] - zz * squares[0]
+    of_others = a * b * c - products - a * squares[2] - b * squares[1] - c * squares[0]
+    return of_tensor > least and of_others > least
 
 
 def _projected(moments: Vec3) -> Vec3:
@@ -173,7 +198,8 @@ def _is_sound(body: Body) -> bool:
     inertial = body.inertial
     if inertial is None or (inertial.mass or 0.0) < _BOUND:
         return False
-    return principal_moments(inertial.tensor or _NOTHING)[0] >= _BOUND
+    tensor = inertial.tensor or _NOTHING
+    return _is_well_inside(tensor) or principal_moments(tensor)[0] >= _BOUND
 
 
 def _least_inertial(inertial: Inertial | None) -> Inertial:

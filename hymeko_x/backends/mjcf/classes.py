@@ -8,8 +8,8 @@ shapes for the eye share into ``visual``; sets that only some share become class
 from __future__ import annotations
 
 import re
-from collections import Counter
 from dataclasses import dataclass, field
+from operator import itemgetter
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -92,14 +92,15 @@ def _row(leaf: Leaf) -> Row:
 
 def _say_for_most(tag: str, around: str, group: list[Leaf], defaults: Defaults) -> None:
     """What most say stands in the class that all have anyway; whoever is different says so."""
-    texts: dict[str, Counter[str]] = {}
+    texts: dict[str, dict[str, int]] = {}
     for leaf in group:
         for name, text in _row(leaf):
-            texts.setdefault(name, Counter())[text] += 1
+            counts = texts.setdefault(name, {})
+            counts[text] = counts.get(text, 0) + 1
     said = {}
-    for name, found in texts.items():
-        text, uses = found.most_common(1)[0]
-        if uses == len(group) or (found.total() == len(group) and uses > len(group) / 2 and name not in PARTIAL):
+    for name, counts in texts.items():
+        text, uses = max(counts.items(), key=itemgetter(1))
+        if uses == len(group) or (sum(counts.values()) == len(group) and uses > len(group) / 2 and name not in PARTIAL):
             said[name] = text
     if said:
         defaults.classes.append(Class(around, tag, said, ""))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.mjcf_tree import COMMENT
 from hymeko_x.formats.xml_text import quoted
-from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, number_text
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, numbers_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -140,7 +140,7 @@ def _quoted(value: str) -> str:
 
 def numbers(*values: float) -> str:
     """Numbers separated by blanks, each the shortest that reads back to the same double; no negative zero."""
-    return " ".join([number_text(value + 0.0) for value in values])
+    return numbers_text(tuple([value + 0.0 for value in values]))
 
 
 def number(value: float | None, default: float | None = None) -> str | None:
