@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal, Protocol
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
 from hymeko_x.assets.stored import with_stored_points
+from hymeko_x.collector import uncollected
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.carrier import taken_off
 from hymeko_x.formats.usd import POSE
@@ -132,6 +133,7 @@ class Result:
     bare: bytes | None = None
 
 
+@uncollected()
 def read(source: Source, format: Format, report: Report) -> Mechanism:
     """The mechanism in a source of this format.
 
@@ -155,6 +157,7 @@ def restored(image: Mechanism, origin: Origin, report: Report) -> Mechanism:
     return restore(image, residue, report)
 
 
+@uncollected()
 def write(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Package:
     """The mechanism in a format: rewritten into what the format can say, its meshes and textures gathered, then printed.
 
@@ -163,6 +166,7 @@ def write(mechanism: Mechanism, format: Format, options: Options, files: Files, 
     return _written(mechanism, format, options, files, report, place)[0]
 
 
+@uncollected()
 def convert(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
     """Write a mechanism, read the result back if the format has a reader, measure what got lost, and let the file carry that.
 

@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LAYERS = (
-    ("diagnostics", "codes", "source"),
+    ("collector", "diagnostics", "codes", "source"),
     ("ir",),
     ("assets", "formats", "language"),
     ("frontends", "backends"),

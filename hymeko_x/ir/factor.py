@@ -23,10 +23,9 @@ the same signs change in several places, the sign becomes a parameter ("1" or "-
 
 from __future__ import annotations
 
-import gc
-from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from hymeko_x.collector import uncollected
 from hymeko_x.ir.factor_apply import apply
 from hymeko_x.ir.factor_dialect import Dialect
 from hymeko_x.ir.factor_find import families
@@ -35,7 +34,7 @@ from hymeko_x.ir.factor_flat import Flat, Grown, grow
 from hymeko_x.ir.factor_values import name_texts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
 
     from hymeko_x.ir.forms import Element, Factored
 
@@ -47,7 +46,7 @@ _MOST_ROUNDS = 12
 
 def factor(forms: Iterable[Element], dialect: Dialect) -> Factored:
     """The forms with everything said once that repeats and is shorter so. Deterministic and near-linear in their number."""
-    with _uncollected():
+    with uncollected():
         grown = Grown(grow(forms))
         for _ in range(_MOST_ROUNDS):
             flat = Flat(grown, dialect)
@@ -55,15 +54,3 @@ def factor(forms: Iterable[Element], dialect: Dialect) -> Factored:
                 break
         done = finish(grown, dialect)
         return name_texts(done, dialect) if dialect.values else done
-
-
-@contextmanager
-def _uncollected() -> Iterator[None]:
-    """Without the collector of cycles: there are none, and looking for them among a million small tuples doubles the time."""
-    was_on = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if was_on:
-            gc.enable()

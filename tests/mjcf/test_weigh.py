@@ -49,6 +49,12 @@ def test_an_inertia_that_is_said_stays_as_it_is() -> None:
     assert inertial(weighed(body), "b") == Inertial(2.0, (0.0, 0.0, 1.0), (1.0, 2.0, 2.0, 0.0, 0.0, 0.0))
 
 
+def test_where_everything_is_said_nothing_is_printed_for_mujoco() -> None:
+    body = '<body name="b"><freejoint/><inertial pos="0 0 1" mass="2" diaginertia="1 2 2"/><geom size=".1"/></body>'
+    robot = read_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
+    assert weigh(robot, lambda: pytest.fail("it was printed"), NoFiles(), Report()) is robot
+
+
 def test_a_total_mass_scales_what_is_said_as_well() -> None:
     body = '<body name="b"><inertial pos="0 0 1" mass="2" diaginertia="1 2 2"/></body>'
     assert inertial(weighed(body, '<compiler settotalmass="4"/>'), "b").mass == pytest.approx(4.0)
