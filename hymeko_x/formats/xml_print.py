@@ -24,7 +24,8 @@ _SPACE = re.compile(r"xmlns(?::[^\W\d][\w.-]*)?")
 _UNSAYABLE = re.compile(r"[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
 _SPECIAL = re.compile(r'[&<>"\x00-\x1f\ud800-\udfff\ufffe\uffff]')
 _SPECIAL_BUT_QUOTE = re.compile(r"[&<>\x00-\x1f\ud800-\udfff\ufffe\uffff]")
-_ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
+_ESCAPES = (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;"), ("\n", "&#10;"), ("\r", "&#13;"), ("\t", "&#9;"))
+_IMPOSSIBLE = re.compile(r"[\x00-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
 class Tag:
@@ -172,8 +173,8 @@ def is_name(text: str) -> bool:
 
 def escaped(text: str) -> str:
     """A text for an attribute or an element; every character that XML can hold reads back as it was, others are U+FFFD."""
-    return _SPECIAL.sub(_escape, text) if _SPECIAL.search(text) else text
-
-
-def _escape(found: re.Match[str]) -> str:
-    return _ESCAPES.get(found[0], "\ufffd")
+    if _SPECIAL.search(text) is None:
+        return text
+    for character, entity in _ESCAPES:
+        text = text.replace(character, entity)
+    return text if text.isprintable() else _IMPOSSIBLE.sub("\ufffd", text)

@@ -49,11 +49,6 @@ def write(mechanism: Mechanism, report: Report) -> Package:
 def carry_residue(package: Package, text: str) -> Package:
     """The package with a residue in its file: the data of texts that mean nothing to MuJoCo."""
     names = (f"{carrier.MJCF_NAME}{number or ''}" for number in count())
-    texts = [f'    <text name="{name}" data="{_in_attribute(part)}"/>\n' for name, part in zip(names, carrier.parts(text), strict=False)]
+    texts = [f'    <text name="{name}" data="{escaped(part)}"/>\n' for name, part in zip(names, carrier.parts(text), strict=False)]
     markup = f"  <custom>\n{''.join(texts)}  </custom>\n"
     return replace(package, main=carrier.inserted(package.main, markup))
-
-
-def _in_attribute(text: str) -> str:
-    """Text as an attribute's value, line ends included."""
-    return escaped(text).replace("\r", "&#13;").replace("\n", "&#10;").replace("\t", "&#9;")
