@@ -5,7 +5,7 @@ from __future__ import annotations
 import posixpath
 from dataclasses import dataclass, field, replace
 from importlib import import_module
-from typing import TYPE_CHECKING, Literal, Protocol
+from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
@@ -15,6 +15,7 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.carrier import taken_off
 from hymeko_x.formats.usd import POSE
 from hymeko_x.ir.diff import Difference, Tolerance, diff
+from hymeko_x.ir.leaves import leaves_again, leaves_between
 from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import ROOT
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from hymeko_x.formats import Format
+    from hymeko_x.ir.leaves import Leaves
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.ir.residue import Bridge
@@ -77,8 +79,7 @@ HERE = Place()
 """The working folder."""
 
 
-@dataclass(frozen=True, slots=True)
-class Loss:
+class Loss(NamedTuple):
     """One line of the ledger: what is not the same in the result."""
 
     element: str
@@ -180,15 +181,17 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
     image = read_back(package, format, files)
     bridge, crossed = aligned(image, mechanism)
     moved = with_references_of(packed, mechanism)
-    losses = ledger(moved, crossed, bridge, format)
+    apart = leaves_between(moved, crossed)
     carry = None if options.pure else carrier_of(format)
+    losses = ledger(moved, crossed, bridge, format, apart, is_carried=carry is not None)
     if carry is None:
         return Result(mechanism, package, report, losses)
-    residue = residue_behind(_standing_in(moved, packed) if options.within else mechanism, image, bridge, crossed)
+    source = _standing_in(moved, packed) if options.within else mechanism
+    residue = residue_behind(source, image, bridge, crossed, leaves_again(source, moved, crossed, apart))
     bare = package.main
     if not residue.is_empty:
         package = carry(package, print_residue(residue))
-    return Result(mechanism, package, report, tuple(replace(loss, fate="carried") for loss in losses), bare)
+    return Result(mechanism, package, report, losses, bare)
 
 
 def within(folder: str, mechanism: Mechanism, format: Format, options: Options, files: Files, place: Place = HERE) -> Package:
@@ -242,13 +245,22 @@ def read_back(package: Package, format: Format, files: Files) -> Mechanism:
         raise refuse(codes.BUG, f"what was written as {format.name} cannot be read back: {error}") from error
 
 
-def ledger(mechanism: Mechanism, crossed: Mechanism, bridge: Bridge, format: Format) -> tuple[Loss, ...]:
+def ledger(
+    mechanism: Mechanism,
+    crossed: Mechanism,
+    bridge: Bridge,
+    format: Format,
+    apart: Mapping[Id, Leaves] | None = None,
+    *,
+    is_carried: bool = False,
+) -> tuple[Loss, ...]:
     """Everything in which what was written and read back differs from the mechanism; what it only says in other words, once.
 
-    ``crossed`` is what was read back, behind the bridge that leads to the mechanism.
+    ``crossed`` is what was read back, behind the bridge that leads to the mechanism; ``apart`` in what their elements differ, if
+    that is known; ``is_carried`` whether the file will carry what got lost.
     """
-    found = (*other_words(bridge), *diff(mechanism, crossed, LEDGER_TOLERANCE), *_unsaid_notes(mechanism, crossed))
-    return tuple(_loss(difference, mechanism) for difference in found if not _is_dress(difference, format))
+    found = (*other_words(bridge), *diff(mechanism, crossed, LEDGER_TOLERANCE, apart), *_unsaid_notes(mechanism, crossed))
+    return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_dress(difference, format)])
 
 
 def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:
@@ -280,11 +292,11 @@ def _standing_in(moved: Mechanism, packed: Mechanism) -> Mechanism:
     return replace(moved, extras=packed.extras) if is_native(moved) else moved
 
 
-def _loss(difference: Difference, mechanism: Mechanism) -> Loss:
-    fate: Literal["approximated", "dropped"] = "dropped" if difference.after is None else "approximated"
-    origin = mechanism.origin(difference.element)
+def _loss(difference: Difference, mechanism: Mechanism, is_carried: bool) -> Loss:
+    gone: Literal["approximated", "dropped"] = "dropped" if difference.after is None else "approximated"
     element = "mechanism" if difference.element == ROOT else str(difference.element)
-    return Loss(element, difference.field, difference.before, difference.after, fate, origin)
+    origin = mechanism.origin(difference.element)
+    return Loss(element, difference.field, difference.before, difference.after, "carried" if is_carried else gone, origin)
 
 
 def reader(format: Format) -> Reader:

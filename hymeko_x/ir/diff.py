@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, is_dataclass, replace
+from dataclasses import dataclass, replace
 from enum import Enum
-from typing import TYPE_CHECKING, TypeVar
+from functools import cache
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from hymeko_x.ir.fields import attributes_of, layout_of
+from hymeko_x.ir.fields import NUMBERS, layout_of
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.leaves import TURN, leaves_between, leaves_of
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
-from hymeko_x.ir.values import Pose, number_text, rotation_angle
+from hymeko_x.ir.values import number_text, rotation_angle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.ir.fields import Layout
+    from hymeko_x.ir.leaves import Leaves, Path
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+    from hymeko_x.ir.values import Quat
 
 P = TypeVar("P")
 
 
-@dataclass(frozen=True, slots=True)
-class Difference:
+class Difference(NamedTuple):
     """One field of one element that differs; ``before`` or ``after`` is None where it is not there at all."""
 
     element: Id
@@ -61,32 +65,30 @@ _LONG, _SHOWN = 64, 8
 """Tuples with more items are the numbers of meshes, of which only a few are shown."""
 
 
-def diff(a: Mechanism, b: Mechanism, tolerance: Tolerance = EXACT) -> tuple[Difference, ...]:
+def diff(a: Mechanism, b: Mechanism, tolerance: Tolerance = EXACT, apart: Mapping[Id, Leaves] | None = None) -> tuple[Difference, ...]:
     """Everything that differs from ``a`` to ``b``: the name, elements, their fields and arcs, and their extras.
 
-    Order, places and notations do not count. Linear in the size of both.
+    Order, places and notations do not count. Linear in the size of both. ``apart`` are the leaves of the elements that
+    both have, if they are known.
     """
-    return tuple(_differences(a, b, tolerance))
+    return tuple(_differences(a, b, tolerance, leaves_between(a, b) if apart is None else apart))
 
 
-def _differences(a: Mechanism, b: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
+def _differences(a: Mechanism, b: Mechanism, tolerance: Tolerance, apart: Mapping[Id, Leaves]) -> Iterator[Difference]:
     if a.name != b.name:
         yield Difference(ROOT, "name", repr(a.name), repr(b.name))
-    yield from _elements(a.graph.vertices, b.graph.vertices, tolerance)
-    yield from _elements(a.graph.edges, b.graph.edges, tolerance)
+    yield from _elements(a.graph.vertices, b.graph.vertices, tolerance, apart)
+    yield from _elements(a.graph.edges, b.graph.edges, tolerance, apart)
     for key in _union(a.extras, b.extras):
         yield from _extras(key, a.extras.get(key, ()), b.extras.get(key, ()))
 
 
-def _elements(a: Mapping[Id, P], b: Mapping[Id, P], tolerance: Tolerance) -> Iterator[Difference]:
+def _elements(a: Mapping[Id, P], b: Mapping[Id, P], tolerance: Tolerance, apart: Mapping[Id, Leaves]) -> Iterator[Difference]:
     for key, before in a.items():
-        after = b.get(key)
-        if after is None:
+        if key in apart:
+            yield from [Difference(key, *found) for found in _found("", apart[key], tolerance)]
+        elif key not in b:
             yield Difference(key, "", _short(before), None)
-        elif before is not after:
-            found: list[Found] = []
-            _values("", before, after, tolerance, found)
-            yield from (Difference(key, *leaf) for leaf in found)
     for key, after in b.items():
         if key not in a:
             yield Difference(key, "", None, _short(after))
@@ -95,53 +97,44 @@ def _elements(a: Mapping[Id, P], b: Mapping[Id, P], tolerance: Tolerance) -> Ite
 Found = tuple[str, str | None, str | None]
 
 
-def _values(where: str, a: object, b: object, tolerance: Tolerance, found: list[Found]) -> None:
-    """The differing leaves of two values, with the path to each. Depth is that of the parts, which is small."""
-    kind = type(a)
-    layout = layout_of(kind) if kind is type(b) else None
-    if isinstance(a, float | int) and isinstance(b, float | int) and not isinstance(a, bool):
-        if not tolerance.accepts(a, b):
-            found.append((where, number_text(a), number_text(b)))
-    elif isinstance(a, Pose) and isinstance(b, Pose):
-        _poses(where, a, b, tolerance, found)
-    elif layout is not None:
-        _fields(where, layout, a, b, tolerance, found)
-    elif isinstance(a, tuple) and isinstance(b, tuple) and not isinstance(a, Id):
-        _tuples(where, a, b, tolerance, found)
-    elif a != b:
-        found.append((where, _short(a), _short(b)))
+def _found(where: str, leaves: Leaves, tolerance: Tolerance) -> Iterator[Found]:
+    """What of the leaves is a difference, with the path to each."""
+    for path, a, b, _, counts in leaves:
+        if not counts:
+            continue
+        if path and path[-1] == TURN:
+            yield from _turns(_joined(where, path[:-1]), a, b, tolerance)  # type: ignore[arg-type]
+        elif isinstance(a, NUMBERS) and isinstance(b, NUMBERS) and not isinstance(a, bool):
+            if not tolerance.accepts(a, b):
+                yield _joined(where, path), number_text(a), number_text(b)
+        elif isinstance(a, tuple) and isinstance(b, tuple) and not isinstance(a, Id):
+            yield from _tuples(_joined(where, path), a, b, tolerance)
+        elif a != b:
+            yield _joined(where, path), _short(a), _short(b)
 
 
-def _fields(where: str, layout: Layout, a: object, b: object, tolerance: Tolerance, found: list[Found]) -> None:
-    for item, before, after in zip(layout.attributes, layout.values(a), layout.values(b), strict=True):
-        if before is not after and item.compare and before != after:
-            name = item.name if item.name not in ("data", "arcs") else ""
-            _values(_join(where, name), before, after, tolerance, found)
+def _turns(where: str, a: tuple[Quat, object], b: tuple[Quat, object], tolerance: Tolerance) -> Iterator[Found]:
+    """Two rotations with their notations, which do not count."""
+    if a[0] != b[0] and rotation_angle(a[0], b[0]) > tolerance.absolute + tolerance.relative:
+        yield _joined(where, ("rotation",)), _short(a[0]), _short(b[0])
 
 
-def _poses(where: str, a: Pose, b: Pose, tolerance: Tolerance, found: list[Found]) -> None:
-    if a.xyz != b.xyz:
-        _values(_join(where, "xyz"), a.xyz, b.xyz, tolerance, found)
-    if a.quat != b.quat and rotation_angle(a.quat, b.quat) > tolerance.absolute + tolerance.relative:
-        found.append((_join(where, "rotation"), _short(a.quat), _short(b.quat)))
-
-
-def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance: Tolerance, found: list[Found]) -> None:
+def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance: Tolerance) -> Iterator[Found]:
     if _is_array(a) or _is_array(b):
-        found += _arrays(where, a, b, tolerance)
+        yield from _arrays(where, a, b, tolerance)
         return
-    if all(isinstance(x, float | int) for x in (*a, *b)):
+    if all(isinstance(x, NUMBERS) for x in (*a, *b)):
         if len(a) != len(b) or not all(tolerance.accepts(x, y) for x, y in zip(a, b, strict=True)):  # type: ignore[arg-type]
-            found.append((where, _short(a), _short(b)))
+            yield where, _short(a), _short(b)
         return
     for number in range(max(len(a), len(b))):
         path = f"{where}[{number}]"
         if number >= len(a):
-            found.append((path, None, _short(b[number])))
+            yield path, None, _short(b[number])
         elif number >= len(b):
-            found.append((path, _short(a[number]), None))
-        elif a[number] is not b[number]:
-            _values(path, a[number], b[number], tolerance, found)
+            yield path, _short(a[number]), None
+        else:
+            yield from _found(path, leaves_of(a[number], b[number]), tolerance)
 
 
 def _arrays(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance: Tolerance) -> Iterator[Found]:
@@ -157,11 +150,11 @@ def _arrays(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance:
 
 
 def _is_array(values: tuple[object, ...]) -> bool:
-    return len(values) > _LONG and isinstance(values[0], float | int)
+    return len(values) > _LONG and isinstance(values[0], NUMBERS)
 
 
 def _accepts(a: object, b: object, tolerance: Tolerance) -> bool:
-    return isinstance(a, float | int) and isinstance(b, float | int) and tolerance.accepts(a, b)
+    return isinstance(a, NUMBERS) and isinstance(b, NUMBERS) and tolerance.accepts(a, b)
 
 
 def _excerpt(values: tuple[object, ...], first: int = 0) -> str:
@@ -208,16 +201,25 @@ def _union(a: Iterable[Id], b: Iterable[Id]) -> list[Id]:
     return list(dict.fromkeys([*a, *b]))
 
 
-def _join(where: str, name: str) -> str:
-    return f"{where}.{name}" if where and name else where or name
+def _joined(where: str, path: Path) -> str:
+    """A path as it is shown: without what every element has."""
+    for step in path:
+        if isinstance(step, int):
+            where = f"{where}[{step}]"
+        elif step not in ("data", "arcs"):
+            where = f"{where}.{step}" if where else step
+    return where
 
 
 def _short(value: object) -> str:
     """A value in a few words."""
     if value is None:
         return "none"
-    if isinstance(value, float):
-        return number_text(value)
+    kind = type(value)
+    if kind is float:
+        return number_text(value)  # type: ignore[arg-type]
+    if kind is str:
+        return repr(value)
     if isinstance(value, Enum):
         return str(value.value)
     if isinstance(value, Id):
@@ -225,23 +227,30 @@ def _short(value: object) -> str:
     if isinstance(value, tuple):
         if _is_array(value):
             return _excerpt(value)
-        return "[" + " ".join(_short(item) for item in value) + "]"
-    if is_dataclass(value):
-        return _short_part(value)
+        return "[" + " ".join([_short(item) for item in value]) + "]"
+    layout = layout_of(kind)
+    if layout is not None:
+        return _short_part(value, layout)
     return repr(value) if isinstance(value, str) else str(value)
 
 
-def _short_part(value: object) -> str:
-    from hymeko_x.ir.graph import Arc, Edge
+def _short_part(value: object, layout: Layout) -> str:
+    if isinstance(value, Edge):
+        return _short_edge(value)
+    if isinstance(value, Arc):
+        return _short_arc(value)
+    kind: Any = type(value)
+    fields = zip(layout.compared(value), _default_words(kind), strict=True)
+    said = [word if inner is default else f"{name} {_short(inner)}" for inner, (name, default, word) in fields]
+    return f"{kind.__name__.lower()}({', '.join(said)})"
 
-    match value:
-        case Edge():
-            return _short_edge(value)
-        case Arc():
-            return _short_arc(value)
-        case _:
-            said = [f"{item.name} {_short(getattr(value, item.name))}" for item in attributes_of(value) if item.compare]
-            return f"{type(value).__name__.lower()}({', '.join(said)})"
+
+@cache
+def _default_words(kind: Any) -> tuple[tuple[str, object, str], ...]:
+    """The fields of a class that count, with their defaults, and how those are shown."""
+    layout = layout_of(kind)
+    assert layout is not None
+    return tuple((item.name, item.default, f"{item.name} {_short(item.default)}") for item in layout.counting)
 
 
 def _short_edge(edge: RobotEdge) -> str:

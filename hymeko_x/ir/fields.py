@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
+NUMBERS = (float, int)
+"""The types of numbers, as a test of millions of values needs them."""
+
+
 class Attribute(NamedTuple):
     """A field of a part."""
 
@@ -25,6 +29,7 @@ class Layout(NamedTuple):
 
     attributes: tuple[Attribute, ...]
     values: Callable[[object], tuple[Any, ...]]
+    counting: tuple[Attribute, ...]
     compared: Callable[[object], tuple[Any, ...]]
 
 
@@ -39,7 +44,8 @@ def _layout_of(kind: Any) -> Layout | None:
     if not is_dataclass(kind):
         return None
     attributes = tuple(Attribute(f.name, f.default, f.compare) for f in fields(kind))
-    return Layout(attributes, _getter([f.name for f in attributes]), _getter([f.name for f in attributes if f.compare]))
+    counting = tuple(f for f in attributes if f.compare)
+    return Layout(attributes, _getter([f.name for f in attributes]), counting, _getter([f.name for f in counting]))
 
 
 layout_of: Callable[[Any], Layout | None] = cache(_layout_of)
@@ -61,9 +67,11 @@ def identical(a: object, b: object) -> bool:
     if a is b:
         return True
     kind = type(a)
-    if isinstance(a, float | int) and isinstance(b, float | int):
+    if kind is tuple and type(b) is tuple:
+        return len(a) == len(b) and _are_identical(a, b)  # type: ignore[arg-type]
+    if isinstance(a, NUMBERS) and isinstance(b, NUMBERS):
         return (a == b and (a != 0.0 or copysign(1.0, a) == copysign(1.0, b))) or (a != a and b != b)
-    if kind is str or isinstance(a, str) or kind is not type(b):
+    if isinstance(a, str) or kind is not type(b):
         return a == b
     if isinstance(a, tuple):
         assert isinstance(b, tuple)
@@ -76,11 +84,15 @@ def _are_identical(a: tuple[object, ...], b: tuple[object, ...]) -> bool:
     for x, y in zip(a, b, strict=True):
         if x is y:
             continue
-        if type(x) is float and type(y) is float:
+        kind = type(x)
+        if kind is float and type(y) is float:
             if x != y:
                 if x == x or y == y:
                     return False
             elif x == 0.0 and copysign(1.0, x) != copysign(1.0, y):
+                return False
+        elif kind is str:
+            if x != y:
                 return False
         elif not identical(x, y):
             return False

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 from itertools import zip_longest
+from typing import NamedTuple
 
 from hymeko_x.ir.values import number_text
 from hymeko_x.language.syntax import (
@@ -23,6 +24,19 @@ from hymeko_x.language.syntax import (
     Ref,
     Value,
 )
+
+
+class Block(NamedTuple):
+    """A node whose signature and items are texts already, or blocks again."""
+
+    signature: str
+    items: tuple[str | Block, ...]
+
+
+Piece = Item | Block | str
+_OPEN = (Node, Block)
+_APART = (Node, Block, Comment)
+
 
 WIDTH = 120
 INDENT = "  "
@@ -50,11 +64,16 @@ def print_document(document: Document) -> str:
     return "\n".join(lines) + "\n"
 
 
+def print_block(block: Block) -> str:
+    """The text of a document that is one block, ending in a newline."""
+    return "\n".join(_lines(block)) + "\n"
+
+
 def print_item(item: Item) -> str:
     """The text of one item in one line."""
     match item:
         case Field():
-            return _field(item)
+            return print_field(item.name, item.value, item.type)
         case ArcItem():
             return _arc(item)
         case Comment():
@@ -64,6 +83,14 @@ def print_item(item: Item) -> str:
         case Node():
             inner = _joined(item.items)
             return f"{_signature(item)} {{ {inner} }}" if inner else f"{_signature(item)} {{}}"
+
+
+def print_field(name: str, value: Value | None, type: str = "") -> str:
+    """A name with its value and the mark between them."""
+    text = f"{print_name(name)} <{type}>" if type else print_name(name)
+    if value is None:
+        return text
+    return f"{text}={_ref(value, '')}" if isinstance(value, Ref) else f"{text} {print_value(value)}"
 
 
 @lru_cache(8192, typed=True)
@@ -77,7 +104,7 @@ def print_name(name: str) -> str:
 
 def print_text(text: str) -> str:
     """A string literal with as few escapes as possible."""
-    escaped = text.translate(_FEW_ESCAPES)
+    escaped = text if text.isprintable() and "\\" not in text else text.translate(_FEW_ESCAPES)
     if '"' in text and escaped == text and '"""' not in text and not text.endswith('"'):
         return f"'{text}'" if "'" not in text else f'"""{text}"""'
     quote = "'" if '"' in text and "'" not in text else '"'
@@ -86,10 +113,13 @@ def print_text(text: str) -> str:
 
 def print_value(value: Value) -> str:
     """A value as it stands behind a field's name."""
-    if type(value) is float:
-        return number_text(value)
-    if type(value) is tuple:
-        return "[" + " ".join(map(print_value, value)) + "]"
+    kind = type(value)
+    if kind is float:
+        return number_text(value)  # type: ignore[arg-type]
+    if kind is tuple:
+        return "[" + " ".join([number_text(item) if type(item) is float else print_value(item) for item in value]) + "]"  # type: ignore[union-attr]
+    if kind is Ref:
+        return _ref(value)  # type: ignore[arg-type]
     if isinstance(value, str):
         return print_text(value)
     match value:
@@ -108,39 +138,47 @@ def print_value(value: Value) -> str:
 # ---- layout ------------------------------------------------------------------------------------------------------------
 
 
-def _lines(item: Item) -> list[str]:
+def _lines(item: Item | Block) -> list[str]:
     """The lines of an item: one if it fits, else its parts indented. Works through nested blocks with a stack."""
     lines: list[str] = []
-    stack: list[tuple[int, Item | str]] = [(0, item)]
+    stack: list[tuple[int, Piece]] = [(0, item)]
     while stack:
         depth, part = stack.pop()
         indent = INDENT * depth
         if isinstance(part, Comment):
             lines.extend(_comment_lines(part, indent))
             continue
-        if isinstance(part, str):
-            lines.append(indent + part)
-            continue
-        if not isinstance(part, Node) or not part.items:
-            lines.append(indent + print_item(part))
+        if not isinstance(part, _OPEN) or not part.items:
+            lines.append(indent + _text(part))
             continue
         text = None if _is_long(part) else _in_line(part, WIDTH - len(indent))
         if text is not None:
             lines.append(indent + text)
             continue
-        lines.append(f"{indent}{_signature(part)} {{")
+        lines.append(f"{indent}{_head(part)} {{")
         stack.append((depth, "}"))
         stack.extend(reversed([(depth + 1, inner) for inner in _broken(part.items, WIDTH - len(indent) - len(INDENT))]))
     return lines
 
 
-def _in_line(node: Node, room: int) -> str | None:
+def _text(piece: Piece) -> str:
+    """What is no node or block with items, in one line."""
+    if isinstance(piece, Block):
+        return f"{piece.signature} {{}}"
+    return piece if isinstance(piece, str) else print_item(piece)
+
+
+def _head(node: Node | Block) -> str:
+    return node.signature if isinstance(node, Block) else _signature(node)
+
+
+def _in_line(node: Node | Block, room: int) -> str | None:
     """A node with items in one line; None as soon as it is clear that it is longer than ``room`` or has line breaks."""
-    head = _signature(node)
+    head = _head(node)
     used = len(head) + 4
     texts = []
     for item, following in zip_longest(node.items, node.items[1:]):
-        text = _in_line(item, room - used - 1) if isinstance(item, Node) and item.items else print_item(item)
+        text = _in_line(item, room - used - 1) if isinstance(item, _OPEN) and item.items else _text(item)
         if text is None or "\n" in text:
             return None
         if following is not None and _needs_comma(item, following):
@@ -152,7 +190,7 @@ def _in_line(node: Node, room: int) -> str | None:
     return f"{head} {{ {' '.join(texts)} }}"
 
 
-def _is_long(node: Node) -> bool:
+def _is_long(node: Node | Block) -> bool:
     """Whether a node surely needs several lines; spares printing a whole robot to find out."""
     return len(node.items) > WIDTH // 2 or any(isinstance(item, Comment) for item in node.items)
 
@@ -163,12 +201,12 @@ def _comment_lines(comment: Comment, indent: str) -> list[str]:
     return [f"{indent}// {text}".rstrip()] if "\n" not in text else [f"{indent}/* {text} */"]
 
 
-def _broken(items: tuple[Item, ...], width: int) -> list[Item | str]:
+def _broken(items: tuple[Piece, ...], width: int) -> list[Piece]:
     """The items of a block for several lines: nodes each on its own, runs of fields and arcs filled up to the width."""
-    parts: list[Item | str] = []
-    run: list[Item] = []
+    parts: list[Piece] = []
+    run: list[Piece] = []
     for item in items:
-        if isinstance(item, Node | Comment):
+        if isinstance(item, _APART):
             parts.extend(_filled(run, width, item))
             run = []
             parts.append(item)
@@ -178,12 +216,12 @@ def _broken(items: tuple[Item, ...], width: int) -> list[Item | str]:
     return parts
 
 
-def _filled(items: list[Item], width: int, behind: Item | None = None) -> list[Item | str]:
+def _filled(items: list[Piece], width: int, behind: Piece | None = None) -> list[Piece]:
     """Lines of items, each as full as the width allows; ``behind`` is what follows them."""
-    lines: list[Item | str] = []
+    lines: list[Piece] = []
     line = ""
     for position, item in enumerate(items):
-        text = print_item(item)
+        text = _text(item)
         following = items[position + 1] if position + 1 < len(items) else behind
         if following is not None and _needs_comma(item, following):
             text += ","
@@ -203,7 +241,7 @@ def _joined(items: tuple[Item, ...]) -> str:
     return " ".join(texts)
 
 
-def _needs_comma(item: Item, following: Item) -> bool:
+def _needs_comma(item: Piece, following: Piece) -> bool:
     """After a bare name an arc or a quoted edge type could be taken for its value."""
     if not isinstance(item, Field) or item.value is not None:
         return False
@@ -238,15 +276,6 @@ def _arguments(arguments: tuple[tuple[str, Value], ...] | None) -> str:
     if arguments is None:
         return ""
     return f"({' '.join(f'{print_name(name)}={print_value(value)}' for name, value in arguments)})"
-
-
-def _field(field: Field) -> str:
-    name = print_name(field.name) + (f" <{field.type}>" if field.type else "")
-    if field.value is None:
-        return name
-    if isinstance(field.value, Ref):
-        return f"{name}={_ref(field.value, '')}"
-    return f"{name} {print_value(field.value)}"
 
 
 def _arc(arc: ArcItem) -> str:

@@ -7,27 +7,26 @@ a value with this digest; without a mark the file says nothing there.
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, get_args
+from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
-from hymeko_x.ir.fields import identical
 from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.leaves import TURN
 from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id
 from hymeko_x.ir.parts import EdgePart, Weight
 from hymeko_x.ir.residue import Addition, Bridge, Change, Fold, Join, Removal, Residue, Run, Sides
-from hymeko_x.ir.residue.paths import TURN
 from hymeko_x.ir.residue.types import fits, is_sound
 from hymeko_x.ir.values import Pose
-from hymeko_x.language.printer import print_document
-from hymeko_x.language.syntax import ArcItem, Document, Field, Node, Ref, Stereotype
-from hymeko_x.language.values import decoded, decoded_turn, encoded, encoded_turn, id_ref, name_ref, said
+from hymeko_x.language.printer import Block, print_block, print_field, print_item, print_name
+from hymeko_x.language.syntax import ArcItem, Field, Node, Ref
+from hymeko_x.language.values import decoded, decoded_turn, encoded, encoded_turn, name_ref, said
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping
 
+    from hymeko_x.ir.leaves import Path
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
     from hymeko_x.ir.parts import VertexPart
-    from hymeko_x.ir.residue import Path
-    from hymeko_x.language.syntax import Item, Value
+    from hymeko_x.language.syntax import Document, Item, Value
 
 VERSION = 1.0
 _EDGES = frozenset(kind for part, kind in KINDS.items() if part in get_args(EdgePart))
@@ -40,38 +39,30 @@ _NO_GROUP = "alone"
 T = TypeVar("T")
 
 
-class _Group(NamedTuple):
-    """Elements of a kind that have the same fields."""
-
-    kind: str
-    fields: tuple[Field, ...]
-    names: list[Value]
-
-
 class BadResidue(Exception):
     """A text that is no residue, or one of a newer version."""
 
 
 def print_residue(residue: Residue) -> str:
     """The text of a residue."""
-    sections: tuple[tuple[str, Sequence[Item]], ...] = (
+    sections: tuple[tuple[str, Iterable[str | Block]], ...] = (
         ("names", _names(residue.bridge.names)),
-        ("folds", [_fold(fold) for fold in residue.bridge.folds]),
-        ("joins", [Field(join.shape.name, name_ref(join.twin.name)) for join in residue.bridge.joins]),
-        ("frames", [Field(key.name, (*pose.xyz, *pose.quat)) for key, pose in residue.bridge.frames]),
+        ("folds", map(_fold, residue.bridge.folds)),
+        ("joins", [print_field(join.shape.name, name_ref(join.twin.name)) for join in residue.bridge.joins]),
+        ("frames", [print_field(key.name, (*pose.xyz, *pose.quat)) for key, pose in residue.bridge.frames]),
         ("changes", _grouped((change.element, _change(change)) for change in residue.changes)),
-        ("additions", [_addition(addition) for addition in residue.additions]),
+        ("additions", map(_addition, residue.additions)),
         ("removals", _removals(residue.removals)),
         *_side_sections(residue.sides),
-        ("order", [Field(run.elements[0].kind, (_after(run), *(name_ref(key.name) for key in run.elements))) for run in residue.order]),
+        ("order", map(_moved, residue.order)),
         ("known", _marks(residue.known)),
     )
-    items: list[Item] = [Field("version", VERSION)]
-    items += [Field("plain")] if residue.sides.is_plain else []
-    items += [Node(name, tuple(content)) for name, content in sections if content]
+    items: list[str | Block] = [print_field("version", VERSION)]
+    items += ["plain"] if residue.sides.is_plain else []
+    items += [Block(name, found) for name, content in sections if (found := tuple(content))]
     if residue.layout is not None:
-        items += [Field("layout", tuple(map(id_ref, residue.layout))), Field("unplaced", tuple(map(id_ref, residue.unplaced)))]
-    return print_document(Document((Node("carried", tuple(items), (Stereotype(Ref(("residue",))),)),)))
+        items += [_id_list("layout", residue.layout), _id_list("unplaced", residue.unplaced)]
+    return print_block(Block("carried : residue", tuple(items)))
 
 
 def parse_residue(text: str) -> Residue:
@@ -186,37 +177,30 @@ class _Sections:
 # ---- groups --------------------------------------------------------------------------------------------------------------
 
 
-def _grouped(entries: Iterable[tuple[Id, Field]]) -> list[Item]:
+def _grouped(entries: Iterable[tuple[Id, str]]) -> Iterator[Block]:
     """The fields of each element; elements of one kind with the same fields share them."""
-    fields: dict[Id, list[Field]] = defaultdict(list)
+    fields: dict[Id, list[str]] = defaultdict(list)
     for key, item in entries:
         fields[key].append(item)
-    groups: dict[tuple[str, tuple[Field, ...]], list[_Group]] = defaultdict(list)
-    ordered: list[_Group] = []
+    groups: dict[tuple[str, ...], list[str]] = defaultdict(list)
     for key, found in fields.items():
-        said = tuple(found)
-        alike = groups[key.kind, said]
-        group = next((group for group in alike if identical(group.fields, said)), None)  # numbers of either sign of zero are equal
-        if group is None:
-            group = _Group(key.kind, said, [])
-            alike.append(group)
-            ordered.append(group)
-        group.names.append(name_ref(key.name))
-    return [Node(group.kind, (Field("of", tuple(group.names)), *group.fields)) for group in ordered]
+        groups[key.kind, *found].append(key.name)
+    for (kind, *alike), names in groups.items():
+        yield Block(print_name(kind), (_list("of", names), *alike))
 
 
-def _marks(entries: Iterable[tuple[Id, str]]) -> list[Item]:
-    kinds: dict[str, list[Value]] = defaultdict(list)
+def _marks(entries: Iterable[tuple[Id, str]]) -> list[str]:
+    kinds: dict[str, list[str]] = defaultdict(list)
     for key, mark in entries:
-        kinds[key.kind] += [name_ref(key.name), name_ref(mark)]
-    return [Field(kind, tuple(names)) for kind, names in kinds.items()]
+        kinds[key.kind] += [key.name, mark]
+    return [_list(kind, names) for kind, names in kinds.items()]
 
 
-def _removals(removals: Iterable[Removal]) -> list[Item]:
-    kinds: dict[str, list[Value]] = defaultdict(list)
+def _removals(removals: Iterable[Removal]) -> list[str]:
+    kinds: dict[str, list[str]] = defaultdict(list)
     for key, guard, group in removals:
-        kinds[key.kind] += [name_ref(key.name), name_ref(guard), name_ref(group or _NO_GROUP)]
-    return [Field(kind, tuple(names)) for kind, names in kinds.items()]
+        kinds[key.kind] += [key.name, guard, group or _NO_GROUP]
+    return [_list(kind, names) for kind, names in kinds.items()]
 
 
 def _refs(value: object) -> list[str]:
@@ -237,11 +221,11 @@ def _pairs(items: list[T]) -> Iterator[tuple[T, T]]:
 # ---- the bridge ------------------------------------------------------------------------------------------------------------
 
 
-def _names(names: Iterable[tuple[Id, Id]]) -> list[Item]:
-    kinds: dict[str, list[Value]] = defaultdict(list)
+def _names(names: Iterable[tuple[Id, Id]]) -> list[str]:
+    kinds: dict[str, list[str]] = defaultdict(list)
     for old, new in names:
-        kinds[new.kind] += [name_ref(old.name), name_ref(new.name)]
-    return [Field(kind, tuple(pairs)) for kind, pairs in kinds.items()]
+        kinds[new.kind] += [old.name, new.name]
+    return [_list(kind, pairs) for kind, pairs in kinds.items()]
 
 
 def _renamed(kind: str, old: str, new: str) -> tuple[Id, Id]:
@@ -251,9 +235,9 @@ def _renamed(kind: str, old: str, new: str) -> tuple[Id, Id]:
     return Id("body" if kind == WORLD.kind else kind, old), Id(kind, new)
 
 
-def _fold(fold: Fold) -> Node:
-    chain, between = (tuple(name_ref(key.name) for key in keys) for keys in (fold.chain, fold.between))
-    return Node(fold.joint.name, (Field("chain", chain), Field("between", between)))
+def _fold(fold: Fold) -> Block:
+    chain, between = ([key.name for key in keys] for keys in (fold.chain, fold.between))
+    return Block(print_name(fold.joint.name), (_list("chain", chain), _list("between", between)))
 
 
 def _folded(node: Node) -> Fold:
@@ -275,11 +259,21 @@ def _pose(numbers: tuple[float, ...]) -> Pose:
 # ---- fields --------------------------------------------------------------------------------------------------------------
 
 
-def _change(change: Change) -> Field:
+def _list(name: str, names: Iterable[str]) -> str:
+    """A field with a list of names."""
+    return f"{print_name(name)} [{' '.join(map(print_name, names))}]"
+
+
+def _id_list(name: str, ids: Iterable[Id]) -> str:
+    """A field with a list of elements, by kind and name."""
+    return f"{name} [{' '.join([f'{print_name(kind)}.{print_name(own)}' for kind, own in ids])}]"
+
+
+def _change(change: Change) -> str:
     path = change.path[1:] if change.path[0] == "data" else change.path
     turned = change.path[-1] == TURN
     value = encoded_turn(change.value) if turned else encoded(change.value)  # type: ignore[arg-type]
-    return Field(".".join(map(str, path)), value, change.guard)
+    return print_field(".".join(map(str, path)), value, change.guard)
 
 
 def _changed(item: Field) -> object:
@@ -294,22 +288,20 @@ def _path(key: Id, text: str) -> Path:
 # ---- elements --------------------------------------------------------------------------------------------------------------
 
 
-def _addition(addition: Addition) -> Node:
+def _addition(addition: Addition) -> Block:
     """An element as a node: its part's fields, and an edge's arcs behind them."""
     key, part = addition
     data = part.data if isinstance(part, Edge) else part
-    items: list[Item] = [Field(name, value) for name, value in said(data)]
+    items = [print_field(name, value) for name, value in said(data)]
     if isinstance(part, Edge):
-        items += [ArcItem(Ref((arc.target.kind, arc.target.name), _SIGNS[arc.sign]), arc.role, _weight(arc)) for arc in part.arcs]
-    return Node(key.name, tuple(items), (Stereotype(Ref((key.kind,))),))
+        items += map(_arc_text, part.arcs)
+    return Block(f"{print_name(key.name)} : {print_name(key.kind)}", tuple(items))
 
 
-def _weight(arc: RobotArc) -> tuple[Value, ...] | None:
-    if arc.weight is None:
-        return None
-    weight = encoded(arc.weight)
-    assert isinstance(weight, tuple)
-    return weight
+def _arc_text(arc: RobotArc) -> str:
+    weight = None if arc.weight is None else encoded(arc.weight)
+    assert weight is None or isinstance(weight, tuple)
+    return print_item(ArcItem(Ref(arc.target, _SIGNS[arc.sign]), arc.role, weight))
 
 
 def _added(node: Node) -> Addition:
@@ -346,8 +338,9 @@ def _arc(item: ArcItem) -> RobotArc:
     return Arc(Id(kind, name), sign, weight, str(item.role))
 
 
-def _after(run: Run) -> Value:
-    return 0.0 if run.after is None else name_ref(run.after.name)
+def _moved(run: Run) -> str:
+    after = "0" if run.after is None else print_name(run.after.name)
+    return f"{print_name(run.elements[0].kind)} [{after} {' '.join([print_name(key.name) for key in run.elements])}]"
 
 
 def _run(item: Field) -> Run:
@@ -362,19 +355,19 @@ def _run(item: Field) -> Run:
 # ---- side tables -------------------------------------------------------------------------------------------------------------
 
 
-def _side_sections(sides: Sides) -> tuple[tuple[str, list[Item]], ...]:
+def _side_sections(sides: Sides) -> tuple[tuple[str, Iterable[str | Block]], ...]:
     return (
-        ("notations", _grouped((key, Field(name, encoded(text))) for key, name, text in sides.notations)),
-        ("forgotten", [Field(name) for name in sides.forgotten]),
-        ("stereotypes", _grouped((key, Field("classes", encoded(names))) for key, names in sides.stereotypes)),
+        ("notations", _grouped((key, print_field(name, encoded(text))) for key, name, text in sides.notations)),
+        ("forgotten", map(print_name, sides.forgotten)),
+        ("stereotypes", _grouped((key, print_field("classes", encoded(names))) for key, names in sides.stereotypes)),
         ("extras", _grouped((key, _extra(extra)) for key, extra in sides.extras)),
-        ("strangers", _grouped((key, Field("gone", (name_ref(mark),))) for key, mark in sides.strangers)),
+        ("strangers", _grouped((key, _list("gone", (mark,))) for key, mark in sides.strangers)),
     )
 
 
-def _extra(extra: Extra) -> Field:
+def _extra(extra: Extra) -> str:
     said = (extra.path, extra.text)
-    return Field(extra.format, (*said, float(extra.index)) if extra.index else said)
+    return print_field(extra.format, (*said, float(extra.index)) if extra.index else said)
 
 
 def _read_extra(item: Field) -> Extra:

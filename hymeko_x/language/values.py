@@ -12,7 +12,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.ir import parts, values
-from hymeko_x.ir.fields import attributes_of, identical
+from hymeko_x.ir.fields import NUMBERS, attributes_of, identical
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.residue.types import is_sound, settled
@@ -49,9 +49,11 @@ def id_ref(key: Id) -> Ref:
 
 def encoded(value: object) -> Value:
     """A value of the IR as the language says it. Depth is that of the parts."""
+    if type(value) is float or type(value) is str:
+        return value
     if isinstance(value, bool) or value is None:
         return name_ref("none" if value is None else str(value).lower())
-    if isinstance(value, float | int):
+    if isinstance(value, NUMBERS):
         return float(value)
     if isinstance(value, str):
         return value

@@ -19,12 +19,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
+    from hymeko_x.ir.leaves import Path
     from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.ir.values import Pose
-
-Path = tuple[str | int, ...]
-"""Where in a part a value stands: names of fields and places in tuples (``("dofs", 0, "limits", "upper")``)."""
 
 
 class Fold(NamedTuple):

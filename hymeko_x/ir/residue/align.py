@@ -12,7 +12,6 @@ from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.parts import DofKind, Joint, Role, Shape
 from hymeko_x.ir.residue import Bridge, Fold, Join
 from hymeko_x.ir.residue.bridge import are_twins, cross, fold_chains, join_twins, move_frames
-from hymeko_x.ir.residue.paths import digest
 from hymeko_x.ir.values import IDENTITY, Pose, add, compose, inverse, quat_about, rotate, rotation_angle, scaled
 
 if TYPE_CHECKING:
@@ -79,13 +78,14 @@ class _Pairs:
         if not self.strange or not self.missing:
             return
         for key, edge in self.image.edges.items():
-            other = self.source.edges.get(self.names.get(key, key))
+            strange = [arc for arc in edge.arcs if arc.target in self.strange]
+            other = self.source.edges.get(self.names.get(key, key)) if strange else None
             if other is None:
                 continue
             ends = {(arc.sign, arc.role): arc.target for arc in other.arcs}
-            for arc in edge.arcs:
+            for arc in strange:
                 target = ends.get((arc.sign, arc.role))
-                if target is not None and arc.target in self.strange:
+                if target is not None:
                     self.pair(arc.target, target)
 
     def match_edges(self) -> None:
@@ -101,10 +101,14 @@ class _Pairs:
             if key in self.strange:
                 candidates[self._ends(key, edge, self.names)].append(key)
         for ends, keys in candidates.items():
-            self._match(keys, waiting.get(ends, []))
+            if ends in waiting:
+                self._match(keys, waiting[ends])
 
     def _match(self, old: list[Id], new: list[Id]) -> None:
-        alike: dict[str, list[Id]] = defaultdict(list)
+        if len(old) == len(new) == 1 and _sort(self.source.edges[new[0]]) == _sort(self.image.edges[old[0]]):
+            self.pair(old[0], new[0])
+            return
+        alike: dict[object, list[Id]] = defaultdict(list)
         for key in reversed(new):
             alike[_looks(self.source.edges[key])].append(key)
         for key in old:
@@ -126,11 +130,11 @@ class _Pairs:
         return key.kind, tuple(targets)
 
 
-def _looks(edge: RobotEdge) -> str:
-    """A digest of what an edge says, without names."""
+def _looks(edge: RobotEdge) -> object:
+    """What an edge says, without names."""
     weights = tuple(arc.weight for arc in edge.arcs if arc.target.kind not in ("mesh", "material"))
     data = edge.data
-    return digest(data.geometry, *weights) if isinstance(data, Shape) else digest(data, *weights)
+    return (data.geometry, weights) if isinstance(data, Shape) else (data, weights)
 
 
 def _sort(edge: RobotEdge) -> object:
@@ -174,7 +178,7 @@ def _joins(image: Mechanism, source: Mechanism) -> Iterable[Join]:
         both = [view.id for view in views if view.shape.role is Role.BOTH]
         if not both or body not in image.shapes:
             continue
-        free: dict[str, list[Id]] = defaultdict(list)
+        free: dict[object, list[Id]] = defaultdict(list)
         for view in reversed(image.shapes[body]):
             if view.shape.role is Role.COLLISION and view.id not in source.graph.edges:
                 free[_looks(image.graph.edges[view.id])].append(view.id)

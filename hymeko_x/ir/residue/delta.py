@@ -7,17 +7,19 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.leaves import TURN, leaves_between
 from hymeko_x.ir.mechanism import ROOT, Id
 from hymeko_x.ir.parts import Body
 from hymeko_x.ir.residue import Addition, Change, Removal, Residue, Sides
 from hymeko_x.ir.residue.align import aligned
 from hymeko_x.ir.residue.order import by_kind, moves
-from hymeko_x.ir.residue.paths import differing, digest
+from hymeko_x.ir.residue.paths import digest, guard_of
 from hymeko_x.ir.residue.prints import Prints, print_of_extra, shape_group, weight_print
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
+    from hymeko_x.ir.leaves import Leaf, Leaves
     from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.ir.residue import Bridge, Run
 
@@ -27,12 +29,13 @@ _NAMED = frozenset({"body", "joint", "frame", "material", "actuator", "sensor", 
 
 def residue_of(source: Mechanism, image: Mechanism) -> Residue:
     """What restores the source from its image. Linear but for sorting."""
-    return residue_behind(source, image, *aligned(image, source))
+    bridge, crossed = aligned(image, source)
+    return residue_behind(source, image, bridge, crossed, leaves_between(source, crossed))
 
 
-def residue_behind(source: Mechanism, image: Mechanism, bridge: Bridge, crossed: Mechanism) -> Residue:
-    """The same where the bridge is known, and the image behind it."""
-    changes = tuple(_changes(crossed, source))
+def residue_behind(source: Mechanism, image: Mechanism, bridge: Bridge, crossed: Mechanism, apart: Mapping[Id, Leaves]) -> Residue:
+    """The same where the bridge is known, the image behind it, and in which leaves that and the source are apart."""
+    changes = tuple(_changes(crossed, source, apart))
     additions = tuple(_additions(crossed, source))
     removals = tuple(_removals(crossed, source))
     found = Residue(
@@ -47,26 +50,21 @@ def residue_behind(source: Mechanism, image: Mechanism, bridge: Bridge, crossed:
     return replace(found, known=tuple(_known(image, found)))
 
 
-def _changes(image: Mechanism, source: Mechanism) -> Iterator[Change]:
+def _changes(image: Mechanism, source: Mechanism, apart: Mapping[Id, Leaves]) -> Iterator[Change]:
     if image.name != source.name:
         yield Change(ROOT, ("name",), source.name, digest(image.name))
-    for key, part in source.graph.vertices.items():
-        mine = image.graph.vertices.get(key)
-        if mine is not None:
-            for path, value, guard in differing(mine, part):
-                yield Change(key, path, value, _with_reasons(image, key, path, value, guard))
-    for key, edge in source.graph.edges.items():
-        other = image.graph.edges.get(key)
-        if other is not None:
-            for path, value, guard in differing(other, edge):
-                yield Change(key, path, value, guard)
+    for key, leaves in apart.items():
+        for leaf in leaves:
+            yield Change(key, leaf.path, leaf.before, _guard(image, key, leaf))
 
 
-def _with_reasons(image: Mechanism, key: Id, path: tuple[str | int, ...], value: object, guard: str) -> str:
-    """A mass that follows from shapes holds only as long as the shapes do."""
-    if path[0] != "inertial" or value is not None or not isinstance(image.graph.vertices[key], Body):
-        return guard
-    return weight_print(image, key)
+def _guard(image: Mechanism, key: Id, leaf: Leaf) -> str:
+    """What the image said there. A mass that follows from shapes holds only as long as the shapes do."""
+    if leaf.path[-1] == TURN:
+        return digest(leaf.after[0])  # type: ignore[index]
+    if leaf.path[0] == "inertial" and leaf.before is None and isinstance(image.graph.vertices.get(key), Body):
+        return weight_print(image, key)
+    return guard_of(leaf.after, leaf.default)
 
 
 def _additions(image: Mechanism, source: Mechanism) -> Iterator[Addition]:

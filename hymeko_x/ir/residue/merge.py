@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING, TypeVar
 
 from hymeko_x import codes
 from hymeko_x.ir.graph import Edge, Hypergraph
+from hymeko_x.ir.leaves import TURN
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Texture
 from hymeko_x.ir.residue.bridge import cross
 from hymeko_x.ir.residue.follow import renamed_since, with_new_names, with_old_names
 from hymeko_x.ir.residue.order import by_kind, laid_out, moved
-from hymeko_x.ir.residue.paths import TURN, default_at, digest, get, guard_of, put
+from hymeko_x.ir.residue.paths import default_at, digest, get, guard_of, put
 from hymeko_x.ir.residue.prints import print_of, print_of_extra, shape_group, weight_print
 from hymeko_x.ir.residue.stored import stored_points
 from hymeko_x.ir.residue.types import is_sound, settled
@@ -23,9 +24,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.leaves import Path
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotEdge
     from hymeko_x.ir.parts import VertexPart
-    from hymeko_x.ir.residue import Change, Path, Removal, Residue
+    from hymeko_x.ir.residue import Change, Removal, Residue
 
 P = TypeVar("P")
 

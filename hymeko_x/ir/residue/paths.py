@@ -1,4 +1,4 @@
-"""The fields of parts by path: what differs, getting, putting, and digests of values."""
+"""The fields of parts by path: getting, putting, and digests of values."""
 
 from __future__ import annotations
 
@@ -7,61 +7,14 @@ from enum import Enum
 from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.ir.fields import attributes_of, identical, layout_of
+from hymeko_x.ir.fields import attributes_of, layout_of
+from hymeko_x.ir.leaves import TURN, turn_of
 from hymeko_x.ir.values import Pose
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from hymeko_x.ir.residue import Path
-
-TURN = "turn"
-"""The last step to a pose's rotation: its quaternion together with the notation that it was written in."""
-
-
-def differing(image: object, source: object) -> list[tuple[Path, object, str]]:
-    """The path, the source's value and the guard of every field in which two parts differ. Depth is that of the parts."""
-    found: list[tuple[Path, object, str]] = []
-    if image is not source:
-        _collect(image, source, (), MISSING, found)
-    return found
-
-
-def _collect(image: object, source: object, path: Path, default: object, found: list[tuple[Path, object, str]]) -> None:
-    """What differs between two values that are two objects."""
-    kind = type(image)
-    layout = layout_of(kind) if kind is type(source) else None
-    if layout is None:
-        if _are_alike(image, source):
-            for place, (before, after) in enumerate(zip(image, source, strict=True)):  # type: ignore[call-overload]
-                if before is not after:
-                    _collect(before, after, (*path, place), MISSING, found)
-        elif not identical(image, source):
-            found.append((path, source, guard_of(image, default)))
-    elif isinstance(image, Pose):
-        assert isinstance(source, Pose)
-        if not identical(image.xyz, source.xyz):
-            found.append(((*path, "xyz"), source.xyz, digest(image.xyz)))
-        if not (image.written is source.written and identical(image.quat, source.quat)) and not identical(turn_of(image), turn_of(source)):
-            found.append(((*path, TURN), turn_of(source), digest(image.quat)))
-    else:
-        for item, before, after in zip(layout.attributes, layout.values(image), layout.values(source), strict=True):
-            if before is not after:
-                _collect(before, after, (*path, item.name), item.default, found)
-
-
-def _are_alike(a: object, b: object) -> bool:
-    """Whether two tuples hold parts of the same types, so that they can be compared part by part."""
-    if type(a) is not tuple or type(b) is not tuple or len(a) != len(b):
-        return False
-    if a and layout_of(type(a[0])) is None:
-        return False
-    return all(type(x) is type(y) and layout_of(type(x)) is not None for x, y in zip(a, b, strict=True))
-
-
-def turn_of(pose: Pose) -> tuple[object, object]:
-    """The rotation with its notation."""
-    return pose.quat, pose.written
+    from hymeko_x.ir.leaves import Path
 
 
 def get(part: object, path: Path) -> object:
@@ -143,24 +96,37 @@ def _base36(number: int) -> str:
 def canonical(value: object) -> str:
     """A text that is equal exactly for equal values; notations do not count, nor does the sign of zero."""
     kind = type(value)
-    if kind is float:
-        return repr(value + 0.0)  # type: ignore[operator]
-    if kind is str:
-        return repr(value)
-    if isinstance(value, tuple):
-        return _array(value) if len(value) > _LONG and isinstance(value[0], float | int) else f"({_joined(value)})"
     layout = layout_of(kind)
     if layout is not None:
         return f"{kind.__name__}({_joined(layout.compared(value))})"
+    if isinstance(value, tuple):
+        return f"({_joined(value)})" if len(value) <= _LONG or not isinstance(value[0], float | int) else _array(value)
+    if kind is float:
+        return repr(value) if value else "0.0"
+    if kind is str:
+        return repr(value)
+    if isinstance(value, Enum):
+        return str(value._value_)
     if isinstance(value, bool) or value is None:
         return str(value)
     if isinstance(value, float | int):
         return repr(float(value) + 0.0)
-    return str(value.value) if isinstance(value, Enum) else repr(value)
+    return repr(value)
 
 
-def _joined(values: tuple[object, ...]) -> str:
-    return ",".join([repr(value + 0.0) if type(value) is float else "None" if value is None else canonical(value) for value in values])
+def canonical_without_name(part: object) -> str:
+    """The same for a part that goes by no name."""
+    layout = layout_of(type(part))
+    assert layout is not None
+    values = [None if item.name == "name" else value for item, value in zip(layout.counting, layout.compared(part), strict=True)]
+    return f"{type(part).__name__}({_joined(values)})"
+
+
+def _joined(values: Iterable[object]) -> str:
+    """Most are numbers, of which most are zero, or nothing."""
+    return ",".join(
+        [(repr(value) if value else "0.0") if type(value) is float else "None" if value is None else canonical(value) for value in values]
+    )
 
 
 def _array(numbers: tuple[float, ...]) -> str:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.parts import Body, Joint, Shape
-from hymeko_x.ir.residue.paths import canonical, digest, digest_of_texts
+from hymeko_x.ir.residue.paths import canonical, canonical_without_name, digest, digest_of_texts
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotEdge
@@ -44,7 +43,7 @@ class Prints:
             return digest_of_texts(self._edge(edge))
         part = self._mechanism.graph.vertices[key]
         if not isinstance(part, Body):
-            return digest(_nameless(part))
+            return digest_of_texts([self.nameless(part)])
         above = self._mechanism.parent_joint.get(key)
         joint = () if above is None else (self.nameless(above.joint), self.text(above.parent_pose), self.text(above.child_pose))
         return digest_of_texts([self.text(part), *joint, *self.shapes(key)])
@@ -58,8 +57,10 @@ class Prints:
 
     def nameless(self, part: object) -> str:
         """The canonical text of a part of the mechanism, without the names that it may carry."""
-        bare = _nameless(part)
-        return self.text(bare) if bare is part else canonical(bare)
+        if isinstance(part, Joint):
+            named = any(dof.name is not None for dof in part.dofs)
+            return f"Joint(({','.join(map(canonical_without_name, part.dofs))}))" if named else self.text(part)
+        return self.text(part) if getattr(part, "name", None) is None else canonical_without_name(part)
 
     def shapes(self, body: Id) -> list[str]:
         """The texts of the shapes on a body."""
@@ -68,19 +69,8 @@ class Prints:
     def _edge(self, edge: RobotEdge) -> list[str]:
         texts = [self.nameless(edge.data)]
         for arc in edge.arcs:
-            texts += [canonical(arc.sign), repr(arc.role), repr(arc.target.kind), self.text(arc.weight)]
+            texts += [repr(float(arc.sign)), repr(arc.role), repr(arc.target.kind), self.text(arc.weight)]
         return texts
-
-
-def _nameless(part: object) -> object:
-    """A part without the names that it may carry."""
-    if isinstance(part, Joint):
-        if all(dof.name is None for dof in part.dofs):
-            return part
-        return replace(part, dofs=tuple(replace(dof, name=None) for dof in part.dofs))
-    if getattr(part, "name", None) is not None:
-        return replace(part, name=None)  # type: ignore[type-var]
-    return part
 
 
 def print_of_extra(extra: Extra) -> str:

@@ -1,0 +1,143 @@
+"""The leaves in which two parts differ: what they do not say alike to the last bit, and where in the part that is.
+
+The ledger and the residue are made from the same leaves, which are looked for once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import MISSING
+from math import copysign
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.ir.fields import identical, layout_of
+from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.values import Pose
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.fields import Layout
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+
+Path = tuple[str | int, ...]
+"""Where in a part a value stands: names of fields and places in tuples (``("dofs", 0, "limits", "upper")``)."""
+
+TURN = "turn"
+"""The last step to a pose's rotation: its quaternion together with the notation that it was written in."""
+
+
+class Leaf(NamedTuple):
+    """Two values that are not the same, the field's default (MISSING if none), and whether it is more than a notation."""
+
+    path: Path
+    before: object
+    after: object
+    default: object
+    counts: bool
+
+
+Leaves = list[Leaf]
+
+
+def leaves_between(a: Mechanism, b: Mechanism) -> dict[Id, Leaves]:
+    """The leaves in which the elements that both have differ, by element."""
+    return {**_of_elements(a.graph.vertices, b.graph.vertices), **_of_elements(a.graph.edges, b.graph.edges)}
+
+
+def _of_elements(a: Mapping[Id, object], b: Mapping[Id, object]) -> dict[Id, Leaves]:
+    found = {}
+    for key, before in a.items():
+        after = b.get(key)
+        if after is not None and before is not after and (leaves := leaves_of(before, after)):
+            found[key] = leaves
+    return found
+
+
+def leaves_again(other: Mechanism, a: Mechanism, b: Mechanism, apart: Mapping[Id, Leaves]) -> Mapping[Id, Leaves]:
+    """The leaves between another mechanism and ``b``, given those between ``a``, most of whose vertices the other one shares, and ``b``."""
+    if other.graph is a.graph:
+        return apart
+    again = {key: part for key, part in other.graph.vertices.items() if part is not a.graph.vertices.get(key)}
+    changed = _of_elements(again, b.graph.vertices)
+    known = {key: apart[key] for key in apart if key not in again}
+    return {key: leaves for key in (*other.graph.vertices, *other.graph.edges) if (leaves := changed.get(key) or known.get(key))}
+
+
+def leaves_of(a: object, b: object) -> Leaves:
+    """The leaves in which two values differ, in the order of their fields. Depth is that of the parts, which is small."""
+    found: Leaves = []
+    if a is not b:
+        _collect(a, b, (), MISSING, True, found)
+    return found
+
+
+def _collect(a: object, b: object, path: Path, default: object, counts: bool, found: Leaves) -> None:
+    """What differs between two values that are two objects."""
+    kind = type(a)
+    layout = layout_of(kind) if kind is type(b) else None
+    if layout is None:
+        if kind is tuple and _are_alike(a, b):
+            for place, (before, after) in enumerate(zip(a, b, strict=True)):  # type: ignore[call-overload]
+                if before is not after:
+                    _collect(before, after, (*path, place), MISSING, counts, found)
+        elif not identical(a, b):
+            found.append(Leaf(path, a, b, default, counts))
+    elif kind is Pose:
+        _collect_pose(a, b, path, counts, found)  # type: ignore[arg-type]
+    elif kind is Edge and len(a.arcs) == len(b.arcs):  # type: ignore[attr-defined]
+        _collect_edge(a, b, path, counts, found)  # type: ignore[arg-type]
+    else:
+        _collect_fields(layout, a, b, path, counts, found)
+
+
+def _collect_fields(layout: Layout, a: object, b: object, path: Path, counts: bool, found: Leaves) -> None:
+    """The same for two parts of a kind. Nearly all fields are the same, and most of them numbers: those are seen at once."""
+    for item, before, after in zip(layout.attributes, layout.values(a), layout.values(b), strict=True):
+        if before is after:
+            continue
+        kind = type(before)
+        if kind is float:
+            if before == after and (before or copysign(1.0, before) == copysign(1.0, after)):
+                continue
+        elif kind is Id:
+            if before == after:
+                continue
+        elif kind is tuple and before and type(before[0]) is float and before == after and 0.0 not in before:
+            continue
+        name, default, compare = item
+        _collect(before, after, (*path, name), default, counts and compare, found)
+
+
+def _collect_edge(a: RobotEdge, b: RobotEdge, path: Path, counts: bool, found: Leaves) -> None:
+    """The same for two edges with as many arcs: nearly all lead to the same elements."""
+    if a.data is not b.data:
+        _collect(a.data, b.data, (*path, "data"), MISSING, counts, found)
+    for place, (x, y) in enumerate(zip(a.arcs, b.arcs, strict=True)):
+        if x.target != y.target or x.sign != y.sign or x.role != y.role:
+            _collect(x, y, (*path, "arcs", place), MISSING, counts, found)
+        elif x.weight is not y.weight:
+            _collect(x.weight, y.weight, (*path, "arcs", place, "weight"), None, counts, found)
+
+
+def _collect_pose(a: Pose, b: Pose, path: Path, counts: bool, found: Leaves) -> None:
+    if not identical(a.xyz, b.xyz):
+        found.append(Leaf((*path, "xyz"), a.xyz, b.xyz, MISSING, counts))
+    if not (identical(a.quat, b.quat) and identical(a.written, b.written)):
+        found.append(Leaf((*path, TURN), turn_of(a), turn_of(b), MISSING, counts))
+
+
+def _are_alike(a: object, b: object) -> bool:
+    """Whether two tuples hold parts of the same types, so that they can be compared part by part."""
+    assert isinstance(a, tuple)
+    if type(b) is not tuple or len(a) != len(b) or not a or layout_of(type(a[0])) is None:
+        return False
+    if len(a) == 1:
+        return type(a[0]) is type(b[0])
+    kinds = [*map(type, a)]
+    return kinds == [*map(type, b)] and None not in map(layout_of, kinds)
+
+
+def turn_of(pose: Pose) -> tuple[object, object]:
+    """The rotation with its notation."""
+    return pose.quat, pose.written
