@@ -5,7 +5,7 @@ Everything that a frontend returns and a backend takes. Ids are unique per kind,
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
@@ -231,7 +231,7 @@ class Mechanism:
 
     def with_graph(self, graph: RobotGraph) -> Mechanism:
         """The same mechanism with another graph. What is known of its edges stays known where they are the same table."""
-        changed = Mechanism(self.name, graph, self.extras, self.origins, self.notations, self.stereotypes, self.layout, self.places)
+        changed = replace(self, graph=graph)
         if graph.edges is self.graph.edges:
             known = self.__dict__
             changed.__dict__.update({name: known[name] for name in _OF_EDGES if name in known})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields, replace
 from itertools import pairwise
 
 import pytest
@@ -162,3 +163,10 @@ def test_an_asset_is_called_after_its_file(uri: str, stem: str) -> None:
 
 def test_an_id_is_shown_with_its_kind() -> None:
     assert str(Id("body", "a b")) == "body 'a b'"
+
+
+def test_another_graph_changes_nothing_else() -> None:
+    named = {field.name: object() for field in fields(Mechanism) if field.name != "graph"}
+    full = replace(Mechanism("r"), **named)  # type: ignore[arg-type]
+    changed = full.with_graph(full.graph.replace(vertices={Id("body", "b"): parts.Body()}))
+    assert {name: getattr(changed, name) for name in named} == named
