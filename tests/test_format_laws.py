@@ -16,7 +16,7 @@ from hymeko_x.testing import mechanisms
 FEW = settings(max_examples=max(5, settings.default.max_examples // 20), deadline=None, suppress_health_check=list(HealthCheck))
 
 
-@pytest.mark.parametrize("format", ["mjcf", "urdf"])
+@pytest.mark.parametrize("format", ["mjcf", "urdf", "usd", "xacro"])
 @FEW
 @given(mechanism=mechanisms())
 def test_what_is_legal_stays_as_it_is(format: str, mechanism: Mechanism) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.legalize_names import usable_name
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Coupling, Dof, DofKind, Drive, Joint, Sense, Tendon
 from hymeko_x.ir.rename import names_in_use
@@ -61,7 +62,7 @@ def expand_screws(mechanism: Mechanism, options: Options, report: Report) -> Mec
                 continue
             slide = Dof(DofKind.SLIDE, dof.axis, anchor=dof.anchor, name=f"{name}_slide")
             dofs += [replace(dof, kind=DofKind.HINGE, pitch=0.0, name=name), slide]
-            edges[names.take("coupling", f"{name}_screw")] = _screw(view.id, name, f"{name}_slide", dof)
+            edges[names.take("coupling", usable_name(f"{name}_screw"))] = _screw(view.id, name, f"{name}_slide", dof)
             report.note(
                 codes.REWRITTEN,
                 f"{view.id} is a screw; it is written as hinge '{name}' and slide '{name}_slide', coupled by the pitch",

@@ -18,6 +18,11 @@ if TYPE_CHECKING:
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
+def usable_name(name: str) -> str:
+    """The name with ``_`` for characters that XML forbids."""
+    return _NOT_XML.sub("_", name)
+
+
 def make_names_usable(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """Empty names become the kind of the element (of the mechanism: robot), characters that XML forbids become ``_``."""
     del options
@@ -32,7 +37,7 @@ def make_names_usable(mechanism: Mechanism, options: Options, report: Report) ->
     names = names_in_use(mechanism)
     renamed: dict[Id, Id] = {}
     for key in unusable:
-        new = names.take(key.kind, _NOT_XML.sub("_", key.name) or key.kind)
+        new = names.take(key.kind, usable_name(key.name) or key.kind)
         renamed[key] = new
         found = "is empty" if not key.name else f"{key.name!r} has characters that XML cannot hold"
         report.warn(
