@@ -7,14 +7,18 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Plane, Role, Sphere
 from hymeko_x.ir.values import NO_ROTATION, Quat, Vec3, X, Y, quat_about
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    import numpy as np
+    from numpy.typing import NDArray
 
     from hymeko_x.ir.parts import Geometry
 
@@ -28,9 +32,10 @@ SIZES: Mapping[str, tuple[tuple[str, float], ...]] = MappingProxyType(
         "Cylinder": (("radius", 1.0), ("height", 2.0)),
         "Capsule": (("radius", 0.5), ("height", 1.0)),
         "Plane": (("width", 2.0), ("length", 2.0)),
+        "Mesh": (),
     }
 )
-"""The sizes of each primitive with UsdGeom's defaults."""
+"""The sizes of each primitive with UsdGeom's defaults. A mesh is one where it is :func:`ball`, which stands for an ellipsoid."""
 TURNS: Mapping[str, Quat] = MappingProxyType(
     {"X": quat_about(Y, 1.5707963267948966), "Y": quat_about(X, -1.5707963267948966), "Z": NO_ROTATION}
 )
@@ -82,7 +87,7 @@ def meaning(prim: Gprim) -> Meaning:
     Source: the shapes of UsdPhysics' parser.
     """
     x, y, z = map(abs, prim.scale)
-    first, *rest = prim.sizes
+    first, *rest = prim.sizes or (1.0,)
     turn = TURNS[prim.axis]
     match prim.kind:
         case "Cube":
@@ -90,6 +95,8 @@ def meaning(prim: Gprim) -> Meaning:
         case "Sphere":
             is_round = max(x, y, z) - min(x, y, z) < 1e-6 * max(x, y, z)
             return Meaning(Sphere(first * x) if is_round else Ellipsoid((first * x, first * y, first * z)), NO_ROTATION)
+        case "Mesh":
+            return Meaning(Ellipsoid((x, y, z)), NO_ROTATION)
         case "Plane":
             across, along = {"Z": (x, y), "X": (z, y), "Y": (x, z)}[prim.axis]
             return Meaning(Plane((first / 2 * across, rest[0] / 2 * along)), turn)
@@ -100,15 +107,19 @@ def meaning(prim: Gprim) -> Meaning:
             return Meaning(Capsule(radius, height) if kind == "Capsule" else Cylinder(radius, height), turn)
 
 
-def chosen(geometry: Geometry) -> Gprim | None:
-    """The primitive by which the writer says a geometry; None for meshes and empty shapes."""
+def chosen(geometry: Geometry, role: Role) -> Gprim | None:
+    """The primitive by which the writer says a geometry; None for meshes and empty shapes.
+
+    UsdPhysics takes a sphere whose scale is not uniform for no collider, but the hull of any mesh.
+    """
     match geometry:
         case Box(size):
             return Gprim("Cube", (1.0,), scale=size)
         case Sphere(radius):
             return Gprim("Sphere", (radius,))
         case Ellipsoid(radii):
-            return Gprim("Sphere", (1.0,), scale=radii)
+            is_hull = role is not Role.VISUAL and min(radii) != max(radii)
+            return Gprim("Mesh", (), scale=radii) if is_hull else Gprim("Sphere", (1.0,), scale=radii)
         case Cylinder(radius, length):
             return Gprim("Cylinder", (radius, length))
         case Capsule(radius, length):
@@ -121,11 +132,11 @@ def chosen(geometry: Geometry) -> Gprim | None:
 
 def half_extent(prim: Gprim) -> Vec3:
     """Half the box around a primitive in its own space."""
-    first, *rest = prim.sizes
+    first, *rest = prim.sizes or (1.0,)
     match prim.kind:
         case "Cube":
             return (first / 2, first / 2, first / 2)
-        case "Sphere":
+        case "Sphere" | "Mesh":
             return (first, first, first)
         case "Plane":
             across, along = first / 2, rest[0] / 2
@@ -134,3 +145,23 @@ def half_extent(prim: Gprim) -> Vec3:
             along = rest[0] / 2 + (first if kind == "Capsule" else 0.0)
             x, y, z = (along if letter == prim.axis else first for letter in "XYZ")
             return (x, y, z)
+
+
+@cache
+def ball() -> tuple[NDArray[np.float32], NDArray[np.int32]]:
+    """The points (n x 3) and triangles (flat) of a sphere of radius 1 by longitude and latitude, whose hull an ellipsoid is scaled from."""
+    import numpy as np
+
+    around, down = 32, 16
+    turns, falls = np.arange(around) * (2 * np.pi / around), np.arange(1, down) * (np.pi / down)
+    rings = [np.outer(np.sin(falls), np.cos(turns)), np.outer(np.sin(falls), np.sin(turns)), np.outer(np.cos(falls), np.ones(around))]
+    points = np.vstack([(0.0, 0.0, 1.0), np.stack(rings, axis=-1).reshape(-1, 3), (0.0, 0.0, -1.0)])
+    here, there = np.arange(around), (np.arange(around) + 1) % around
+    top = np.stack([np.zeros_like(here), 1 + here, 1 + there], axis=-1)
+    bands = [
+        np.stack([one + here, two + here, two + there, one + here, two + there, one + there], axis=-1).reshape(-1, 3)
+        for one, two in ((1 + around * row, 1 + around * (row + 1)) for row in range(down - 2))
+    ]
+    last = 1 + around * (down - 2)
+    bottom = np.stack([last + here, np.full_like(here, last + around), last + there], axis=-1)
+    return points.astype(np.float32), np.vstack([top, *bands, bottom]).ravel().astype(np.int32)

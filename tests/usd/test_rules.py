@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Literal
 
 import pytest
-from pxr import Usd, UsdValidation
+from pxr import Usd, UsdGeom, UsdPhysics, UsdValidation
 
 import hymeko_x as hx
 from hymeko_x.corpus.catalog import development_files
+from hymeko_x.ir.parts import Mesh
 
 FEW = ("racecar.urdf", "quadruped.urdf", "arm.xml", "tendon.xml")
 FILES = [file for format in ("urdf", "mjcf") for file in development_files(format)]
@@ -55,3 +56,39 @@ def test_the_rules_have_nothing_against_a_real_robot(robot: Path, layout: Litera
 @pytest.mark.parametrize("robot", [file for file in FILES if Path(file.path).name not in FEW], ids=lambda file: file.id, indirect=True)
 def test_the_rules_have_nothing_against_any_real_robot(robot: Path, layout: Literal["single", "layered"], tmp_path: Path) -> None:
     assert complaints_about(robot, layout, tmp_path) == {}
+
+
+EGG = """<mujoco model="egg"><worldbody><body name="egg"><freejoint/>
+<geom name="shell" type="ellipsoid" size="0.03 0.03 0.04" density="500" rgba="1 0.5 0 1"/>
+<geom name="shine" type="ellipsoid" size="0.031 0.03 0.04" contype="0" conaffinity="0" group="2" density="0"/>
+</body></worldbody></mujoco>"""
+
+
+def test_an_ellipsoid_collides_as_the_hull_of_a_mesh_and_is_an_ellipsoid_again(tmp_path: Path) -> None:
+    (tmp_path / "egg.xml").write_text(EGG, encoding="utf-8")
+    hx.convert(tmp_path / "egg.xml", tmp_path / "egg.usda", pure=True)
+    assert complaints(tmp_path / "egg.usda") == []
+    stage = Usd.Stage.Open(str(tmp_path / "egg.usda"))
+    prims = {prim.GetName(): prim for prim in stage.Traverse()}
+    assert prims["shell"].GetTypeName() == "Mesh"
+    assert UsdPhysics.MeshCollisionAPI(prims["shell"]).GetApproximationAttr().Get() == "convexHull"
+    assert UsdGeom.Boundable(prims["shell"]).ComputeLocalBound(0, "default").ComputeAlignedRange().GetMax()[2] == pytest.approx(0.04)
+    assert prims["shine"].GetTypeName() == "Sphere"
+    back = hx.load(tmp_path / "egg.usda")
+    sizes = {view.shape.name: view.shape.geometry for views in back.shapes.values() for view in views}
+    assert {name: getattr(geometry, "radii", None) for name, geometry in sizes.items()} == {
+        "shell": pytest.approx((0.03, 0.03, 0.04)),
+        "shine": pytest.approx((0.031, 0.03, 0.04)),
+    }
+    assert list(back.vertices(Mesh)) == []
+    assert hx.verify(tmp_path / "egg.xml", tmp_path / "egg.usda").verdict == "same"
+
+
+def test_a_sphere_that_its_author_scaled_stays_a_sphere(tmp_path: Path) -> None:
+    source = tmp_path / "a.usda"
+    scaled = '{\n float3 xformOp:scale = (1, 2, 3)\n uniform token[] xformOpOrder = ["xformOp:scale"]\n}\n'
+    sphere = f'def Sphere "s" (\n  prepend apiSchemas = ["PhysicsCollisionAPI"]\n)\n{scaled}'
+    body = f'def Xform "b" (\n  prepend apiSchemas = ["PhysicsRigidBodyAPI"]\n)\n{{\n{sphere}}}\n'
+    source.write_text(f'#usda 1.0\n(\n  defaultPrim = "b"\n  metersPerUnit = 1\n  upAxis = "Z"\n)\n{body}', encoding="utf-8")
+    hx.convert(source, tmp_path / "back.usda")
+    assert [prim.GetTypeName() for prim in Usd.Stage.Open(str(tmp_path / "back.usda")).Traverse() if prim.GetName() == "s"] == ["Sphere"]

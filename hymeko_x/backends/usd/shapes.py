@@ -65,7 +65,7 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
         sheet.move(spec, skin_pose(view, prim), scale if prim is None else _unless_one(prim.scale), on=view.body)
     if view.shape.role is not Role.VISUAL:
         apply(spec, "PhysicsCollisionAPI")
-        if isinstance(view.shape.geometry, MeshShape) and sheet.mechanism.notation(view.id, words.PATH) is None:
+        if _is_hull(sheet.mechanism, view, prim):
             apply(spec, "PhysicsMeshCollisionAPI")
             put(spec, "physics:approximation", T.Token, "convexHull")
     if view.shape.role is Role.COLLISION:
@@ -73,16 +73,25 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
     _write_looks(sheet, spec, view)
 
 
+def _is_hull(mechanism: Mechanism, view: ShapeView, prim: gprims.Gprim | None) -> bool:
+    """Whether the hull of a mesh collides: of ours it does, those of others say for themselves."""
+    if prim is not None:
+        return prim.kind == "Mesh"
+    return isinstance(view.shape.geometry, MeshShape) and mechanism.notation(view.id, words.PATH) is None
+
+
 def gprim_of(mechanism: Mechanism, view: ShapeView) -> gprims.Gprim | None:
     """The primitive of a shape: as its author wrote it where that still means the same, else the plainest one."""
     noted = gprims.parse(mechanism.notation(view.id, gprims.NOTATION))
     if noted is not None and gprims.meaning(noted).geometry == view.shape.geometry:
         return noted
-    return gprims.chosen(view.shape.geometry)
+    return gprims.chosen(view.shape.geometry, view.shape.role)
 
 
 def _write_primitive(spec: Any, prim: gprims.Gprim) -> None:
     """Type, sizes, axis and the box around it."""
+    if prim.kind == "Mesh":
+        return _write_surface(spec, gprims.ball())
     spec.kind = prim.kind
     for (name, _), value in zip(gprims.SIZES[prim.kind], prim.sizes, strict=True):
         put(spec, name, T.Double, value)
@@ -90,6 +99,7 @@ def _write_primitive(spec: Any, prim: gprims.Gprim) -> None:
         put(spec, "axis", T.Token, prim.axis)
     half = gprims.half_extent(prim)
     put(spec, "extent", T.Float3Array, Vt.Vec3fArray([Gf.Vec3f(*(-value for value in half)), Gf.Vec3f(*half)]))
+    return None
 
 
 # ---- meshes --------------------------------------------------------------------------------------------------------------------

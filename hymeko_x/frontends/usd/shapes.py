@@ -28,6 +28,8 @@ COLLISION = "PhysicsCollisionAPI"
 SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 TYPES = ("Cube", "Sphere", "Cylinder", "Capsule", "Plane", "Mesh")
 _XFORM = "xformOp"
+_HULL = "PhysicsMeshCollisionAPI"
+_APPROXIMATION = "physics:approximation"
 _OF_NORMALS = frozenset(("typeName", "variability", "custom", "default", "interpolation"))
 
 Read = tuple["Prim", Shape, Pose, "NDArray[Any] | None"]
@@ -46,7 +48,7 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
     at = draft.places.seen_from(prim, body)
     pose, points, mesh, said = IDENTITY if prim is body else at.pose, None, None, None
     geometry: Geometry = MeshShape()
-    if prim.kind == "Mesh":
+    if prim.kind == "Mesh" and not _is_ball(prim, draft):
         points, mesh = _read_mesh(prim, draft, at.scale)
         if mesh is None:
             return None
@@ -62,7 +64,7 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
     friction = friction_of(prim, draft) if role is not Role.VISUAL else ()
     shape = Shape(geometry, role, name=draft.part_name(prim), rgba=_colour(prim, draft), friction=friction)
     key = draft.own(prim, "shape")
-    if said is not None and said != gprims.chosen(geometry):
+    if said is not None and said != gprims.chosen(geometry, role):
         draft.note(key, gprims.NOTATION, str(said))
     if points is not None and _says_normals(prim, draft):
         draft.note(key, words.NORMALS, "faces")
@@ -78,6 +80,20 @@ def _primitive(prim: Prim, scale: Vec3, draft: Draft) -> gprims.Gprim:
     kind = prim.kind
     sizes = tuple(draft.number(prim, name, default) for name, default in gprims.SIZES[kind])
     return gprims.Gprim(kind, sizes, draft.axis(prim, "axis", "Z"), scale)
+
+
+def _is_ball(prim: Prim, draft: Draft) -> bool:
+    """Whether a mesh is the one that stands for an ellipsoid, of which it then says nothing else."""
+    import numpy as np
+
+    points, faces = gprims.ball()
+    said, indices = prim.value("points"), prim.value("faceVertexIndices")
+    if said is None or indices is None or len(said) != len(points) or len(indices) != len(faces) or not prim.has_api(_HULL):
+        return False
+    if prim.value(_APPROXIMATION) != "convexHull" or not np.array_equal(said, points) or not np.array_equal(indices, faces):
+        return False
+    draft.take(prim, "points", "faceVertexCounts", "faceVertexIndices", "subdivisionScheme", f"@{_HULL}", _APPROXIMATION)
+    return True
 
 
 def _take_extent(prim: Prim, half: Vec3, draft: Draft) -> None:

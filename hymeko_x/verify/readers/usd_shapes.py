@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics
 
+from hymeko_x.formats.usd_gprims import ball
 from hymeko_x.verify.model import Array, Role, Shape, Surface
 from hymeko_x.verify.spatial import rigid
 
@@ -69,9 +70,11 @@ def _shape(scene: Scene, prim: Any, body: str, role: Role) -> Shape | None:
 
     pose, scale = relative(scene, body, prim)
     name = prim.GetDisplayName() or prim.GetName()
-    if prim.IsA(UsdGeom.Mesh):
-        return Shape("mesh", role, pose, (), name, _surface(prim, scale))
     size = np.abs(np.diag(scale))
+    if prim.IsA(UsdGeom.Mesh):
+        if _is_ball(prim):
+            return Shape("ellipsoid", role, pose, tuple(float(x) for x in size), name)
+        return Shape("mesh", role, pose, (), name, _surface(prim, scale))
     if prim.IsA(UsdGeom.Cube):
         edge = float(UsdGeom.Cube(prim).GetSizeAttr().Get())
         return Shape("box", role, pose, tuple(float(x) for x in edge * size), name)
@@ -86,6 +89,15 @@ def _shape(scene: Scene, prim: Any, body: str, role: Role) -> Shape | None:
         if prim.IsA(schema):
             return _round(kind, schema(prim), role, pose, size, name)
     return None
+
+
+def _is_ball(prim: Any) -> bool:
+    """Whether a mesh collides as the hull of the ball which stands for an ellipsoid, that UsdPhysics has no collider for."""
+    if UsdPhysics.MeshCollisionAPI(prim).GetApproximationAttr().Get() != UsdPhysics.Tokens.convexHull:
+        return False
+    points, faces = ball()
+    said, corners = UsdGeom.Mesh(prim).GetPointsAttr().Get(), UsdGeom.Mesh(prim).GetFaceVertexIndicesAttr().Get()
+    return np.array_equal(said or (), points) and np.array_equal(corners or (), faces)
 
 
 def _round(kind: str, schema: Any, role: Role, pose: Array, size: Array, name: str) -> Shape:
