@@ -1,7 +1,7 @@
 """The triangles of plain COLLADA files, straight into arrays, and the colours that they are shown in.
 
-Normals and texture coordinates, most of the text of such a file, are not even turned into numbers, and of materials only their
-colour counts. Whatever is not plain (skins, instances of nodes, other primitives than triangles and polygons, other
+Normals, and texture coordinates in a file without images, are not even turned into numbers, and of materials only their
+colour or image counts. Whatever is not plain (skins, instances of nodes, other primitives than triangles and polygons, other
 transformations than the usual ones, damage of any kind) is left to the loader that knows all of COLLADA.
 """
 
@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
+from urllib.parse import unquote
 
 import numpy as np
 from lxml import etree
 
 from hymeko_x.assets.numerals import numbers_in
+from hymeko_x.assets.part import Finish, Table
 from hymeko_x.assets.polygons import fans
 
 if TYPE_CHECKING:
@@ -30,15 +32,6 @@ _PASSED_OVER = frozenset({"extra", "lines", "linestrips"})
 _NOT_SHOWN = frozenset({"extra", "asset", "instance_camera", "instance_light"})
 _INDEX = np.int32  # as in the file format's own reader
 _SINGLE = np.float32
-
-
-class Table(NamedTuple):
-    """A primitive: points (n, 3), triangles (m, 3) as rows of them, and the name and colour of its material, if it has any."""
-
-    points: NDArray[np.float64]
-    faces: NDArray[Any]
-    material: str = ""
-    rgba: Rgba | None = None
 
 
 class NotPlain(Exception):
@@ -72,12 +65,14 @@ class _File:
     geometries: dict[str | None, list[Element]] = field(init=False)
     materials: dict[str | None, list[Element]] = field(init=False)
     effects: dict[str | None, list[Element]] = field(init=False)
+    images: dict[str | None, list[Element]] = field(init=False)
     known: dict[str, list[Table]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.geometries = _by_id(self.root, "{*}library_geometries/{*}geometry")
         self.materials = _by_id(self.root, "{*}library_materials/{*}material")
         self.effects = _by_id(self.root, "{*}library_effects/{*}effect")
+        self.images = _by_id(self.root, "{*}library_images/{*}image")
 
     def tables(self) -> list[Table]:
         metres = self._metres()
@@ -91,18 +86,35 @@ class _File:
     def _coloured(self, table: Table, given: dict[str | None, Element]) -> Table:
         """With the material that an instance of a geometry gives to the name that a primitive has for it."""
         if table.material not in given:
-            return table._replace(material="")
+            return table._replace(material="", uv=None, corners=None)
         name = _reference(given[table.material].get("target"))
-        return table._replace(material=name, rgba=self._colour(name))
+        finish = self._finish(name)
+        if table.uv is None or not finish.image:
+            return table._replace(material=name, finish=finish._replace(image=""), uv=None, corners=None)
+        return table._replace(material=name, finish=finish)
 
-    def _colour(self, name: str) -> Rgba | None:
-        """The diffuse colour of a material; None where it is an image or is not said."""
+    def _finish(self, name: str) -> Finish:
+        """The diffuse colour or image of a material."""
         effect = self.materials[name][-1].find("{*}instance_effect") if name in self.materials else None
         wanted = "" if effect is None else _reference(effect.get("url"))
         if wanted not in self.effects:
-            return None
-        colour = self.effects[wanted][0].find("{*}profile_COMMON/{*}technique/*/{*}diffuse/{*}color")
-        return None if colour is None else _rgba(_numbers(colour, np.float64).tolist())
+            return Finish()
+        profile = self.effects[wanted][0].find("{*}profile_COMMON")
+        diffuse = None if profile is None else profile.find("{*}technique/*/{*}diffuse")
+        if profile is None or diffuse is None:
+            return Finish()
+        colour, texture = diffuse.find("{*}color"), diffuse.find("{*}texture")
+        rgba = None if colour is None else _rgba(_numbers(colour, np.float64).tolist())
+        return Finish(rgba, "" if texture is None else self._image(profile, texture.get("texture", "")))
+
+    def _image(self, profile: Element, name: str) -> str:
+        """The file that a sampler, or a careless exporter at once, means; empty where there is none."""
+        parameters = {item.get("sid"): item for item in profile.iterfind("{*}newparam")}
+        for path in ("{*}sampler2D/{*}source", "{*}surface/{*}init_from"):
+            found = parameters[name].find(path) if name in parameters else None
+            name = name if found is None else (found.text or "").strip()
+        said = self.images[name][0].find("{*}init_from") if name in self.images else None
+        return "" if said is None else unquote((said.text or "").strip().removeprefix("file://"))
 
     def _metres(self) -> float:
         unit = self.root.find("{*}asset/{*}unit")
@@ -116,7 +128,8 @@ class _File:
 
     def _geometry(self, name: str) -> list[Table]:
         if name not in self.known:
-            self.known[name] = _mesh_tables(_only(_only(self.geometries.get(name, [])).findall("{*}mesh")))
+            mesh = _only(_only(self.geometries.get(name, [])).findall("{*}mesh"))
+            self.known[name] = _mesh_tables(mesh, has_images=bool(self.images))
         return self.known[name]
 
 
@@ -201,31 +214,36 @@ _MOVES = {"matrix": _matrix, "translate": _translation, "scale": _scaling, "rota
 
 def _placed(table: Table, matrix: NDArray[np.float64], metres: float) -> Table:
     """The triangles where a node puts them, in m; a mirror turns them around, so that they still look outwards."""
-    points, faces = table.points, table.faces
+    points, faces, corners = table.points, table.faces, table.corners
     if not np.array_equal(matrix, np.eye(4)):
         points = points @ matrix[:3, :3].T + matrix[:3, 3]
-    return table._replace(points=points * metres, faces=faces[:, ::-1] if np.linalg.det(matrix[:3, :3]) < 0.0 else faces)
+    if np.linalg.det(matrix[:3, :3]) < 0.0:
+        faces, corners = faces[:, ::-1], None if corners is None else corners[:, ::-1]
+    return table._replace(points=points * metres, faces=faces, corners=corners)
 
 
 # ---- geometry ----------------------------------------------------------------------------------------------------------------
 
 
-def _mesh_tables(mesh: Element) -> list[Table]:
-    """One table for each primitive."""
+def _mesh_tables(mesh: Element, *, has_images: bool) -> list[Table]:
+    """One table for each primitive; with texture coordinates only where there are images."""
     sources = {f"#{child.get('id')}": child for child in mesh if _tag(child) in ("source", "vertices")}
     known: dict[str, NDArray[np.float64]] = {}
     found = []
     for child in mesh:
         tag = _tag(child)
         if tag in ("triangles", "polylist"):
-            name, index = _input(child, "VERTEX"), _index(child)
+            name, (index, places) = _input(child, "VERTEX"), _index(child)
             if name not in known:
                 known[name] = _points(sources.get(name), sources)
-            points = known[name]
-            faces = index.reshape(-1, 3) if tag == "triangles" else fans(_numbers(_only(child.findall("{*}vcount")), _INDEX), index)
-            if faces.size and (faces.min() < 0 or faces.max() >= len(points)):
-                raise NotPlain
-            found.append(Table(*_used(points, faces), child.get("material", "")))
+            faces = _triangles(child, index, known[name])
+            table = Table(*_used(known[name], faces), child.get("material", ""))
+            map_name = _map_name(child) if has_images and places is not None else ""
+            if places is not None and map_name in sources:
+                if map_name not in known:
+                    known[map_name] = _floats(sources[map_name], (2, 3))[:, :2]
+                table = table._replace(uv=known[map_name], corners=_triangles(child, places, known[map_name]))
+            found.append(table)
         elif tag not in ("source", "vertices") and tag not in _PASSED_OVER:
             raise NotPlain
     return found
@@ -239,29 +257,54 @@ def _used(points: NDArray[np.float64], faces: NDArray[Any]) -> tuple[NDArray[np.
     return points[rows], index.reshape(faces.shape)
 
 
-def _index(primitive: Element) -> NDArray[Any]:
-    """For each corner of a primitive the row of its point; the rows of its normals and the rest stand between them."""
+def _triangles(primitive: Element, index: NDArray[Any], table: NDArray[Any]) -> NDArray[Any]:
+    """The triangles of a primitive as rows of a table, of which ``index`` has one for each of its corners."""
+    is_cut = _tag(primitive) == "triangles"
+    faces = index.reshape(-1, 3) if is_cut else fans(_numbers(_only(primitive.findall("{*}vcount")), _INDEX), index)
+    if faces.size and (faces.min() < 0 or faces.max() >= len(table)):
+        raise NotPlain
+    return faces
+
+
+def _index(primitive: Element) -> tuple[NDArray[Any], NDArray[Any] | None]:
+    """For each corner of a primitive the row of its point, and of its place in an image if it has one.
+
+    The rows of its normals and the rest stand between them.
+    """
     inputs = [(int(item.get("offset", "")), item.get("semantic")) for item in primitive.iterfind("{*}input")]
     places = [offset for offset, semantic in inputs if semantic == "VERTEX"]
     if len(places) != 1 or min(offset for offset, _ in inputs) < 0:
         raise NotPlain
+    places += [offset for offset, semantic in inputs if semantic == "TEXCOORD"][:1]
     width = max(offset for offset, _ in inputs) + 1
-    lists = [_numbers(item, _INDEX).reshape(-1, width)[:, places[0]] for item in primitive.iterfind("{*}p")]
-    return np.concatenate(lists) if lists else np.zeros(0, dtype=_INDEX)
+    lists = [_numbers(item, _INDEX).reshape(-1, width)[:, places] for item in primitive.iterfind("{*}p")]
+    rows = np.concatenate(lists) if lists else np.zeros((0, len(places)), dtype=_INDEX)
+    return rows[:, 0], rows[:, 1] if len(places) > 1 else None
+
+
+def _map_name(primitive: Element) -> str:
+    """The source of the first texture coordinates of a primitive."""
+    found = [item.get("source", "") for item in primitive.iterfind("{*}input") if item.get("semantic") == "TEXCOORD"]
+    return found[0] if found else ""
 
 
 def _points(vertices: Element | None, sources: dict[str, Element]) -> NDArray[np.float64]:
     source = sources.get(_input(vertices, "POSITION")) if vertices is not None else None
     if source is None:
         raise NotPlain
+    return _floats(source, (_COMPONENTS,))
+
+
+def _floats(source: Element, widths: tuple[int, ...]) -> NDArray[np.float64]:
+    """The rows of a source, which have one of these widths."""
     accessor = _only(source.findall("{*}technique_common/{*}accessor"))
-    is_plain = accessor.get("stride", "1") == str(_COMPONENTS) and accessor.get("offset", "0") == "0"
-    if not is_plain or len(accessor.findall("{*}param")) != _COMPONENTS:
+    width = int(accessor.get("stride", "1"))
+    if width not in widths or accessor.get("offset", "0") != "0" or len(accessor.findall("{*}param")) != width:
         raise NotPlain
-    points = _numbers(_only(source.findall("{*}float_array")), _SINGLE)
-    if not np.isfinite(points).all():
+    rows = _numbers(_only(source.findall("{*}float_array")), _SINGLE)
+    if not np.isfinite(rows).all():
         raise NotPlain
-    return points.reshape(-1, _COMPONENTS).astype(np.float64)
+    return rows.reshape(-1, width).astype(np.float64)
 
 
 def _input(element: Element, semantic: str) -> str:

@@ -64,4 +64,7 @@ def thickened(part: Part, share: float) -> Part:
     below = part.points - axes[:, 0] * share * np.ptp(centred @ axes, axis=0).max()
     faces = np.concatenate([part.faces, part.faces[:, ::-1] + len(part.points)])
     uv = None if part.uv is None else np.concatenate([part.uv, part.uv])
-    return Part(np.concatenate([part.points, below]), faces, uv, part.look)
+    corners = None
+    if part.uv is not None and part.corners is not None:
+        corners = np.concatenate([part.corners, part.corners[:, ::-1] + len(part.uv)])
+    return Part(np.concatenate([part.points, below]), faces, uv, part.look, corners)

@@ -95,13 +95,20 @@ def _welded(corners: NDArray[Any], uv: NDArray[np.float64] | None, look: Look | 
 
 def _without_degenerate(faces: NDArray[Any]) -> NDArray[Any]:
     """The triangles with three different corners."""
-    first, second, third = faces.T
-    is_good = (first != second) & (second != third) & (third != first)
+    is_good = are_whole(faces)
     return faces if is_good.all() else np.asarray(faces[is_good])
 
 
-def inline_part(points: tuple[float, ...], faces: tuple[int, ...]) -> Part:
+def are_whole(faces: NDArray[Any]) -> NDArray[np.bool_]:
+    """Which triangles have three different corners."""
+    first, second, third = faces.T
+    return np.asarray((first != second) & (second != third) & (third != first))
+
+
+def inline_part(points: tuple[float, ...], faces: tuple[int, ...], places: tuple[float, ...] = (), corners: tuple[int, ...] = ()) -> Part:
     """The triangles of a mesh that is given by flat lists; without faces, those of its convex hull are not computed.
+
+    ``places`` in an image and ``corners``, the rows of them, are left out where they do not fit.
 
     Raises: Unreadable.
     """
@@ -113,7 +120,12 @@ def inline_part(points: tuple[float, ...], faces: tuple[int, ...]) -> Part:
         raise Unreadable("a triangle has a corner that does not exist")
     if not np.isfinite(table).all():
         raise Unreadable("a coordinate is not a finite number")
-    return Part(table, index)
+    uv = np.array(places, dtype=np.float64)
+    rows = np.array(corners or faces, dtype=np.int64)
+    is_there = rows.size == index.size > 0 and uv.size > 0 and uv.size % 2 == 0 and bool(np.isfinite(uv).all())
+    if not is_there or rows.min() < 0 or rows.max() >= uv.size // 2:
+        return Part(table, index)
+    return Part(table, index, uv.reshape(-1, 2), None, rows.reshape(-1, 3))
 
 
 def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Part:
@@ -136,6 +148,15 @@ def put_together(tables: list[tuple[NDArray[np.float64], NDArray[Any]]]) -> Part
 
     Raises: Unreadable when there is no triangle, or there are too many.
     """
+    points, faces = put_in_one(tables)
+    return Part(points, _without_degenerate(faces))
+
+
+def put_in_one(tables: list[tuple[NDArray[np.float64], NDArray[Any]]]) -> tuple[NDArray[np.float64], NDArray[Any]]:
+    """The same with every triangle, also those that have no area.
+
+    Raises: Unreadable when there is no triangle, or there are too many.
+    """
     if not any(len(faces) for _, faces in tables):
         raise Unreadable("it has no triangles")
     points, faces = tables[0] if len(tables) == 1 else _in_one_table(tables)
@@ -148,7 +169,7 @@ def put_together(tables: list[tuple[NDArray[np.float64], NDArray[Any]]]) -> Part
         places = np.zeros(len(points), dtype=index.dtype)
         places[used] = index
         faces = places[faces]
-    return Part(unique, _without_degenerate(faces))
+    return unique, faces
 
 
 def _in_one_table(tables: list[tuple[NDArray[np.float64], NDArray[Any]]]) -> tuple[NDArray[np.float64], NDArray[Any]]:

@@ -65,6 +65,7 @@ class _Packing:
     gone: list[Id] = field(default_factory=list)
     surfaces: set[Id] = field(default_factory=set)
     looks: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
+    textured: frozenset[Id | None] = frozenset()
 
 
 def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
@@ -74,6 +75,7 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
 
         return pack_native(mechanism, shelf, files, report)
     run = _Packing(mechanism, shelf, files, report, names_in_use(mechanism))
+    run.textured = frozenset(arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0)
     _pack_textures(run)
     _pack_meshes(run)
     graph = mechanism.graph.replace(vertices=run.vertices, edges=run.edges, without=run.gone)
@@ -134,14 +136,16 @@ def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> 
 
     solid = any(view.shape.role is not Role.VISUAL for view in users)
     try:
-        part = inline_part(mesh.vertices, mesh.faces)
+        part = inline_part(mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces)
         _check_surface(part)
-        reason = _refusal(part, ".obj", b"", solid=solid)
+        has_places = part.uv is not None and any(view.material in run.textured for view in users)
+        reason = "has texture coordinates, which need a file" if has_places else _refusal(part, ".obj", b"", solid=solid)
         if reason is None:
-            _add_mesh(run, key, mesh, part)
+            _add_mesh(run, key, replace(mesh, texcoords=(), texfaces=()), part)
             return
         _say_converted(run, key, reason)
-        _write_mesh(run, key, replace(mesh, vertices=(), faces=()), part, key.name, solid=solid)
+        bare = replace(mesh, vertices=(), faces=(), texcoords=(), texfaces=())
+        _write_mesh(run, key, bare, part if has_places else replace(part, uv=None), key.name, solid=solid)
     except Unreadable as error:
         _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"its data cannot be used: {error}")
 

@@ -94,8 +94,9 @@ def obj_bytes(part: Part) -> bytes:
     """The part as a Wavefront OBJ file: points to float32 precision, texture coordinates, triangles."""
     lines = [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in (part.points + 0.0).tolist()]
     if part.uv is not None:
-        lines += [f"vt {u:.7g} {v:.7g}" for u, v in (part.uv + 0.0).tolist()]
-        lines += [f"f {a}/{a} {b}/{b} {c}/{c}" for a, b, c in (part.faces + 1).tolist()]
+        lines += [f"vt {u:.9g} {v:.9g}" for u, v in (part.uv + 0.0).tolist()]
+        corners = part.faces if part.corners is None else part.corners
+        lines += [f"f {a}/{u} {b}/{v} {c}/{w}" for a, b, c, u, v, w in (np.hstack([part.faces, corners]) + 1).tolist()]
     else:
         lines += [f"f {a} {b} {c}" for a, b, c in (part.faces + 1).tolist()]
     return ("\n".join(lines) + "\n").encode()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x.ir.parts import Mesh
 
@@ -20,26 +20,50 @@ class Unreadable(Exception):
     """The bytes are not the mesh that their name says; the text says why."""
 
 
+class Finish(NamedTuple):
+    """What a mesh file says of a material: its colour, and the file of its image as it is called there."""
+
+    rgba: Rgba | None = None
+    image: str = ""
+
+
+class Table(NamedTuple):
+    """What a file shows in one material: points (n, 3), triangles (m, 3) as rows of them, and the material's name.
+
+    ``uv`` are places in an image (k, 2) from its lower left corner, ``corners`` (m, 3) the rows of them; None where there are none.
+    """
+
+    points: NDArray[np.float64]
+    faces: NDArray[Any]
+    material: str = ""
+    finish: Finish = Finish()
+    uv: NDArray[np.float64] | None = None
+    corners: NDArray[Any] | None = None
+
+
 @dataclass(frozen=True, slots=True)
 class Look:
-    """A surface as a mesh file describes it: its name there, its colour, and its image as PNG bytes."""
+    """A surface as a mesh file describes it: its name there, its colour, and the bytes of its image with the name of its file."""
 
     name: str
     rgba: Rgba | None
     image: bytes | None = None
+    file: str = ""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
     """The triangles of a mesh file that have one look (None = the file says nothing about it).
 
-    ``points`` is (n, 3) in m in the frame of the file, ``faces`` (m, 3) rows of ``points``, ``uv`` (n, 2) or None.
+    ``points`` is (n, 3) in m in the frame of the file, ``faces`` (m, 3) rows of ``points``, ``uv`` (k, 2) or None; ``corners``
+    are the rows of ``uv`` of the triangles, None where they are those of ``points``.
     """
 
     points: NDArray[np.float64]
     faces: NDArray[np.signedinteger[Any]]
     uv: NDArray[np.float64] | None = None
     look: Look | None = None
+    corners: NDArray[np.signedinteger[Any]] | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

@@ -1,4 +1,4 @@
-"""Images: whatever Pillow reads, as the PNG that every engine reads."""
+"""Images: whatever Pillow reads, as the PNG that every engine reads, or the JPEG that most do."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import io
 
 MOST_BYTES = 2**27
 _PNG = b"\x89PNG\r\n\x1a\n"
+_JPEG = b"\xff\xd8\xff"
 
 
 class UnreadableImage(Exception):
@@ -17,6 +18,19 @@ def png_bytes(data: bytes) -> bytes:
 
     Raises: UnreadableImage.
     """
+    return _encoded(data, (_PNG,))
+
+
+def shown_image(data: bytes) -> tuple[bytes, str]:
+    """The image as PNG or JPEG, whichever it is already, with the suffix of that; other types become PNG.
+
+    Raises: UnreadableImage.
+    """
+    found = _encoded(data, (_PNG, _JPEG))
+    return found, ".jpg" if found.startswith(_JPEG) else ".png"
+
+
+def _encoded(data: bytes, as_it_is: tuple[bytes, ...]) -> bytes:
     from PIL import Image
 
     if len(data) > MOST_BYTES:
@@ -24,7 +38,7 @@ def png_bytes(data: bytes) -> bytes:
     try:
         with Image.open(io.BytesIO(data)) as image:
             image.load()
-            if data.startswith(_PNG):
+            if data.startswith(as_it_is):
                 return data
             out = io.BytesIO()
             image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG", compress_level=3)

@@ -10,16 +10,16 @@ from hymeko_x.assets.part import FilledMesh
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import read_file, stem_of, suffix_of
 from hymeko_x.ir.legalize_native import is_native
-from hymeko_x.ir.mechanism import shape_edge
-from hymeko_x.ir.parts import Material, Mesh, Role, Texture
+from hymeko_x.ir.mechanism import layer_edge, shape_edge
+from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.ir.rename import names_in_use
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hymeko_x.assets.part import Part
+    from hymeko_x.assets.part import Look, Part
     from hymeko_x.assets.shelf import Shelf
-    from hymeko_x.diagnostics import Report
+    from hymeko_x.diagnostics import Code, Report
     from hymeko_x.ir.mechanism import Id, Mechanism, Names, RobotEdge, ShapeView
     from hymeko_x.ir.parts import Rgba, VertexPart
     from hymeko_x.source import Files
@@ -30,28 +30,33 @@ class _Packing:
     """One run: what it reads from, and what it adds to the mechanism. ``known`` are the files that were read, by uri."""
 
     mechanism: Mechanism
+    shelf: Shelf
+    files: Files
+    report: Report
     names: Names
     vertices: dict[Id, VertexPart] = field(default_factory=dict)
     edges: dict[Id, RobotEdge] = field(default_factory=dict)
-    known: dict[str, tuple[Part, ...]] = field(default_factory=dict)
-    materials: dict[Rgba, Id] = field(default_factory=dict)
+    known: dict[tuple[str, bool], tuple[Part, ...]] = field(default_factory=dict)
+    materials: dict[tuple[Rgba | None, bytes | None], Id | None] = field(default_factory=dict)
 
 
 def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """The mechanism with the points of every mesh that can be read, in the axes and at the unit scale of its file.
 
-    What a file shows in several colours becomes a mesh for each of them; MuJoCo ignores the colours of files, and so do we in
+    What a file shows in several colours or images becomes a mesh for each of them; MuJoCo ignores those of files, and so do we in
     what came from there.
     """
-    run = _Packing(mechanism, names_in_use(mechanism))
+    run = _Packing(mechanism, shelf, files, report, names_in_use(mechanism))
     users, are_coloured = _users(mechanism), not is_native(mechanism)
+    textured = {arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0}
     for key, mesh in mechanism.vertices(Mesh):
         if mesh.uri is None or mesh.vertices:
             continue
-        parts = run.known.get(mesh.uri) or _read(mechanism, key, mesh, files, report)
+        is_mapped = any(view.material in textured for view in users.get(key, []))
+        parts = run.known.get((mesh.uri, is_mapped)) or _read(run, key, mesh, are_coloured=are_coloured, is_mapped=is_mapped)
         if parts is not None:
-            run.known[mesh.uri] = parts
-            _pack(run, key, mesh, parts if are_coloured else (_merged(parts),), users.get(key, []))
+            run.known[mesh.uri, is_mapped] = parts
+            _pack(run, key, mesh, parts, users.get(key, []))
     packed = _with_textures(mechanism, shelf, files, report)
     return packed.with_graph(packed.graph.replace(vertices=run.vertices, edges=run.edges)) if run.vertices else packed
 
@@ -70,10 +75,12 @@ def _pack(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], views: li
     """The mesh as a whole, and for the eye one for each colour; colours of the file count where it has some, as in RViz."""
     seen = [view for view in views if view.shape.role is Role.VISUAL]
     if len(parts) == 1 or len(seen) < len(views) or not views:
-        run.vertices[key] = FilledMesh(mesh.uri, mesh.scale, mesh.name, part=_merged(parts))
+        is_shown = any(view.shape.role is not Role.COLLISION for view in views)
+        whole = parts[0] if len(parts) == 1 and is_shown else _merged(parts)
+        run.vertices[key] = FilledMesh(mesh.uri, mesh.scale, mesh.name, part=whole)
     if not seen or not any(part.look for part in parts):
         return
-    pieces = [(key if len(parts) == 1 else _own_mesh(run, mesh, part), _material(run, part)) for part in parts]
+    pieces = [(key if len(parts) == 1 else _own_mesh(run, mesh, part), _material(run, key, part)) for part in parts]
     for view in seen:
         for number, (piece, material) in enumerate(pieces):
             shape = view.shape if material is None else replace(view.shape, rgba=None)
@@ -84,10 +91,11 @@ def _pack(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], views: li
 
 def _merged(parts: tuple[Part, ...]) -> Part:
     from hymeko_x.assets.mesh import put_together
+    from hymeko_x.assets.part import Part
 
     if len(parts) > 1:
         return put_together([(part.points, part.faces) for part in parts])
-    return replace(parts[0], look=None) if parts[0].look else parts[0]
+    return Part(parts[0].points, parts[0].faces)
 
 
 def _own_mesh(run: _Packing, mesh: Mesh, part: Part) -> Id:
@@ -97,32 +105,68 @@ def _own_mesh(run: _Packing, mesh: Mesh, part: Part) -> Id:
     return key
 
 
-def _material(run: _Packing, part: Part) -> Id | None:
-    """The material of a part; equal colours share one."""
-    if part.look is None or part.look.rgba is None:
+def _material(run: _Packing, mesh: Id, part: Part) -> Id | None:
+    """The material of a part; equal colours and equal images share one."""
+    look = part.look
+    if look is None or (look.rgba is None and look.image is None):
         return None
-    known = run.materials.get(part.look.rgba)
-    if known is None:
-        known = run.materials[part.look.rgba] = run.names.take("material", part.look.name or "material")
-        run.vertices[known] = Material(known.name, part.look.rgba)
-    return known
+    if (look.rgba, look.image) not in run.materials:
+        run.materials[look.rgba, look.image] = _own_material(run, mesh, look)
+    return run.materials[look.rgba, look.image]
 
 
-def _read(mechanism: Mechanism, key: Id, mesh: Mesh, files: Files, report: Report) -> tuple[Part, ...] | None:
-    from hymeko_x.assets.colours import read_colours
+def _own_material(run: _Packing, mesh: Id, look: Look) -> Id | None:
+    """The material of a look, with its image beside the output; None where the image cannot be read."""
+    uri = None if look.image is None else _placed_image(run, mesh, look, look.image)
+    if look.image is not None and uri is None:
+        return None
+    key = run.names.take("material", look.name or "material")
+    run.vertices[key] = Material(key.name, look.rgba)
+    if uri is not None:
+        texture = run.names.take("texture", key.name)
+        run.vertices[texture] = Texture(uri)
+        run.edges[run.names.take("layer", key.name)] = layer_edge(texture, key)
+    return key
+
+
+def _placed_image(run: _Packing, mesh: Id, look: Look, image: bytes) -> str | None:
+    from hymeko_x.assets.texture import UnreadableImage, shown_image
+
+    try:
+        data, suffix = shown_image(image)
+    except UnreadableImage as error:
+        _warn(run, mesh, codes.ASSET_UNREADABLE, f"its image '{look.file or look.name}' cannot be read: {error}")
+        return None
+    return run.shelf.place("textures", stem_of(look.file) or look.name or mesh.name, suffix, data)
+
+
+def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: bool) -> tuple[Part, ...] | None:
+    """The parts of a file; what it says of its looks does not count unless ``are_coloured``.
+
+    ``is_mapped``: a shape of the mesh shows an image that it does not have from the file.
+    """
+    from hymeko_x.assets.colours import read_colours, read_mapped
+    from hymeko_x.assets.mesh import read_whole
     from hymeko_x.assets.part import Unreadable
 
-    found = read_file(files, mesh.uri or "")
+    found = read_file(run.files, mesh.uri or "")
     if found is None:
-        said = f"{key}: '{mesh.uri}' was not found; its shapes are places without geometry"
-        report.warn(codes.ASSET_NOT_FOUND, said, mechanism.origin(key), element=str(key))
+        _warn(run, key, codes.ASSET_NOT_FOUND, f"'{mesh.uri}' was not found; its shapes are places without geometry")
         return None
     path, data = found
+    fetch = _fetcher(run.files, mesh.uri or "")
     try:
-        return read_colours(data, suffix_of(path), _fetcher(files, mesh.uri or ""))
+        parts = read_colours(data, suffix_of(path), fetch) if are_coloured else ()
+        if parts and (not is_mapped or any(part.look for part in parts)):
+            return parts
+        return ((read_mapped if is_mapped else read_whole)(data, suffix_of(path), fetch),)
     except Unreadable as error:
-        report.warn(codes.ASSET_UNREADABLE, f"{key}: '{mesh.uri}' cannot be read: {error}", mechanism.origin(key), element=str(key))
+        _warn(run, key, codes.ASSET_UNREADABLE, f"'{mesh.uri}' cannot be read: {error}")
         return None
+
+
+def _warn(run: _Packing, key: Id, code: Code, words: str) -> None:
+    run.report.warn(code, f"{key}: {words}", run.mechanism.origin(key), element=str(key))
 
 
 def _fetcher(files: Files, uri: str) -> Callable[[str], bytes]:

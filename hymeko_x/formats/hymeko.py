@@ -59,6 +59,8 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
                 Word("name", "name", "text"),
                 Word("vertices", "vertices", "numbers", "length"),
                 Word("faces", "faces", "integers"),
+                Word("texcoords", "texcoords", "numbers"),
+                Word("texfaces", "texfaces", "integers"),
             ),
         ),
         "actuator": PartWords(parts.Actuator, (_TYPE,), open=True),

@@ -23,6 +23,8 @@ EQUALITY = "usd.equality"
 """The notation of a coupling that MuJoCo's schema says alone, without Newton's."""
 NORMALS = "usd.normals"
 """The notation of a mesh shape whose prim says the normal of each triangle, which follows from its points."""
+TEXCOORDS = "usd.texcoords"
+"""The notation of a mesh shape whose prim says the place of each corner in an image by rows of a table, as we do."""
 HELD = "usd.held"
 """The notation of a joint that stands for no prim: its body is fixed because its simulation is switched off."""
 POSE = "usd.pose"
@@ -32,6 +34,9 @@ GROUND = ("usd.body0", "usd.body1")
 ROOT_PRIM = "usd.root"
 """The notation of the mechanism that keeps the path of the prim that stands for the robot."""
 
+WRAPS = ("inputs:wrapS", "inputs:wrapT")
+REPEAT = "repeat"
+"""What an image does beyond its borders in every format that says nothing of it."""
 WITHIN = "xformOp:scale:within"
 """The operation that undoes the scale of the body above."""
 

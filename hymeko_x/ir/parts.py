@@ -88,7 +88,8 @@ class Texture:
 class Mesh:
     """A triangle mesh: a file by uri as the source wrote it, or inline data; ``scale`` applies to its points.
 
-    ``vertices`` and ``faces`` are flat (3 numbers each); ``name`` is set where the format names its meshes.
+    ``vertices`` and ``faces`` are flat (3 numbers each); ``name`` is set where the format names its meshes. ``texcoords`` are
+    places in an image (flat, 2 numbers each, from its lower left corner), ``texfaces`` the rows of them at the corners of ``faces``.
     """
 
     uri: str | None = None
@@ -96,6 +97,8 @@ class Mesh:
     name: str | None = None
     vertices: tuple[float, ...] = ()
     faces: tuple[int, ...] = ()
+    texcoords: tuple[float, ...] = ()
+    texfaces: tuple[int, ...] = ()
 
 
 # ---- vertices: things on a mechanism -----------------------------------------------------------------------------------------

@@ -78,6 +78,8 @@ MESHES = st.builds(parts.Mesh, maybe(URIS), st.sampled_from([(1.0, 1.0, 1.0), (0
     maybe(TEXTS),
     st.just((0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5)),
     st.just((0, 1, 2)),
+    st.sampled_from([(), (0.0, 0.0, 1.0, 0.0, 0.25, 1.0)]),
+    st.sampled_from([(), (0, 1, 2), (2, 0, 1)]),
 )
 TEXTURES = st.builds(parts.Texture, maybe(URIS), maybe(TEXTS))
 THINGS = st.one_of(

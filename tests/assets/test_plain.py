@@ -127,7 +127,7 @@ def test_thousands_of_geometries_with_their_materials_take_linear_time() -> None
     tables = collada_tables(f'<COLLADA>{libraries}{scenes}<scene><instance_visual_scene url="#v"/></scene></COLLADA>'.encode())
     assert time.process_time() - begin < 5.0
     assert tables is not None
-    assert [table.rgba for table in tables] == [(1.0, 0.0, 0.0, 1.0)] * 3000
+    assert [table.finish.rgba for table in tables] == [(1.0, 0.0, 0.0, 1.0)] * 3000
 
 
 def test_primitives_that_share_points_keep_their_own() -> None:

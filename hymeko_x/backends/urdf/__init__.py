@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from hymeko_x.backends.urdf.joints import joint_tag
 from hymeko_x.backends.urdf.links import link_tag
 from hymeko_x.backends.urdf.materials import robot_material_tag
-from hymeko_x.backends.urdf.meshes import obj_text
+from hymeko_x.backends.urdf.meshes import contents_of
 from hymeko_x.backends.urdf.order import order
 from hymeko_x.backends.urdf.sheet import Sheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
@@ -21,7 +21,6 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml import COMMENT, FOLLOWING, PRECEDING
 from hymeko_x.formats.xml_print import Tag, escaped, foreign_text, put_back, render
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Mesh
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -58,8 +57,7 @@ def draft(mechanism: Mechanism) -> Draft:
     sheet = Sheet(mechanism, _declared(root))
     extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.FORMAT, COMMENT)]
     root.children += _merged(_typed(sheet), extras, sheet)
-    shown = {path: key for key, path in sheet.mesh_files.items()}  # meshes of equal points share a file
-    meshes = {path: obj_text(mechanism.vertex(key, Mesh)) for path, key in shown.items()}
+    meshes = contents_of(mechanism, sheet.mesh_files, sheet.textures)
     return Draft(root, _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)
 
 

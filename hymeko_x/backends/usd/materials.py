@@ -8,7 +8,7 @@ from pxr import Gf, Sdf
 
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import connect, put
-from hymeko_x.formats.usd import FORMAT
+from hymeko_x.formats import usd as words
 from hymeko_x.ir.parts import Layer, Material, Texture
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ def write_materials(sheet: Sheet) -> None:
     images = _images(sheet)
     for key, material in sheet.mechanism.vertices(Material):
         spec = sheet.place(key, "materials", "Material", material.name)
-        has_own = any(extra.format == FORMAT and extra.path for extra in sheet.mechanism.extras.get(key, ()))
+        has_own = any(extra.format == words.FORMAT and extra.path for extra in sheet.mechanism.extras.get(key, ()))
         if not has_own:
             _write_surface(sheet, spec, material, images.get(key))
 
@@ -60,6 +60,8 @@ def _write_image(sheet: Sheet, spec: Any, shader: Any, texture: Texture) -> None
     image = _shader(sheet, spec, "image", "UsdUVTexture")
     put(image, "inputs:file", T.Asset, Sdf.AssetPath(texture.uri or ""))
     connect(image, "inputs:st", T.Float2, coordinates, "outputs:result")
+    for name in words.WRAPS:
+        put(image, name, T.Token, words.REPEAT)
     put(image, "outputs:rgb", T.Float3, None)
     connect(shader, "inputs:diffuseColor", T.Color3f, image, "outputs:rgb")
 

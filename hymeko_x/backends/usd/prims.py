@@ -22,8 +22,8 @@ _FLOAT = T.Float
 class Prim:
     """A prim in the making: its type, metadata, API schemas, attributes (type and value), and the targets of its relationships.
 
-    ``connections`` lead an attribute to that whose value it takes; ``per_face`` are the attributes with a value for each face;
-    ``reference`` is the path of a prim of the same layer.
+    ``connections`` lead an attribute to that whose value it takes; ``spread`` are the attributes with values
+    for each face or corner, and for which; ``reference`` is the path of a prim of the same layer.
     """
 
     path: Any
@@ -34,7 +34,7 @@ class Prim:
     attributes: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     targets: dict[str, list[Any]] = field(default_factory=dict)
     connections: dict[str, Any] = field(default_factory=dict)
-    per_face: list[str] = field(default_factory=list)
+    spread: dict[str, str] = field(default_factory=dict)
     reference: Any = None
 
     @property
@@ -59,8 +59,8 @@ def author(prims: Iterable[Prim], layer: Any) -> None:
             attribute = add_attribute(spec, name, kind, value)
             if name in prim.connections:
                 attribute.connectionPathList.explicitItems = [prim.connections[name]]
-            if name in prim.per_face:
-                attribute.SetInfo("interpolation", "uniform")
+            if name in prim.spread:
+                attribute.SetInfo("interpolation", prim.spread[name])
         for name, targets in prim.targets.items():
             Sdf.RelationshipSpec(spec, name, False).targetPathList.explicitItems = targets
 

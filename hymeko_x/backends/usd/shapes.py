@@ -9,7 +9,7 @@ from pxr import Gf, Sdf, Vt
 from hymeko_x.assets.measures import face_normals
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put
-from hymeko_x.backends.usd.surfaces import surface_of
+from hymeko_x.backends.usd.surfaces import places_of, surface_of
 from hymeko_x.formats import usd as words
 from hymeko_x.formats import usd_gprims as gprims
 from hymeko_x.ir.mechanism import WORLD
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from hymeko_x.backends.usd.surfaces import Surface
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.values import Vec3
+
+_ST = "primvars:st"
 
 
 def write_shapes(sheet: Sheet) -> None:
@@ -117,20 +119,22 @@ def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, 
         _carry_mesh(sheet, spec, view.mesh)
         if surface is not None:
             _write_surface(spec, surface)
-            if _has_normals(sheet.mechanism, view.id):
+            if _says(sheet.mechanism, view.id, words.NORMALS):
                 _write_normals(spec, surface)
+            if _says(sheet.mechanism, view.id, words.TEXCOORDS):
+                _write_places(spec, mesh)
     else:
         if view.mesh not in shared:
-            shared[view.mesh] = _write_prototype(sheet, view.mesh, surface)
+            shared[view.mesh] = _write_prototype(sheet, view.mesh, mesh, surface)
             _carry_mesh(sheet, spec, view.mesh)
         spec.kind = "Mesh"
         spec.reference = shared[view.mesh]
     return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
 
 
-def _has_normals(mechanism: Mechanism, shape: Id) -> bool:
-    """Whether a mesh says the normals of its triangles: ours do, those of others where they did."""
-    return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, words.NORMALS) is not None
+def _says(mechanism: Mechanism, shape: Id, notation: str) -> bool:
+    """Whether a mesh says this of its triangles as we do: ours do, those of others where they did."""
+    return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, notation) is not None
 
 
 def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
@@ -138,7 +142,7 @@ def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
     sheet.homes[mesh] = spec.path
 
 
-def _write_prototype(sheet: Sheet, key: Id, surface: Surface) -> Any:
+def _write_prototype(sheet: Sheet, key: Id, mesh: Mesh, surface: Surface) -> Any:
     """A mesh that is shown several times: a class, which is seen only through references to it."""
     scope = sheet.root.AppendChild("meshes")
     if scope not in sheet.prims:
@@ -148,6 +152,7 @@ def _write_prototype(sheet: Sheet, key: Id, surface: Surface) -> Any:
     spec = sheet.define(sheet.free_path(scope, key.name), "Mesh")
     _write_surface(spec, surface)
     _write_normals(spec, surface)
+    _write_places(spec, mesh)
     return spec.path
 
 
@@ -169,7 +174,17 @@ def _write_surface(prim: Prim, surface: Surface) -> None:
 def _write_normals(prim: Prim, surface: Surface) -> None:
     """One normal for each triangle, for programs that compute none of their own; a degenerate triangle has some unit vector."""
     put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(face_normals(*surface)))
-    prim.per_face.append("normals")
+    prim.spread["normals"] = "uniform"
+
+
+def _write_places(prim: Prim, mesh: Mesh) -> None:
+    """Where the corners of the triangles are in the image of the material."""
+    found = places_of(mesh)
+    if found is None:
+        return
+    put(prim, _ST, T.TexCoord2fArray, Vt.Vec2fArray.FromNumpy(found[0]))
+    put(prim, f"{_ST}:indices", T.IntArray, Vt.IntArray.FromNumpy(found[1]))
+    prim.spread[_ST] = "faceVarying"
 
 
 # ---- looks ---------------------------------------------------------------------------------------------------------------------

@@ -11,10 +11,35 @@ from hymeko_x.assets.part import FilledMesh
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from hymeko_x.assets.part import Part
     from hymeko_x.ir.parts import Mesh
 
     Surface = tuple[NDArray[Any], NDArray[Any]]
     """Points (n x 3, single precision) and the corners of triangles (flat)."""
+
+
+def places_of(mesh: Mesh) -> Surface | None:
+    """The places of a mesh in its image (n x 2, single precision) and the row of each corner; None where they are none or broken."""
+    table = _mapped(mesh.part) if isinstance(mesh, FilledMesh) else _listed_places(mesh)
+    if table is None:
+        return None
+    with np.errstate(over="ignore"):
+        places = table[0].astype(np.float32)
+    corners = table[1]
+    if not np.isfinite(places).all() or (corners.size and (corners.min() < 0 or corners.max() >= len(places))):
+        return None
+    return places, corners.astype(np.int32)
+
+
+def _mapped(part: Part) -> Surface | None:
+    return None if part.uv is None else (part.uv, (part.faces if part.corners is None else part.corners).ravel())
+
+
+def _listed_places(mesh: Mesh) -> Surface | None:
+    rows = mesh.texfaces or mesh.faces
+    if not mesh.texcoords or len(mesh.texcoords) % 2 or len(rows) != len(mesh.faces):
+        return None
+    return np.fromiter(mesh.texcoords, np.float64, len(mesh.texcoords)).reshape(-1, 2), np.fromiter(rows, np.int64, len(rows))
 
 
 def surface_of(mesh: Mesh) -> Surface | None:

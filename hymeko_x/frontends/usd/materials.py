@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import UsdShade
 
+from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.bindings import bound_to
 from hymeko_x.frontends.usd.prims import BINDING
@@ -21,6 +22,8 @@ PREVIEW = "UsdPreviewSurface"
 TEXTURE = "UsdUVTexture"
 _COORDINATES = "UsdPrimvarReader_float2"
 _TYPED = ("inputs:diffuseColor", "inputs:opacity", "inputs:metallic", "inputs:roughness")
+_OF_IMAGE = frozenset(("info:id", "inputs:file", "inputs:st", "outputs:rgb", *words.WRAPS))
+_OF_COORDINATES = frozenset(("info:id", "inputs:varname", "outputs:result"))
 
 
 def read_material(prim: Prim, draft: Draft) -> None:
@@ -36,7 +39,12 @@ def read_material(prim: Prim, draft: Draft) -> None:
     draft.vertices[key] = _looks(draft.part_name(prim), shader)
     draft.take(prim, "@type")
     if _is_plain(prim.composed, shader):
-        _take_network(prim, shader, key, draft)
+        _take_network(prim, draft)
+    image = _image(shader)
+    if image is not None:
+        texture = draft.own(prim, "texture", key.name)
+        draft.vertices[texture] = Texture(image)
+        draft.edges[draft.own(prim, "layer", key.name)] = layer_edge(texture, key)
 
 
 def bound_material(prim: Prim, draft: Draft) -> Id | None:
@@ -78,31 +86,39 @@ def _constant(shader: Any, name: str) -> Any:
 
 
 def _is_plain(prim: Any, shader: Any) -> bool:
-    """Whether the network is one preview surface below its material, at most with one image for its colour."""
+    """Whether the network is one preview surface below its material, at most with one image for its colour, as we write it."""
     below = [child for child in prim.GetChildren() if child != shader]
     if shader.GetParent() != prim or any(child.GetTypeName() != "Shader" or child.GetChildren() for child in (*below, shader)):
         return False
     inputs = {str(name) for name in shader.GetAuthoredPropertyNames() if str(name).startswith("inputs:")}
-    kinds = sorted(str(UsdShade.Shader(child).GetShaderId()) for child in below)
-    return inputs <= set(_TYPED) and kinds in ([], sorted([TEXTURE, _COORDINATES])) and (not below or _image(below) is not None)
+    kinds = {str(UsdShade.Shader(child).GetShaderId()): child for child in below}
+    if not inputs <= set(_TYPED) or len(kinds) != len(below):
+        return False
+    return not below or (kinds.keys() == {TEXTURE, _COORDINATES} and _is_plain_image(kinds[TEXTURE], kinds[_COORDINATES], shader))
 
 
-def _image(below: list[Any]) -> str | None:
-    for child in below:
-        asset = child.GetAttribute("inputs:file").Get() if child.GetAttribute("inputs:file") else None
-        if asset is not None and asset.path:
-            return str(asset.path)
-    return None
+def _is_plain_image(image: Any, coordinates: Any, shader: Any) -> bool:
+    """Whether an image is repeated, and nothing is said of it that we would not say."""
+    said = [{str(name) for name in child.GetAuthoredPropertyNames()} for child in (image, coordinates)]
+    is_repeated = all(image.GetAttribute(name).Get() == words.REPEAT for name in words.WRAPS)
+    is_ours = said[0] == _OF_IMAGE and said[1] == _OF_COORDINATES and is_repeated
+    return is_ours and coordinates.GetAttribute("inputs:varname").Get() == "st" and _image(shader) is not None
 
 
-def _take_network(prim: Prim, shader: Any, key: Id, draft: Draft) -> None:
+def _image(shader: Any) -> str | None:
+    """The file of the image that colours a surface."""
+    found = UsdShade.Shader(shader).GetInput("diffuseColor")
+    source = found.GetConnectedSource() if found else None
+    image = source[0].GetPrim() if source else None
+    if not image or UsdShade.Shader(image).GetShaderId() != TEXTURE:
+        return None
+    asset = image.GetAttribute("inputs:file").Get()
+    return str(asset.path) if asset is not None and asset.path else None
+
+
+def _take_network(prim: Prim, draft: Draft) -> None:
     """Everything below the material is typed, or follows from what is."""
     draft.take(prim, "outputs:surface")
-    image = _image([child for child in prim.composed.GetChildren() if child != shader])
     for child in prim.children:
         if child.is_real:
             draft.take(child, "@type", "@spec", *child.properties)
-    if image is not None:
-        texture = draft.own(prim, "texture", key.name)
-        draft.vertices[texture] = Texture(image)
-        draft.edges[draft.own(prim, "layer", key.name)] = layer_edge(texture, key)

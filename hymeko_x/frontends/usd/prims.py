@@ -33,6 +33,7 @@ _CLASSES = MappingProxyType(
         "float[]": Vt.FloatArray,
         "double[]": Vt.DoubleArray,
         **dict.fromkeys(("point3f[]", "color3f[]", "float3[]"), Vt.Vec3fArray),
+        **dict.fromkeys(("texCoord2f[]", "float2[]"), Vt.Vec2fArray),
     }
 )
 """What the values of the types are that somebody reads: in a damaged file they may be anything else."""

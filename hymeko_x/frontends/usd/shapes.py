@@ -13,6 +13,7 @@ from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.contacts import friction_of
 from hymeko_x.frontends.usd.materials import bound_material
 from hymeko_x.frontends.usd.places import numbers_of
+from hymeko_x.frontends.usd.texcoords import read_places, says_places
 from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
 from hymeko_x.ir.parts import Mesh, MeshShape, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Vec3, compose
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.frontends.usd.draft import Draft
     from hymeko_x.frontends.usd.prims import Prim
+    from hymeko_x.frontends.usd.texcoords import Places
     from hymeko_x.ir.parts import Geometry, Rgba
 
 COLLISION = "PhysicsCollisionAPI"
@@ -68,6 +70,8 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
         draft.note(key, gprims.NOTATION, str(said))
     if points is not None and _says_normals(prim, draft):
         draft.note(key, words.NORMALS, "faces")
+    if points is not None and says_places(prim, draft):
+        draft.note(key, words.TEXCOORDS, "corners")
     draft.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, draft))
     return owner, (prim, shape, pose, points)
 
@@ -135,7 +139,7 @@ def _read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | No
         draft.take(prim, "subdivisionScheme")
     if (sizes == 3).all():
         draft.take(prim, "faceVertexCounts", "faceVertexIndices")
-    key = _shared_mesh(prim, vertices, faces, scale, draft)
+    key = _shared_mesh(prim, vertices, faces, read_places(prim, sizes, corners), scale, draft)
     return vertices * np.asarray(scale), key
 
 
@@ -173,14 +177,15 @@ def _refused(prim: Prim, why: str, draft: Draft) -> tuple[None, None]:
     return None, None
 
 
-def _shared_mesh(prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], scale: Vec3, draft: Draft) -> Id:
-    content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + repr(scale).encode()).hexdigest()
+def _shared_mesh(prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], places: Places, scale: Vec3, draft: Draft) -> Id:
+    said = repr(scale) if not places[0] else repr((scale, places))
+    content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + said.encode()).hexdigest()
     known = draft.meshes.get(content)
     if known is not None:
         return known
     key = draft.own(prim, "mesh", prim.name)
     draft.meshes[content] = key
-    draft.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), tuple(faces.ravel().tolist()))
+    draft.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), tuple(faces.ravel().tolist()), *places)
     return key
 
 

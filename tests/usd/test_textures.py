@@ -1,0 +1,303 @@
+"""Images of mesh files in a stage: texture coordinates, the material that shows the image, and the way back to mesh files."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from PIL import Image
+from pxr import Usd, UsdGeom, UsdShade
+
+import hymeko_x as hx
+from hymeko_x.assets.colours import read_colours
+from hymeko_x.assets.part import Part
+
+URDF = """<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<visual name="shell"><geometry><mesh filename="a{suffix}" scale="2 2 2"/></geometry>{material}</visual></link></robot>"""
+PYRAMID = """v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0.1
+v 0.5 0.5 1
+vt 0 0
+vt 1 0
+vt 0.1 0.7
+vt 1 1
+vt 0.5 0.25
+"""
+IMAGE_FACES = "usemtl wood\nf 1/1 4/3 3/4 2/2\nf 1/1 2/2 5/5\nf 2/1 3/2 5/5\n"
+RED_FACES = "usemtl paint\nf 3/1 4/2 5/5\nf 4/1 1/2 5/5\n"
+LIBRARY = "newmtl wood\nKd 0.8 0.8 0.8\nmap_Kd wood{suffix}\nnewmtl paint\nKd 1 0 0\n"
+
+
+def image(kind: str = "PNG") -> bytes:
+    out = io.BytesIO()
+    Image.fromarray(np.arange(48, dtype=np.uint8).reshape(4, 4, 3)).save(out, kind)
+    return out.getvalue()
+
+
+def lay_obj(folder: Path, faces: str = IMAGE_FACES, suffix: str = ".png", kind: str = "PNG") -> Path:
+    (folder / "a.obj").write_text(f"mtllib a.mtl\n{PYRAMID}{faces}")
+    (folder / "a.mtl").write_text(LIBRARY.format(suffix=suffix))
+    (folder / f"wood{suffix}").write_bytes(image(kind))
+    return lay(folder, ".obj")
+
+
+def lay(folder: Path, suffix: str, material: str = "") -> Path:
+    (folder / "r.urdf").write_text(URDF.format(suffix=suffix, material=material))
+    return folder / "r.urdf"
+
+
+def meshes(stage: Usd.Stage) -> list[Usd.Prim]:
+    return [prim for prim in stage.Traverse(Usd.TraverseInstanceProxies()) if prim.IsA(UsdGeom.Mesh)]
+
+
+def shown_file(prim: Usd.Prim) -> str | None:
+    """The file of the image that colours a mesh, as USD finds it."""
+    source = surface_of(prim).GetInput("diffuseColor").GetConnectedSource()
+    return None if source is None else str(source[0].GetPrim().GetAttribute("inputs:file").Get().resolvedPath)
+
+
+def surface_of(prim: Usd.Prim) -> UsdShade.Shader:
+    return UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0].ComputeSurfaceSource()[0]
+
+
+def corners(prim: Usd.Prim) -> set[tuple[float, ...]]:
+    """Point and place in the image of every corner."""
+    mesh, places = UsdGeom.Mesh(prim), UsdGeom.PrimvarsAPI(prim).GetPrimvar("st")
+    points = [mesh.GetPointsAttr().Get()[row] for row in mesh.GetFaceVertexIndicesAttr().Get()]
+    return {(*map(float, point), *map(float, place)) for point, place in zip(points, places.ComputeFlattened(), strict=True)}
+
+
+def corners_of(part: Part) -> set[tuple[float, ...]]:
+    assert part.uv is not None
+    assert part.corners is not None
+    rows = np.hstack([part.points[part.faces].reshape(-1, 3), part.uv[part.corners].reshape(-1, 2)])
+    return {tuple(map(float, row)) for row in rows.astype(np.float32)}
+
+
+EXPECTED = {(0, 0, 0, 0, 0), (1, 0, 0, 1, 0), (1, 1, 0, 1, 1), (0, 1, np.float32(0.1), np.float32(0.1), np.float32(0.7))} | {
+    (0.5, 0.5, 1, 0.5, 0.25),
+    (1, 0, 0, 0, 0),
+    (1, 1, 0, 1, 0),
+}
+
+
+@pytest.mark.parametrize("target", ["r.usda", "r.usdc"])
+def test_an_obj_file_brings_its_image_and_the_place_of_every_corner(tmp_path: Path, target: str) -> None:
+    (tmp_path / "out").mkdir()
+    hx.convert(lay_obj(tmp_path), tmp_path / "out" / target)
+    stage = Usd.Stage.Open(str(tmp_path / "out" / target))
+    (prim,) = meshes(stage)
+    assert shown_file(prim) == str(tmp_path / "out" / "textures" / "wood.png")
+    assert (tmp_path / "out" / "textures" / "wood.png").read_bytes() == image()
+    primvar = UsdGeom.PrimvarsAPI(prim).GetPrimvar("st")
+    assert (primvar.GetInterpolation(), primvar.GetTypeName(), len(primvar.GetIndices())) == ("faceVarying", "texCoord2f[]", 12)
+    assert corners(prim) == EXPECTED
+    assert len(UsdGeom.Mesh(prim).GetPointsAttr().Get()) == 5
+
+
+def test_the_robot_is_the_same_and_comes_back_as_it_was(tmp_path: Path) -> None:
+    hx.convert(lay_obj(tmp_path), tmp_path / "r.usda")
+    hx.convert(tmp_path / "r.usda", tmp_path / "back.urdf")
+    assert hx.diff(hx.load(tmp_path / "r.urdf"), hx.load(tmp_path / "back.urdf")) == ()
+    assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.usda").verdict == "same"
+
+
+def test_a_stage_of_others_leaves_as_obj_with_its_image(tmp_path: Path) -> None:
+    hx.convert(lay_obj(tmp_path), tmp_path / "r.usda", pure=True)
+    (tmp_path / "out").mkdir()
+    hx.convert(tmp_path / "r.usda", tmp_path / "out" / "r.urdf")
+    mesh = next((tmp_path / "out").rglob("*.obj"))
+    (part,) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
+    assert corners_of(part) == EXPECTED
+    assert part.look is not None
+    assert part.look.image == image()
+    assert hx.verify(tmp_path / "r.usda", tmp_path / "out" / "r.urdf").verdict == "same"
+    (tmp_path / "again").mkdir()
+    hx.convert(tmp_path / "out" / "r.urdf", tmp_path / "again" / "r.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "again" / "r.usda"))
+    assert [corners(prim) for prim in meshes(stage)] == [EXPECTED]
+    assert [Path(shown_file(prim) or "").read_bytes() for prim in meshes(stage)] == [image()]
+
+
+def test_a_stage_leaves_for_mujoco_with_its_image(tmp_path: Path) -> None:
+    import mujoco
+
+    hx.convert(lay_obj(tmp_path), tmp_path / "r.usda", pure=True)
+    hx.convert(tmp_path / "r.usda", tmp_path / "r.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "r.xml"))
+    assert (model.ntex, model.mesh_texcoordnum[0] > 0, model.mat_texid[model.geom_matid[0], 1]) == (1, True, 0)
+
+
+def test_a_file_in_an_image_and_a_colour_has_a_mesh_for_each(tmp_path: Path) -> None:
+    hx.convert(lay_obj(tmp_path, IMAGE_FACES + RED_FACES), tmp_path / "r.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    wood, paint = meshes(stage)
+    assert corners(wood) == EXPECTED
+    assert shown_file(wood) == str(tmp_path / "textures" / "wood.png")
+    assert not UsdGeom.PrimvarsAPI(paint).GetPrimvar("st")
+    assert tuple(surface_of(paint).GetInput("diffuseColor").Get()) == (1.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "kind", "there"), [(".jpg", "JPEG", "wood.jpg"), (".tif", "TIFF", "wood.png"), (".gif", "GIF", "wood.png")]
+)
+def test_png_and_jpeg_stay_what_they_are_and_other_images_become_png(tmp_path: Path, suffix: str, kind: str, there: str) -> None:
+    hx.convert(lay_obj(tmp_path, suffix=suffix, kind=kind), tmp_path / "r.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    assert shown_file(meshes(stage)[0]) == str(tmp_path / "textures" / there)
+    if there.endswith("jpg"):
+        assert (tmp_path / "textures" / there).read_bytes() == (tmp_path / "wood.jpg").read_bytes()
+
+
+def test_an_image_on_the_disk_of_its_author_is_found_beside_the_mesh(tmp_path: Path) -> None:
+    source = lay_obj(tmp_path)
+    (tmp_path / "a.mtl").write_text("newmtl wood\nmap_Kd D:\\robots\\wood.png\n")
+    hx.convert(source, tmp_path / "r.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    assert shown_file(meshes(stage)[0]) == str(tmp_path / "textures" / "wood.png")
+
+
+def test_without_its_image_a_file_has_its_colour(tmp_path: Path) -> None:
+    source = lay_obj(tmp_path)
+    (tmp_path / "wood.png").unlink()
+    hx.convert(source, tmp_path / "r.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    assert surface_of(meshes(stage)[0]).GetInput("diffuseColor").Get()[0] == pytest.approx(0.8)
+
+
+def test_a_damaged_image_is_one_warning(tmp_path: Path) -> None:
+    source = lay_obj(tmp_path)
+    (tmp_path / "wood.png").write_bytes(image()[:45])
+    report = hx.convert(source, tmp_path / "r.usda").report
+    assert [entry.message.split(":")[:2] for entry in report.diagnostics if "image" in entry.message] == [
+        ["mesh 'a'", " its image 'wood.png' cannot be read"]
+    ]
+
+
+def test_the_image_of_a_urdf_material_is_laid_on_by_the_coordinates_of_the_mesh(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text(PYRAMID + IMAGE_FACES.partition("\n")[2])
+    (tmp_path / "wood.png").write_bytes(image())
+    source = lay(tmp_path, ".obj", '<material name="w"><texture filename="wood.png"/></material>')
+    hx.convert(source, tmp_path / "r.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    assert corners(meshes(stage)[0]) == EXPECTED
+
+
+def test_a_mjcf_mesh_keeps_its_coordinates(tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text(PYRAMID + IMAGE_FACES.partition("\n")[2])
+    (tmp_path / "wood.png").write_bytes(image())
+    (tmp_path / "r.xml").write_text(
+        '<mujoco><asset><texture type="2d" name="t" file="wood.png"/><material name="m" texture="t"/><mesh name="a" file="a.obj"/></asset>'
+        '<worldbody><body name="b"><freejoint/><geom type="mesh" mesh="a" material="m" mass="1"/></body></worldbody></mujoco>'
+    )
+    hx.convert(tmp_path / "r.xml", tmp_path / "r.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    assert len(corners(meshes(stage)[0])) == len(EXPECTED)
+
+
+def test_a_glb_file_brings_its_image(tmp_path: Path) -> None:
+    box = trimesh.creation.box((1.0, 2.0, 3.0))
+    places = np.linspace(0.0, 1.0, 2 * len(box.vertices)).reshape(-1, 2)
+    looks = trimesh.visual.material.PBRMaterial(name="wood", baseColorTexture=Image.open(io.BytesIO(image())))
+    box.visual = trimesh.visual.TextureVisuals(uv=places, material=looks)
+    (tmp_path / "a.glb").write_bytes(trimesh.Scene(box).export(file_type="glb"))
+    hx.convert(lay(tmp_path, ".glb"), tmp_path / "r.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    (prim,) = meshes(stage)
+    expected = {(*map(np.float32, point), *map(np.float32, place)) for point, place in zip(box.vertices, places, strict=True)}
+    assert np.allclose(sorted(corners(prim)), sorted(expected))
+    assert np.array_equal(np.asarray(Image.open(shown_file(prim) or "")), np.asarray(Image.open(io.BytesIO(image()))))
+
+
+COLLADA = """<COLLADA><library_images><image id="i"><init_from>wood.png</init_from></image></library_images>
+<library_effects><effect id="e"><profile_COMMON><newparam sid="s"><surface type="2D"><init_from>i</init_from></surface></newparam>
+<newparam sid="p"><sampler2D><source>s</source></sampler2D></newparam>
+<technique sid="c"><lambert><diffuse><texture texture="p" texcoord="UV"/></diffuse></lambert></technique>
+</profile_COMMON></effect></library_effects>
+<library_materials><material id="m"><instance_effect url="#e"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+<source id="x"><float_array>0 0 0 1 0 0 1 1 0</float_array><technique_common><accessor stride="3"><param/><param/><param/></accessor>
+</technique_common></source>
+<source id="u"><float_array>0 0 1 0 0.5 1 0.25 0.75</float_array><technique_common><accessor stride="2"><param/><param/></accessor>
+</technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#x"/></vertices>
+<triangles material="k"><input semantic="VERTEX" source="#v" offset="0"/><input semantic="TEXCOORD" source="#u" offset="1"/>
+<p>0 3 1 1 2 2</p></triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="k" target="#m"/></technique_common></bind_material></instance_geometry></node>
+</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>"""
+
+
+def test_a_collada_file_brings_its_image(tmp_path: Path) -> None:
+    (tmp_path / "a.dae").write_text(COLLADA)
+    (tmp_path / "wood.png").write_bytes(image())
+    hx.convert(lay(tmp_path, ".dae"), tmp_path / "r.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    (prim,) = meshes(stage)
+    assert corners(prim) == {(0, 0, 0, 0.25, 0.75), (1, 0, 0, 1, 0), (1, 1, 0, 0.5, 1)}
+    assert shown_file(prim) == str(tmp_path / "textures" / "wood.png")
+
+
+OTHERS = """#usda 1.0
+(
+  defaultPrim = "r"
+  metersPerUnit = 1
+  upAxis = "Z"
+)
+def Xform "r" {
+  def Xform "a" (prepend apiSchemas = ["PhysicsRigidBodyAPI"]) {
+    def Mesh "m" (prepend apiSchemas = ["MaterialBindingAPI"]) {
+      int[] faceVertexCounts = [4]
+      int[] faceVertexIndices = [0, 1, 2, 3]
+      point3f[] points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+      texCoord2f[] primvars:st = [(0, 0), (1, 0), (1, 1), (0, 1)] ( interpolation = "vertex" )
+      rel material:binding = </r/w>
+    }
+  }
+  def Material "w" {
+    token outputs:surface.connect = </r/w/s.outputs:surface>
+    def Shader "s" {
+      uniform token info:id = "UsdPreviewSurface"
+      color3f inputs:diffuseColor.connect = </r/w/t.outputs:rgb>
+      token outputs:surface
+    }
+    def Shader "t" {
+      uniform token info:id = "UsdUVTexture"
+      asset inputs:file = @wood.png@
+      float2 inputs:st.connect = </r/w/c.outputs:result>
+      token inputs:wrapS = "clamp"
+      float4 inputs:scale = (0.5, 0.5, 0.5, 1)
+      float3 outputs:rgb
+    }
+    def Shader "c" {
+      uniform token info:id = "UsdPrimvarReader_float2"
+      string inputs:varname = "st"
+      float2 outputs:result
+    }
+  }
+}
+"""
+
+
+def test_an_image_that_is_said_more_of_is_typed_and_stays_as_it_is(tmp_path: Path) -> None:
+    (tmp_path / "s.usda").write_text(OTHERS)
+    (tmp_path / "wood.png").write_bytes(image())
+    hx.convert(tmp_path / "s.usda", tmp_path / "back.usda", pure=True)
+    before, after = (Usd.Stage.Open(str(tmp_path / name)) for name in ("s.usda", "back.usda"))
+    for prim in before.Traverse():
+        there = after.GetPrimAtPath(prim.GetPath())
+        for attribute in prim.GetAuthoredAttributes():
+            assert there.GetAttribute(attribute.GetName()).Get() == attribute.Get(), attribute.GetPath()
+    assert not after.GetAttributeAtPath("/r/a/m.primvars:st:indices")
+    hx.convert(tmp_path / "s.usda", tmp_path / "r.urdf", pure=True)
+    mesh = next((tmp_path / "shapes").glob("*.obj"))
+    (part,) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
+    assert corners_of(part) == {(0, 0, 0, 0, 0), (1, 0, 0, 1, 0), (1, 1, 0, 1, 1), (0, 1, 0, 0, 1)}
+    assert part.look is not None
+    assert part.look.image == image()
