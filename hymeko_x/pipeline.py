@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import posixpath
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
@@ -217,7 +218,17 @@ def _written(
     legal = legalize(mechanism, format.name, options, report)
     packed, new, copies = pack(legal, format.name, files, place.assets, report, out_dir=place.folder)
     package = backend(packed, report)
+    enclose = getattr(import_module(format.backend), "enclose", None) if format.backend else None
+    if enclose is not None and (new or copies):
+        return enclose(package, {**new, **dict(_contents(copies, files))}), packed
     return replace(package, files={**package.files, **new}, copies={**package.copies, **copies}), packed
+
+
+def _contents(copies: Mapping[str, str], files: Files) -> Iterator[tuple[str, bytes]]:
+    """The files to copy that are still there."""
+    for name, path in copies.items():
+        with suppress(OSError):
+            yield name, files.read(path)
 
 
 def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:

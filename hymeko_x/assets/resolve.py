@@ -6,8 +6,10 @@ Nothing here looks at the environment: the shell passes in what the user and ROS
 from __future__ import annotations
 
 import errno
+import io
 import os
 import re
+import zipfile
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -26,6 +28,7 @@ MOST_WILDCARDS = 4
 """In how many parts of a path there may be wildcards: each can multiply the folders that are looked into."""
 
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):/*")  # one letter would be a Windows drive
+_PACKED = re.compile(r"(.+\.usdz)\[([^\[\]]+)\]", re.IGNORECASE | re.DOTALL)
 _PACKAGE_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
 
@@ -46,8 +49,12 @@ class DiskFiles:
         """The path of the file that ``uri`` names, or None.
 
         A package is looked for in ``packages``, then in the search path, then upwards from ``base``, nearest first: a
-        folder whose `package.xml` bears the name, and a folder of that name above or beside.
+        folder whose `package.xml` bears the name, and a folder of that name above or beside. A file in a package of USD is
+        named as there: ``robot.usdz[textures/a.png]``.
         """
+        if (packed := _PACKED.fullmatch(uri)) is not None:
+            package = self.find(packed[1])
+            return None if package is None or packed[2] not in _names_packed(package) else f"{package}[{packed[2]}]"
         for candidate in self._candidates(uri.strip().replace("\\", "/")):
             if self._may_read(candidate):
                 return str(_tidy(candidate))
@@ -58,6 +65,8 @@ class DiskFiles:
 
         Raises: OSError when the file vanished, is no regular file, may not be read, or is larger than 1 GiB.
         """
+        if (packed := _PACKED.fullmatch(path)) is not None:
+            return _read_packed(self.read(packed[1]), packed[2])
         if not self._may_read(Path(path)):
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
         if Path(path).stat().st_size > MOST_BYTES:
@@ -236,3 +245,23 @@ def search_path(environ: Mapping[str, str]) -> tuple[Path, ...]:
 
 def _entries(environ: Mapping[str, str], name: str) -> list[str]:
     return [text for text in environ.get(name, "").split(os.pathsep) if text]
+
+
+def _names_packed(package: str) -> list[str]:
+    """The files in a package of USD; none where it is damaged."""
+    try:
+        with zipfile.ZipFile(package) as inside:
+            return inside.namelist()
+    except (zipfile.BadZipFile, OSError):
+        return []
+
+
+def _read_packed(package: bytes, name: str) -> bytes:
+    """Raises: OSError when the file is not there, damaged or too large."""
+    try:
+        with zipfile.ZipFile(io.BytesIO(package)) as inside:
+            if inside.getinfo(name).file_size > MOST_BYTES:
+                raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), name)
+            return inside.read(name)
+    except (zipfile.BadZipFile, KeyError, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name) from error

@@ -94,12 +94,12 @@ def safe_name(name: str) -> str:
 
 def stem_of(uri: str) -> str:
     """The file name in a uri or path without folders and suffix."""
-    return posixpath.splitext(posixpath.basename(uri.replace("\\", "/").rstrip("/")))[0]
+    return posixpath.splitext(posixpath.basename(uri.replace("\\", "/").rstrip("/]")))[0]
 
 
 def suffix_of(path: str) -> str:
     """The suffix of a path in small letters, with its dot."""
-    return posixpath.splitext(path.replace("\\", "/"))[1].lower()
+    return posixpath.splitext(path.replace("\\", "/").rstrip("]"))[1].lower()
 
 
 def read_file(files: Files, uri: str) -> tuple[str, bytes] | None:

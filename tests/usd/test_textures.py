@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -14,6 +15,8 @@ from pxr import Usd, UsdGeom, UsdShade
 import hymeko_x as hx
 from hymeko_x.assets.colours import read_colours
 from hymeko_x.assets.part import Part
+from hymeko_x.ir.parts import Texture
+from tests.usd.test_rules import complaints
 
 URDF = """<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
 <visual name="shell"><geometry><mesh filename="a{suffix}" scale="2 2 2"/></geometry>{material}</visual></link></robot>"""
@@ -301,3 +304,28 @@ def test_an_image_that_is_said_more_of_is_typed_and_stays_as_it_is(tmp_path: Pat
     assert corners_of(part) == {(0, 0, 0, 0, 0), (1, 0, 0, 1, 0), (1, 1, 0, 1, 1), (0, 1, 0, 0, 1)}
     assert part.look is not None
     assert part.look.image == image()
+
+
+@pytest.mark.parametrize("layout", ["single", "layered"])
+@pytest.mark.parametrize("suffix", [".usda", ".usdc", ".usdz"])
+def test_the_rules_of_usdchecker_find_every_image(tmp_path: Path, suffix: str, layout: Literal["single", "layered"]) -> None:
+    (tmp_path / "out").mkdir()
+    stage = tmp_path / "out" / f"r{suffix}"
+    hx.convert(lay_obj(tmp_path, IMAGE_FACES + RED_FACES), stage, layout=layout)
+    assert complaints(stage) == []
+    assert (tmp_path / "out" / "textures").exists() == (suffix != ".usdz")
+
+
+@pytest.mark.parametrize("pure", [True, False])
+@pytest.mark.parametrize("layout", ["single", "layered"])
+def test_an_image_comes_out_of_a_package_again(tmp_path: Path, layout: Literal["single", "layered"], *, pure: bool) -> None:
+    (tmp_path / "a.obj").write_text(PYRAMID + IMAGE_FACES.partition("\n")[2])
+    (tmp_path / "wood.png").write_bytes(image())
+    hx.convert(
+        lay(tmp_path, ".obj", '<material name="w"><texture filename="wood.png"/></material>'), tmp_path / "r.usdz", pure=pure, layout=layout
+    )
+    (tmp_path / "wood.png").unlink()
+    hx.convert(tmp_path / "r.usdz", tmp_path / "back.urdf")
+    (texture,) = (part for _, part in hx.load(tmp_path / "back.urdf").vertices(Texture))
+    assert texture.uri == ("textures/wood.png" if pure else "wood.png")
+    assert (tmp_path / texture.uri).read_bytes() == image()

@@ -6,6 +6,7 @@ aspect can be replaced by itself.
 
 from __future__ import annotations
 
+import posixpath
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -35,6 +36,8 @@ def split(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
         _copy_header(layer, interface, [name for name in layer.pseudoRoot.ListInfoKeys() if name != "primChildren"])
         for spec in _prims(layer):
             _divide(spec, aspects)
+        for part in aspects.values():
+            _lead_out(part)
         suffixes = dict.fromkeys(ASPECTS, suffix) | ({GEOMETRY: ".usdc"} if _has_meshes(layer) else {})
         contents.subLayerPaths = [f"./{aspect}{suffixes[aspect]}" for aspect in reversed(ASPECTS)]
         _write_interface(layer, interface, f"./{folder}/{_CONTENTS}{suffix}")
@@ -131,6 +134,15 @@ def _divide(spec: Any, aspects: dict[str, Any]) -> None:
         if own:
             there = parts.get(aspect) or Sdf.CreatePrimInLayer(aspects[aspect], spec.path)
             there.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=own))
+
+
+def _lead_out(layer: Any) -> None:
+    """Files beside the interface are one folder above its layers."""
+    for spec in _prims(layer):
+        for item in spec.attributes:
+            path = item.default.path if isinstance(item.default, Sdf.AssetPath) else ""
+            if path and not path.startswith("/") and ":" not in path:
+                item.default = Sdf.AssetPath(posixpath.normpath(f"../{path}"))
 
 
 def _home(kind: str) -> str:

@@ -30,6 +30,7 @@ from hymeko_x.frontends.usd.stage import Scene, open_scene
 from hymeko_x.frontends.usd.structure import build_trees, note_poses
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism
+from hymeko_x.ir.parts import Texture
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -155,4 +156,15 @@ def _finished(scene: Scene, draft: Draft) -> Mechanism:
         draft.report.error(codes.MISSING_PART, "the stage has no rigid bodies; the result has no bodies", Origin(draft.source.name))
     graph = Hypergraph(draft.vertices, draft.edges)
     extras = {key: tuple(found) for key, found in draft.extras.items()}
-    return Mechanism(name, graph, extras, draft.origins, draft.notations, draft.stereotypes, tuple(draft.layout))
+    packed = dict(_packed_images(draft))
+    return Mechanism(name, graph, extras, draft.origins, draft.notations, draft.stereotypes, tuple(draft.layout), packed)
+
+
+def _packed_images(draft: Draft) -> Iterator[tuple[str, str]]:
+    """How the images in a package are called outside of it."""
+    package = PurePath(draft.source.name.replace("\\", "/")).name
+    if not draft.source.data.startswith(b"PK") or not package.lower().endswith(".usdz"):
+        return
+    for part in draft.vertices.values():
+        if isinstance(part, Texture) and part.uri is not None:
+            yield part.uri, f"{package}[{part.uri}]"

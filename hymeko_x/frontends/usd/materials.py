@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import posixpath
 from typing import TYPE_CHECKING, Any
 
-from pxr import UsdShade
+from pxr import Sdf, UsdShade
 
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
@@ -40,8 +41,9 @@ def read_material(prim: Prim, draft: Draft) -> None:
     draft.take(prim, "@type")
     if _is_plain(prim.composed, shader):
         _take_network(prim, draft)
-    image = _image(shader)
-    if image is not None:
+    said = _image(shader)
+    if said is not None:
+        image = _seen_from(draft.scene.folder, said)
         texture = draft.own(prim, "texture", key.name)
         draft.vertices[texture] = Texture(image)
         draft.edges[draft.own(prim, "layer", key.name)] = layer_edge(texture, key)
@@ -105,15 +107,25 @@ def _is_plain_image(image: Any, coordinates: Any, shader: Any) -> bool:
     return is_ours and coordinates.GetAttribute("inputs:varname").Get() == "st" and _image(shader) is not None
 
 
-def _image(shader: Any) -> str | None:
-    """The file of the image that colours a surface."""
+def _image(shader: Any) -> Any | None:
+    """The attribute with the file of the image that colours a surface."""
     found = UsdShade.Shader(shader).GetInput("diffuseColor")
     source = found.GetConnectedSource() if found else None
     image = source[0].GetPrim() if source else None
     if not image or UsdShade.Shader(image).GetShaderId() != TEXTURE:
         return None
-    asset = image.GetAttribute("inputs:file").Get()
-    return str(asset.path) if asset is not None and asset.path else None
+    asset = image.GetAttribute("inputs:file")
+    return asset if isinstance(asset.Get(), Sdf.AssetPath) and asset.Get().path else None
+
+
+def _seen_from(folder: str, image: Any) -> str:
+    """The path of an image seen from the stage's own folder: the layer that names it may lie elsewhere."""
+    path = str(image.Get().path)
+    if path.startswith("/") or ":" in path:
+        return posixpath.normpath(path[len(folder) + 1 :]) if path.startswith(f"{folder}/") else path
+    layer = image.GetPropertyStack()[0].layer.identifier.replace("\\", "/")
+    there = posixpath.normpath(posixpath.join(posixpath.dirname(layer), path))
+    return posixpath.relpath(there, folder) if there.startswith(posixpath.dirname(folder)) else path
 
 
 def _take_network(prim: Prim, draft: Draft) -> None:

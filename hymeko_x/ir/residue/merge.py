@@ -66,7 +66,7 @@ class _Merge:
         self._add(withheld)
         removed = self._remove(kept)
         self._let_nothing_dangle(removed)
-        merged = replace(self.image, name=name, graph=self._ordered(), places=dict(self._places()))
+        merged = replace(self.image, name=name, graph=self._ordered(), places={**self.image.places, **dict(self._places())})
         stored = stored_points(merged, self.image)
         return _with_sides(replace(merged, stored=stored) if stored else merged, self.residue, self.image)
 
@@ -210,7 +210,7 @@ class _Merge:
                 and before.uri
                 and part.uri != before.uri
             ):
-                yield part.uri, before.uri
+                yield part.uri, self.image.places.get(before.uri, before.uri)
 
     def _ordered(self) -> Hypergraph:  # type: ignore[type-arg]
         if not self.residue.order:
