@@ -96,7 +96,7 @@ def _is_limited(said: Mapping[str, str], settings: Settings, span: str, flag: st
         raise BadAttribute(flag, f"true or false beside {span}, since <compiler autolimits> is false")
     if word == "true" and not ordered and said.get("type") not in ("ball", "free"):
         raise BadAttribute(span, f"a lower and a greater number, since {flag} is true")
-    if ordered and found is not None and found[0] != 0.0 and said.get("type") == "ball":
+    if span == "range" and (ordered or word == "true") and found is not None and found[0] != 0.0 and said.get("type") == "ball":
         raise BadAttribute(span, "0 and the greatest angle of a ball joint")
     return ordered and (word == "true" or (word == "auto" and settings.autolimits))
 

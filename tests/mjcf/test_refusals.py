@@ -47,6 +47,7 @@ def test_mujoco_refuses_it_and_we_say_where_and_why(text: str, said: str) -> Non
         "<?nobody reads?><mujoco><worldbody/></mujoco>",
         '<mujoco><visual><headlight active="1"/></visual><worldbody/></mujoco>',
         '<mujoco><worldbody><camera output="rgb depth"/></worldbody></mujoco>',
+        '<mujoco><worldbody><body><joint type="ball" actuatorfrcrange="-1 1"/><geom size=".1"/></body></worldbody></mujoco>',
     ],
 )
 def test_what_mujoco_reads_is_read(text: str) -> None:

@@ -91,4 +91,5 @@ def test_a_sphere_that_its_author_scaled_stays_a_sphere(tmp_path: Path) -> None:
     body = f'def Xform "b" (\n  prepend apiSchemas = ["PhysicsRigidBodyAPI"]\n)\n{{\n{sphere}}}\n'
     source.write_text(f'#usda 1.0\n(\n  defaultPrim = "b"\n  metersPerUnit = 1\n  upAxis = "Z"\n)\n{body}', encoding="utf-8")
     hx.convert(source, tmp_path / "back.usda")
-    assert [prim.GetTypeName() for prim in Usd.Stage.Open(str(tmp_path / "back.usda")).Traverse() if prim.GetName() == "s"] == ["Sphere"]
+    stage = Usd.Stage.Open(str(tmp_path / "back.usda"))
+    assert [prim.GetTypeName() for prim in stage.Traverse() if prim.GetName() == "s"] == ["Sphere"]
