@@ -178,7 +178,8 @@ def _refused(prim: Prim, why: str, draft: Draft) -> tuple[None, None]:
 
 
 def _shared_mesh(prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], places: Places, scale: Vec3, draft: Draft) -> Id:
-    said = repr(scale) if not places[0] else repr((scale, places))
+    about = tuple(f"{factor:.12g}" for factor in scale)  # computed from what is above the prim: its last bits are those of no author
+    said = repr((about, places) if places[0] else about)
     content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + said.encode()).hexdigest()
     known = draft.meshes.get(content)
     if known is not None:
