@@ -37,7 +37,7 @@ def split(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
         for spec in _prims(layer):
             _divide(spec, aspects)
         for part in aspects.values():
-            _lead_out(part)
+            _lead_out(part, "../" * len(folder.split("/")))
         suffixes = dict.fromkeys(ASPECTS, suffix) | ({GEOMETRY: ".usdc"} if _has_meshes(layer) else {})
         contents.subLayerPaths = [f"./{aspect}{suffixes[aspect]}" for aspect in reversed(ASPECTS)]
         _write_interface(layer, interface, f"./{folder}/{_CONTENTS}{suffix}")
@@ -136,13 +136,13 @@ def _divide(spec: Any, aspects: dict[str, Any]) -> None:
             there.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=own))
 
 
-def _lead_out(layer: Any) -> None:
-    """Files beside the interface are one folder above its layers."""
+def _lead_out(layer: Any, up: str) -> None:
+    """Files beside the interface are this far above its layers."""
     for spec in _prims(layer):
         for item in spec.attributes:
             path = item.default.path if isinstance(item.default, Sdf.AssetPath) else ""
             if path and not path.startswith("/") and ":" not in path:
-                item.default = Sdf.AssetPath(posixpath.normpath(f"../{path}"))
+                item.default = Sdf.AssetPath(posixpath.normpath(f"{up}{path}"))
 
 
 def _home(kind: str) -> str:
