@@ -18,27 +18,29 @@ def png_bytes(data: bytes) -> bytes:
 
     Raises: UnreadableImage.
     """
-    return _encoded(data, (_PNG,))
+    return _encoded(data, (_PNG,), decode=True)
 
 
 def shown_image(data: bytes) -> tuple[bytes, str]:
     """The image as PNG or JPEG, whichever it is already, with the suffix of that; other types become PNG.
 
+    What stays as it is is looked through and not decoded, which takes far longer than all else that is done with it.
+
     Raises: UnreadableImage.
     """
-    found = _encoded(data, (_PNG, _JPEG))
+    found = _encoded(data, (_PNG, _JPEG), decode=False)
     return found, ".jpg" if found.startswith(_JPEG) else ".png"
 
 
-def _encoded(data: bytes, as_it_is: tuple[bytes, ...]) -> bytes:
+def _encoded(data: bytes, as_it_is: tuple[bytes, ...], *, decode: bool) -> bytes:
     from PIL import Image
 
     if len(data) > MOST_BYTES:
         raise UnreadableImage(f"it has {len(data)} bytes, at most {MOST_BYTES} are read")
     try:
         with Image.open(io.BytesIO(data)) as image:
-            image.load()
             if data.startswith(as_it_is):
+                (image.load if decode else image.verify)()
                 return data
             out = io.BytesIO()
             image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG", compress_level=3)
