@@ -6,7 +6,7 @@ import posixpath
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from importlib import import_module
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
@@ -218,7 +218,7 @@ def _written(
     legal = legalize(mechanism, format.name, options, report)
     packed, new, copies = pack(legal, format.name, files, place.assets, report, out_dir=place.folder)
     package = backend(packed, report)
-    enclose = getattr(import_module(format.backend), "enclose", None) if format.backend else None
+    enclose = _offered(format, "enclose")
     if enclose is not None and (new or copies):
         return enclose(package, {**new, **dict(_contents(copies, files))}), packed
     return replace(package, files={**package.files, **new}, copies={**package.copies, **copies}), packed
@@ -337,8 +337,13 @@ def writer(format: Format) -> Writer:
 
 def carrier_of(format: Format) -> Carrier | None:
     """How the format's files carry a residue; None for a format that says everything itself."""
-    found: Carrier | None = getattr(import_module(format.backend), "carry_residue", None) if format.backend else None
+    found: Carrier | None = _offered(format, "carry_residue")
     return found
+
+
+def _offered(format: Format, name: str) -> Any:
+    """A function that only some backends have; None where the format's has none."""
+    return getattr(import_module(format.backend), name, None) if format.backend else None
 
 
 @dataclass(frozen=True, slots=True)

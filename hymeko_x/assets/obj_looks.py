@@ -41,7 +41,7 @@ def obj_tables(data: bytes, finishes: Mapping[str, Finish], *, mapped: bool = Fa
     has_images = mapped or any(finish.image for finish in finishes.values())
     lines = data.splitlines()
     try:
-        points, uv = _points(lines), _coordinates(lines) if has_images else None
+        points, uv = _rows(lines, b"v ", _WIDTHS), _rows(lines, b"vt ", _UV_WIDTHS) if has_images else None
         pieces = [("", first), *((name.decode("utf-8", "replace"), text) for name, text in zip(used[::2], used[1::2], strict=True))]
         tables = (
             [] if points is None else [_table(text, name, finishes.get(name, Finish()), points, uv, mapped=mapped) for name, text in pieces]
@@ -69,20 +69,13 @@ def _are_rows(faces: NDArray[Any], table: NDArray[Any]) -> bool:
     return not faces.size or bool(faces.min() >= 0 and faces.max() < len(table))
 
 
-def _points(lines: list[bytes]) -> NDArray[np.float64] | None:
-    rows = [line[2:] for line in lines if line[:2] == b"v "]
-    widths = set(map(len, map(bytes.split, rows)))
-    if len(widths) != 1 or not widths <= set(_WIDTHS):
+def _rows(lines: list[bytes], word: bytes, widths: tuple[int, int]) -> NDArray[np.float64] | None:
+    """As many numbers as the lesser width of each line that begins with the word; None where lines have other widths, or several."""
+    rows = [line[len(word) :] for line in lines if line.startswith(word)]
+    said = set(map(len, map(bytes.split, rows)))
+    if len(said) != 1 or not said <= set(widths):
         return None
-    return numbers_in(b" ".join(rows)).reshape(len(rows), -1)[:, :3]
-
-
-def _coordinates(lines: list[bytes]) -> NDArray[np.float64] | None:
-    rows = [line[3:] for line in lines if line[:3] == b"vt "]
-    widths = set(map(len, map(bytes.split, rows)))
-    if len(widths) != 1 or not widths <= set(_UV_WIDTHS):
-        return None
-    return numbers_in(b" ".join(rows)).reshape(len(rows), -1)[:, :2]
+    return numbers_in(b" ".join(rows)).reshape(len(rows), -1)[:, : widths[0]]
 
 
 def _corners(lines: list[bytes]) -> tuple[NDArray[np.int64], NDArray[np.int64] | None] | None:

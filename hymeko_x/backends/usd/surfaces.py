@@ -21,14 +21,7 @@ if TYPE_CHECKING:
 def places_of(mesh: Mesh) -> Surface | None:
     """The places of a mesh in its image (n x 2, single precision) and the row of each corner; None where they are none or broken."""
     table = _mapped(mesh.part) if isinstance(mesh, FilledMesh) else _listed_places(mesh)
-    if table is None:
-        return None
-    with np.errstate(over="ignore"):
-        places = table[0].astype(np.float32)
-    corners = table[1]
-    if not np.isfinite(places).all() or (corners.size and (corners.min() < 0 or corners.max() >= len(places))):
-        return None
-    return places, corners.astype(np.int32)
+    return None if table is None else _in_single(*table)
 
 
 def _mapped(part: Part) -> Surface | None:
@@ -45,14 +38,16 @@ def _listed_places(mesh: Mesh) -> Surface | None:
 def surface_of(mesh: Mesh) -> Surface | None:
     """What of a mesh can be drawn; None without points, with one that single precision cannot hold, or with a broken triangle."""
     table = (mesh.part.points, mesh.part.faces.ravel()) if isinstance(mesh, FilledMesh) else _listed(mesh)
-    if table is None or not len(table[0]):
-        return None
+    return None if table is None or not len(table[0]) else _in_single(*table)
+
+
+def _in_single(rows: NDArray[Any], corners: NDArray[Any]) -> Surface | None:
+    """Rows of numbers and the row of each corner; None where single precision cannot hold a number, or a row is not there."""
     with np.errstate(over="ignore"):
-        points = table[0].astype(np.float32)
-    faces = table[1]
-    if not np.isfinite(points).all() or (faces.size and (faces.min() < 0 or faces.max() >= len(points))):
+        numbers = rows.astype(np.float32)
+    if not np.isfinite(numbers).all() or (corners.size and (corners.min() < 0 or corners.max() >= len(numbers))):
         return None
-    return points, faces.astype(np.int32)
+    return numbers, corners.astype(np.int32)
 
 
 def _listed(mesh: Mesh) -> Surface | None:
