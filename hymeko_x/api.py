@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.delivery import Delivery
 from hymeko_x.diagnostics import Origin, Report
 from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import ROOT
@@ -84,9 +85,8 @@ def dump(
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
     files = _files_of(robot, packages)
     options = Options(base, actuators, layout, nested, pure=pure, beside=Path(path).stem)
-    place = _place(path, assets)
-    result = pipeline.convert(robot, target, options, files, report, place)
-    disk.write_package(result.package, os.fspath(path), files, lambda folder: pipeline.within(folder, robot, target, options, files, place))
+    delivery = Delivery(robot, target, options, files, _place(path, assets), os.fspath(path))
+    delivery.put(delivery.convert(report))
     return report
 
 
@@ -140,9 +140,9 @@ def convert(
     robot = pipeline.read(given, _input_format(given, from_format), report)
     form = formats.of_output(os.fspath(target), to_format)
     options = Options(base, actuators, layout, nested, pure=pure, beside=Path(target).stem)
-    place, files = _place(target, assets), given.files
-    result = pipeline.convert(robot, form, options, files, report, place)
-    disk.write_package(result.package, os.fspath(target), files, lambda folder: pipeline.within(folder, robot, form, options, files, place))
+    delivery = Delivery(robot, form, options, given.files, _place(target, assets), os.fspath(target))
+    result = delivery.convert(report)
+    delivery.put(result)
     return result
 
 

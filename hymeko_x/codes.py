@@ -203,6 +203,11 @@ ASSET_NOT_WRITTEN = Code(
     "files beside the output were not written",
     "Standard output carries the main file only. Meshes and textures that belong beside it are written when the output has a place: -o FILE.",
 )
+ASSETS_APART = Code(
+    "HX205",
+    "files beside the output have a folder of their own",
+    "Meshes or textures of the same names and another content lie beside the output already. They belong to another robot and stay; the files of this output go to a folder that is named like it.",
+)
 PACKAGE_UNAVAILABLE = Code(
     "HX210",
     "a corpus package cannot be downloaded",

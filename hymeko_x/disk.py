@@ -96,10 +96,34 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
         _clean([temporary for temporary, _ in staged], made)
 
 
+def in_the_way(package: Package, path: str, folder: str, files: Files) -> str | None:
+    """An asset that would overwrite what another output beside this one refers to; None when there is none.
+
+    A file with another content is another output's when this main file is new, or has its own below ``folder``.
+
+    Raises: Refusal HX002.
+    """
+    target = Path(path)
+    if _is_stream(target):
+        return None
+    try:
+        for name, data in _assets(package, target, files):
+            final, own = _beside(target, name), _beside(target, folder + name)
+            if (own.exists() or not target.exists()) and final.is_file() and not _holds(final, data):
+                return name
+    except (OSError, ValueError) as error:
+        raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
+    return None
+
+
 def _is_replaced(move: Move) -> bool:
     """Whether there is a file already, with another content."""
     temporary, final = move
-    return final.exists() and (temporary.stat().st_size != final.stat().st_size or temporary.read_bytes() != final.read_bytes())
+    return final.exists() and not _holds(final, temporary.read_bytes())
+
+
+def _holds(final: Path, data: bytes) -> bool:
+    return final.stat().st_size == len(data) and final.read_bytes() == data
 
 
 def _put_stand_in(target: Path, files: Files, within: Within) -> Path:

@@ -17,6 +17,7 @@ LAYERS = (
     ("assets", "formats", "language"),
     ("frontends", "backends"),
     ("pipeline", "disk", "verify", "draw", "corpus"),
+    ("delivery",),
     ("api",),
     ("cli", "testing"),
 )

@@ -11,6 +11,7 @@ from hymeko_x import codes, disk, pipeline
 from hymeko_x.cli import exits
 from hymeko_x.cli.losses import lines
 from hymeko_x.cli.terminal import MOST_LINES, show
+from hymeko_x.delivery import Delivery
 from hymeko_x.diagnostics import Severity
 from hymeko_x.ir.legalize import Options
 from hymeko_x.source import NoFiles, Package
@@ -22,8 +23,7 @@ if TYPE_CHECKING:
     from hymeko_x.cli.inputs import Input
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
-    from hymeko_x.pipeline import Loss
-    from hymeko_x.source import Files
+    from hymeko_x.pipeline import Loss, Result
 
 FAIL_ON = ("error", "loss", "warning")
 
@@ -56,15 +56,16 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
     """
     stem = "" if output.path == "-" else Path(output.path).stem
     options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, stem)
-    what, place = (given.mechanism, output.format, options, given.source.files), _place(output, chosen.assets)
-    result = pipeline.convert(*what, report, place) if measured else pipeline.write_unmeasured(*what, report, place)
+    path = None if output.path == "-" else output.path
+    delivery = Delivery(given.mechanism, output.format, options, given.source.files, _place(output, chosen.assets), path)
+    result = delivery.convert(report, measured=measured)
     beside = [*result.package.files, *result.package.copies]
     if output.path == "-" and beside:
         names = ", ".join(beside[:3]) + (f" and {len(beside) - 3} more" if len(beside) > 3 else "")
         report.warn(codes.ASSET_NOT_WRITTEN, f"standard output cannot carry {names}", hint="-o FILE writes them beside the file")
     failed = is_reached(chosen.fail_on, report, result.losses)
     if not failed:
-        _write(result.package, output.path, given.source.files, lambda folder: pipeline.within(folder, *what, place))
+        _write(delivery, result)
     show(report)
     _show_losses(result.losses or ())
     wants_json = getattr(chosen, "json", False)
@@ -83,11 +84,11 @@ def _place(output: Output, assets: Literal["copy", "reference"] | None) -> pipel
     return pipeline.Place(os.path.dirname(output.path) or ".", assets)
 
 
-def _write(package: Package, path: str, files: Files, within: disk.Within) -> None:
-    if path != "-":
-        return disk.write_package(package, path, files, within)
-    sys.stdout.buffer.write(package.main)
-    return None
+def _write(delivery: Delivery, result: Result) -> None:
+    if delivery.path is None:
+        sys.stdout.buffer.write(result.package.main)
+    else:
+        delivery.put(result)
 
 
 def as_json(given: Input, output: Output, report: Report, losses: Iterable[Loss] | None) -> str:
