@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.source import Package, Source
 
@@ -85,10 +86,11 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
             staged.append(_stage(target, package.main))
         with _alone_in(target.parent):
             needed = within if target.is_file() and any(map(_is_replaced, staged[:-1])) else None
-            stand_in = _put_stand_in(target, files, needed) if needed else None
+            if needed:
+                _put_stand_in(target, files, needed)
             for temporary, final in staged:
                 temporary.replace(final)
-            if stand_in:
+            for stand_in in _stand_ins(target):  # ours, and that of a run that was killed
                 rmtree(stand_in, ignore_errors=True)
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
@@ -126,9 +128,14 @@ def _holds(final: Path, data: bytes) -> bool:
     return final.stat().st_size == len(data) and final.read_bytes() == data
 
 
-def _put_stand_in(target: Path, files: Files, within: Within) -> Path:
-    """Replace the main file by one whose assets are in the folder that is returned, so that those beside it are free."""
-    folder = target.parent / f".hymeko-{os.urandom(6).hex()}.part"
+def _stand_ins(target: Path) -> list[Path]:
+    """The folders with the assets of main files that stood in for this one."""
+    return [place for place in target.parent.glob(f".{safe_name(target.name)}-{'[0-9a-f]' * 12}.part") if place.is_dir()]
+
+
+def _put_stand_in(target: Path, files: Files, within: Within) -> None:
+    """Replace the main file by one whose assets are in a folder of their own, so that those beside it are free."""
+    folder = target.parent / f".{safe_name(target.name)}-{os.urandom(6).hex()}.part"
     staged: list[Move] = []
     try:
         package = within(f"{folder.name}/")
@@ -142,7 +149,6 @@ def _put_stand_in(target: Path, files: Files, within: Within) -> Path:
         rmtree(folder, ignore_errors=True)
         _clean([temporary for temporary, _ in staged], [])
         raise
-    return folder
 
 
 @contextmanager

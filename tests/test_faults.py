@@ -79,7 +79,7 @@ def test_killed_at_any_moment_the_output_is_the_old_one_or_the_new_one_whole(tmp
     before = leftovers(tmp_path)
     write(tmp_path, "x")
     assert set(contents(tmp_path).values()) == {"x"}
-    assert leftovers(tmp_path) == before
+    assert set(leftovers(tmp_path)) <= set(before)
 
 
 def test_runs_that_write_the_same_output_do_not_mix(tmp_path: Path) -> None:

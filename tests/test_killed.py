@@ -98,7 +98,7 @@ def written(way: Way, source: Path) -> Written:
     place = pipeline.Place(assets="copy")
     package = pipeline.convert(robot, format, options, files, Report(), place).package
     draws = len(package.files) + len(package.copies) + 1  # the names of what is staged
-    below = pipeline.within(f".hymeko-{draws.to_bytes(6).hex()}.part/", robot, format, options, files, place)
+    below = pipeline.within(f".{way.target}-{draws.to_bytes(6).hex()}.part/", robot, format, options, files, place)
     return Written(package, lambda folder: below, files)
 
 
@@ -203,3 +203,15 @@ def test_what_replaces_an_older_output_is_what_a_first_run_writes(way: Way, tmp_
     for source, place in ((old, over), (new, over), (new, fresh)):
         hx.convert(source / way.source, place / way.target, layout=way.layout, assets="copy")
     assert tree(over) == tree(fresh)
+
+
+def test_a_later_run_removes_what_a_killed_one_left_but_for_temporary_siblings(tmp_path: Path) -> None:
+    way = WAYS["mjcf"]
+    states_seen = len(list(states(way, tmp_path)))
+    new = written(way, tmp_path / "new")
+    left = [place for at in range(states_seen) for place in (tmp_path / f"out{at}").glob("*.part") if place.is_dir()]
+    assert left, "no run was killed while a main file stood in"
+    for folder in {place.parent for place in left}:
+        disk.write_package(new.package, str(folder / way.target), new.files, new.within)
+        assert [place for place in folder.glob("*.part") if place.is_dir()] == []
+        assert seen(folder / way.target) == seen(tmp_path / f"out{states_seen - 1}" / way.target)
