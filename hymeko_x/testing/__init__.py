@@ -9,9 +9,10 @@
 Needs Hypothesis: ``pip install hymeko-x[testing]``.
 """
 
+from hymeko_x.testing.arms import arms
 from hymeko_x.testing.documents import DOCUMENTS
 from hymeko_x.testing.mechanisms import EVERYTHING, TREES, Knobs, mechanisms
 from hymeko_x.testing.mutations import mutated
 from hymeko_x.testing.urdf import urdf_mechanisms
 
-__all__ = ["DOCUMENTS", "EVERYTHING", "TREES", "Knobs", "mechanisms", "mutated", "urdf_mechanisms"]
+__all__ = ["DOCUMENTS", "EVERYTHING", "TREES", "Knobs", "arms", "mechanisms", "mutated", "urdf_mechanisms"]
