@@ -34,6 +34,8 @@ from hymeko_x.language.syntax import (
 
 MAX_ITEMS = 500_000
 """What templates may add to a text: elements, fields, arcs and nested nodes."""
+EACH = 20
+"""How much more they may add for each element that the text has itself: a robot of 100,000 links may use as many types."""
 MAX_TEXT = 100_000
 """Characters of a text with `${ }` in it."""
 MAX_DEPTH = 64
@@ -131,7 +133,7 @@ def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
         _define(node.items, templates)
     _define(document.items, templates)
     root = roots[0] if len(roots) == 1 and not loose else None
-    work = _Expansion(file, templates)
+    work = _Expansion(file, templates, MAX_ITEMS + EACH * sum(len(node.items) for node in roots))
     scope = Scope()
     if root is None:
         items = [*loose, *roots]
@@ -226,9 +228,10 @@ def _decode(data: bytes, name: str) -> str:
 class _Expansion:
     """One run: the templates, and how many elements were made."""
 
-    def __init__(self, file: str, templates: Mapping[str, Node]) -> None:
+    def __init__(self, file: str, templates: Mapping[str, Node], most: int) -> None:
         self._file = file
         self._templates = templates
+        self._most = most
         self._made = 0
 
     # ---- elements ----------------------------------------------------------------------------------------------------------
@@ -276,8 +279,8 @@ class _Expansion:
 
     def _count(self, node: Node, items: int) -> None:
         self._made += items
-        if self._made > MAX_ITEMS:
-            raise refuse(codes.TOO_LARGE, f"the templates make more than {MAX_ITEMS} items", self._origin(node))
+        if self._made > self._most:
+            raise refuse(codes.TOO_LARGE, f"the templates make more than {self._most} items", self._origin(node))
 
     # ---- types -------------------------------------------------------------------------------------------------------------
 
