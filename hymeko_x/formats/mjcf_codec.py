@@ -56,11 +56,18 @@ class Settings:
     strip_path: bool = False
 
 
+def _unknown(value: Any, said: Mapping[str, str], settings: Settings) -> bool:
+    """What nobody can tell without writing the value."""
+    return False
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Group:
     """Attributes that make one value. Each is equal to itself alone.
 
     ``needs``: attributes of other groups on which their meaning depends. ``exact``: what is written always says the same.
+    ``repeats``: whether what is written surely says the same as the attributes that the value was just read from, which is seen
+    without writing it, since numbers survive being written; where it does not know, it is asked what is written.
     """
 
     key: str
@@ -70,6 +77,11 @@ class Group:
     seen: Callable[[Mapping[str, str], Settings], Any]
     needs: tuple[str, ...] = ()
     exact: bool = False
+    repeats: Callable[[Any, Mapping[str, str], Settings], bool] = _unknown
+
+
+Asked = tuple[Group, tuple[str, ...]]
+"""A group, and those of its attributes that an element says itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,18 +97,19 @@ class Plan:
     silent: Mapping[str, Any]
     places: Mapping[str, tuple[int, ...]]
     always: frozenset[int]
-    known: dict[tuple[str, ...], list[Group]] = field(default_factory=dict)
+    known: dict[tuple[str, ...], list[Asked]] = field(default_factory=dict)
 
-    def said_in(self, attributes: Iterable[str]) -> list[Group]:
+    def said_in(self, attributes: Iterable[str]) -> list[Asked]:
         """The groups that these attributes are for, in order."""
         names = tuple(attributes)
-        groups = self.known.get(names)
-        if groups is None:
+        asked = self.known.get(names)
+        if asked is None:
             found = set(self.always)
             for name in names:
                 found.update(self.places.get(name, ()))
-            groups = self.known[names] = [self.groups[place] for place in sorted(found)]
-        return groups
+            groups = [self.groups[place] for place in sorted(found)]
+            asked = self.known[names] = [(group, tuple([name for name in group.names if name in names])) for group in groups]
+        return asked
 
 
 def plan_of(groups: tuple[Group, ...], settings: Settings, base: Mapping[str, str]) -> Plan:
@@ -262,8 +275,17 @@ def seen_pose(said: Mapping[str, str], settings: Settings) -> Any:
     return read_numbers(said.get("pos", "0 0 0")), turn if any(turn) else ((1.0, 0.0, 0.0, 0.0), *[None] * 4)
 
 
-POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose)
-SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose, seen_pose)
+_OTHER_TURNS = frozenset(TURNS) - {"quat"} | {"fromto"}
+
+
+def repeats_pose(value: Pose, said: Mapping[str, str], settings: Settings) -> bool:
+    """A position and a quaternion, each said if and only if it is not that of the identity, are written as they were read."""
+    turned = value.written is not None or value.quat != NO_ROTATION
+    return ("pos" in said) == (value.xyz != ZERO) and ("quat" in said) == turned and _OTHER_TURNS.isdisjoint(said)
+
+
+POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose, repeats=repeats_pose)
+SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose, seen_pose, repeats=repeats_pose)
 
 
 # ---- plain groups ------------------------------------------------------------------------------------------------------------

@@ -125,19 +125,31 @@ def span(name: str, flag: str, *, angular: bool = False) -> Group:
         found, word = read_numbers(said.get(name, "0 0")) or (0.0, 0.0), said.get(flag, "auto")
         return found, word == "true" or (word == "auto" and settings.autolimits and found[0] < found[-1])
 
-    return Group(name, (name, flag), read, write, seen, ("type",) if angular else ())
+    def repeats(value: tuple[Span, DofKind], said: Mapping[str, str], settings: Settings) -> bool:
+        return value[0] is not None and flag not in said and settings.autolimits and not (angular and settings.degree)
+
+    return Group(name, (name, flag), read, write, seen, ("type",) if angular else (), repeats=repeats)
 
 
 KIND = Group(
     "type", ("type",), read_kind, lambda value, settings: {"type": _DOF_WORDS[value]}, lambda said, settings: said.get("type", "hinge")
 )
-AXIS = Group("axis", ("axis",), _read_axis, _write_axis, lambda said, settings: read_numbers(said.get("axis", "0 0 1")), ("type",))
+AXIS = Group(
+    "axis",
+    ("axis",),
+    _read_axis,
+    _write_axis,
+    lambda said, settings: read_numbers(said.get("axis", "0 0 1")),
+    ("type",),
+    repeats=lambda value, said, settings: "axis" in said and said.get("type") not in ("ball", "free"),
+)
 ANCHOR = Group(
     "pos",
     ("pos",),
     lambda said, settings: vector_of(said, "pos", ZERO),
     lambda value, settings: {"pos": numbers_text(value)},
     lambda said, settings: read_numbers(said.get("pos", "0 0 0")),
+    repeats=lambda value, said, settings: "pos" in said,
 )
 REF = _motion("ref")
 SPRING_REF = _motion("springref")

@@ -20,6 +20,7 @@ from hymeko_x.formats.mjcf_codec import (
     read_pose,
     real,
     reals,
+    repeats_pose,
     seen_numbers,
     seen_pose,
     text,
@@ -174,7 +175,16 @@ def _seen_place(said: Mapping[str, str], settings: Settings) -> Any:
     return word, size, seen_pose(said, settings)
 
 
-PLACE = Group("place", ("type", "size", "fromto", *POSE_NAMES), _read_place, _write_place, _seen_place, ("mesh", "hfield"))
+def _repeats_place(value: Place, said: Mapping[str, str], settings: Settings) -> bool:
+    word, size = _word_and_size(value)
+    return (
+        bool(size) and said.get("type") == word and read_numbers(said.get("size", "")) == size and repeats_pose(value.pose, said, settings)
+    )
+
+
+PLACE = Group(
+    "place", ("type", "size", "fromto", *POSE_NAMES), _read_place, _write_place, _seen_place, ("mesh", "hfield"), repeats=_repeats_place
+)
 
 GEOM = (PLACE, text("mesh"), text("material"), reals("rgba", 4, 4), real("mass"), real("density"), reals("friction", 1, 3))
 
@@ -322,6 +332,12 @@ def _write_inertial(value: Inertial, settings: Settings) -> dict[str, str]:
     return {**said, "fullinertia": numbers_text(value.tensor)}
 
 
+def _repeats_inertial(value: Inertial, said: Mapping[str, str], settings: Settings) -> bool:
+    """Without axes of its own, a tensor is written as it was read where it is said in six numbers because three would not do."""
+    return value.written is None and _NO_TURN.isdisjoint(said) and ("fullinertia" in said) == any((value.tensor or ())[3:])
+
+
+_NO_TURN = frozenset(TURNS)
 _INERTIAL_NAMES = ("pos", "mass", "diaginertia", "fullinertia", *TURNS)
 INERTIAL = Group(
     "inertial",
@@ -329,6 +345,7 @@ INERTIAL = Group(
     _read_inertial,
     _write_inertial,
     lambda said, settings: (plain(said, ("mass", "diaginertia", "fullinertia")), seen_pose(said, settings)),
+    repeats=_repeats_inertial,
 )
 
 MATERIAL = (

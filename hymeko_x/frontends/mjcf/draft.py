@@ -121,20 +121,18 @@ class Draft:
         asked = plan.said_in(own)
         if not asked:
             return found
-        merged = merge(base, own)
+        merged, settings = merge(base, own), self.settings
         taken: list[str] = []
         try:
-            for group in asked:
-                value = found[group.key] = group.read(merged, self.settings)
-                touched = [name for name in group.names if name in own]
+            for group, touched in asked:
+                value = found[group.key] = group.read(merged, settings)
                 if not touched:
                     continue
                 taken += touched
-                if group.exact and not always:
+                if not always and (group.exact or group.repeats(value, merged, settings) or self._says_again(group, value, base, own)):
                     continue
-                if always or not self._says_again(group, value, base, own):
-                    for name in touched:
-                        self.note(key, f"{prefix}@{name}", own[name])
+                for name in touched:
+                    self.note(key, f"{prefix}@{name}", own[name])
         except BadAttribute as error:
             raise self.bad(element, error) from error
         for name in taken:
