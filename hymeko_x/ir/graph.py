@@ -13,6 +13,8 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
+from hymeko_x.ir.quick import quick
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
@@ -25,6 +27,7 @@ W = TypeVar("W")
 T = TypeVar("T")
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Arc(Generic[K, W]):
     """One end of an edge: whom it points at, in which direction, with what weight and in which role."""
@@ -35,6 +38,7 @@ class Arc(Generic[K, W]):
     role: str = ""
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Edge(Generic[K, E, W]):
     """A relation: what it means, and its arcs in order."""

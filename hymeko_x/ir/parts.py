@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
+from hymeko_x.ir.quick import quick
 from hymeko_x.ir.values import ZERO, Pose, Tensor, Vec3, Written, X
 
 Rgba = tuple[float, float, float, float]
@@ -19,6 +20,7 @@ Parameters = tuple[tuple[str, "float | str | tuple[float, ...]"], ...]
 # ---- vertices: bodies ----------------------------------------------------------------------------------------------------
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Inertial:
     """Mass in kg, centre of mass in m in the body frame, inertia tensor in kg m^2 about it in body axes. None = unspecified.
@@ -40,6 +42,7 @@ class InertialWritten:
     tensor: Tensor
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Body:
     """A rigid body. ``inertial`` None means that nothing was said about its mass."""
@@ -256,6 +259,7 @@ class Role(Enum):
     BOTH = "both"
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Shape:
     """A geometry on a body. Arcs: ``+ body`` weight Pose (shape frame in the body); ``~ mesh``; ``~ material`` (roles so named).
@@ -298,6 +302,7 @@ class DofKind(Enum):
     FREE = "free"
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Limits:
     """Bounds of one dof in rad or m and s, N or Nm; None = unlimited."""
@@ -313,6 +318,7 @@ class Limits:
 UNLIMITED = Limits()
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Safety:
     """A soft-limit controller (URDF <safety_controller>): soft bounds in rad or m, gains in 1/s and Nms/rad or Ns/m."""
@@ -332,6 +338,7 @@ class Calibration:
     reference: float | None = None
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Dof:
     """One degree of freedom of a joint, given in the joint frame.
@@ -359,6 +366,7 @@ class Dof:
     written: Written | None = field(default=None, compare=False)
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Joint:
     """A connection in the tree with ordered dofs; none = fixed.

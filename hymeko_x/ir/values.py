@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import NamedTuple
 
+from hymeko_x.ir.quick import quick
+
 Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
 Tensor = tuple[float, float, float, float, float, float]
@@ -33,6 +35,7 @@ class Written(NamedTuple):
     numbers: tuple[float, ...]
 
 
+@quick
 @dataclass(frozen=True, slots=True)
 class Pose:
     """A rigid transformation: position ``xyz`` in m and unit quaternion ``quat`` (w, x, y, z) of the rotation.

@@ -11,7 +11,7 @@ from hymeko_x.formats.xml_text import quoted
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, numbers_text
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from hymeko_x.formats.mjcf_tree import Element
     from hymeko_x.ir.values import Pose
@@ -24,6 +24,11 @@ _NO_ATTRIBUTES: Mapping[str, str | None] = MappingProxyType({})
 
 Attributes = dict[str, str | None]
 """The attributes of an element in the order of printing; None is not printed."""
+
+
+def _indent(inside: Sequence[str]) -> str:
+    """What stands before an element inside of these."""
+    return _INDENTS[min(len(inside), _DEEPEST)]
 
 
 class Leaf:
@@ -50,16 +55,19 @@ class Text:
     def __init__(self, *inside: str) -> None:
         self._lines: list[str | Leaf] = []
         self._open = list(inside)
+        self._indent = _indent(inside)
         self.leaves: list[Leaf] = []
 
     def open(self, tag: str, attributes: Mapping[str, str | None]) -> None:
         """Start an element that has children."""
         self._line(f"<{tag}{_attributes_text(attributes)}>")
         self._open.append(tag)
+        self._indent = _indent(self._open)
 
     def close(self) -> None:
         """End the innermost open element."""
         tag = self._open.pop()
+        self._indent = _indent(self._open)
         self._line(f"</{tag}>")
 
     def leaf(self, tag: str, attributes: Mapping[str, str | None]) -> None:
@@ -68,7 +76,7 @@ class Text:
 
     def later(self, tag: str, attributes: Attributes, about: str) -> None:
         """Add an element without children that is one of ``leaves`` until the text is done; ``about`` names what it belongs to."""
-        leaf = Leaf(tag, attributes, self._indent(), about)
+        leaf = Leaf(tag, attributes, self._indent, about)
         self._lines.append(leaf)
         self.leaves.append(leaf)
 
@@ -109,26 +117,26 @@ class Text:
 
     def bytes(self) -> bytes:
         """The text so far in UTF-8, with a newline at its end."""
-        return ("\n".join(map(str, self._lines)) + "\n").encode()
+        return ("\n".join([line if type(line) is str else str(line) for line in self._lines]) + "\n").encode()
 
     def _line(self, text: str) -> None:
-        self._lines.append(self._indent() + text)
-
-    def _indent(self) -> str:
-        return _INDENTS[min(len(self._open), _DEEPEST)]
+        self._lines.append(self._indent + text)
 
 
 _ESCAPES = {"\n": "&#10;", "\r": "&#13;", "\t": "&#9;"}
 _PLAIN = re.compile("[ !#-%'-;=?-~]*")
 """Texts that stand in quotes as they are, as nearly all do."""
+_IN_TAG = re.compile("[ !-%'-;=?-~]*")
+"""The same, and the quotes around them."""
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def _attributes_text(attributes: Mapping[str, str | None]) -> str:
-    said = [(name, value) for name, value in attributes.items() if value is not None]
-    if _PLAIN.fullmatch("".join([value for _, value in said])):
-        return "".join([f' {name}="{value}"' for name, value in said])
-    return "".join([f" {name}={_quoted(value)}" for name, value in said])
+    said = [f' {name}="{value}"' for name, value in attributes.items() if value is not None]
+    text = "".join(said)
+    if _IN_TAG.fullmatch(text) and text.count('"') == 2 * len(said):
+        return text
+    return "".join([f" {name}={_quoted(value)}" for name, value in attributes.items() if value is not None])
 
 
 def _quoted(value: str) -> str:

@@ -97,6 +97,7 @@ def check_words(root: Element) -> Words:
     Raises: Refusal (HX020, HX021, HX023, HX027, HX047) at the first element, attribute or value that MuJoCo 4.0 does not know there.
     """
     stack = [(root, "mujoco")]
+    sound: set[tuple[str, ...]] = set()  # places with the names of attributes that an element may have there: most say the same ones
     names: dict[tuple[str, str], Origin] = {}
     references: list[Reference] = []
     tags: set[str] = set()
@@ -104,10 +105,16 @@ def check_words(root: Element) -> Words:
         element, path = stack.pop()
         place = _place_of(path)
         tags.add(element.tag)
-        if element.attributes:
+        said = (path, *element.attributes)
+        if said not in sound:
             _check_attributes(element, path, place)
+        if element.attributes:
             _check_values(element, place)
-        _check_needs(element, place)
+        if said not in sound or len(element.attributes) + 1 < len(said):
+            _check_needs(element, place)
+            sound.add((path, *element.attributes))
+        if place.rules and (broken := complaint(element, place.rules)) is not None:
+            raise refuse(codes.BAD_NUMBER, broken, element.origin)
         if place.references:
             references += references_of(element, place.references)
         if place.named is not None:
@@ -156,6 +163,8 @@ def _check_values(element: Element, place: _Place) -> None:
         kind = kinds.get(name)
         if kind is None:
             continue
+        if not kind.words and not kind.whole and (numbers := read_numbers(text)) and kind.least <= len(numbers) <= kind.most:
+            continue
         if not kind.words and not text.strip():
             del attributes[name]
         elif not _fits(text, kind):
@@ -171,9 +180,6 @@ def _check_needs(element: Element, place: _Place) -> None:
         found = [name for name in names if name in attributes]
         if len(found) > 1:
             raise refuse(codes.REPEATED, f"<{element.tag}> has {' and '.join(found)}, of which it may have one", element.origin)
-    said = complaint(element, place.rules)
-    if said is not None:
-        raise refuse(codes.BAD_NUMBER, said, element.origin)
 
 
 _LONGEST = 1000

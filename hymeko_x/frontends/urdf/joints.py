@@ -189,7 +189,7 @@ def _read_limits(joint: Node, draft: Draft) -> Limits:
         draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.about)
         return UNLIMITED
     missing = [name for name in ("effort", "velocity") if name not in node.attributes]
-    limits = _rates(node, Limits(_bound(node, "lower", draft), _bound(node, "upper", draft)), draft)
+    limits = _rates(node, _bound(node, "lower", draft), _bound(node, "upper", draft), draft)
     _check_limits(joint, node, limits, missing, draft)
     return limits
 
@@ -199,7 +199,7 @@ def _read_open_limits(joint: Node, draft: Draft) -> Limits:
     node = joint.child("limit")
     if node is None:
         return UNLIMITED
-    limits = _rates(node, UNLIMITED, draft)
+    limits = _rates(node, None, None, draft)
     if limits == UNLIMITED:
         joint.put_back(node)
     return limits
@@ -211,10 +211,10 @@ def _bound(node: Node, name: str, draft: Draft) -> float | None:
     return _limited(take_number(node, name, draft.report, instead="unlimited is used"))
 
 
-def _rates(node: Node, bounds: Limits, draft: Draft) -> Limits:
+def _rates(node: Node, lower: float | None, upper: float | None, draft: Draft) -> Limits:
     return Limits(
-        bounds.lower,
-        bounds.upper,
+        lower,
+        upper,
         _rate(node, "velocity", draft),
         _rate(node, "effort", draft),
         _rate(node, "acceleration", draft),

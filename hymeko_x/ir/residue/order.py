@@ -24,6 +24,8 @@ def by_kind(keys: Iterable[Id]) -> dict[str, list[Id]]:
 
 def moves(have: Sequence[Id], want: Sequence[Id]) -> Iterator[Run]:
     """The fewest elements to move so that one order becomes the other, of the same elements."""
+    if have == want:
+        return
     place = {key: number for number, key in enumerate(have)}
     staying = _rising([place[key] for key in want])
     after: Id | None = None

@@ -96,13 +96,15 @@ def _base36(number: int) -> str:
 def canonical(value: object) -> str:
     """A text that is equal exactly for equal values; notations do not count, nor does the sign of zero."""
     kind = type(value)
+    if kind is float:
+        return repr(value) if value else "0.0"
+    if isinstance(value, tuple):
+        return f"({_joined(value)})" if len(value) <= _LONG or not isinstance(value[0], float | int) else _array(value)
+    if kind is Pose:
+        return f"Pose(({_joined(value.xyz)}),({_joined(value.quat)}))"  # type: ignore[attr-defined]
     layout = layout_of(kind)
     if layout is not None:
         return f"{kind.__name__}({_joined(layout.compared(value))})"
-    if isinstance(value, tuple):
-        return f"({_joined(value)})" if len(value) <= _LONG or not isinstance(value[0], float | int) else _array(value)
-    if kind is float:
-        return repr(value) if value else "0.0"
     if kind is str:
         return repr(value)
     if isinstance(value, Enum):
