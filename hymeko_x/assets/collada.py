@@ -15,9 +15,9 @@ from urllib.parse import unquote
 import numpy as np
 from lxml import etree
 
-from hymeko_x.assets.numerals import numbers_in
+from hymeko_x.assets.numerals import columns_in, numbers_in
 from hymeko_x.assets.part import Finish, Table
-from hymeko_x.assets.polygons import fans
+from hymeko_x.assets.polygons import fans, used_rows
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -203,6 +203,8 @@ def _rotation(said: NDArray[Any]) -> NDArray[Any]:
     if abs(math.hypot(x, y, z) - 1.0) > _NEAR_ONE:
         raise NotPlain
     matrix = np.eye(4, dtype=_SINGLE)
+    if angle == 0.0:
+        return matrix
     axis, turn = np.array([x, y, z]), math.radians(angle)
     across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     matrix[:3, :3] = math.cos(turn) * np.eye(3) + math.sin(turn) * across + (1.0 - math.cos(turn)) * np.outer(axis, axis)
@@ -237,7 +239,7 @@ def _mesh_tables(mesh: Element, *, has_images: bool) -> list[Table]:
             if name not in known:
                 known[name] = _points(sources.get(name), sources)
             faces = _triangles(child, index, known[name])
-            table = Table(*_used(known[name], faces), child.get("material", ""))
+            table = Table(*used_rows(known[name], faces), child.get("material", ""))
             map_name = _map_name(child) if has_images and places is not None else ""
             if places is not None and map_name in sources:
                 if map_name not in known:
@@ -247,14 +249,6 @@ def _mesh_tables(mesh: Element, *, has_images: bool) -> list[Table]:
         elif tag not in ("source", "vertices") and tag not in _PASSED_OVER:
             raise NotPlain
     return found
-
-
-def _used(points: NDArray[np.float64], faces: NDArray[Any]) -> tuple[NDArray[np.float64], NDArray[Any]]:
-    """Where a primitive shares many points with others, its own ones."""
-    if len(points) <= faces.size:
-        return points, faces
-    rows, index = np.unique(faces, return_inverse=True)
-    return points[rows], index.reshape(faces.shape)
 
 
 def _triangles(primitive: Element, index: NDArray[Any], table: NDArray[Any]) -> NDArray[Any]:
@@ -277,7 +271,7 @@ def _index(primitive: Element) -> tuple[NDArray[Any], NDArray[Any] | None]:
         raise NotPlain
     places += [offset for offset, semantic in inputs if semantic == "TEXCOORD"][:1]
     width = max(offset for offset, _ in inputs) + 1
-    lists = [_numbers(item, _INDEX).reshape(-1, width)[:, places] for item in primitive.iterfind("{*}p")]
+    lists = [columns_in(item.text or "", width, places).astype(_INDEX) for item in primitive.iterfind("{*}p")]
     rows = np.concatenate(lists) if lists else np.zeros((0, len(places)), dtype=_INDEX)
     return rows[:, 0], rows[:, 1] if len(places) > 1 else None
 

@@ -43,9 +43,9 @@ def read_mapped(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Part
     Raises: Unreadable.
     """
     check_file(data, suffix)
-    from hymeko_x.assets.obj_looks import obj_tables
+    from hymeko_x.assets.obj import obj_tables
 
-    tables = [table for table in (obj_tables(data, {}, mapped=True) or () if suffix == ".obj" else ()) if len(table.faces)]
+    tables = [table for table in (obj_tables(data, mapped=True) or () if suffix == ".obj" else ()) if len(table.faces)]
     if not tables or any(table.uv is None for table in tables):
         return read_whole(data, suffix, fetch)
     return sound((_mapped(tables),))[0]
@@ -59,13 +59,9 @@ def _tables(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> list[Tab
         return collada_tables(data) or []
     if suffix != ".obj":
         return []
-    from hymeko_x.assets.obj_looks import finishes_of, libraries_of, obj_tables
+    from hymeko_x.assets.obj import obj_tables
 
-    finishes: dict[str, Finish] = {}
-    for name in libraries_of(data):
-        found = _fetched(name, fetch)
-        finishes |= {} if found is None else finishes_of(found)
-    return (obj_tables(data, finishes) or []) if finishes else []
+    return obj_tables(data, lambda name: _fetched(name, fetch)) or []
 
 
 def _images(tables: list[Table], fetch: Callable[[str], bytes]) -> dict[str, bytes]:

@@ -185,10 +185,9 @@ def _plain_tables(data: bytes, suffix: str) -> list[tuple[NDArray[np.float64], N
 
         return [(table.points, table.faces) for table in collada_tables(data) or ()] or None
     if suffix == ".obj":
-        from hymeko_x.assets.obj import obj_table
+        from hymeko_x.assets.obj import obj_tables
 
-        table = obj_table(data)
-        return None if table is None else [table]
+        return [(table.points, table.faces) for table in obj_tables(data) or ()] or None
     return None
 
 

@@ -1,15 +1,23 @@
-"""The triangles of plain Wavefront OBJ files, straight into arrays; what is not plain is left to the loader that knows all of OBJ."""
+"""What plain Wavefront OBJ files show, straight into arrays; what is not plain is left to the loader that knows all of OBJ.
+
+Of the corners of a polygon only their points count, and where a material has an image also their places in it; all other numbers
+are not even read.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from hymeko_x.assets.numerals import numbers_in
-from hymeko_x.assets.polygons import fans
+from hymeko_x.assets.mtl import finishes_of
+from hymeko_x.assets.numerals import numbers_in, whole_numbers_at, words_in
+from hymeko_x.assets.part import Finish, Table
+from hymeko_x.assets.polygons import fans, used_rows
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
     from numpy.typing import NDArray
 
     from hymeko_x.assets.part import Part
@@ -18,76 +26,171 @@ _GOES_ON = (b"\\\n", b"\\\r")
 """The end of a line that goes on in the next one."""
 _WIDTHS = (3, 6)
 """A point, or a point with a colour."""
-_END, _TAB, _BLANK, _STROKE, _POINT, _FACE = b"\n\t /vf"
+_UV_WIDTHS = (2, 3)
+"""Two coordinates in an image, or three, of which the last one is for solid textures."""
+_END, _TAB, _BLANK, _STROKE = b"\n\t /"
+_POINT, _FACE, _PLACE, _USE, _LIBRARY = b"vftum"
 
 
-def obj_table(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64]] | None:
-    """The points (n, 3) of an OBJ file and its triangles (m, 3) as rows of them; polygons as fans. None where it is not plain.
+class _Lines(NamedTuple):
+    """A text of which every line has an end: where its lines begin, and at last where they end; their first and second letters."""
 
-    Of the corners of a polygon only their points count; normals and texture coordinates are not even turned into numbers.
+    text: NDArray[np.uint8]
+    starts: NDArray[np.intp]
+    first: NDArray[np.uint8]
+    second: NDArray[np.uint8]
+
+
+def obj_tables(data: bytes, fetch: Callable[[str], bytes | None] | None = None, *, mapped: bool = False) -> list[Table] | None:
+    """The triangles of an OBJ file by material, each with what its libraries say of it. None where the file is not plain.
+
+    ``fetch`` returns a library by the name that the file has for it; without one, or where none says anything, all is one table.
+    Texture coordinates are there where the material has an image, or where ``mapped`` asks for all of them.
     Source: B1. Object Files (.obj), Advanced Visualizer Manual.
     """
-    text = np.frombuffer(b"\n".join([*(data.splitlines() if b"\r" in data else [data]), b""]), dtype=np.uint8)
-    starts = np.concatenate(([0], np.flatnonzero(text == _END) + 1))
-    first, second = text[starts[:-1]], text.take(starts[:-1] + 1, mode="clip")
-    is_point, is_face = first == _POINT, first == _FACE
-    is_odd = (first == _BLANK) | (first == _TAB) | ((is_point | is_face) & (second == _TAB))
-    if is_odd.any() or (b"\\" in data and any(end in data for end in _GOES_ON)):
+    lines = _lines_of(data)
+    if lines is None:
         return None
+    used = _said(lines, _USE, b"usemtl")
+    finishes = _finishes(lines, fetch) if used and fetch is not None else {}
+    is_imaged = mapped or any(finish.image for finish in finishes.values())
     try:
-        points = _points(*_lines(text, starts, is_point & (second == _BLANK)))
-        faces = _faces(*_lines(text, starts, is_face & (second == _BLANK)))
+        points = _rows(*_picked(lines, (lines.first == _POINT) & (lines.second == _BLANK)), _WIDTHS)
+        uv = _rows(*_picked(lines, (lines.first == _POINT) & (lines.second == _PLACE)), _UV_WIDTHS) if is_imaged else None
+        if points is None:
+            return None
+        pieces = _pieces(lines, used if finishes else [])
+        tables = [_table(piece, name, finishes.get(name, Finish()), points, uv, mapped=mapped) for name, piece in pieces]
     except (ValueError, OverflowError):  # what is not a number, and numbers that are too large
         return None
-    if points is None or faces is None or (faces.size and (faces.min() < 0 or faces.max() >= len(points))):
+    plain = [table for table in tables if table is not None]
+    return plain if len(plain) == len(tables) else None
+
+
+def _finishes(lines: _Lines, fetch: Callable[[str], bytes | None]) -> dict[str, Finish]:
+    """What all libraries of the file say; of a material that several have, the last one."""
+    found: dict[str, Finish] = {}
+    for library in dict.fromkeys(name for _, name in _said(lines, _LIBRARY, b"mtllib")):
+        found |= finishes_of(fetch(library) or b"")
+    return found
+
+
+def _table(
+    lines: _Lines, name: str, finish: Finish, points: NDArray[np.float64], uv: NDArray[np.float64] | None, *, mapped: bool
+) -> Table | None:
+    """What one material is used for; an image that nothing says the place of is not shown."""
+    text, starts = _picked(lines, (lines.first == _FACE) & (lines.second == _BLANK))
+    corners = _Corners.of(text, starts)
+    if corners is None:
         return None
-    return points, faces
+    faces = fans(corners.sizes, corners.field(0))
+    if not _are_rows(faces, points):
+        return None
+    table = Table(*used_rows(points, faces), name, finish._replace(image=""))
+    if not (finish.image or mapped) or uv is None or not corners.have_places:
+        return table
+    places = fans(corners.sizes, corners.field(1))
+    if not _are_rows(places, uv):
+        return table
+    own, places = used_rows(uv, places)
+    return table._replace(finish=finish, uv=own, corners=places)
 
 
-def _lines(text: NDArray[np.uint8], starts: NDArray[np.intp], is_wanted: NDArray[np.bool_]) -> tuple[NDArray[np.uint8], NDArray[np.intp]]:
-    """Some lines of a text, each with a blank for its first letter, and where each of them begins; at last, where they end."""
-    lengths = np.diff(starts)
+def _are_rows(faces: NDArray[Any], table: NDArray[Any]) -> bool:
+    return not faces.size or bool(faces.min() >= 0 and faces.max() < len(table))
+
+
+# ---- lines -------------------------------------------------------------------------------------------------------------------
+
+
+def _lines_of(data: bytes) -> _Lines | None:
+    """The lines of a file; None where some go on in the next one, or do not begin as nearly all do."""
+    if b"\\" in data and any(end in data for end in _GOES_ON):
+        return None
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    text = np.frombuffer(data + b"\n", dtype=np.uint8)
+    starts = np.concatenate(([0], np.flatnonzero(text == _END) + 1))
+    first, second = text[starts[:-1]], text.take(starts[:-1] + 1, mode="clip")
+    is_odd = (first == _BLANK) | (first == _TAB) | (((first == _POINT) | (first == _FACE)) & (second == _TAB))
+    return None if is_odd.any() else _Lines(text, starts, first, second)
+
+
+def _said(lines: _Lines, letter: int, word: bytes) -> list[tuple[int, str]]:
+    """What stands behind a word with this first letter at the begin of a line, and the number of that line."""
+    found = []
+    for number in np.flatnonzero(lines.first == letter).tolist():
+        line = lines.text[lines.starts[number] : lines.starts[number + 1]].tobytes()
+        if line.startswith(word):
+            found.append((number, line.removeprefix(word).strip().decode("utf-8", "replace")))
+    return found
+
+
+def _pieces(lines: _Lines, used: list[tuple[int, str]]) -> Iterator[tuple[str, _Lines]]:
+    """The lines for each use of a material, those before the first one under no name."""
+    begins, names = [0, *(number for number, _ in used)], ["", *(name for _, name in used)]
+    for name, begin, end in zip(names, begins, [*begins[1:], len(lines.first)], strict=True):
+        if (lines.first[begin:end] == _FACE).any():
+            yield name, _Lines(lines.text, lines.starts[begin : end + 1], lines.first[begin:end], lines.second[begin:end])
+
+
+def _picked(lines: _Lines, is_wanted: NDArray[np.bool_]) -> tuple[NDArray[np.uint8], NDArray[np.intp]]:
+    """Some lines, each with blanks for its first two letters, and where each of them begins; at last, where they end."""
+    lengths = np.diff(lines.starts)
     turns = np.flatnonzero(np.diff(is_wanted, prepend=False, append=False))
-    runs = [text[:0], *(text[first:last] for first, last in starts[turns].reshape(-1, 2).tolist())]
+    runs = [lines.text[:0], *(lines.text[first:last] for first, last in lines.starts[turns].reshape(-1, 2).tolist())]
     wanted = np.concatenate(runs)
     begins = np.concatenate(([0], np.cumsum(lengths[is_wanted])))
-    wanted[begins[:-1]] = _BLANK
+    wanted[begins[:-1]] = wanted[begins[:-1] + 1] = _BLANK
     return wanted, begins
 
 
-def _points(text: NDArray[np.uint8], starts: NDArray[np.intp]) -> NDArray[np.float64] | None:
-    widths = np.diff(np.searchsorted(_words(text), starts))
-    if not len(widths) or widths[0] not in _WIDTHS or (widths != widths[0]).any():
+def _rows(text: NDArray[np.uint8], starts: NDArray[np.intp], widths: tuple[int, int]) -> NDArray[np.float64] | None:
+    """As many numbers as the lesser width of each line; None where lines have other widths, or several."""
+    said = np.diff(np.searchsorted(words_in(text)[0], starts))
+    if not len(said) or said[0] not in widths or (said != said[0]).any():
         return None
-    return numbers_in(text.tobytes()).reshape(len(widths), int(widths[0]))[:, :3]
+    return numbers_in(text.tobytes()).reshape(len(said), int(said[0]))[:, : widths[0]]
 
 
-def _faces(text: NDArray[np.uint8], starts: NDArray[np.intp]) -> NDArray[np.int64] | None:
-    """Rows of points, from 0; what counts from the end of the file so far comes out below 0. None where corners differ in form."""
-    words, strokes = _words(text), np.flatnonzero(text == _STROKE)
-    points = text if not len(strokes) else _before_strokes(text, words, strokes)
-    return None if points is None else fans(np.diff(np.searchsorted(words, starts)), numbers_in(points.tobytes(), np.int64) - 1)
+# ---- corners -----------------------------------------------------------------------------------------------------------------
 
 
-def _before_strokes(text: NDArray[np.uint8], words: NDArray[np.intp], strokes: NDArray[np.intp]) -> NDArray[np.uint8] | None:
-    """A text with blanks for what stands behind the first stroke of each word; None where not all have equally many strokes."""
-    if not len(words) or len(strokes) % len(words):
-        return None
-    strokes = strokes.reshape(len(words), -1)
-    blanks = np.flatnonzero(text <= _BLANK)
-    ends = blanks[np.searchsorted(blanks, words)]
-    if (strokes[:, 0] < words).any() or (strokes[:, -1] >= ends).any():
-        return None
-    is_behind = np.zeros(len(text), dtype=np.int8)
-    is_behind[strokes[:, 0]], is_behind[ends] = 1, -1
-    np.cumsum(is_behind, dtype=np.int8, out=is_behind)
-    return np.where(is_behind, np.uint8(_BLANK), text)
+class _Corners(NamedTuple):
+    """The corners of polygons, words such as ``1/2/3``: how many each polygon has, where they begin and end, and their strokes."""
 
+    text: NDArray[np.uint8]
+    sizes: NDArray[np.intp]
+    words: NDArray[np.intp]
+    ends: NDArray[np.intp]
+    strokes: NDArray[np.intp]
 
-def _words(text: NDArray[np.uint8]) -> NDArray[np.intp]:
-    """Where the words of a text begin that itself begins with a blank."""
-    is_blank = text <= _BLANK
-    return np.flatnonzero(is_blank[:-1] > is_blank[1:]) + 1
+    @classmethod
+    def of(cls, text: NDArray[np.uint8], starts: NDArray[np.intp]) -> _Corners | None:
+        """None where not all have equally many strokes."""
+        (words, ends), found = words_in(text), np.flatnonzero(text == _STROKE)
+        if not len(words) or len(found) % len(words):
+            return None
+        strokes = found.reshape(len(words), -1)
+        if strokes.size and ((strokes[:, 0] < words).any() or (strokes[:, -1] >= ends).any()):
+            return None
+        return cls(text, np.diff(np.searchsorted(words, starts)), words, ends, strokes)
+
+    @property
+    def have_places(self) -> bool:
+        """Whether every corner says a place in an image."""
+        return bool(self.strokes.size) and not (self._end(1) == self.strokes[:, 0] + 1).any()
+
+    def _end(self, number: int) -> NDArray[np.intp]:
+        return self.strokes[:, number] if number < self.strokes.shape[1] else self.ends
+
+    def field(self, number: int) -> NDArray[np.int64]:
+        """One number of each corner, from 0; what counts from the end of the file is not read.
+
+        Raises: ValueError where there is anything else.
+        """
+        begins = self.words if number == 0 else self.strokes[:, number - 1] + 1
+        return whole_numbers_at(self.text, begins, self._end(number)) - 1
 
 
 def obj_bytes(part: Part) -> bytes:

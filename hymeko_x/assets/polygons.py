@@ -23,3 +23,11 @@ def fans(sizes: NDArray[Any], corners: NDArray[Any]) -> NDArray[Any]:
     starts = np.repeat(np.cumsum(sizes) - sizes, count)
     step = np.arange(int(count.sum())) - np.repeat(np.cumsum(count) - count, count)
     return corners[np.stack([starts, starts + step + 1, starts + step + 2], axis=1)] if len(step) else corners[:0].reshape(0, 3)
+
+
+def used_rows(table: NDArray[np.float64], faces: NDArray[Any]) -> tuple[NDArray[np.float64], NDArray[Any]]:
+    """Triangles and the rows of a table that they are of; of a table that is much longer than their own, only those that they use."""
+    if len(table) <= faces.size:
+        return table, faces
+    rows, index = np.unique(faces, return_inverse=True)
+    return table[rows], index.reshape(faces.shape)

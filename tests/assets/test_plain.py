@@ -9,7 +9,7 @@ import pytest
 
 from hymeko_x.assets.collada import collada_tables
 from hymeko_x.assets.mesh import merged, read_parts, read_whole
-from hymeko_x.assets.obj import obj_table
+from hymeko_x.assets.obj import obj_tables
 from tests.assets.test_mesh import IN_PLACE, dae, nothing_else, triangles
 
 POLYGONS = (
@@ -79,8 +79,7 @@ def test_what_a_node_shows_besides_geometry_is_passed_over() -> None:
 
 @pytest.mark.parametrize("faces", [b"f 1 2 3 4\nf 1 2 5", b"f 1/1 2/1 3/1 4/1\nf 1/1 2/1 5/1", b"f 1//1 2//1 3//1 4//1\nf 1//1 2//1 5//1 "])
 def test_a_plain_obj_file_says_its_corners_in_any_form(faces: bytes) -> None:
-    table = obj_table(CUBE + faces)
-    assert table is not None
+    (table,) = obj_tables(CUBE + faces) or ()
     assert table[1].tolist() == [[0, 1, 2], [0, 2, 3], [0, 1, 4]]
     assert table[0].tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1]]
 
@@ -90,7 +89,7 @@ def test_a_plain_obj_file_says_its_corners_in_any_form(faces: bytes) -> None:
     [b"f -5 -4 -3", b"f 1 2 \\\n 3", b" f 1 2 3", b"f 1 2 9", b"f 1 2 x", b"f 1 2/1 3", b"f 1 2 3\nv 1 2\n", b"f 1 2.5 3"],
 )
 def test_what_is_not_plain_obj_is_left_to_others(faces: bytes) -> None:
-    assert obj_table(CUBE + faces) is None
+    assert obj_tables(CUBE + faces) is None
 
 
 def test_corners_from_the_end_of_an_obj_file_count_too() -> None:
