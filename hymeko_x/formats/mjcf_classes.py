@@ -61,7 +61,8 @@ _SHARED = frozenset(
 )
 _ANY_ACTUATOR = "actuator"
 
-PARTIAL = frozenset({"size", "friction", "gear", "damping", "stiffness", "solref", "solimp", "user"})
+_SOLVER = ("solref", "solimp", "solreflimit", "solimplimit", "solreffriction", "solimpfriction")
+PARTIAL = frozenset({"size", "friction", "gear", "damping", "stiffness", *_SOLVER, "user"})
 """Attributes that may have fewer numbers than there are; the rest is inherited."""
 
 _NOTHING: Mapping[str, str] = MappingProxyType({})

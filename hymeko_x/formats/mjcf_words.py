@@ -149,6 +149,19 @@ TRANSMISSIONS = ("joint", "jointinparent", "tendon", "site", "body", "cranksite"
 RESOLVED = ("kp", "kv", "ctrlrange", "forcerange")
 """Parameters of an actuator that are typed even where its class gives them."""
 
+TENDON_PARAMETERS = (
+    "springlength",
+    "margin",
+    "solreflimit",
+    "solimplimit",
+    "solreffriction",
+    "solimpfriction",
+    "actuatorfrclimited",
+    "actuatorfrcrange",
+    "group",
+)
+"""Parameters of a tendon, typed even where its class gives them."""
+
 SENSED: Mapping[str, str] = MappingProxyType(
     {
         "site": "site",

@@ -47,22 +47,28 @@ def _legal_dof(dof: Dof, said: Said) -> Dof:
 
 def _interval(dof: Dof, said: Said) -> tuple[float | None, float | None]:
     lower, upper = _finite(dof.limits.lower), _finite(dof.limits.upper)
-    if lower is None and upper is None:
-        return None, None
-    if dof.kind is DofKind.FREE:
+    if dof.kind is DofKind.FREE and not (lower is None and upper is None):
         said.append((True, "position limits on a free joint have no meaning; they are left out"))
         return None, None
     if dof.kind is DofKind.BALL:
         return None if lower else lower, upper  # the angle from straight, of which MJCF says the lower bound 0
+    return interval(dof.limits, said)
+
+
+def interval(limits: Limits, said: Said) -> tuple[float | None, float | None]:
+    """The bounds of one coordinate with lower < upper, or none."""
+    lower, upper = _finite(limits.lower), _finite(limits.upper)
+    if lower is None and upper is None:
+        return None, None
     if lower is None or upper is None:
         side = "lower" if lower is None else "upper"
         said.append((False, f"has no {side} limit; {FAR:g} stands for the missing bound"))
         return _below(upper) if lower is None else lower, _above(lower) if upper is None else upper
     if lower > upper:
-        said.append((True, f"lower limit {lower!r} is above upper limit {upper!r}; the joint is written without position limits"))
+        said.append((True, f"lower limit {lower!r} is above upper limit {upper!r}; it is written without position limits"))
         return None, None
     if lower == upper == 0.0:
-        said.append((True, "both limits are 0, as where URDF leaves them out; the joint is written without position limits"))
+        said.append((True, "both limits are 0, as where URDF leaves them out; it is written without position limits"))
         return None, None
     if lower == upper:
         said.append((False, f"both limits are {lower!r}; {_PLAY:g} of play stands for a locked joint"))

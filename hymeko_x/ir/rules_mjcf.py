@@ -15,6 +15,7 @@ from hymeko_x.ir.legalize_names import make_names_usable, name_assets_once
 from hymeko_x.ir.legalize_native import drop_stale_keyframes
 from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.ir.legalize_solids import fill_tensors
+from hymeko_x.ir.legalize_tendons import drop_odd_tendons, make_tendons_sound, name_wrapped_shapes
 
 if TYPE_CHECKING:
     from hymeko_x.ir.legalize import Rule
@@ -33,6 +34,8 @@ RULES: tuple[Rule, ...] = (
     split_overfull_joints,
     make_limits_intervals,
     make_couplings_scalar,
+    drop_odd_tendons,
+    make_tendons_sound,
     fill_tensors,
     make_tensors_physical,
     give_moving_bodies_mass,
@@ -40,6 +43,7 @@ RULES: tuple[Rule, ...] = (
     keep_planes_static,
     make_sizes_positive,
     name_shapes_once,
+    name_wrapped_shapes,
     choose_actuators,
     make_names_usable,  # once more, for what the rules have added
 )

@@ -261,11 +261,11 @@ def test_bodies_in_a_ring_without_a_root_are_opened_once() -> None:
     ("given_limits", "written", "said"),
     [
         (Limits(-math.inf, math.inf), Limits(), []),
-        (Limits(1.0, -1.0), Limits(), ["warning lower limit 1.0 is above upper limit -1.0; the joint is written without position limits"]),
+        (Limits(1.0, -1.0), Limits(), ["warning lower limit 1.0 is above upper limit -1.0; it is written without position limits"]),
         (
             Limits(0.0, 0.0),
             Limits(),
-            ["warning both limits are 0, as where URDF leaves them out; the joint is written without position limits"],
+            ["warning both limits are 0, as where URDF leaves them out; it is written without position limits"],
         ),
         (Limits(0.5, 0.5), Limits(0.5, 0.500000001), ["note both limits are 0.5; 1e-09 of play stands for a locked joint"]),
         (Limits(0.5), Limits(0.5, 1e10), ["note has no upper limit; 1e+10 stands for the missing bound"]),

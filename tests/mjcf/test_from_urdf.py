@@ -150,7 +150,7 @@ def test_limits_that_nobody_gave_do_not_lock_the_joint() -> None:
     done = convert_text(robot(link("a"), link("b"), bare))
     assert not done.model().jnt_limited[0]
     assert done.said("HX101") == [
-        "warning HX101 joint '1': both limits are 0, as where URDF leaves them out; the joint is written without position limits"
+        "warning HX101 joint '1': both limits are 0, as where URDF leaves them out; it is written without position limits"
     ]
 
 

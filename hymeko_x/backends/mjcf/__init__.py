@@ -15,6 +15,7 @@ from hymeko_x.backends.mjcf.bodies import write_worldbody
 from hymeko_x.backends.mjcf.classes import write_defaults
 from hymeko_x.backends.mjcf.names import printed_names
 from hymeko_x.backends.mjcf.relations import write_actuators, write_contacts, write_equalities
+from hymeko_x.backends.mjcf.tendons import write_tendons
 from hymeko_x.backends.mjcf.text import Text
 from hymeko_x.formats import carrier
 from hymeko_x.formats.xml_print import escaped
@@ -38,7 +39,7 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     text.open("mujoco", {"model": mechanism.name or None})
     text.leaf("compiler", {"angle": "radian", "autolimits": "true"})
     place, defaults = text.place, Text("mujoco")
-    for section in (write_assets, write_worldbody, write_contacts, write_equalities, write_actuators):
+    for section in (write_assets, write_worldbody, write_contacts, write_equalities, write_tendons, write_actuators):
         section(text, mechanism, names)
     write_defaults(defaults, text.leaves)
     text.insert(place, defaults)

@@ -10,10 +10,10 @@ from hymeko_x.formats.mjcf_codec import BadAttribute, numbers_of
 from hymeko_x.formats.mjcf_words import shifted
 from hymeko_x.frontends.mjcf.contacts import find_end
 from hymeko_x.frontends.mjcf.mounts import take_parameters
-from hymeko_x.frontends.mjcf.paths import moves_along_one
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Coupling, Joint, Loop
+from hymeko_x.ir.tendons import moves_along_one
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, pose
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ def _check_held(element: Element, draft: Draft) -> None:
     if name is None:
         return
     joint = draft.find(element, "joint", name)
-    if not moves_along_one(Arc(joint, 0, None, draft.roles.get(joint, {}).get(name, "")), draft):
+    if not moves_along_one(Arc(joint, 0, None, draft.roles.get(joint, {}).get(name, "")), draft.edges):
         raise refuse(codes.UNKNOWN_WORD, f"<joint> holds '{name}', expected a hinge or a slide", element.origin)
 
 
@@ -54,7 +54,7 @@ def _read_coupling(element: Element, draft: Draft) -> None:
     follower, follower_role, follower_ref = _dof(element, "joint1", draft)
     leader, leader_role, leader_ref = _dof(element, "joint2", draft)
     for joint, role in ((follower, follower_role), (leader, leader_role)):
-        if not moves_along_one(Arc(joint, 0, None, role), draft):
+        if not moves_along_one(Arc(joint, 0, None, role), draft.edges):
             raise refuse(codes.UNKNOWN_WORD, f"<joint> couples '{role or joint.name}', expected hinges and slides", element.origin)
     if (follower, follower_role) == (leader, leader_role):
         raise refuse(codes.REPEATED, f"<joint> couples '{follower_role or follower.name}' to itself", element.origin)

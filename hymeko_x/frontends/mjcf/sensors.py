@@ -9,9 +9,9 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf_words import ALONE, SENSED, SENSED_TYPES
 from hymeko_x.frontends.mjcf.contacts import find_end
 from hymeko_x.frontends.mjcf.mounts import take_parameters
-from hymeko_x.frontends.mjcf.paths import moves_along_one
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Camera, Sense, Sensor
+from hymeko_x.ir.tendons import moves_along_one
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf_tree import Element
@@ -60,7 +60,7 @@ def _check_target(element: Element, arcs: list[RobotArc], draft: Draft) -> None:
             raise refuse(codes.BAD_NUMBER, f"<{element.tag}> measures in '{arc.target.name}', which has no resolution", element.origin)
     if "joint" not in element.attributes and not any(arc.target.kind == "joint" for arc in arcs):
         return
-    single = moves_along_one(arcs[0], draft)
+    single = moves_along_one(arcs[0], draft.edges)
     if (element.tag in _SINGLE and not single) or (element.tag.startswith("ball") and single):
         kind = "a ball joint" if single else "a hinge or a slide"
         raise refuse(

@@ -6,17 +6,22 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_codec import BadAttribute, numbers_of
+from hymeko_x.formats.mjcf_classes import merge
+from hymeko_x.formats.mjcf_codec import BadAttribute, numbers_of, parameter_value
 from hymeko_x.formats.mjcf_joints import TENDON
 from hymeko_x.formats.mjcf_tree import COMMENT
-from hymeko_x.frontends.mjcf.paths import wrong_fixed, wrong_spatial
+from hymeko_x.formats.mjcf_words import TENDON_PARAMETERS
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import UNLIMITED, Limits, Tendon
+from hymeko_x.ir.tendons import wrong_path
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.formats.mjcf_tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
     from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.ir.parts import Parameters
 
 
 def read_tendons(sections: list[Element], draft: Draft) -> None:
@@ -44,6 +49,7 @@ def _read_tendon(element: Element, draft: Draft) -> None:
         found["armature"],
         found["width"],
         (red, green, blue, alpha) if found["rgba"] else None,
+        _take_parameters(element, base),
     )
     arcs: list[RobotArc] = []
     for step in element.take_children("joint", "site", "geom", "pulley"):
@@ -55,11 +61,18 @@ def _read_tendon(element: Element, draft: Draft) -> None:
     draft.show(key)
 
 
+def _take_parameters(element: Element, base: Mapping[str, str]) -> Parameters:
+    """What else counts for the length and the forces of a tendon, also where its class says it."""
+    said = merge(base, element.attributes)
+    found = tuple((name, parameter_value(name, said[name])) for name in TENDON_PARAMETERS if name in said)
+    for name, _ in found:
+        element.take(name)
+    return found
+
+
 def _check_path(element: Element, tendon: Tendon, arcs: list[RobotArc], draft: Draft) -> None:
     """Raises: Refusal for a path that MuJoCo refuses."""
-    wrong = wrong_fixed(arcs, draft) if tendon.kind == "fixed" else wrong_spatial(arcs, draft)
-    if wrong is None and tendon.kind == "spatial" and tendon.armature and any(arc.role == "wrap" for arc in arcs):
-        wrong = "has an armature and wraps around a geom"
+    wrong = wrong_path(tendon, arcs, draft.edges)
     if wrong is not None:
         raise refuse(codes.BAD_NUMBER, f"the path of <{element.tag}> {wrong}", element.origin)
 
