@@ -6,7 +6,11 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
+
+    from hymeko_x.ir.parts import Parameters
+
+    Numbers = tuple[float, ...]
 
 PRIM = "MjcActuator"
 LENGTH = 10
@@ -36,3 +40,60 @@ DEFAULTS: Mapping[str, str] = MappingProxyType({"dyntype": "none", "gaintype": "
 TARGET, SLIDER, REFERENCE = "mjc:target", "mjc:sliderSite", "mjc:refSite"
 RELATIONSHIPS: Mapping[str, str] = MappingProxyType({"": TARGET, "crank": TARGET, "slider": SLIDER, "reference": REFERENCE})
 """The relationship for each role of what an actuator acts on."""
+
+
+# ---- what MJCF has a word of its own for -----------------------------------------------------------------------------------------
+
+_MUSCLE = MappingProxyType(
+    {
+        "force": (-1.0,),
+        "scale": (200.0,),
+        "lmin": (0.5,),
+        "lmax": (1.6,),
+        "vmax": (1.5,),
+        "fpmax": (1.3,),
+        "fvmax": (1.2,),
+    }
+)
+_DETAILS = frozenset(("kp", "kv", "dampratio", "timeconst", "tausmooth", "range", *_MUSCLE))
+
+
+def in_general(kind: str, parameters: Parameters) -> Parameters | None:
+    """The parameters of an actuator of this kind as those of a general one; None where nobody has said what those are.
+
+    Source: MuJoCo, user_api.cc, mjs_setToPosition and its siblings.
+    """
+    if kind in ("motor", "general"):
+        return parameters
+    numbers = {name: value if isinstance(value, tuple) else (value,) for name, value in parameters if not isinstance(value, str)}
+    said = _GENERAL.get(kind)
+    if said is None:
+        return None
+    return (*said(numbers), *(item for item in parameters if item[0] not in _DETAILS))
+
+
+def _servo(said: Mapping[str, Numbers]) -> Parameters:
+    """A position servo: kp (u - length) - kv velocity; a positive number in place of -kv is a damping ratio."""
+    kp, lag = said.get("kp", (1.0,))[0], said.get("timeconst", (0.0,))[0]
+    damping = -said.get("kv", (0.0,))[0] or said.get("dampratio", (0.0,))[0]
+    filtered: Parameters = (("dyntype", "filterexact"), ("dynprm", (lag,))) if lag else ()
+    return (*filtered, ("gainprm", (kp,)), ("biastype", "affine"), ("biasprm", (0.0, -kp, damping)))
+
+
+def _speed(said: Mapping[str, Numbers]) -> Parameters:
+    """A velocity servo: kv (u - velocity)."""
+    kv = said.get("kv", (1.0,))[0]
+    return (("gainprm", (kv,)), ("biastype", "affine"), ("biasprm", (0.0, 0.0, -kv)))
+
+
+def _muscle(said: Mapping[str, Numbers]) -> Parameters:
+    """A muscle; the same numbers say its active and its passive force."""
+    law = (*said.get("range", (0.75, 1.05)), *(said.get(name, usual)[0] for name, usual in _MUSCLE.items()))
+    times = (*said.get("timeconst", (0.01, 0.04)), *said.get("tausmooth", (0.0,)))
+    kinds = tuple((name, "muscle") for name in DEFAULTS)
+    return (*kinds, ("dynprm", times), ("gainprm", law), ("biasprm", law))
+
+
+_GENERAL: Mapping[str, Callable[[Mapping[str, Numbers]], Parameters]] = MappingProxyType(
+    {"position": _servo, "velocity": _speed, "muscle": _muscle}
+)

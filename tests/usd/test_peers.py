@@ -15,6 +15,9 @@ from lxml import etree
 
 import hymeko_x as hx
 from hymeko_x.corpus import cache, catalog
+from hymeko_x.ir.legalize_joints import dof_number
+from hymeko_x.ir.mechanism import Mechanism, RobotArc
+from hymeko_x.ir.parts import Joint, Shape, Tendon
 from hymeko_x.verify import model_of, verify
 from peers import CYBERWAVE, MUJOCO_USD_CONVERTER, NEWTON, SCIKIT_ROBOT, URDF_USD_CONVERTER, VALIDATOR, Peer
 
@@ -84,6 +87,43 @@ def test_the_robot_that_mujocos_converter_was_given_is_read_from_what_it_wrote(t
     assert [answer["error"] for answer in answers if "error" in answer] == []
     pairs = zip(sources, answers, strict=True)
     assert {path.stem: wrong for path, answer in pairs if (wrong := differences(path, answer["stage"], "mujoco-usd-converter"))} == {}
+
+
+WITH_TENDONS = names("tendon pulley_fixed_site_wrap arm21 stacker panda_free_base coupled_half_cheetah manipulator pendula quadruped")
+
+
+def test_mujocos_converter_writes_the_tendons_that_we_read_from_its_source(tmp_path: Path) -> None:
+    need(MUJOCO_USD_CONVERTER)
+    sources = files_of("mjcf", WITH_TENDONS)
+    answers = MUJOCO_USD_CONVERTER.run([{"source": str(path), "folder": str(tmp_path / path.stem)} for path in sources])
+    for path, answer in zip(sources, answers, strict=True):
+        expected = tendons_of(hx.load(path))
+        assert expected
+        assert tendons_of(hx.load(answer["stage"])) == expected, path.stem
+
+
+def tendons_of(mechanism: Mechanism) -> list[tuple[object, ...]]:
+    """Tendons in order, their steps by the names of what they lead through; what is MuJoCo's default counts as unsaid."""
+    found = []
+    for _, tendon, arcs in mechanism.edges(Tendon):
+        steps = [(step_name(mechanism, arc), arc.role if arc.target.kind == "tendon" else "", arc.weight) for arc in arcs]
+        parameters = {name: value for name, value in tendon.parameters if (name, value) not in DEFAULTS}
+        is_seen = tendon.kind == "spatial"
+        looks = (tendon.width or 0.003, tendon.rgba or (0.5, 0.5, 0.5, 1.0)) if is_seen else ()
+        found.append((replace(tendon, width=None, rgba=None, parameters=()), looks, parameters, steps))
+    return found
+
+
+DEFAULTS = (("group", 0.0), ("margin", 0.0), ("springlength", -1.0))
+
+
+def step_name(mechanism: Mechanism, arc: RobotArc) -> str:
+    edge = mechanism.graph.edges.get(arc.target)
+    if edge is not None and isinstance(edge.data, Shape):
+        return edge.data.name or ""
+    if edge is not None and isinstance(edge.data, Joint):
+        return edge.data.dofs[dof_number(edge.data, arc.role) or 0].name or arc.target.name
+    return "" if arc.target.kind == "tendon" else arc.target.name
 
 
 def differences(source: Path, stage: str, peer: str) -> list[str]:

@@ -21,6 +21,7 @@ from hymeko_x.backends.usd.prims import author
 from hymeko_x.backends.usd.relations import write_drives, write_mimics
 from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
+from hymeko_x.backends.usd.tendons import write_tendons
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.legalize_usd import LAYOUT, POINTS
@@ -44,6 +45,7 @@ _SECTIONS = (
     write_joints,
     write_loops,
     write_drives,
+    write_tendons,
     write_actuators,
     write_mimics,
 )

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pxr import Vt
 
 from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.relations import SERVOS, dof_of
 from hymeko_x.backends.usd.sheet import point, put
 from hymeko_x.formats import usd_actuators as table
 from hymeko_x.ir.mechanism import numbers_weight
@@ -16,34 +17,38 @@ if TYPE_CHECKING:
     from hymeko_x.backends.usd.prims import Prim
     from hymeko_x.backends.usd.sheet import Sheet
     from hymeko_x.ir.mechanism import RobotArc
-
-_STATED = ("motor", "general")
+    from hymeko_x.ir.parts import Parameters
 
 
 def write_actuators(sheet: Sheet) -> None:
-    """Each motor and general actuator that no drive says, with what it acts on."""
+    """Each actuator that no drive says, with what it acts on: as a general one, where that is known. Servos of joints are drives."""
     for key, drive, arcs in sheet.mechanism.edges(Drive):
         source = next((arc.target for arc in arcs if arc.sign > 0), None)
         actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
         targets = [(arc, _target(sheet, arc)) for arc in arcs if arc.sign < 0]
-        if source is None or not isinstance(actuator, Actuator) or actuator.kind not in _STATED or source in sheet.homes:
+        if source is None or not isinstance(actuator, Actuator) or source in sheet.homes:
             continue
         if not targets or any(target is None for _, target in targets):
+            continue
+        is_servo = actuator.kind in SERVOS and targets[0][0].target.kind == "joint"
+        parameters = None if is_servo else table.in_general(actuator.kind, actuator.parameters)
+        if parameters is None:
             continue
         spec = sheet.place(source, "actuators", table.PRIM)
         sheet.homes[key] = spec.path
         _write_targets(spec, targets, drive)
-        _write_parameters(spec, actuator)
+        _write_parameters(spec, parameters)
 
 
 def _target(sheet: Sheet, arc: RobotArc) -> Any | None:
-    """The prim of what an arc means: of one dof where a joint has several."""
-    from hymeko_x.backends.usd.relations import dof_of
-
+    """The prim of what an arc means: of one dof where a joint has several. A joint that a body's freedom stands for has none."""
+    home = sheet.homes.get(arc.target)
     if arc.target.kind != "joint":
-        return sheet.homes.get(arc.target)
+        return home
     found = dof_of(sheet, arc)
-    return found[0].path if found is not None and not found[1] else sheet.homes.get(arc.target)
+    if found is not None and not found[1]:
+        return found[0].path
+    return home if home is not None and sheet.prims[home].kind.startswith("Physics") else None
 
 
 def _write_targets(spec: Prim, targets: list[tuple[RobotArc, Any]], drive: Drive) -> None:
@@ -59,9 +64,9 @@ def _write_targets(spec: Prim, targets: list[tuple[RobotArc, Any]], drive: Drive
         put(spec, "mjc:jointInParent", T.Bool, True)
 
 
-def _write_parameters(spec: Prim, actuator: Actuator) -> None:
+def _write_parameters(spec: Prim, parameters: Parameters) -> None:
     """The parameters that the schema has an attribute for."""
-    for name, value in actuator.parameters:
+    for name, value in parameters:
         if name in table.TOKENS and isinstance(value, str):
             put(spec, f"mjc:{table.TOKENS[name]}", T.Token, value)
         elif name in table.VECTORS and not isinstance(value, str):

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Dof
 
-_KINDS = ("position", "velocity")
+SERVOS = ("position", "velocity")
+"""The kinds of actuators that are drives on a joint."""
 
 
 def write_drives(sheet: Sheet) -> None:
@@ -39,7 +40,7 @@ def write_drives(sheet: Sheet) -> None:
 def _is_drive(sheet: Sheet, key: Id, actuator: Actuator) -> bool:
     """Whether a drive says it: servos, and motors that were drives before."""
     noted = sheet.mechanism.notation(key, words.TYPE)
-    return actuator.kind in _KINDS or (actuator.kind == "motor" and noted in words.DRIVES)
+    return actuator.kind in SERVOS or (actuator.kind == "motor" and noted in words.DRIVES)
 
 
 def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None:

@@ -28,6 +28,7 @@ from hymeko_x.frontends.usd.relations import Driven, driven_ends, read_camera, r
 from hymeko_x.frontends.usd.shapes import SITES, Read, is_shape, read_shape
 from hymeko_x.frontends.usd.stage import Scene, open_scene
 from hymeko_x.frontends.usd.structure import build_trees, note_poses
+from hymeko_x.frontends.usd.tendons import read_tendons
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism
 from hymeko_x.ir.parts import Texture
@@ -101,6 +102,7 @@ def _read_things(prims: list[Prim], ends: dict[str, Driven], draft: Draft) -> No
             read_light(prim, draft)
         elif any(prim.has_api(site) for site in SITES):
             read_site(prim, draft)
+    read_tendons(prims, ends, draft)
     for prim in prims:
         if prim.kind == ACTUATOR:
             read_actuator(prim, ends, draft)

@@ -28,7 +28,8 @@ def read_actuator(prim: Prim, ends: dict[str, Driven], draft: Draft) -> None:
         draft.report.warn(codes.UNDEFINED_REFERENCE, said, draft.origin, element=prim.path)
         return
     parameters = _parameters(prim, draft)
-    kind = "general" if any(name in _GENERAL for name, _ in parameters) else "motor"
+    is_plain = arcs[0].target.kind != "body" and not any(name in _GENERAL for name, _ in parameters)
+    kind = "motor" if is_plain else "general"  # MJCF has no motor on a body
     key = draft.own(prim, "actuator")
     draft.vertices[key] = Actuator(kind, tuple(parameters))
     draft.note(key, words.TYPE, table.PRIM)

@@ -1,0 +1,142 @@
+"""Tendons as MjcTendon prims, as MuJoCo's own converters write them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from pxr import Gf, Vt
+
+from hymeko_x.backends.usd.prims import T
+from hymeko_x.backends.usd.relations import dof_of
+from hymeko_x.backends.usd.sheet import point, put
+from hymeko_x.formats import usd_tendons as table
+from hymeko_x.ir.mechanism import numbers_weight
+from hymeko_x.ir.parts import Tendon
+from hymeko_x.ir.tendons import PULLEY, SIDE, wrong_path
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.usd.prims import Prim
+    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.ir.mechanism import RobotArc
+
+
+def write_tendons(sheet: Sheet) -> None:
+    """Each tendon whose path leads through prims; the schema has no word for one through an axis of a generic joint."""
+    for key, tendon, arcs in sheet.mechanism.edges(Tendon):
+        path = None if wrong_path(tendon, arcs, sheet.mechanism.graph.edges) else _path(sheet, arcs)
+        if path is None:
+            continue
+        spec = sheet.place(key, "tendons", table.PRIM)
+        put(spec, table.KIND, T.Token, tendon.kind)
+        _write_path(spec, tendon, path)
+        _write_behaviour(spec, tendon)
+        for name, value in tendon.parameters:
+            _write_parameter(spec, name, value)
+
+
+# ---- paths -----------------------------------------------------------------------------------------------------------------------
+
+
+@dataclass(slots=True)
+class _Places:
+    """Prims in the order in which they come first, and which of them each step is."""
+
+    prims: dict[Any, int] = field(default_factory=dict)
+    indices: list[int] = field(default_factory=list)
+
+    def add(self, prim: Any) -> None:
+        self.indices.append(self.prims.setdefault(prim, len(self.prims)))
+
+
+@dataclass(slots=True)
+class _Path:
+    """The steps of a path without its pulleys, each with its coefficient, the site beside it, and the part that it is in."""
+
+    steps: _Places = field(default_factory=_Places)
+    sides: _Places = field(default_factory=_Places)
+    coefficients: list[float] = field(default_factory=list)
+    segments: list[int] = field(default_factory=list)
+    divisors: list[float] = field(default_factory=lambda: [1.0])
+
+
+def _path(sheet: Sheet, arcs: tuple[RobotArc, ...]) -> _Path | None:
+    """The path as the schema divides it; None where it leads through something that is no prim."""
+    path = _Path()
+    for place, arc in enumerate(arcs):
+        if arc.role == PULLEY:
+            divisor = numbers_weight(arc)[0]
+            path.divisors = [divisor] if place == 0 else [*path.divisors, divisor]
+            continue
+        prim = _prim_of(sheet, arc)
+        if prim is None:
+            return None
+        if arc.role == SIDE:
+            path.sides.indices.pop()
+            path.sides.add(prim)
+            continue
+        path.steps.add(prim)
+        path.sides.indices.append(table.NO_SIDE)
+        path.segments.append(len(path.divisors) - 1)
+        path.coefficients += numbers_weight(arc)[:1]
+    return path
+
+
+def _prim_of(sheet: Sheet, arc: RobotArc) -> Any | None:
+    if arc.target.kind != "joint":
+        return sheet.homes.get(arc.target)
+    found = dof_of(sheet, arc)
+    return found[0].path if found is not None and not found[1] else None
+
+
+def _write_path(spec: Prim, tendon: Tendon, path: _Path) -> None:
+    point(spec, table.PATH, *path.steps.prims)
+    put(spec, table.INDICES, T.IntArray, Vt.IntArray(path.steps.indices))
+    if tendon.kind == "fixed":
+        put(spec, table.COEFFICIENTS, T.DoubleArray, Vt.DoubleArray(path.coefficients))
+        return
+    put(spec, table.SEGMENTS, T.IntArray, Vt.IntArray(path.segments))
+    put(spec, table.DIVISORS, T.DoubleArray, Vt.DoubleArray(path.divisors))
+    if path.sides.prims:
+        point(spec, table.SIDES, *path.sides.prims)
+        put(spec, table.SIDE_INDICES, T.IntArray, Vt.IntArray(path.sides.indices))
+
+
+# ---- what it is like -------------------------------------------------------------------------------------------------------------
+
+
+def _write_behaviour(spec: Prim, tendon: Tendon) -> None:
+    """Limits, mechanics and looks; what is the schema's default is not said."""
+    lower, upper = tendon.limits.lower, tendon.limits.upper
+    if upper is not None:
+        put(spec, table.LIMITED, T.Token, "true")
+        for name, bound in zip(table.RANGE, (lower or 0.0, upper), strict=True):
+            put(spec, name, T.Double, bound)
+    for name, attribute in table.NUMBERS.items():
+        value = getattr(tendon, name)
+        if value:
+            put(spec, attribute, T.Double, value)
+    if tendon.width is not None:
+        put(spec, table.WIDTH, T.Double, tendon.width)
+    if tendon.rgba is not None:
+        put(spec, table.COLOUR, T.Color4f, Gf.Vec4f(*tendon.rgba))
+
+
+def _write_parameter(spec: Prim, name: str, value: float | str | tuple[float, ...]) -> None:
+    """A parameter that the schema has an attribute for."""
+    numbers = () if isinstance(value, str) else value if isinstance(value, tuple) else (value,)
+    attribute = table.attribute(name)
+    default = table.VECTORS.get(name)
+    if default is not None and 0 < len(numbers) <= len(default):
+        put(spec, attribute, T.DoubleArray, Vt.DoubleArray([*numbers, *default[len(numbers) :]]))
+    elif name == table.SPRING and 0 < len(numbers) <= 2:
+        put(spec, attribute, T.DoubleArray, Vt.DoubleArray([numbers[0], numbers[-1]]))
+    elif name == table.FORCE_RANGE and len(numbers) == 2:
+        for end, bound in zip(("min", "max"), numbers, strict=True):
+            put(spec, f"{attribute}:{end}", T.Double, bound)
+    elif name == table.FORCE_LIMITED and isinstance(value, str):
+        put(spec, attribute, T.Token, value)
+    elif name == table.MARGIN and len(numbers) == 1:
+        put(spec, attribute, T.Double, numbers[0])
+    elif name == table.GROUP and len(numbers) == 1 and abs(numbers[0]) < 2**31:
+        put(spec, attribute, T.Int, int(numbers[0]))

@@ -1,0 +1,242 @@
+"""MjcTendon prims as tendons: cables through sites, around shapes and over pulleys, and combinations of joints."""
+
+from __future__ import annotations
+
+import math
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.formats import usd_tendons as table
+from hymeko_x.formats.mjcf_words import TENDON_PARAMETERS
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.parts import UNLIMITED, DofKind, Joint, Limits, Tendon
+from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, WRAP, wrong_path
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.prims import Prim
+    from hymeko_x.frontends.usd.relations import Driven
+    from hymeko_x.ir.mechanism import RobotArc
+    from hymeko_x.ir.parts import Rgba
+
+_STEPS = ("frame", "shape")
+_NOBODY = Id("tendon", "")
+_OF_KIND = MappingProxyType(
+    {True: (table.COEFFICIENTS,), False: (table.SEGMENTS, table.DIVISORS, table.SIDES, table.SIDE_INDICES)},
+)
+"""What says the path of a fixed tendon, and of another one."""
+_TYPES: Mapping[str, type] = MappingProxyType({table.MARGIN: float, table.GROUP: int, table.FORCE_LIMITED: str})
+"""What the parameters are that are not several numbers."""
+
+
+class _BadPath(Exception):
+    """A path that nobody can follow; the text says why."""
+
+
+def read_tendons(prims: list[Prim], ends: dict[str, Driven], draft: Draft) -> None:
+    """The tendons of these prims; one whose path leads nowhere is said and stays an extra."""
+    found = [prim for prim in prims if prim.kind == table.PRIM]
+    automatic = _limits_are_automatic(prims) if found else True
+    for prim in found:
+        try:
+            _read_tendon(prim, ends, draft, automatic=automatic)
+        except _BadPath as error:
+            said = f"the path of tendon '{prim.path}' {error}; it is kept as written"
+            draft.report.warn(codes.UNDEFINED_REFERENCE, said, draft.origin, element=prim.path)
+
+
+def _limits_are_automatic(prims: list[Prim]) -> bool:
+    """Whether a range alone is a limit, as everywhere unless a scene says otherwise."""
+    return not any(prim.value("mjc:compiler:autoLimits") is False for prim in prims)
+
+
+def _read_tendon(prim: Prim, ends: dict[str, Driven], draft: Draft, *, automatic: bool) -> None:
+    """Raises: _BadPath."""
+    kind = prim.value(table.KIND) or table.KINDS[0]
+    path = _joints(prim, ends, draft) if kind == FIXED else _cable(prim, ends, draft)
+    wrong = wrong_path(Tendon(kind), path, draft.edges)
+    if wrong is not None:
+        raise _BadPath(wrong)
+    key = draft.own(prim, "tendon")
+    draft.take(prim, "@type", table.KIND, table.PATH, table.INDICES, *_OF_KIND[kind == FIXED])
+    arcs: tuple[RobotArc, ...] = tuple(Arc(key, 0, arc.weight, PULLEY) if arc.role == PULLEY else arc for arc in path)
+    draft.edges[key] = Edge(_tendon(prim, kind, _limits(prim, draft, automatic=automatic), draft), arcs)
+
+
+# ---- paths -----------------------------------------------------------------------------------------------------------------------
+
+
+def _joints(prim: Prim, ends: dict[str, Driven], draft: Draft) -> list[RobotArc]:
+    """The joints of a fixed tendon with their coefficients, which are 1 where nothing is said."""
+    steps = _steps(prim, ends, draft)
+    coefficients = _numbers(prim, table.COEFFICIENTS) or [1.0] * len(steps)
+    if len(coefficients) != len(steps):
+        raise _BadPath(f"has {len(steps)} joints and {len(coefficients)} coefficients")
+    found: list[RobotArc] = []
+    for (target, role), value in zip(steps, coefficients, strict=True):
+        found.append(Arc(target, 1, (value * _unit(target, role, draft),), role))
+    return found
+
+
+def _unit(joint: Id, role: str, draft: Draft) -> float:
+    """What a coefficient of 1 is: a length for an angle, or for a length."""
+    edge = draft.edges.get(joint)
+    dofs = edge.data.dofs if edge is not None and isinstance(edge.data, Joint) else ()
+    turns = any(dof.kind is DofKind.HINGE for dof in dofs if not role or dof.name == role)
+    return draft.scene.metres if turns else 1.0
+
+
+def _cable(prim: Prim, ends: dict[str, Driven], draft: Draft) -> list[RobotArc]:
+    """The sites, shapes and pulleys of a cable; the site beside a shape comes after it."""
+    steps = _steps(prim, ends, draft)
+    segments, divisors = _indices(prim, table.SEGMENTS, len(steps)), _numbers(prim, table.DIVISORS)
+    sides, beside = prim.targets(table.SIDES), _indices(prim, table.SIDE_INDICES, len(steps))
+    arcs, last = _pulley(divisors, 0) if divisors and divisors[0] != 1.0 else [], 0
+    for place, (target, role) in enumerate(steps):
+        segment = segments[place] if segments else 0
+        if segment < last:
+            raise _BadPath("goes back to an earlier segment")
+        arcs += _pulley(divisors, segment) if segment > last else []
+        last = segment
+        arcs.append(Arc(target, 0, None, WRAP if target.kind == "shape" else role))
+        if target.kind == "shape" and beside and beside[place] != table.NO_SIDE:
+            arcs.append(Arc(_site(sides, beside[place], draft), 0, None, SIDE))
+    return arcs
+
+
+def _pulley(divisors: list[float], segment: int) -> list[RobotArc]:
+    """The pulley before a segment; which tendon it is of is not known yet."""
+    if segment >= len(divisors):
+        raise _BadPath(f"has no divisor for segment {segment}")
+    return [Arc(_NOBODY, 0, (divisors[segment],), PULLEY)]
+
+
+def _site(sides: list[str], index: int, draft: Draft) -> Id:
+    if not 0 <= index < len(sides):
+        raise _BadPath(f"has no site {index} beside it")
+    found = next((key for key in draft.elements.get(sides[index], ()) if key.kind == "frame"), None)
+    if found is None:
+        raise _BadPath(f"has '{sides[index]}' beside it, which is no site")
+    return found
+
+
+def _steps(prim: Prim, ends: dict[str, Driven], draft: Draft) -> list[tuple[Id, str]]:
+    """What the path leads through, in order, each with the dof that is meant where it is a joint."""
+    known = [_element(path, ends, draft) for path in prim.targets(table.PATH)]
+    order = _indices(prim, table.INDICES) or range(len(known))
+    wrong = next((index for index in order if not 0 <= index < len(known)), None)
+    if wrong is not None:
+        raise _BadPath(f"has {len(known)} targets and the index {wrong}")
+    return [known[index] for index in order]
+
+
+def _element(path: str, ends: dict[str, Driven], draft: Draft) -> tuple[Id, str]:
+    end = ends.get(path)
+    if end is not None:
+        return end.joint, end.dof
+    found = next((key for key in draft.elements.get(path, ()) if key.kind in _STEPS), None)
+    if found is None:
+        raise _BadPath(f"leads to '{path}', which is neither a site nor a shape nor a joint")
+    return found, ""
+
+
+def _indices(prim: Prim, name: str, count: int | None = None) -> list[int]:
+    """Whole numbers; nothing where nothing is said. ``count`` is how many there have to be."""
+    found = [int(value) for value in _numbers(prim, name)]
+    if found and count is not None and len(found) != count:
+        raise _BadPath(f"has {count} steps and {len(found)} {name}")
+    return found
+
+
+def _numbers(prim: Prim, name: str) -> list[float]:
+    """The numbers of an attribute; nothing where nothing is said. Raises: _BadPath."""
+    found = _items(prim, name)
+    if not all(map(math.isfinite, found)):
+        raise _BadPath(f"has {name} that are not finite")
+    return found
+
+
+def _items(prim: Prim, name: str) -> list[float]:
+    """The items of an array of numbers; nothing where the attribute is none."""
+    return list(prim.value(name) or ()) if prim.types.get(name) in ("int[]", "float[]", "double[]") else []
+
+
+# ---- what it is like -------------------------------------------------------------------------------------------------------------
+
+
+def _limits(prim: Prim, draft: Draft, *, automatic: bool) -> Limits:
+    """The shortest and the greatest length where they hold; a range that does not stays an extra."""
+    word = prim.value(table.LIMITED)
+    low, high = (value if isinstance(value, float) else 0.0 for value in map(prim.value, table.RANGE))
+    if not low < high or not (word == "true" or (word in (None, "auto") and automatic)):
+        return UNLIMITED
+    draft.take(prim, *table.RANGE, *([table.LIMITED] if word == "true" else []))
+    return Limits(low * draft.scene.metres, high * draft.scene.metres)
+
+
+def _tendon(prim: Prim, kind: str, limits: Limits, draft: Draft) -> Tendon:
+    """The tendon in m, N and kg."""
+    scene = draft.scene
+    units = {"friction": scene.kilograms * scene.metres}
+    said = {name: draft.number(prim, path, 0.0) * units.get(name, scene.kilograms) for name, path in table.NUMBERS.items()}
+    width = draft.get(prim, table.WIDTH) if isinstance(prim.value(table.WIDTH), float) else None
+    return Tendon(
+        kind,
+        limits,
+        said["damping"],
+        said["stiffness"],
+        said["friction"],
+        said["armature"],
+        None if width is None else width * scene.metres,
+        _colour(prim, draft),
+        tuple(_parameters(prim, draft)),
+    )
+
+
+def _colour(prim: Prim, draft: Draft) -> Rgba | None:
+    if prim.types.get(table.COLOUR) != "color4f" or prim.value(table.COLOUR) is None:
+        return None
+    red, green, blue, alpha = draft.get(prim, table.COLOUR)
+    return red, green, blue, alpha
+
+
+def _parameters(prim: Prim, draft: Draft) -> Iterator[tuple[str, float | str | tuple[float, ...]]]:
+    """What else the prim says, under the names of MJCF and in their order there."""
+    for name in TENDON_PARAMETERS:
+        value = _parameter(prim, name, draft)
+        if value is not None:
+            yield name, value
+
+
+def _parameter(prim: Prim, name: str, draft: Draft) -> float | str | tuple[float, ...] | None:
+    attribute, scene = table.attribute(name), draft.scene
+    if name == table.FORCE_RANGE:
+        names = [f"{attribute}:{end}" for end in ("min", "max")]
+        if not all(isinstance(prim.value(name), float) for name in names):
+            return None
+        low, high = (draft.get(prim, name) * scene.kilograms * scene.metres for name in names)
+        return low, high
+    if name in table.VECTORS or name == table.SPRING:
+        return _vector(prim, name, _items(prim, attribute), draft)
+    value = prim.value(attribute)
+    if not isinstance(value, _TYPES.get(name, ())) or value == "auto":
+        return None
+    value = draft.get(prim, attribute)
+    return value * scene.metres if name == table.MARGIN else value if isinstance(value, str) else float(value)
+
+
+def _vector(prim: Prim, name: str, said: list[float], draft: Draft) -> float | tuple[float, ...] | None:
+    """Several numbers without those at the end that count anyway; any other number of them stays an extra."""
+    default = table.VECTORS.get(name)
+    if len(said) != (2 if default is None else len(default)):
+        return None
+    draft.take(prim, table.attribute(name))
+    if default is None:
+        low, high = (value if value < 0.0 else value * draft.scene.metres for value in said)
+        return low if low == high else (low, high)
+    count = max((place for place, pair in enumerate(zip(said, default, strict=True), 1) if pair[0] != pair[1]), default=1)
+    return said[0] if count == 1 else tuple(said[:count])
