@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
 _SHORT = 4096
 """So many letters are turned into numbers one by one before the arrangements for many of them are worth their time."""
+_OF_NUMBERS = b"0123456789+-.eE \t\n\v\f\r"
+_EVERY_BLANK = bytes.maketrans(b"\t\n\v\f\r", b"     ")
 _WORD, _AT_ONCE = 8, 8192
 _BLANK = ord(" ")
 _ZEROS, _NOT_DIGITS, _TOP_BITS = np.uint64(0x3030303030303030), np.uint64(0x7676767676767676), np.uint64(0x8080808080808080)
@@ -27,8 +29,42 @@ def numbers_in(text: str | bytes, kind: Any = np.float64) -> NDArray[Any]:
 
     Raises: ValueError where there is anything else, OverflowError for whole numbers that are too large.
     """
-    if len(text) < _SHORT:
-        return _few_numbers(text if isinstance(text, bytes) else text.encode(), kind)
+    data = text if isinstance(text, bytes) else text.encode()
+    if len(data) < _SHORT:
+        return _few_numbers(data, kind)
+    found = None if np.issubdtype(kind, np.integer) else _decimals(data)
+    return _many_numbers(data, kind) if found is None else found.astype(kind)
+
+
+def _decimals(text: bytes) -> NDArray[np.float64] | None:
+    """The numbers of a text that, with commas between them, is an array of JSON, whose readers are much faster than all others.
+
+    None where it is not, or where there is no such reader for this Python.
+    """
+    try:
+        import simdjson
+    except ImportError:
+        return None
+    if text.translate(None, _OF_NUMBERS):
+        return None
+    text = text.translate(_EVERY_BLANK)
+    while b"  " in text:
+        text = text.replace(b"  ", b" ")
+    try:
+        found = simdjson.Parser().parse(b"[%b]" % text.strip().replace(b" ", b","))
+        return np.frombuffer(found.as_buffer(of_type="d")) if isinstance(found, simdjson.Array) else None
+    except (ValueError, RuntimeError):  # such as `.5`, `+1` and what is larger than any number
+        return None
+
+
+def _few_numbers(text: bytes, kind: Any) -> NDArray[Any]:
+    if b"_" in text:
+        raise ValueError("an underscore is no part of a number")
+    plain: type[int] | type[float] = int if np.issubdtype(kind, np.integer) else float
+    return np.array(list(map(plain, text.split())), dtype=kind)
+
+
+def _many_numbers(text: bytes, kind: Any) -> NDArray[Any]:
     if text.isspace():
         return np.zeros(0, dtype=kind)
     with warnings.catch_warnings():
@@ -37,13 +73,6 @@ def numbers_in(text: str | bytes, kind: Any = np.float64) -> NDArray[Any]:
             return np.fromstring(text, dtype=kind, sep=" ")
         except DeprecationWarning as warned:  # as numpy said it before it was an error
             raise ValueError(str(warned)) from warned
-
-
-def _few_numbers(text: bytes, kind: Any) -> NDArray[Any]:
-    if b"_" in text:
-        raise ValueError("an underscore is no part of a number")
-    plain: type[int] | type[float] = int if np.issubdtype(kind, np.integer) else float
-    return np.array(list(map(plain, text.split())), dtype=kind)
 
 
 def words_in(text: NDArray[np.uint8]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
