@@ -17,8 +17,10 @@ if TYPE_CHECKING:
 _IN_SCENES = (".glb", ".gltf")
 
 
-def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple[Part, ...]:
+def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, miss: Callable[[str], None] | None = None) -> tuple[Part, ...]:
     """One part for each colour or image of a COLLADA, OBJ or glTF file, in the order of the file; others are one part without a look.
+
+    ``miss`` is told of every image of a COLLADA or OBJ file that is not there; what shows it has its colour instead.
 
     Raises: Unreadable.
     """
@@ -29,6 +31,9 @@ def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tup
     if not tables:
         return (read_whole(data, suffix, fetch),)
     images = _images(tables, fetch)
+    for name in dict.fromkeys(table.finish.image for table in tables if table.finish.image and table.finish.image not in images):
+        if miss is not None:
+            miss(name)
     groups: dict[Finish, list[Table]] = {}
     for table in tables:
         if len(table.faces):

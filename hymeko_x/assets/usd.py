@@ -155,8 +155,12 @@ def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: 
         return None
     path, data = found
     fetch = _fetcher(run.files, mesh.uri or "")
+
+    def miss(image: str) -> None:
+        _warn(run, key, codes.ASSET_NOT_FOUND, f"its image '{image}' was not found; it is shown without")
+
     try:
-        parts = read_colours(data, suffix_of(path), fetch) if are_coloured else ()
+        parts = read_colours(data, suffix_of(path), fetch, miss=miss) if are_coloured else ()
         if parts and (not is_mapped or any(part.look for part in parts)):
             return parts
         return ((read_mapped if is_mapped else read_whole)(data, suffix_of(path), fetch),)

@@ -165,12 +165,15 @@ def test_an_image_on_the_disk_of_its_author_is_found_beside_the_mesh(tmp_path: P
     assert shown_file(meshes(stage)[0]) == str(tmp_path / "textures" / "wood.png")
 
 
-def test_without_its_image_a_file_has_its_colour(tmp_path: Path) -> None:
+def test_without_its_image_a_file_has_its_colour_and_a_warning(tmp_path: Path) -> None:
     source = lay_obj(tmp_path)
     (tmp_path / "wood.png").unlink()
-    hx.convert(source, tmp_path / "r.usda")
+    report = hx.convert(source, tmp_path / "r.usda").report
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     assert surface_of(meshes(stage)[0]).GetInput("diffuseColor").Get()[0] == pytest.approx(0.8)
+    assert [entry.message for entry in report.diagnostics if "image" in entry.message] == [
+        "mesh 'a': its image 'wood.png' was not found; it is shown without"
+    ]
 
 
 def test_a_damaged_image_is_one_warning(tmp_path: Path) -> None:
