@@ -67,8 +67,8 @@ def _first_in_slots(rows: NDArray[Any], turn: int) -> NDArray[np.intp]:
         keys = _keys(rows[start : start + _AT_ONCE], np.uint64(_ODD + (turn << 33)))
         slots[start : start + _AT_ONCE] = keys >> np.uint64(_BITS - bits)
     table = np.empty(1 << bits, dtype=np.intp)
-    table[slots[::-1]] = np.arange(len(rows) - 1, -1, -1)
-    return np.asarray(table[slots])
+    table[np.ascontiguousarray(slots[::-1])] = np.arange(len(rows) - 1, -1, -1)  # where several go, the last one stays
+    return np.asarray(table.take(slots))
 
 
 def _keys(rows: NDArray[Any], odd: np.uint64) -> NDArray[np.uint64]:
