@@ -10,6 +10,7 @@ import pytest
 from hymeko_x.assets.collada import collada_tables
 from hymeko_x.assets.mesh import merged, read_parts, read_whole
 from hymeko_x.assets.obj import obj_tables
+from hymeko_x.assets.part import Finish
 from tests.assets.test_mesh import IN_PLACE, dae, nothing_else, triangles
 
 POLYGONS = (
@@ -90,6 +91,76 @@ def test_a_plain_obj_file_says_its_corners_in_any_form(faces: bytes) -> None:
 )
 def test_what_is_not_plain_obj_is_left_to_others(faces: bytes) -> None:
     assert obj_tables(CUBE + faces) is None
+
+
+LIBRARY = b"newmtl wood\nKd 0.5 0.5 0.5\nmap_Kd wood.png\nnewmtl paint\nKd 1 0 0\n"
+MATERIALS = b"""mtllib a.mtl
+v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+vt 0 0
+vt 1 0
+f 1 2 3
+usemtl wood
+f 4/1 3/2 2/1
+f 4/1 3/2 2/1 1/2
+usemtl nothing
+usemtl paint
+f 1//1 2//1 4//1
+usemtl other
+f 2/1 3/1 4/1
+"""
+
+
+def tables_of(data: bytes, *, mapped: bool = False) -> list[tuple[str, Finish, list[list[float]], list[list[float]] | None]]:
+    """Name, finish, and of every triangle the first coordinates of its corners and of their places."""
+    tables = obj_tables(data, {"a.mtl": LIBRARY}.get, mapped=mapped)
+    assert tables is not None
+    return [
+        (
+            table.material,
+            table.finish,
+            table.points[table.faces].sum(axis=2).tolist(),
+            None if table.uv is None or table.corners is None else table.uv[table.corners][:, :, 0].tolist(),
+        )
+        for table in tables
+    ]
+
+
+WOOD, PAINT = Finish((0.5, 0.5, 0.5, 1.0), "wood.png"), Finish((1.0, 0.0, 0.0, 1.0))
+
+
+@pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\r"])
+def test_materials_of_an_obj_file_are_runs_of_its_lines_each_in_its_own_form(end: bytes) -> None:
+    assert tables_of(MATERIALS.replace(b"\n", end)) == [
+        ("", Finish(), [[0, 1, 2]], None),
+        ("wood", WOOD, [[1, 2, 1], [1, 2, 1], [1, 1, 0]], [[0, 1, 0], [0, 1, 0], [0, 0, 1]]),
+        ("paint", PAINT, [[0, 1, 1]], None),
+        ("other", Finish(), [[1, 2, 1]], None),
+    ]
+
+
+def test_an_image_without_a_place_that_exists_is_not_shown() -> None:
+    for data in (MATERIALS.replace(b"4/1 3/2", b"4/1 3/9"), MATERIALS.replace(b"vt ", b"vp ").replace(b"vn ", b"vp ")):
+        assert tables_of(data)[1][1:] == (WOOD._replace(image=""), [[1, 2, 1], [1, 2, 1], [1, 1, 0]], None)
+
+
+def test_without_a_library_all_of_an_obj_file_is_one_table() -> None:
+    faces = MATERIALS.partition(b"usemtl wood\n")[2].partition(b"usemtl nothing")[0]
+    data = CUBE + b"mtllib b.mtl\nusemtl wood\n" + faces.replace(b"/2", b"/1") + b"usemtl x\nf 1/1 2/1 3/1\n"
+    assert [(name, len(faces)) for name, _, faces, _ in tables_of(data)] == [("", 4)]
+    assert tables_of(data, mapped=True)[0][3] == [[0, 0, 0]] * 4
+
+
+def test_thousands_of_uses_of_a_material_take_linear_time() -> None:
+    points = b"".join(b"v %d 0 1\n" % number for number in range(9000))
+    uses = b"".join(b"usemtl paint\nf %d %d %d\n" % (3 * number + 1, 3 * number + 2, 3 * number + 3) for number in range(3000))
+    begin = time.process_time()
+    tables = obj_tables(b"mtllib a.mtl\n" + points + uses, {"a.mtl": LIBRARY}.get)
+    assert time.process_time() - begin < 5.0
+    assert tables is not None
+    assert [(len(table.points), len(table.faces)) for table in tables] == [(3, 1)] * 3000
 
 
 def test_corners_from_the_end_of_an_obj_file_count_too() -> None:
