@@ -71,11 +71,11 @@ GEOMETRIES: tuple[parts.Geometry, ...] = (
 ARC = Arc(Id("body", "a"), 1, pose_from_rpy((1.0, 2.0, 3.0), (0.1, 0.2, 0.3)), "role")
 
 
-def with_part(part: object) -> Mechanism:
+def with_part(part: object, arc: Arc[Id, parts.Weight] = ARC) -> Mechanism:
     key = Id(KINDS[type(part)], "x")
     if isinstance(part, parts.VertexPart):
         return Mechanism("m", Hypergraph({key: part}, {}))
-    return Mechanism("m", Hypergraph({}, {key: Edge(part, (ARC,))}))
+    return Mechanism("m", Hypergraph({}, {key: Edge(part, (arc,))}))
 
 
 def changed(value: object) -> Iterator[tuple[str, object]]:
@@ -241,3 +241,11 @@ def test_of_the_numbers_of_a_mesh_those_from_the_first_difference_on_are_shown()
     assert diff(a, b, Tolerance(100.0)) == ()
     ((missing),) = diff(a, Mechanism("m", Hypergraph({key: parts.Mesh()}, {})))
     assert (missing.before, missing.after) == ("[0 1 2 3 4 5 6 7 ...] of 99", "[]")
+
+
+def test_no_pose_and_nearly_none_are_the_same_within_a_tolerance() -> None:
+    nearly = with_part(parts.Mount(), replace(ARC, weight=Pose((1e-12, 0.0, 0.0))))
+    none = with_part(parts.Mount(), replace(ARC, weight=None))
+    assert diff(nearly, none, Tolerance(1e-9)) == diff(none, nearly, Tolerance(1e-9)) == ()
+    assert len(diff(nearly, none)) == 1
+    assert len(diff(with_part(parts.Mount(), replace(ARC, weight=Pose((1e-3, 0.0, 0.0)))), none, Tolerance(1e-9))) == 1
