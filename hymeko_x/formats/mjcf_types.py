@@ -140,6 +140,15 @@ geom mesh: sensor/tactile
 dim: sensor/user
 """
 
+_FILLED = """\
+maxhullvert: asset/mesh default/mesh
+group: body/freejoint
+size: custom/numeric
+num: sensor/contact
+dim: sensor/user
+nconmax njmax nstack: size
+"""
+
 _EXCLUSIVE = """\
 geom1 body1: sensor/distance sensor/normal sensor/fromto
 geom2 body2: sensor/distance sensor/normal sensor/fromto
@@ -202,6 +211,9 @@ _KINDS: Mapping[str, Kind | None] = MappingProxyType({name: _kind(kind) for kind
 
 REQUIRED: Mapping[str, tuple[str, ...]] = MappingProxyType({place: names[0] for place, names in _by_place(_REQUIRED).items()})
 """The attributes that an element must have, by its place."""
+
+FILLED: Mapping[str, tuple[str, ...]] = MappingProxyType({place: names[0] for place, names in _by_place(_FILLED).items()})
+"""The numbers that may not be empty, by their element's place; MuJoCo takes all others for not being there then."""
 
 EXCLUSIVE: Mapping[str, list[tuple[str, ...]]] = MappingProxyType(_by_place(_EXCLUSIVE))
 """The attributes of which an element may have one, by its place."""

@@ -317,19 +317,17 @@ def _quoted(text: str) -> str:
 
 @lru_cache(4096)
 def read_numbers(text: str) -> tuple[float, ...] | None:
-    """The decimal numbers of a text, separated by blanks, or None if one of them is not a finite decimal number."""
+    """The decimal numbers of a text, separated by blanks, or None if one of them is not a finite decimal number.
+
+    Digits of other scripts, blanks that are no ASCII and underscores mean something to Python, and nothing to any format.
+    """
     try:
         numbers = tuple(map(float, text.split()))
     except ValueError:
         return None
-    if not math.isfinite(sum(numbers)) or "_" in text or not text.isascii():
-        return numbers if all(map(_is_plain, text.split())) else None
-    return numbers
-
-
-def _is_plain(text: str) -> bool:
-    """Whether a text that is a number to Python is a finite decimal number to everybody."""
-    return math.isfinite(float(text)) and "_" not in text and text.isascii()
+    if "_" in text or not text.isascii():
+        return None
+    return numbers if math.isfinite(sum(numbers)) or all(map(math.isfinite, numbers)) else None
 
 
 def take_numbers(node: Node, attribute: str, count: int, report: Report, *, instead: str) -> tuple[float, ...] | None:

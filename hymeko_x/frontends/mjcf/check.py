@@ -14,11 +14,12 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.mjcf_classes import TURNS
 from hymeko_x.formats.mjcf_schema import CHILDREN, REMOVED, attributes_of
 from hymeko_x.formats.mjcf_tree import COMMENT
-from hymeko_x.formats.mjcf_types import EXCLUSIVE, REQUIRED, kinds_of
+from hymeko_x.formats.mjcf_types import EXCLUSIVE, FILLED, REQUIRED, kinds_of
 from hymeko_x.formats.xml import read_numbers
 from hymeko_x.frontends.mjcf.references import Reference, references_at, references_of
 from hymeko_x.frontends.mjcf.rules import complaint, rules_of
 from hymeko_x.ir.mechanism import file_stem
+from hymeko_x.ir.values import number_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -67,10 +68,14 @@ class Words:
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """What is known of the elements of a place of the schema; ``named`` is the kind that their names must not be twice among."""
+    """What is known of the elements of a place of the schema.
+
+    ``filled`` are the numbers that may not be empty, ``named`` the kind that the elements' names must not be twice among.
+    """
 
     attributes: frozenset[str]
     kinds: Mapping[str, Kind]
+    filled: frozenset[str]
     required: tuple[str, ...]
     exclusive: Sequence[tuple[str, ...]]
     rules: tuple[Rule, ...]
@@ -83,6 +88,7 @@ def _place_of(path: str) -> _Place:
     return _Place(
         attributes_of(path),
         MappingProxyType({name: kind for name, kind in kinds_of(path).items() if name not in _READ_ELSEWHERE}),
+        frozenset(FILLED.get(path, ())),
         REQUIRED.get(path, ()),
         EXCLUSIVE.get(path, ()),
         rules_of(path),
@@ -165,10 +171,12 @@ def _check_values(element: Element, place: _Place) -> None:
             continue
         if not kind.words and not kind.whole and (numbers := read_numbers(text)) and kind.least <= len(numbers) <= kind.most:
             continue
-        if not kind.words and not text.strip():
+        if not kind.words and not text.strip() and name not in place.filled:
             del attributes[name]
         elif not _fits(text, kind):
             raise refuse(codes.BAD_NUMBER, f"<{element.tag} {name}> is '{_short(text)}', expected {kind}", element.origin)
+        elif not kind.words and ("x" in text or "X" in text):
+            attributes[name] = _as_decimals(text)
 
 
 def _check_needs(element: Element, place: _Place) -> None:
@@ -187,6 +195,8 @@ _LONGEST = 1000
 
 
 def _fits(text: str, kind: Kind) -> bool:
+    if not kind.words and not text.isascii():
+        return False
     if kind.words:
         return all(word in kind.words for word in text.split()) if kind.several else text in kind.words
     numbers = None if kind.whole else read_numbers(text)
@@ -204,7 +214,21 @@ def _is_number(word: str) -> bool:
     """Whether MuJoCo reads it as a number: also nan, infinities and hexadecimal ones; not one that is too large for a double."""
     if _NUMBER.fullmatch(word) is None:
         return False
-    return not word.lstrip("+-")[0].isdigit() or "x" in word.lower() or not isinf(float(word))
+    if "x" in word.lower():
+        return _of_hexadecimal(word) is not None
+    return not word.lstrip("+-")[0].isdigit() or not isinf(float(word))
+
+
+def _of_hexadecimal(word: str) -> float | None:
+    try:
+        return float.fromhex(word)
+    except (OverflowError, ValueError):
+        return None
+
+
+def _as_decimals(text: str) -> str:
+    """Numbers of which some are hexadecimal, which only MuJoCo reads, as everybody does."""
+    return " ".join(number_text(float.fromhex(word)) if "x" in word.lower() else word for word in text.split())
 
 
 def _short(text: str) -> str:

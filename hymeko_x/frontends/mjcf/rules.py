@@ -132,6 +132,8 @@ def _numeric(element: Element) -> str | None:
     room, count = int(element.attributes.get("size", "-1")), len(element.attributes.get("data", "").split())
     if "size" in element.attributes and room < 1:
         return f"<numeric size> is '{room}', expected more than 0"
+    if room < 0 and not count:
+        return "<numeric> needs data or a size"
     return None if room < 0 or count <= room else f"<numeric data> has {count} numbers, and room for {room}"
 
 
@@ -184,14 +186,48 @@ def _attached(element: Element) -> str | None:
     return f"<{element.tag}> needs site1 and site2, or body1{' and anchor' if element.tag == 'connect' else ''}"
 
 
+def _hull(element: Element) -> str | None:
+    said = element.attributes.get("maxhullvert", "-1")
+    return None if int(said) < 0 or int(said) > 3 else f"<mesh maxhullvert> is '{said}', expected more than 3"
+
+
+def _direct_current(element: Element) -> str | None:
+    """What no class can make up for: a constant or resistance of zero that no nominal values give, half of a thermal model."""
+    constants, resistance, thermal = (_numbers(element, name) for name in ("motorconst", "resistance", "thermal"))
+    said = element.attributes
+    if constants and "nominal" not in said and not any(number > 0.0 for number in constants):
+        return f"<dcmotor motorconst> is '{said['motorconst']}', expected more than 0"
+    if resistance and "nominal" not in said and resistance[0] <= 0.0:
+        return f"<dcmotor resistance> is '{said['resistance']}', expected more than 0"
+    both = thermal[:2]
+    half = len(both) == 2 and max(both) > 0.0 and min(both) <= 0.0
+    return f"<dcmotor thermal> is '{said['thermal']}', expected two numbers more than 0 first" if half else None
+
+
 _NOT_NEGATIVE = _less_than(0.0, "cutoff", "noise")
 _COUNTS = tuple(f"nuser_{kind}" for kind in ("body", "jnt", "geom", "site", "cam", "tendon", "actuator", "sensor"))
 _TRANSMITS = (_only_with("site", "refsite"), _only_with("cranksite", "slidersite", "cranklength"))
+
+_DAMPED = (_gains, _less_than(0.0, "kv", "dampratio"))
+_DRIVES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
+    {
+        "position": (*_DAMPED, _less_than(0.0, "timeconst")),
+        "intvelocity": _DAMPED,
+        "orientation": _DAMPED,
+        "pid": (*_DAMPED, _less_than(0.0, "slewmax")),
+        "damper": (_less_than(0.0, "kv", "ctrlrange"),),
+        "adhesion": (_less_than(0.0, "gain", "ctrlrange"),),
+        "muscle": (_less_than(0.0, "tausmooth"),),
+        "dcmotor": (_less_than(0.0, "motorconst", "resistance", "inductance"), _direct_current),
+    }
+)
+"""Of actuators and of what their classes say."""
 
 _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
     {
         "compiler": (_eulerseq,),
         "size": (_less_than(-1.0, *_COUNTS, "njmax", "nconmax", "nstack"),),
+        "option": (_less_than(0.0, "actuatorgroupdisable"),),
         "statistic": (_positive("extent"),),
         "default": (_unique(),),
         "body": (_unique("inertial", "freejoint"),),
@@ -199,6 +235,10 @@ _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
         "body/joint": (_springdamper,),
         "body/geom": (_contact_size,),
         "contact/pair": (_contact_size,),
+        "visual/global": (_positive("realtime"),),
+        "visual/map": (_positive("znear"),),
+        "asset/mesh": (_hull,),
+        "default/mesh": (_hull,),
         "asset/hfield": (_hfield, _positive("size")),
         "asset/material": (_one_of("name"), _layers),
         "custom/numeric": (_numeric,),
@@ -211,8 +251,8 @@ _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
         "tendon/fixed": (_less_than(0.0, "armature"), _springlength),
         "tendon/spatial": (_less_than(0.0, "armature"), _springlength),
         "tendon/spatial/pulley": (_positive("divisor"),),
-        "actuator/position": (_gains, _less_than(0.0, "kv", "dampratio")),
-        "actuator/intvelocity": (_gains, _less_than(0.0, "kv", "dampratio")),
+        **{f"{place}/{tag}": rules for place in ("actuator", "default") for tag, rules in _DRIVES.items()},
+        "sensor/contact": (_positive("num"),),
         "sensor/user": (_datatype, _together("objtype", "objname")),
         **dict.fromkeys(("sensor/distance", "sensor/normal", "sensor/fromto"), (_one_of("geom1", "body1"), _one_of("geom2", "body2"))),
     }
