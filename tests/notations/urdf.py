@@ -19,13 +19,13 @@ NUMERIC = frozenset(
 XACRO = "http://www.ros.org/wiki/xacro"
 
 
-def otherwise(text: bytes, chance: Random) -> bytes:
-    """Another text of the same robot."""
+def otherwise(text: bytes, chance: Random, *, quaternions: bool = False) -> bytes:
+    """Another text of the same robot; ``quaternions`` are those of URDF 1.1, which not every reader knows."""
     root = etree.fromstring(text)
-    if chance.random() < 0.3:
+    if quaternions:
         root.set("version", "1.1")
     for element in list(root.iter("origin")):
-        _turn(element, chance, root.get("version") == "1.1")
+        _turn(element, chance, quaternions)
     for element in root.iter("visual", "collision", "joint", "inertial"):
         if element.find("origin") is None and chance.random() < 0.5:
             element.append(etree.Element("origin", rpy="0 0 0"))
