@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.legalize_joints import expand_screws
 from hymeko_x.ir.legalize_names import make_names_usable
 from hymeko_x.ir.legalize_urdf import hold_or_free_open_bases
-from hymeko_x.ir.legalize_usd import choose_layout
+from hymeko_x.ir.legalize_usd import choose_layout, drop_stale_groups
 
 if TYPE_CHECKING:
     from hymeko_x.ir.legalize import Rule
 
-RULES: tuple[Rule, ...] = (make_names_usable, hold_or_free_open_bases, expand_screws, choose_layout)
+RULES: tuple[Rule, ...] = (make_names_usable, hold_or_free_open_bases, expand_screws, drop_stale_groups, choose_layout)

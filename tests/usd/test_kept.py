@@ -176,3 +176,16 @@ def test_the_second_prim_of_a_name_gets_no_other_name() -> None:
     assert [key.name for key, _ in mechanism.vertices(Body)] == ["leg", "leg#2"]
     assert written(mechanism).count(b"displayName") == 1  # that of the robot
     assert again(mechanism) == mechanism
+
+
+def test_what_leads_to_the_prim_itself_or_below_it_still_leads_there(tmp_path: Path) -> None:
+    network = (
+        "    token outputs:odd:surface.connect = </robot/looks/net/graph.outputs:out>\n"
+        "    rel friends = [</robot/looks/net>, </net>]\n"
+        'def NodeGraph "graph"\n{\n    token outputs:out\n}\n'
+    )
+    source = robot(body("a"), f'def Scope "looks"\n{{\ndef NodeGraph "net"\n{{\n{network}}}\n}}\n')
+    stage = opened(written(read_text(source)), tmp_path)
+    net = stage.GetPrimAtPath("/robot/looks/net")
+    assert list(map(str, net.GetAttribute("outputs:odd:surface").GetConnections())) == ["/robot/looks/net/graph.outputs:out"]
+    assert list(map(str, net.GetRelationship("friends").GetTargets())) == ["/robot/looks/net", "/net"]

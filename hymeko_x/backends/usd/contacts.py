@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put
 from hymeko_x.formats import usd as words
+from hymeko_x.ir.legalize_usd import APART_BY_GROUPS, GROUPED
 from hymeko_x.ir.parts import Contact, Role
 
 if TYPE_CHECKING:
@@ -16,11 +17,13 @@ _BINDING = "material:binding:physics"
 
 
 def write_contacts(sheet: Sheet) -> None:
-    """Pairs of bodies that do not collide, on the first of them; each prim carries one of its pairs."""
+    """Pairs of bodies that do not collide, on the first of them; each prim carries one of its pairs. Collision groups say others."""
     first: set[Any] = set()
     for key, contact, arcs in sheet.mechanism.edges(Contact):
         paths = [sheet.homes.get(arc.target) for arc in arcs if arc.target.kind == "body"]
-        if contact.kind != "exclude" or len(paths) != 2 or None in paths:
+        if contact.kind != "exclude" or sheet.mechanism.notation(key, GROUPED) == APART_BY_GROUPS:
+            continue
+        if len(paths) != 2 or None in paths:
             continue
         spec = sheet.prims[paths[0]]
         apply(spec, "PhysicsFilteredPairsAPI")

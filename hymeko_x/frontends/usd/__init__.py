@@ -17,6 +17,7 @@ from hymeko_x.formats.usd_actuators import PRIM as ACTUATOR
 from hymeko_x.frontends.usd.actuators import read_actuator
 from hymeko_x.frontends.usd.bare_links import hang_bare_links, read_bare_links
 from hymeko_x.frontends.usd.bodies import BODY, read_body, read_mass
+from hymeko_x.frontends.usd.collision_groups import read_collision_groups
 from hymeko_x.frontends.usd.contacts import read_filtered_pairs
 from hymeko_x.frontends.usd.dialects import is_passive_drive, is_world, read_named_mimic
 from hymeko_x.frontends.usd.draft import Draft
@@ -108,6 +109,7 @@ def _read_things(prims: list[Prim], ends: dict[str, Driven], draft: Draft) -> No
             read_actuator(prim, ends, draft)
     for path in draft.bodies:
         read_filtered_pairs(draft.prim_at(path), draft)
+    read_collision_groups(prims, draft)
 
 
 def _read_joints(prims: list[Prim], bare: list[Prim], draft: Draft) -> dict[str, Driven]:

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 STAGE = "/"
 """The path of the extra that holds what the stage as a whole says."""
 _STAGE_KNOWN = ("upAxis", "metersPerUnit", "kilogramsPerUnit", "defaultPrim", "subLayers", "subLayerOffsets", "primChildren")
+_TARGETS = (("targetPaths", "targetPathList"), ("connectionPaths", "connectionPathList"))
 _ARCS = ("references", "payload", "inheritPaths", "specializes", "variantSetNames", "variantSelection")
 _COMPOSED = ("specifier", "typeName", "apiSchemas", "instanceable", *_ARCS)
 
@@ -110,11 +111,19 @@ def _text_of(prim: Prim, rest: _Rest, scratch: Any, *, is_over: bool) -> str:
         copy.SetInfo(name, spec.GetInfo(name))
     for name in rest.properties:
         Sdf.CopySpec(spec.layer, f"{prim.path}.{name}", scratch, f"/{prim.name}.{name}")
+        _lead_where_it_led(spec.layer.GetObjectAtPath(f"{prim.path}.{name}"), scratch.GetObjectAtPath(f"/{prim.name}.{name}"))
     if rest.moved is not None and rest.moved != Gf.Matrix4d(1):
         _author_matrix(copy, rest.moved)
     text = str(copy.GetAsText().strip())
     del scratch.rootPrims[prim.name]
     return text
+
+
+def _lead_where_it_led(item: Any, copy: Any) -> None:
+    """A copied property whose targets are the prim itself or below it leads there, not to the copy, as USD thinks it should."""
+    for field, paths in _TARGETS:
+        if item.HasInfo(field):
+            getattr(copy, paths).CopyItems(getattr(item, paths))
 
 
 def _gather_stage(layer: Any, draft: Draft) -> None:
