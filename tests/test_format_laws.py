@@ -16,15 +16,25 @@ from hymeko_x.testing import mechanisms
 FEW = settings(max_examples=max(5, settings.default.max_examples // 20), deadline=None, suppress_health_check=list(HealthCheck))
 
 
+OPTIONS = st.builds(
+    Options,
+    st.sampled_from([None, "fixed", "free"]),
+    st.sampled_from([None, "none", "motor", "position", "velocity"]),
+    st.sampled_from([None, "single", "layered"]),
+    st.sampled_from([None, True, False]),
+    split=st.booleans(),
+)
+
+
 @pytest.mark.parametrize("format", ["mjcf", "urdf", "usd", "xacro"])
 @FEW
-@given(mechanism=mechanisms())
-def test_what_is_legal_stays_as_it_is(format: str, mechanism: Mechanism) -> None:
+@given(mechanism=mechanisms(), options=OPTIONS)
+def test_what_is_legal_stays_as_it_is(format: str, mechanism: Mechanism, options: Options) -> None:
     try:
-        legal = legalize(mechanism, format, Options(), Report())
+        legal = legalize(mechanism, format, options, Report())
     except Refusal:
         assume(False)
-    assert diff(legal, legalize(legal, format, Options(), Report())) == ()
+    assert diff(legal, legalize(legal, format, options, Report())) == ()
 
 
 ROBOT = """<robot name="r"><link name="base"><inertial><mass value="2"/>

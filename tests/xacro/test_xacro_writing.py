@@ -13,6 +13,7 @@ from xml.dom import minidom
 import pytest
 import xacro
 from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
 from lxml import etree
 
 import hymeko_x as hx
@@ -134,10 +135,10 @@ def test_whatever_urdf_can_say_expands_to_it(mechanism: Mechanism) -> None:
     check(mechanism)
 
 
-@given(mechanisms())
+@given(mechanisms(), st.builds(Options, st.sampled_from([None, "fixed", "free"]), st.sampled_from([None, "motor", "position"])))
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-def test_every_legal_mechanism_expands_to_its_urdf(mechanism: Mechanism) -> None:
-    check(legalize(replace(mechanism, extras={}), "xacro", Options(), Report()))
+def test_every_legal_mechanism_expands_to_its_urdf(mechanism: Mechanism, options: Options) -> None:
+    check(legalize(replace(mechanism, extras={}), "xacro", options, Report()))
 
 
 @pytest.mark.parametrize("declared", ["", ' xmlns:xacro="http://ros.org/wiki/xacro"'])
