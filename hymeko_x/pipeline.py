@@ -283,10 +283,12 @@ def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference
 
 def _is_dress(difference: Difference, format: Format) -> bool:
     """Whether the format only wears its own clothes: settings of the file that every file of the format has."""
+    if difference.element != ROOT:
+        return False
     if format == formats.XACRO and difference.field == "urdf @xmlns:xacro":
-        return difference.element == ROOT  # each xacro file declares its own prefix, and no expansion does
+        return True  # each xacro file declares its own prefix, and no expansion does
     own = "usd" if format.name.startswith("usd") else format.name  # the extras of each kind of USD are USD text
-    return difference.element == ROOT and difference.before is None and difference.field.startswith(f"{own} ")
+    return difference.before is None and difference.field.startswith(f"{own} ")
 
 
 def with_references_of(packed: Mechanism, mechanism: Mechanism) -> Mechanism:

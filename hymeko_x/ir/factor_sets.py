@@ -72,19 +72,22 @@ def share(rows: Sequence[Row], costs: Costs) -> list[Shared]:
 
 def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], list[int]] | None:
     """The set that saves most, and the places of the rows that have all of it."""
-    whole = [frozenset(row) for row in rows]
     best, most = None, costs.least - 1
-    for pairs in candidates(rows):
-        places = [place for place, row in enumerate(whole) if pairs <= row]
-        fields = sum(len(name) + len(text) + costs.field for name, text in pairs)
-        saved = (len(places) - 1) * fields - len(places) * use - costs.definition
+    for pairs, members in _ranked(rows):
+        fields = sum([len(name) + len(text) + costs.field for name, text in pairs])
+        saved = (len(members) - 1) * fields - len(members) * use - costs.definition
         if saved > most:
-            best, most = (pairs, places), saved
-    return best
+            best, most = (pairs, members), saved
+    return None if best is None else (best[0], sorted(best[1]))
 
 
 def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
     """Sets of fields that rows share, by about how much they save, the best first. Near linear in the number of fields."""
+    return [shared for shared, _ in _ranked(rows)]
+
+
+def _ranked(rows: Sequence[Row]) -> list[tuple[frozenset[Pair], Members]]:
+    """The same with the rows that have all of a set."""
     owners = _owners(rows)
 
     def common(members: Members) -> frozenset[Pair]:
@@ -103,9 +106,9 @@ def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
         both = first & second
         if len(both) > 1 and both not in closed:
             closed[both] = common(both)
-    scored = [(_worth(members, shared), shared) for members, shared in closed.items()]
+    scored = [(_worth(members, shared), shared, members) for members, shared in closed.items()]
     worthy = sorted((entry for entry in scored if entry[0] >= _LEAST), key=lambda entry: (-entry[0], sorted(entry[1])))
-    return [shared for _, shared in worthy[:_SEEDS]]
+    return [(shared, members) for _, shared, members in worthy[:_SEEDS]]
 
 
 def _owners(rows: Sequence[Row]) -> dict[Pair, Members]:

@@ -60,7 +60,7 @@ def make_tensors_physical(mechanism: Mechanism, options: Options, report: Report
             words = f"{_flaw(inertial.tensor)}: {numbers_text(inertial.tensor)} becomes {numbers_text(tensor)}"
             _say(mechanism, report, key, words, serious=math.dist(tensor, inertial.tensor) > _ROUNDING)
             inertial = replace(inertial, tensor=tensor, written=None)
-        if inertial != body.inertial:
+        if inertial is not body.inertial:
             changed[key] = replace(body, inertial=inertial)
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 

@@ -41,8 +41,10 @@ def make_limits_intervals(mechanism: Mechanism, options: Options, report: Report
 
 def _legal_dof(dof: Dof, said: Said) -> Dof:
     lower, upper = _interval(dof, said)
-    limits = replace(dof.limits, lower=lower, upper=upper, effort=_effort(dof.limits, said))
-    return dof if limits == dof.limits else replace(dof, limits=limits)
+    old, effort = dof.limits, _effort(dof.limits, said)
+    if (lower, upper, effort) == (old.lower, old.upper, old.effort):
+        return dof
+    return replace(dof, limits=replace(old, lower=lower, upper=upper, effort=effort))
 
 
 def _interval(dof: Dof, said: Said) -> tuple[float | None, float | None]:

@@ -44,6 +44,8 @@ def close_by_points(mechanism: Mechanism, options: Options, report: Report) -> M
     """A loop that a joint closes becomes welds and points that stay together: a hinge is two points on its axis."""
     del options
     joints = [(key, loop, arcs) for key, loop, arcs in mechanism.edges(Loop) if loop.kind == "joint" and len(arcs) == 2]
+    if not joints:
+        return mechanism
     names = names_in_use(mechanism)
     edges: dict[Id, RobotEdge] = {}
     for key, loop, (first, second) in joints:
@@ -55,7 +57,7 @@ def close_by_points(mechanism: Mechanism, options: Options, report: Report) -> M
         for number, closure in enumerate(closures):
             edges[key if number == 0 else names.take("loop", key.name)] = closure
     gone = [key for key, _, _ in joints if key not in edges]
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=gone)) if joints else mechanism
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=gone))
 
 
 def anchor_closures(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:

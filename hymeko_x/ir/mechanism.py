@@ -126,15 +126,29 @@ class Mechanism:
 
     def vertices(self, part: type[P]) -> Iterator[tuple[Id, P]]:
         """The vertices that carry this kind of part, in order."""
+        if KINDS.get(part, "") not in self._kinds_of_vertices:
+            return
         for key, data in self.graph.vertices.items():
             if isinstance(data, part):
                 yield key, data
 
     def edges(self, part: type[P]) -> Iterator[tuple[Id, P, tuple[RobotArc, ...]]]:
         """The edges of this kind with their arcs, in order."""
+        if KINDS.get(part, "") not in self._kinds_of_edges:
+            return
         for key, edge in self.graph.edges.items():
             if isinstance(edge.data, part):
                 yield key, edge.data, edge.arcs
+
+    @cached_property
+    def _kinds_of_vertices(self) -> frozenset[str]:
+        """The kinds of parts of which there is a vertex, and "" for whatever has no kind of its own: most robots have few."""
+        return frozenset([key.kind for key in self.graph.vertices]) | {""}
+
+    @cached_property
+    def _kinds_of_edges(self) -> frozenset[str]:
+        """The same of edges."""
+        return frozenset([key.kind for key in self.graph.edges]) | {""}
 
     # ---- the tree --------------------------------------------------------------------------------------------------------
 
@@ -238,7 +252,7 @@ class Mechanism:
         return changed
 
 
-_OF_EDGES = ("joints", "children", "parent_joint", "shapes", "mounts")
+_OF_EDGES = ("_kinds_of_edges", "joints", "children", "parent_joint", "shapes", "mounts")
 """What a mechanism computes of its edges alone."""
 
 

@@ -7,6 +7,7 @@ a value with this digest; without a mark the file says nothing there.
 from __future__ import annotations
 
 from collections import defaultdict
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 from hymeko_x.ir.graph import Arc, Edge
@@ -270,10 +271,15 @@ def _id_list(name: str, ids: Iterable[Id]) -> str:
 
 
 def _change(change: Change) -> str:
-    path = change.path[1:] if change.path[0] == "data" else change.path
     turned = change.path[-1] == TURN
     value = encoded_turn(change.value) if turned else encoded(change.value)  # type: ignore[arg-type]
-    return print_field(".".join(map(str, path)), value, change.guard)
+    return print_field(_path_text(change.path), value, change.guard)
+
+
+@lru_cache(1024)
+def _path_text(path: Path) -> str:
+    """A path as it is printed, of which there are few in all robots."""
+    return ".".join(map(str, path[1:] if path[0] == "data" else path))
 
 
 def _changed(item: Field) -> object:

@@ -41,10 +41,10 @@ def _take_usual(fixed: list[Node], tag: str) -> str:
 
 def _text(node: Node, tag: str) -> str:
     """The first such child as text, if it has nothing but attributes; empty otherwise."""
-    kid = next((kid for kid in node.left() if kid.tag == tag), None)
-    if kid is None or kid.kids or kid.text is not None:
-        return ""
-    return f"<{tag}{attributes_text(kid.attributes)}/>"
+    for kid in node.kids:
+        if kid.tag == tag and not kid.taken:
+            return "" if kid.kids or kid.text is not None else f"<{tag}{attributes_text(kid.attributes)}/>"
+    return ""
 
 
 def _is_fixed(node: Node, draft: Draft) -> bool:

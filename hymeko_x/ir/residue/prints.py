@@ -18,6 +18,9 @@ _IN_ELEMENTS = re.compile(
 """What a default class of MJCF says for its elements, each of which has it in a field of its own when it is read."""
 
 
+_SIGNS = {1: "1.0", -1: "-1.0", 0: "0.0"}
+
+
 def print_of(mechanism: Mechanism, key: Id) -> str:
     """The digest of an element with what it is on, or of a body with what is on it."""
     return Prints(mechanism).of(key)
@@ -69,7 +72,7 @@ class Prints:
     def _edge(self, edge: RobotEdge) -> list[str]:
         texts = [self.nameless(edge.data)]
         for arc in edge.arcs:
-            texts += [repr(float(arc.sign)), repr(arc.role), repr(arc.target.kind), self.text(arc.weight)]
+            texts += [_SIGNS[arc.sign], repr(arc.role), repr(arc.target.kind), self.text(arc.weight)]
         return texts
 
 
