@@ -162,7 +162,7 @@ def numbers_of(said: Mapping[str, str], name: str, least: int, most: int) -> tup
 def vector_of(said: Mapping[str, str], name: str, default: Vec3) -> Vec3:
     """Three numbers."""
     found = numbers_of(said, name, 3, 3)
-    return default if found is None else (found[0], found[1], found[2])
+    return default if found is None else found  # type: ignore[return-value]
 
 
 def radians(degrees: float) -> float:
@@ -195,17 +195,16 @@ def plain(said: Mapping[str, str], names: tuple[str, ...]) -> tuple[Any, ...]:
 
 
 _TURN_COUNTS = MappingProxyType({"quat": 4, "axisangle": 4, "xyaxes": 6})
+_ALL_TURNS = frozenset(TURNS)
 
 # ---- orientations -----------------------------------------------------------------------------------------------------------
 
 
 def written_turn(said: Mapping[str, str], settings: Settings) -> Written | None:
     """The orientation as it is written; angles in rad. None for none, or for no rotation. Raises: BadAttribute."""
-    for turn in TURNS:
-        if turn in said:
-            break
-    else:
+    if _ALL_TURNS.isdisjoint(said):
         return None
+    turn = next(turn for turn in TURNS if turn in said)
     count = _TURN_COUNTS.get(turn, 3)
     numbers = numbers_of(said, turn, count, count)
     assert numbers is not None

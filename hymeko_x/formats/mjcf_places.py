@@ -314,6 +314,8 @@ def _read_inertial(said: Mapping[str, str], settings: Settings) -> Inertial:
     if diagonal is None:
         return Inertial(mass[0], com)
     tensor = (*diagonal, 0.0, 0.0, 0.0)
+    if turn is None:
+        return Inertial(mass[0], com, tensor)  # type: ignore[arg-type]
     frame = read_pose({name: said[name] for name in TURNS if name in said}, settings)
     if frame == IDENTITY and frame.written is None:
         return Inertial(mass[0], com, tensor)  # type: ignore[arg-type]

@@ -103,7 +103,9 @@ def _limits(found: Values) -> Limits:
 
 
 def _check_dofs(dofs: list[Dof], found: list[tuple[Element, Spot]], parent: Id) -> None:
-    """What MuJoCo refuses."""
+    """What MuJoCo refuses, which takes several dofs or a free one."""
+    if not dofs or (len(dofs) == 1 and dofs[0].kind is not DofKind.FREE):
+        return
     after_ball = False
     velocities = 0
     for dof, (element, _) in zip(dofs, found, strict=True):
