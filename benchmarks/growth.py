@@ -28,7 +28,7 @@ SHAPES: Mapping[str, int] = {"chain": 1, "tree": 4}
 """How many links hang on each."""
 ROUNDS = 20_000
 """How many links are converted in all, at least, by a process that measures."""
-LIMIT = 300.0
+LIMIT = 900.0
 """Seconds after which nobody waits for a process any longer."""
 
 
