@@ -10,15 +10,22 @@ import numpy as np
 import warp
 from loop import answer_all
 from newton import JointType
+from newton.solvers import SolverMuJoCo
 from newton.usd import SchemaResolverMjc, SchemaResolverNewton
 
 warp.config.quiet = True
 _NO_LIMIT = 1e6
+_PULLEY = 2.0
 
 
 def describe(job: dict[str, Any]) -> dict[str, Any]:
-    """Masses and centres of bodies; type, ends, frames, axes and limits of joints. Names are the last step of a label."""
+    """Masses and centres of bodies; type, ends, frames, axes and limits of joints. Names are the last step of a label.
+
+    With ``tendons`` in the job also what tendons lead through.
+    """
     builder = newton.ModelBuilder()
+    if job.get("tendons"):
+        SolverMuJoCo.register_custom_attributes(builder)
     source = job["source"]
     if source.endswith(".urdf"):
         builder.add_urdf(source, floating=True, collapse_fixed_joints=False, parse_visuals_as_colliders=False)
@@ -26,7 +33,19 @@ def describe(job: dict[str, Any]) -> dict[str, Any]:
         builder.add_mjcf(source, collapse_fixed_joints=False)
     else:
         builder.add_usd(source, collapse_fixed_joints=False, schema_resolvers=[SchemaResolverNewton(), SchemaResolverMjc()])
-    return {"bodies": _bodies(builder), "joints": _joints(builder)}
+    tendons = _tendons(builder) if job.get("tendons") else []
+    return {"bodies": _bodies(builder), "joints": _joints(builder), "tendons": tendons}
+
+
+def _tendons(builder: Any) -> list[dict[str, list[float]]]:
+    """The steps of each spatial tendon (0 site, 1 shape, 2 pulley) with the divisors of its pulleys, and coefficients of the fixed ones."""
+    said = {name.rpartition("tendon_")[2]: list(item.values or ()) for name, item in builder.custom_attributes.items() if "tendon_" in name}
+    found = []
+    for first, count, kind in zip(said["wrap_adr"], said["wrap_num"], said["type"], strict=True):
+        steps = [float(step) for step in said["wrap_type"][first : first + count]] if kind else []
+        divisors = [float(said["wrap_prm"][first + place]) for place, step in enumerate(steps) if step == _PULLEY]
+        found.append({"steps": steps, "divisors": divisors})
+    return [*sorted(found, key=str), {"coefficients": _list(said["coef"])}]
 
 
 def _bodies(builder: Any) -> list[dict[str, Any]]:

@@ -102,6 +102,18 @@ def test_mujocos_converter_writes_the_tendons_that_we_read_from_its_source(tmp_p
         assert tendons_of(hx.load(answer["stage"])) == expected, path.stem
 
 
+def test_newton_leads_cables_through_our_stages_as_through_the_source(tmp_path: Path) -> None:
+    need(NEWTON)
+    sources = files_of("mjcf", names("tendon pulley_fixed_site_wrap arm21 stacker"))
+    stages = [tmp_path / f"{path.stem}.usda" for path in sources]
+    for source, stage in zip(sources, stages, strict=True):
+        hx.dump(hx.load(source), stage)
+    answers = NEWTON.run([{"source": str(path), "tendons": True} for path in (*sources, *stages)])
+    assert [answer["error"] for answer in answers if "error" in answer] == []
+    assert [answer["tendons"] for answer in answers[: len(sources)]] == [answer["tendons"] for answer in answers[len(sources) :]]
+    assert all(len(answer["tendons"]) > 1 for answer in answers)
+
+
 def tendons_of(mechanism: Mechanism) -> list[tuple[object, ...]]:
     """Tendons in order, their steps by the names of what they lead through; what is MuJoCo's default counts as unsaid."""
     found = []

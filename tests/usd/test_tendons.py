@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from pxr import Usd
+from pxr import Usd, UsdGeom
 
 import hymeko_x as hx
 from hymeko_x import formats, pipeline
@@ -138,6 +138,8 @@ def test_a_tendon_is_written_as_mujocos_schema_names_it(robot: Path, tmp_path: P
         "mjc:springlength": [0.3, 0.4],
         "mjc:solimplimit": [0.8, 0.99, 0.001, 0.5, 2.0],
     }
+    led = said(found.GetPrimAtPath("/cables/tendons/led"))
+    assert (led["mjc:path:segments"], led["mjc:path:divisors"]) == ([1, 1], [1.0, 3.0])
     assert said(found.GetPrimAtPath("/cables/tendons/sum")) == {
         "mjc:type": "fixed",
         "mjc:path": ["turn", "bend", "lift"],
@@ -147,6 +149,22 @@ def test_a_tendon_is_written_as_mujocos_schema_names_it(robot: Path, tmp_path: P
         "mjc:stiffness": 2.0,
         "mjc:solimplimit": [0.9, 0.99, 0.001, 0.5, 2.0],
         "mjc:solreflimit": [0.03, 1.0],
+    }
+
+
+def test_a_site_of_a_cable_is_a_ball_that_nobody_sees_and_others_are_mere_places(robot: Path, tmp_path: Path) -> None:
+    robot.write_text(ROBOT.replace('<site name="t"', '<site name="alone" size=".02"/><site name="t" size=".03"'))
+    stage = tmp_path / "cables.usda"
+    hx.convert(robot, stage)
+    opened_stage = Usd.Stage.Open(str(stage))
+    sites = [prim for prim in opened_stage.Traverse() if "MjcSiteAPI" in prim.GetPrimTypeInfo().GetAppliedAPISchemas()]
+    assert {prim.GetName(): (str(prim.GetTypeName()), UsdGeom.Imageable(prim).ComputePurpose()) for prim in sites} == {
+        **dict.fromkeys(("top", "s", "beside", "t"), ("Sphere", "guide")),
+        "alone": ("Xform", "default"),
+    }
+    assert {prim.GetName(): prim.GetAttribute("radius").Get() for prim in sites if prim.IsA(UsdGeom.Sphere)} == {
+        **dict.fromkeys(("top", "s", "beside"), 0.005),
+        "t": 0.03,
     }
 
 

@@ -14,16 +14,19 @@ from hymeko_x.formats import usd as words
 from hymeko_x.formats.xml import read_numbers
 from hymeko_x.ir.legalize_usd import NESTED
 from hymeko_x.ir.mechanism import ROOT, WORLD, pose_weight
-from hymeko_x.ir.parts import Body, Camera, Frame, Light, Mesh, Mount
+from hymeko_x.ir.parts import Body, Camera, Frame, Light, Mesh, Mount, Tendon
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle, unit_quat
 
 if TYPE_CHECKING:
+    from hymeko_x.backends.usd.prims import Prim
     from hymeko_x.backends.usd.sheet import Sheet
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Quat, Tensor, Vec3
 
 _NEAR = 1e-9
+_SITE_SIZE = 0.005
+"""The radius in m of a site of which MJCF says none."""
 
 
 def write_bodies(sheet: Sheet) -> None:
@@ -164,7 +167,11 @@ def _eigen(tensor: Tensor) -> tuple[Vec3, Quat]:
 
 
 def write_mounts(sheet: Sheet) -> None:
-    """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras and lights; each carries where it is mounted."""
+    """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras and lights; each carries where it is mounted.
+
+    A site of a cable is a small ball that nobody sees, as MuJoCo's converter writes sites: Newton leads cables through shapes alone.
+    """
+    knots = {arc.target for _, _, arcs in sheet.mechanism.edges(Tendon) for arc in arcs if arc.target.kind == "frame"}
     for key, _, arcs in sheet.mechanism.edges(Mount):
         body = next((arc for arc in arcs if arc.sign > 0), None)
         thing = next((arc for arc in arcs if arc.sign < 0), None)
@@ -178,6 +185,16 @@ def write_mounts(sheet: Sheet) -> None:
         sheet.homes[key] = spec.path
         sheet.move(spec, pose_weight(body), on=body.target)
         _write_thing(spec, part)
+        if isinstance(part, Frame) and thing.target in knots and sheet.mechanism.notation(thing.target, words.PATH) is None:
+            _write_ball(spec, part.size[0] if part.size and part.size[0] > 0.0 else _SITE_SIZE)
+
+
+def _write_ball(spec: Prim, radius: float) -> None:
+    """The shape of a site, of this radius in m."""
+    spec.kind = "Sphere"
+    put(spec, "radius", T.Double, radius)
+    put(spec, "purpose", T.Token, "guide")
+    put(spec, "extent", T.Float3Array, Vt.Vec3fArray([Gf.Vec3f(-radius), Gf.Vec3f(radius)]))
 
 
 def _type_of(part: Frame | Camera | Light) -> str:

@@ -61,12 +61,14 @@ class _Path:
 
 
 def _path(sheet: Sheet, arcs: tuple[RobotArc, ...]) -> _Path | None:
-    """The path as the schema divides it; None where it leads through something that is no prim."""
+    """The path as the schema divides it; None where it leads through something that is no prim.
+
+    Nothing is in the first segment of a path that begins with a pulley: MuJoCo and Newton overlook the divisor of the first one.
+    """
     path = _Path()
-    for place, arc in enumerate(arcs):
+    for arc in arcs:
         if arc.role == PULLEY:
-            divisor = numbers_weight(arc)[0]
-            path.divisors = [divisor] if place == 0 else [*path.divisors, divisor]
+            path.divisors.append(numbers_weight(arc)[0])
             continue
         prim = _prim_of(sheet, arc)
         if prim is None:
