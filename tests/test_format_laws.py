@@ -13,6 +13,7 @@ from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.testing import mechanisms
 
+SOME = settings(max_examples=max(5, settings.default.max_examples // 5), deadline=None, suppress_health_check=list(HealthCheck))
 FEW = settings(max_examples=max(5, settings.default.max_examples // 20), deadline=None, suppress_health_check=list(HealthCheck))
 
 
@@ -27,7 +28,7 @@ OPTIONS = st.builds(
 
 
 @pytest.mark.parametrize("format", ["mjcf", "urdf", "usd", "xacro"])
-@FEW
+@SOME
 @given(mechanism=mechanisms(), options=OPTIONS)
 def test_what_is_legal_stays_as_it_is(format: str, mechanism: Mechanism, options: Options) -> None:
     try:
