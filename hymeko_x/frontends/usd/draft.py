@@ -116,13 +116,18 @@ class Draft:
         value = prim.value(name)
         if value is None:
             value = prim.earliest(name)
-        if name in _SIZES and value is not None and _size(value) != _SIZES[name]:
-            said = f"'{name}' has {_size(value)} numbers and takes {_SIZES[name]}; it is kept as written"
+        if value is None:
+            return None
+        kind = prim.types[name]
+        read = _numbers(value, kind) if name in _SIZES else _rounded(value, kind)
+        if name in _SIZES and (read is None or len(read) != _SIZES[name]):
+            has = "is no row of numbers" if read is None else f"has {len(read)} numbers"
+            said = f"'{name}' {has} and takes {_SIZES[name]}; it is not used"
             self.report.error(codes.BAD_VALUE, said, self.origin, element=prim.path)
             return None
-        if value is not None and not prim.is_animated(name):
+        if not prim.is_animated(name):
             self.take(prim, name)
-        return _rounded(value, prim.types[name])
+        return read
 
     def axis(self, prim: Prim, name: str, default: str) -> str:
         """An authored axis: X, Y or Z. Any other word is reported and stays an extra, and the axis is the default."""
@@ -145,18 +150,20 @@ class Draft:
         return float(value) if isinstance(value, int | float) else default
 
 
-def _size(value: Any) -> int:
-    """How many numbers a value has."""
-    if hasattr(value, "imaginary"):
-        return 4
-    return len(value) if hasattr(value, "__len__") else 1
+def _numbers(value: Any, kind: str) -> tuple[float, ...] | None:
+    """The numbers of a vector, a quaternion or a row, whatever their precision; None for anything else."""
+    try:
+        numbers = [value.real, *numbers_of(value.imaginary)] if hasattr(value, "imaginary") else numbers_of(value)
+    except TypeError:  # no number, and none beside another
+        return None
+    if not isinstance(numbers, list) or not all(isinstance(number, int | float) for number in numbers):
+        return None
+    return tuple(map(single if kind.removesuffix("[]") in _SINGLE else float, numbers))
 
 
 def _rounded(value: Any, kind: str) -> Any:
-    if value is None or kind not in _SINGLE:
+    if kind not in _SINGLE:
         return value
     if isinstance(value, float):
         return single(value)
-    if kind == "quatf":
-        return (single(value.real), *map(single, numbers_of(value.imaginary)))
-    return tuple(map(single, numbers_of(value)))
+    return _numbers(value, kind)

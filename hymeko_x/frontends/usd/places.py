@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 from pxr import Gf, UsdGeom
 
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, cross, scaled, unit_quat
@@ -96,7 +97,8 @@ def _scale(lengths: list[float]) -> Vec3:
 
 def numbers_of(value: Any) -> list[Any]:
     """The numbers of a vector, a matrix (by rows) or an array of numbers. USD hands them out one by one forty times slower."""
-    return memoryview(value).tolist()
+    view = memoryview(value)
+    return view.tolist() if view.format != "e" else np.array(value).astype(float).tolist()  # halves are no numbers to Python
 
 
 def quat_of(quat: Any) -> Quat:

@@ -1,0 +1,78 @@
+"""A file may give a property another type than its schema: other precisions are the same numbers, anything else is reported."""
+
+from __future__ import annotations
+
+import pytest
+
+import hymeko_x as hx
+from hymeko_x import codes
+from hymeko_x.diagnostics import Report, Severity
+from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.ir.parts import Body, Joint
+from hymeko_x.ir.values import IDENTITY, Pose
+
+STAGE = """#usda 1.0
+(
+    defaultPrim = "r"
+    metersPerUnit = 1
+    upAxis = "Z"
+)
+def Xform "r" (prepend apiSchemas = ["PhysicsArticulationRootAPI"]) {
+    def Xform "a" (prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]) {
+        %s
+    }
+    def Xform "b" (prepend apiSchemas = ["PhysicsRigidBodyAPI"]) {
+    }
+    def PhysicsRevoluteJoint "j" {
+        rel physics:body0 = </r/a>
+        rel physics:body1 = </r/b>
+        %s
+    }
+}
+"""
+
+
+def read(body: str, joint: str, report: Report | None = None) -> Mechanism:
+    return hx.loads(STAGE % (body, joint), "usd", report=report)
+
+
+def frame(robot: Mechanism) -> Pose:
+    """Where the joint is in its first body."""
+    (weight,) = [arcs[0].weight for key, _, arcs in robot.edges(Joint) if key.name == "j"]
+    return weight if isinstance(weight, Pose) else IDENTITY
+
+
+@pytest.mark.parametrize("kind", ["quatf", "quatd", "quath", "float4", "double4", "float[]"])
+def test_turns_are_the_same_in_any_type(kind: str) -> None:
+    row = "[0.6, 0.8, 0, 0]" if kind.endswith("[]") else "(0.6, 0.8, 0, 0)"
+    found = frame(read("", f"{kind} physics:localRot0 = {row}")).quat
+    assert found == pytest.approx((0.6, 0.8, 0, 0), abs=1e-3 if kind == "quath" else 1e-12)
+
+
+@pytest.mark.parametrize("kind", ["point3f", "float3", "double3", "half3", "int3", "color3f"])
+def test_vectors_are_the_same_in_any_type(kind: str) -> None:
+    robot = read(f"{kind} physics:centerOfMass = (1, 2, 3)", f"{kind} physics:localPos0 = (1, 2, 3)")
+    assert frame(robot).xyz == (1.0, 2.0, 3.0)
+    (body,) = [body for key, body in robot.vertices(Body) if key.name == "a"]
+    assert body.inertial is not None
+    assert body.inertial.com == (1.0, 2.0, 3.0)
+
+
+@pytest.mark.parametrize(
+    "said",
+    [
+        'string physics:localPos0 = "abc"',
+        'string[] physics:localPos0 = ["a", "b", "c"]',
+        "float physics:localPos0 = 1",
+        "float3[] physics:localPos0 = [(1, 2, 3), (1, 2, 3), (1, 2, 3)]",
+        "matrix3d physics:localPos0 = ((1, 2, 3), (1, 2, 3), (1, 2, 3))",
+        "float3 physics:localRot0 = (1, 2, 3)",
+        'token physics:localRot0 = "abcd"',
+    ],
+)
+def test_what_has_other_numbers_or_none_is_reported_and_not_used(said: str) -> None:
+    report = Report()
+    robot = read("", said, report)
+    assert [found.code for found in report if found.severity == Severity.ERROR] == [codes.BAD_VALUE]
+    assert frame(robot) == IDENTITY
+    assert hx.loads(hx.dumps(robot, "usd"), "usd") == robot
