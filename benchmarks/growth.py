@@ -1,9 +1,10 @@
-"""Robots of 1,000 to 100,000 links, as a chain and as a tree: the time per link must not grow with the number of links.
+"""Robots of 1,000 and 100,000 links, as a chain and as a tree: the time per link must not grow with the number of links.
 
 python -m benchmarks.growth [LINKS [WAY ...]]   (default 100,000, and every way)
 
-Every figure is the processor time per link of a process of its own, in which each round has a robot with other numbers. What grows
-there as well are the caches that miss: how much that is shows in what XML alone takes, and MuJoCo where it ends.
+A process for each way measures small robots, the large one, and small robots again, so that a machine whose pace changes disturbs
+both alike. All robots have other numbers. What grows as well are the caches that miss: how much that is shows in what XML alone
+takes, and MuJoCo where it ends.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
 BOUND = 1.2
 SHAPES: Mapping[str, int] = {"chain": 1, "tree": 4}
 """How many links hang on each."""
-ROUNDS = 20_000
-"""How many links are converted in all, at least, by a process that measures."""
+SMALL = 10
+"""How many small robots are converted before the large one, and after it."""
 LIMIT = 900.0
 """Seconds after which nobody waits for a process any longer."""
 
@@ -37,32 +38,33 @@ def main(links: int, names: tuple[str, ...]) -> int:
     kept = True
     for shape in SHAPES:
         for name in names or (*WAYS, *YARDSTICKS):
-            times = [_asked(shape, name, size) for size in (links // 100, links // 10, links)]
-            print(
-                f"{shape}, {name}: {', '.join('no end' if time is None else f'{time * 1e6:.1f} us' for time in times)} per link", flush=True
-            )
+            small, large = _asked(shape, name, links)
+            print(f"{shape}, {name}: {small * 1e6:.1f} us per link, {large * 1e6:.1f} us of {links}, {large / small:.2f} times", flush=True)
             if name in WAYS:
-                growth = float("inf") if times[0] is None or times[-1] is None else times[-1] / times[0]
-                kept = verdict(f"  growth from {links // 100} to {links} links", growth, BOUND, at_least=False) and kept
+                kept = verdict(f"  growth from {links // 100} to {links} links", large / small, BOUND, at_least=False) and kept
     return 0 if kept else 1
 
 
-def _asked(shape: str, name: str, links: int) -> float | None:
-    """The time per link in s of a way, as another process says it; None where it fails or does not end."""
+def _asked(shape: str, name: str, links: int) -> tuple[float, float]:
+    """The time per link in s of a way, for few links and for many, as another process says it; infinite where it does not end."""
     command = [sys.executable, "-m", "benchmarks.growth", "--measure", shape, name, str(links)]
     try:
-        return float(subprocess.run(command, capture_output=True, check=True, timeout=LIMIT).stdout)
+        said = subprocess.run(command, capture_output=True, check=True, timeout=LIMIT).stdout.split()
+        return float(said[0]), float(said[1])
     except (subprocess.SubprocessError, ValueError):
-        return None
+        return float("inf"), float("inf")
 
 
-def _measured(shape: str, name: str, links: int) -> float:
-    """The median over several robots of the time per link; the first one only warms up where there are others."""
-    prepared = {**WAYS, **YARDSTICKS}[name]
-    rounds = max(1, ROUNDS // links)
-    prepared(robot(1000, SHAPES[shape], -1))()
-    times = [_seconds(prepared(robot(links, SHAPES[shape], number))) for number in range(rounds)]
-    return statistics.median(times) / links
+def _measured(shape: str, name: str, links: int) -> tuple[float, float]:
+    """The time per link of small robots, as a median, and of the large one."""
+    prepared, few = {**WAYS, **YARDSTICKS}[name], links // 100
+    works = [prepared(robot(few, SHAPES[shape], number)) for number in range(2 * SMALL + 1)]
+    large = prepared(robot(links, SHAPES[shape], len(works)))
+    works.pop()()
+    before = [_seconds(work) for work in works[:SMALL]]
+    most = _seconds(large)
+    after = [_seconds(work) for work in works[SMALL:]]
+    return statistics.median(before + after) / few, most / links
 
 
 def _seconds(work: Work) -> float:
@@ -139,6 +141,6 @@ def robot(links: int, fan: int, number: int) -> str:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--measure"]:
-        print(_measured(sys.argv[2], sys.argv[3], int(sys.argv[4])))
+        print(*_measured(sys.argv[2], sys.argv[3], int(sys.argv[4])))
     else:
         sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 100_000, tuple(sys.argv[2:])))
