@@ -75,6 +75,7 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
         "datum": PartWords(parts.Datum, (), open=True),
         "mount": PartWords(parts.Mount, ()),
         "layer": PartWords(parts.Layer, (Word("use", "use", "text"),)),
+        "subset": PartWords(parts.Subset, (Word("faces", "faces", "integers"),)),
         "coupling": PartWords(parts.Coupling, (Word("active", "active", "flag"),)),
         "loop": PartWords(parts.Loop, (_TYPE, Word("active", "active", "flag")), open=True),
         "tendon": PartWords(
@@ -255,6 +256,7 @@ TARGETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "shape": ("body", "world", "mesh", "material"),
         "mount": ("body", "world", "frame", "camera", "light", "sensor"),
         "layer": ("texture", "material"),
+        "subset": ("shape", "material"),
         "coupling": ("joint", "tendon"),
         "loop": ("body", "frame", "world"),
         "tendon": ("frame", "joint", "shape", "tendon"),

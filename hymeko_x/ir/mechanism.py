@@ -57,6 +57,7 @@ KINDS: Mapping[type, str] = MappingProxyType(
         parts.Shape: "shape",
         parts.Mount: "mount",
         parts.Layer: "layer",
+        parts.Subset: "subset",
         parts.Joint: "joint",
         parts.Coupling: "coupling",
         parts.Loop: "loop",
@@ -216,6 +217,16 @@ class Mechanism:
         return {key: tuple(views) for key, views in found.items()}
 
     @cached_property
+    def subsets(self) -> Mapping[Id, tuple[SubsetView, ...]]:
+        """For each shape what of its mesh shows another material, in order."""
+        found: dict[Id, list[SubsetView]] = {}
+        for key, subset, arcs in self.edges(parts.Subset):
+            shape, material = _end(arcs, 1), _end(arcs, -1)
+            if shape is not None and material is not None:
+                found.setdefault(shape.target, []).append(SubsetView(key, subset.faces, material.target))
+        return {key: tuple(views) for key, views in found.items()}
+
+    @cached_property
     def mounts(self) -> Mapping[Id, tuple[MountView, ...]]:
         """For each body (and the world) the frames, cameras, lights and sensors on it, in order."""
         found: dict[Id, list[MountView]] = {}
@@ -252,7 +263,7 @@ class Mechanism:
         return changed
 
 
-_OF_EDGES = ("_kinds_of_edges", "joints", "children", "parent_joint", "shapes", "mounts")
+_OF_EDGES = ("_kinds_of_edges", "joints", "children", "parent_joint", "shapes", "subsets", "mounts")
 """What a mechanism computes of its edges alone."""
 
 
@@ -281,6 +292,14 @@ class ShapeView(NamedTuple):
     pose: Pose
     mesh: Id | None
     material: Id | None
+
+
+class SubsetView(NamedTuple):
+    """Triangles of a shape's mesh with the material that they show."""
+
+    id: Id
+    faces: tuple[int, ...]
+    material: Id
 
 
 class MountView(NamedTuple):
@@ -336,6 +355,11 @@ def mount_edge(body: Id, thing: Id, pose: Pose = IDENTITY) -> RobotEdge:
 def layer_edge(texture: Id, material: Id, use: str = "rgb") -> RobotEdge:
     """The edge that puts a texture on a material."""
     return Edge(parts.Layer(use), (Arc(texture, 1), Arc(material, -1)))
+
+
+def subset_edge(faces: tuple[int, ...], shape: Id, material: Id) -> RobotEdge:
+    """The edge that shows a material on some triangles of a shape's mesh."""
+    return Edge(parts.Subset(faces), (Arc(shape, 1), Arc(material, -1)))
 
 
 def coupling_edge(follower: Id, leaders: tuple[tuple[Id, tuple[float, ...]], ...], *, active: bool = True) -> RobotEdge:

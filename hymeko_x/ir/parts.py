@@ -289,6 +289,16 @@ class Layer:
     use: str = "rgb"
 
 
+@dataclass(frozen=True, slots=True)
+class Subset:
+    """Triangles of a shape's mesh that show another material than the rest of it. Arcs: ``+ shape``, ``- material``.
+
+    ``faces`` are the numbers of the triangles in the mesh, ascending.
+    """
+
+    faces: tuple[int, ...] = ()
+
+
 # ---- edges: kinematics -----------------------------------------------------------------------------------------------------------
 
 
@@ -461,5 +471,5 @@ class Relation:
 VertexPart = (
     Body | World | Frame | Material | Texture | Mesh | Actuator | Sensor | Camera | Light | PoseSet | Spring | Damper | Mass | Port | Datum
 )
-EdgePart = Shape | Mount | Layer | Joint | Coupling | Loop | Tendon | Drive | Sense | Stance | Contact | Constitutive | Relation
+EdgePart = Shape | Mount | Layer | Subset | Joint | Coupling | Loop | Tendon | Drive | Sense | Stance | Contact | Constitutive | Relation
 Weight = Pose | tuple[float, ...]

@@ -21,6 +21,7 @@ from hymeko_x.ir.mechanism import (
     layer_edge,
     mount_edge,
     shape_edge,
+    subset_edge,
 )
 from hymeko_x.ir.values import Pose
 from hymeko_x.testing.parts import (
@@ -35,6 +36,7 @@ from hymeko_x.testing.parts import (
     POSE_SETS,
     RELATIONS,
     SHAPES,
+    SUBSETS,
     TENDONS,
     TEXTURES,
     THINGS,
@@ -233,6 +235,11 @@ def _add_layers(draft: _Draft) -> None:
         draft.edge("layer", layer_edge(draft.one("texture"), draft.one("material"), draft.draw(TEXTS)))
 
 
+def _add_subsets(draft: _Draft) -> None:
+    if draft.of("shape") and draft.of("material"):
+        draft.edge("subset", subset_edge(draft.draw(SUBSETS).faces, draft.one("shape"), draft.one("material")))
+
+
 def _add_any(
     kind: str,
     part: st.SearchStrategy[parts.EdgePart],
@@ -254,6 +261,7 @@ _ADDERS: tuple[tuple[Callable[[_Draft], None], Callable[[Knobs], bool]], ...] = 
     (_add_couplings, lambda knobs: knobs.couplings),
     (_add_mounts, lambda knobs: knobs.sensors),
     (_add_layers, lambda knobs: knobs.materials),
+    (_add_subsets, lambda knobs: knobs.materials and knobs.meshes),
     (_add_any("loop", LOOPS, 0, ("body", "frame", "world"), _PLACED), lambda knobs: knobs.loops),
     (_add_any("tendon", TENDONS, 1, ("frame", "joint", "shape"), _LISTS), lambda knobs: knobs.tendons),
     (_add_any("drive", DRIVES, -1, ("actuator", "joint", "tendon"), _LISTS), lambda knobs: knobs.actuators),

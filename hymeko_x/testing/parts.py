@@ -81,6 +81,7 @@ MESHES = st.builds(parts.Mesh, maybe(URIS), st.sampled_from([(1.0, 1.0, 1.0), (0
     st.sampled_from([(), (0.0, 0.0, 1.0, 0.0, 0.25, 1.0)]),
     st.sampled_from([(), (0, 1, 2), (2, 0, 1)]),
 )
+SUBSETS = st.builds(parts.Subset, st.lists(st.integers(0, 9), unique=True, max_size=3).map(lambda faces: tuple(sorted(faces))))
 TEXTURES = st.builds(parts.Texture, maybe(URIS), maybe(TEXTS))
 THINGS = st.one_of(
     st.builds(parts.Frame, st.lists(LENGTHS, max_size=3).map(tuple)),

@@ -47,6 +47,7 @@ FULL: tuple[parts.VertexPart | parts.EdgePart, ...] = (
     parts.Shape(parts.Box((1.0, 2.0, 3.0)), parts.Role.VISUAL, "s", (1.0, 1.0, 1.0, 1.0), 1.0, 1000.0, (1.0, 0.1)),
     parts.Mount(),
     parts.Layer("rgb"),
+    parts.Subset((0, 2)),
     parts.Joint((DOF, DOF)),
     parts.Coupling(True),
     parts.Loop("joint", (DOF,), True, PARAMETERS),

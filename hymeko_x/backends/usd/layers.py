@@ -21,7 +21,7 @@ _CONTENTS = "contents"
 _PHYSICS = ("physics:", "mjc:", "newton:", "physx", "urdf:", "hymeko:", "drive:", "limit:", "state:", "collection:colliders")
 _MATERIALS = ("material:binding", "inputs:", "outputs:", "info:")
 _PHYSICS_TYPES = ("Physics", "Mjc", "Newton", "Physx")
-_MATERIAL_TYPES = ("Material", "Shader", "NodeGraph", "GeomSubset")
+_MATERIAL_TYPES = ("Material", "Shader", "NodeGraph")
 _MOST_IN_TEXT = 64
 _HEADER = ("metersPerUnit", "kilogramsPerUnit", "upAxis", "defaultPrim")
 

@@ -10,11 +10,18 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Sdf
 
+from hymeko_x.formats.usd import FAMILY
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
 T = Sdf.ValueTypeNames
-_UNIFORM = frozenset(("physics:axis", "axis", "purpose", "xformOpOrder", "physics:approximation", "subdivisionScheme", "info:id"))
+_UNIFORM = frozenset(
+    (
+        *("physics:axis", "axis", "purpose", "xformOpOrder", "physics:approximation", "subdivisionScheme", "info:id"),
+        *("elementType", "familyName", FAMILY),
+    )
+)
 _FLOAT = T.Float
 
 

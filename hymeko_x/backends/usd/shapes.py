@@ -73,6 +73,7 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
     if view.shape.role is Role.COLLISION:
         put(spec, "purpose", T.Token, "guide")
     _write_looks(sheet, spec, view)
+    _write_subsets(sheet, spec, view)
 
 
 def _is_hull(mechanism: Mechanism, view: ShapeView, prim: gprims.Gprim | None) -> bool:
@@ -196,5 +197,24 @@ def _write_looks(sheet: Sheet, spec: Any, view: ShapeView) -> None:
         put(spec, "primvars:displayColor", T.Color3fArray, Vt.Vec3fArray([Gf.Vec3f(*rgba[:3])]))
         put(spec, "primvars:displayOpacity", T.FloatArray, Vt.FloatArray([rgba[3]]))
     if view.material is not None and view.material in sheet.homes:
-        apply(spec, "MaterialBindingAPI")
-        point(spec, "material:binding", sheet.homes[view.material])
+        _bind(sheet, spec, view.material)
+
+
+def _bind(sheet: Sheet, spec: Prim, material: Id) -> None:
+    apply(spec, "MaterialBindingAPI")
+    point(spec, "material:binding", sheet.homes[material])
+
+
+def _write_subsets(sheet: Sheet, spec: Prim, view: ShapeView) -> None:
+    """The triangles of a mesh that show other materials, each a prim below it."""
+    surface = sheet.surfaces.get(view.mesh) if view.mesh is not None else None
+    count = 0 if surface is None else len(surface[1]) // 3
+    for subset in sheet.mechanism.subsets.get(view.id, ()):
+        if not subset.faces or min(subset.faces) < 0 or max(subset.faces) >= count or subset.material not in sheet.homes:
+            continue
+        prim = sheet.place(subset.id, spec.path, "GeomSubset", below=True)
+        put(prim, "elementType", T.Token, words.FACE)
+        put(prim, "familyName", T.Token, words.LOOKS)
+        put(prim, "indices", T.IntArray, Vt.IntArray(subset.faces))
+        _bind(sheet, prim, subset.material)
+        put(spec, words.FAMILY, T.Token, words.APART)

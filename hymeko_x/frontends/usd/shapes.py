@@ -13,6 +13,7 @@ from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.contacts import friction_of
 from hymeko_x.frontends.usd.materials import bound_material
 from hymeko_x.frontends.usd.places import numbers_of
+from hymeko_x.frontends.usd.subsets import read_subsets
 from hymeko_x.frontends.usd.texcoords import read_places, says_places
 from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
 from hymeko_x.ir.parts import Mesh, MeshShape, Role, Shape, World
@@ -73,6 +74,8 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
     if points is not None and says_places(prim, draft):
         draft.note(key, words.TEXCOORDS, "corners")
     draft.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, draft))
+    if points is not None:
+        read_subsets(prim, key, draft)
     return owner, (prim, shape, pose, points)
 
 
