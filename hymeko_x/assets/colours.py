@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import posixpath
-from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from hymeko_x.assets.mesh import are_whole, check_file, put_in_one, put_together, read_parts, read_whole, sound
-from hymeko_x.assets.part import Finish, Look, Part
+import numpy as np
+
+from hymeko_x.assets.mesh import are_whole, check_file, put_in_one, read_parts, read_whole, sound
+from hymeko_x.assets.part import Finish, Look, Painted, Part, Table
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hymeko_x.assets.part import Table
+    from numpy.typing import NDArray
 
 _IN_SCENES = (".glb", ".gltf")
 
 
-def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, miss: Callable[[str], None] | None = None) -> tuple[Part, ...]:
-    """One part for each colour or image of a COLLADA, OBJ or glTF file, in the order of the file; others are one part without a look.
+def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, miss: Callable[[str], None] | None = None) -> Painted:
+    """The triangles of a COLLADA, OBJ or glTF file, in its order, with its colours and images; those of other files have none.
 
     ``miss`` is told of every image of a COLLADA or OBJ file that is not there; what shows it has its colour instead.
 
@@ -26,20 +27,20 @@ def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, mis
     """
     check_file(data, suffix)
     if suffix in _IN_SCENES:
-        return tuple(_split_maps(part) for part in read_parts(data, suffix, fetch))
-    tables = _tables(data, suffix, fetch)
+        return _painted([_piece_of(part) for part in read_parts(data, suffix, fetch)])
+    tables = [table for table in _tables(data, suffix, fetch) if len(table.faces)]
     if not tables:
-        return (read_whole(data, suffix, fetch),)
+        return Painted(read_whole(data, suffix, fetch))
     images = _images(tables, fetch)
     for name in dict.fromkeys(table.finish.image for table in tables if table.finish.image and table.finish.image not in images):
         if miss is not None:
             miss(name)
-    groups: dict[Finish, list[Table]] = {}
-    for table in tables:
-        if len(table.faces):
-            shown = table if table.finish.image in images else _without_image(table)
-            groups.setdefault(shown.finish, []).append(shown)
-    return sound(tuple(_part(group, images) for group in groups.values()))
+    shown = [table if table.finish.image in images else _without_image(table) for table in tables]
+    looks: dict[Finish, Look | None] = {}
+    for table in shown:
+        if table.finish not in looks:
+            looks[table.finish] = _look(table, images)
+    return _painted([(looks[table.finish], table) for table in shown])
 
 
 def read_mapped(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Part:
@@ -53,7 +54,7 @@ def read_mapped(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Part
     tables = [table for table in (obj_tables(data, mapped=True) or () if suffix == ".obj" else ()) if len(table.faces)]
     if not tables or any(table.uv is None for table in tables):
         return read_whole(data, suffix, fetch)
-    return sound((_mapped(tables),))[0]
+    return _painted([(None, table) for table in tables]).part
 
 
 def _tables(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> list[Table]:
@@ -94,29 +95,43 @@ def _without_image(table: Table) -> Table:
 # ---- parts -------------------------------------------------------------------------------------------------------------------
 
 
-def _part(group: list[Table], images: dict[str, bytes]) -> Part:
-    first = group[0]
-    rgba, image = first.finish
-    if not image:
-        whole = put_together([(table.points, table.faces) for table in group])
-        return replace(whole, look=None if rgba is None else Look(first.material, rgba))
-    look = Look(first.material, None, images[image], posixpath.basename(image.replace("\\", "/")))
-    return replace(_mapped(group), look=look)
+def _look(table: Table, images: dict[str, bytes]) -> Look | None:
+    """How a table looks; None where its file says nothing about it."""
+    rgba, image = table.finish
+    if image:
+        return Look(table.material, None, images[image], posixpath.basename(image.replace("\\", "/")))
+    return None if rgba is None else Look(table.material, rgba)
 
 
-def _mapped(group: list[Table]) -> Part:
-    """Tables that all have places in an image as one part."""
-    points, faces = put_in_one([(table.points, table.faces) for table in group])
-    uv, corners = put_in_one([(table.uv, table.corners) for table in group if table.uv is not None and table.corners is not None])
+def _piece_of(part: Part) -> tuple[Look | None, Table]:
+    """A part of a scene, whose points are apart where their places in its image are; a part without places shows no image."""
+    has_look = part.look is not None and (part.look.rgba is not None or part.uv is not None)
+    return part.look if has_look else None, Table(part.points, part.faces, uv=part.uv, corners=None if part.uv is None else part.faces)
+
+
+def _painted(pieces: list[tuple[Look | None, Table]]) -> Painted:
+    """Tables as one part. Points are apart only where they are at different places; what has no places in an image is at its corner."""
+    tables = [table for _, table in pieces]
+    points, faces = put_in_one([(table.points, table.faces) for table in tables])
     whole_ones = are_whole(faces)
-    return Part(points, faces[whole_ones], uv, None, corners[whole_ones])
+    uv, corners = _places(tables)
+    part = Part(points, faces[whole_ones], uv, None, None if corners is None else corners[whole_ones])
+    looks = list(dict.fromkeys(look for look, _ in pieces if look is not None))
+    numbers = {look: number for number, look in enumerate(looks)}
+    owners = np.repeat([numbers[look] if look is not None else -1 for look, _ in pieces], [len(table.faces) for table in tables])[
+        whole_ones
+    ]
+    return Painted(sound((part,))[0], tuple((look, np.flatnonzero(owners == number)) for look, number in numbers.items()))
 
 
-def _split_maps(part: Part) -> Part:
-    """A part whose points are apart only where their places in the image are, with the two in tables of their own."""
-    if part.uv is None:
-        return replace(part, look=part.look if part.look and part.look.rgba else None)
-    points, faces = put_in_one([(part.points, part.faces)])
-    uv, corners = put_in_one([(part.uv, part.faces)])
-    whole_ones = are_whole(faces)
-    return Part(points, faces[whole_ones], uv, part.look, corners[whole_ones])
+def _places(tables: list[Table]) -> tuple[NDArray[np.float64], NDArray[Any]] | tuple[None, None]:
+    """The places in an image of all corners; nothing where no table has any."""
+    if all(table.uv is None for table in tables):
+        return None, None
+    nowhere = np.zeros((1, 2))
+    return put_in_one(
+        [
+            (nowhere, np.zeros_like(table.faces)) if table.uv is None or table.corners is None else (table.uv, table.corners)
+            for table in tables
+        ]
+    )

@@ -66,6 +66,13 @@ class Part:
     corners: NDArray[np.signedinteger[Any]] | None = None
 
 
+class Painted(NamedTuple):
+    """All triangles of a mesh file, and for each look those that have it, by their rows in ``part.faces``; the others have none."""
+
+    part: Part
+    looks: tuple[tuple[Look, NDArray[np.intp]], ...] = ()
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class FilledMesh(Mesh):
     """A mesh on its way to a format that holds triangles itself, with those of its file; its own lists stay empty."""

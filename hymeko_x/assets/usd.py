@@ -10,14 +10,17 @@ from hymeko_x.assets.part import FilledMesh
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import read_file, stem_of, suffix_of
 from hymeko_x.ir.legalize_native import is_native
-from hymeko_x.ir.mechanism import layer_edge, shape_edge
+from hymeko_x.ir.mechanism import layer_edge, shape_edge, subset_edge
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.ir.rename import names_in_use
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hymeko_x.assets.part import Look, Part
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from hymeko_x.assets.part import Look, Painted
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Code, Report
     from hymeko_x.ir.mechanism import Id, Mechanism, Names, RobotEdge, ShapeView
@@ -36,14 +39,14 @@ class _Packing:
     names: Names
     vertices: dict[Id, VertexPart] = field(default_factory=dict)
     edges: dict[Id, RobotEdge] = field(default_factory=dict)
-    known: dict[tuple[str, bool], tuple[Part, ...]] = field(default_factory=dict)
+    known: dict[tuple[str, bool], Painted] = field(default_factory=dict)
     materials: dict[tuple[Rgba | None, bytes | None], Id | None] = field(default_factory=dict)
 
 
 def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """The mechanism with the points of every mesh that can be read, in the axes and at the unit scale of its file.
 
-    What a file shows in several colours or images becomes a mesh for each of them; MuJoCo ignores those of files, and so do we in
+    What a file shows in several colours or images becomes a subset for each of them; MuJoCo ignores those of files, and so do we in
     what came from there.
     """
     run = _Packing(mechanism, shelf, files, report, names_in_use(mechanism))
@@ -53,10 +56,10 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
         if mesh.uri is None or mesh.vertices:
             continue
         is_mapped = any(view.material in textured for view in users.get(key, []))
-        parts = run.known.get((mesh.uri, is_mapped)) or _read(run, key, mesh, are_coloured=are_coloured, is_mapped=is_mapped)
-        if parts is not None:
-            run.known[mesh.uri, is_mapped] = parts
-            _pack(run, key, mesh, parts, users.get(key, []))
+        painted = run.known.get((mesh.uri, is_mapped)) or _read(run, key, mesh, are_coloured=are_coloured, is_mapped=is_mapped)
+        if painted is not None:
+            run.known[mesh.uri, is_mapped] = painted
+            _pack(run, key, mesh, painted, users.get(key, []))
     packed = _with_textures(mechanism, shelf, files, report)
     return packed.with_graph(packed.graph.replace(vertices=run.vertices, edges=run.edges)) if run.vertices else packed
 
@@ -71,44 +74,37 @@ def _users(mechanism: Mechanism) -> dict[Id, list[ShapeView]]:
     return found
 
 
-def _pack(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], views: list[ShapeView]) -> None:
-    """The mesh as a whole, and for the eye one for each colour; colours of the file count where it has some, as in RViz."""
-    seen = [view for view in views if view.shape.role is Role.VISUAL]
-    if len(parts) == 1 or len(seen) < len(views) or not views:
-        is_shown = any(view.shape.role is not Role.COLLISION for view in views)
-        whole = parts[0] if len(parts) == 1 and is_shown else _merged(parts)
-        run.vertices[key] = FilledMesh(mesh.uri, mesh.scale, mesh.name, part=whole)
-    if not seen or not any(part.look for part in parts):
-        return
-    pieces = [(key if len(parts) == 1 else _own_mesh(run, mesh, part), _material(run, key, part)) for part in parts]
-    for view in seen:
-        for number, (piece, material) in enumerate(pieces):
-            shape = view.shape if material is None else replace(view.shape, rgba=None)
-            shape = shape if number == 0 else replace(shape, name=None)
-            place = view.id if number == 0 else run.names.take("shape", view.id.name)
-            run.edges[place] = shape_edge(shape, view.body, view.pose, piece, material or view.material)
-
-
-def _merged(parts: tuple[Part, ...]) -> Part:
-    from hymeko_x.assets.mesh import put_together
+def _pack(run: _Packing, key: Id, mesh: Mesh, painted: Painted, views: list[ShapeView]) -> None:
+    """The mesh, and for the eye the colours of the file, which count where it has some, as in RViz."""
     from hymeko_x.assets.part import Part
 
-    if len(parts) > 1:
-        return put_together([(part.points, part.faces) for part in parts])
-    return Part(parts[0].points, parts[0].faces)
+    part, looks = painted
+    seen = [view for view in views if view.shape.role is Role.VISUAL]
+    is_shown = any(view.shape.role is not Role.COLLISION for view in views)
+    run.vertices[key] = FilledMesh(mesh.uri, mesh.scale, mesh.name, part=part if is_shown else Part(part.points, part.faces))
+    shown = [(look, _material(run, key, look), rows) for look, rows in looks] if seen else []
+    for view in seen:
+        if len(shown) == 1 and len(shown[0][2]) == len(part.faces):
+            _show_all(run, view, shown[0][1])
+        elif view.id not in run.mechanism.subsets:
+            _show_parts(run, view, shown)
 
 
-def _own_mesh(run: _Packing, mesh: Mesh, part: Part) -> Id:
-    """What a file shows in one colour, as a mesh of its own."""
-    key = run.names.take("mesh", f"{stem_of(mesh.uri or '')}_{part.look.name if part.look else 'plain'}")
-    run.vertices[key] = FilledMesh(None, mesh.scale, part=part)
-    return key
+def _show_all(run: _Packing, view: ShapeView, material: Id | None) -> None:
+    if material is not None:
+        run.edges[view.id] = shape_edge(replace(view.shape, rgba=None), view.body, view.pose, view.mesh, material)
 
 
-def _material(run: _Packing, mesh: Id, part: Part) -> Id | None:
-    """The material of a part; equal colours and equal images share one."""
-    look = part.look
-    if look is None or (look.rgba is None and look.image is None):
+def _show_parts(run: _Packing, view: ShapeView, shown: list[tuple[Look, Id | None, NDArray[np.intp]]]) -> None:
+    """Subsets of the shape: what the file says nothing about looks as the shape does."""
+    for look, material, rows in shown:
+        if material is not None and len(rows):
+            run.edges[run.names.take("subset", look.name or material.name)] = subset_edge(tuple(rows.tolist()), view.id, material)
+
+
+def _material(run: _Packing, mesh: Id, look: Look) -> Id | None:
+    """The material of a look; equal colours and equal images share one."""
+    if look.rgba is None and look.image is None:
         return None
     if (look.rgba, look.image) not in run.materials:
         run.materials[look.rgba, look.image] = _own_material(run, mesh, look)
@@ -140,14 +136,14 @@ def _placed_image(run: _Packing, mesh: Id, look: Look, image: bytes) -> str | No
     return run.shelf.place("textures", stem_of(look.file) or look.name or mesh.name, suffix, data)
 
 
-def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: bool) -> tuple[Part, ...] | None:
-    """The parts of a file; what it says of its looks does not count unless ``are_coloured``.
+def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: bool) -> Painted | None:
+    """The triangles of a file; what it says of its looks does not count unless ``are_coloured``.
 
     ``is_mapped``: a shape of the mesh shows an image that it does not have from the file.
     """
     from hymeko_x.assets.colours import read_colours, read_mapped
     from hymeko_x.assets.mesh import read_whole
-    from hymeko_x.assets.part import Unreadable
+    from hymeko_x.assets.part import Painted, Unreadable
 
     found = read_file(run.files, mesh.uri or "")
     if found is None:
@@ -160,10 +156,10 @@ def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: 
         _warn(run, key, codes.ASSET_NOT_FOUND, f"its image '{image}' was not found; it is shown without")
 
     try:
-        parts = read_colours(data, suffix_of(path), fetch, miss=miss) if are_coloured else ()
-        if parts and (not is_mapped or any(part.look for part in parts)):
-            return parts
-        return ((read_mapped if is_mapped else read_whole)(data, suffix_of(path), fetch),)
+        painted = read_colours(data, suffix_of(path), fetch, miss=miss) if are_coloured else None
+        if painted is not None and (painted.looks or not is_mapped):
+            return painted
+        return Painted((read_mapped if is_mapped else read_whole)(data, suffix_of(path), fetch))
     except Unreadable as error:
         _warn(run, key, codes.ASSET_UNREADABLE, f"'{mesh.uri}' cannot be read: {error}")
         return None

@@ -15,6 +15,7 @@ from hymeko_x.ir.legalize_names import make_names_usable, name_assets_once
 from hymeko_x.ir.legalize_native import drop_stale_keyframes
 from hymeko_x.ir.legalize_shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.ir.legalize_solids import fill_tensors
+from hymeko_x.ir.legalize_subsets import split_subsets
 from hymeko_x.ir.legalize_tendons import drop_odd_tendons, make_tendons_sound, name_wrapped_shapes
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ RULES: tuple[Rule, ...] = (
     make_couplings_scalar,
     drop_odd_tendons,
     make_tendons_sound,
+    split_subsets,
     fill_tensors,
     make_tensors_physical,
     give_moving_bodies_mass,

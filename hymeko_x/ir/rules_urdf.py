@@ -8,6 +8,7 @@ from hymeko_x.ir.legalize_joints import expand_screws
 from hymeko_x.ir.legalize_names import make_names_usable
 from hymeko_x.ir.legalize_native import drop_shapes_of_mujoco
 from hymeko_x.ir.legalize_solids import fill_tensors
+from hymeko_x.ir.legalize_subsets import part_meshes_by_looks
 from hymeko_x.ir.legalize_urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
 from hymeko_x.ir.legalize_urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
 
@@ -25,6 +26,7 @@ RULES: tuple[Rule, ...] = (
     join_roots,
     split_shared_shapes,
     prefer_own_colours,
+    part_meshes_by_looks,
     approximate_shapes,
     make_names_usable,  # once more, for what the rules have added
 )

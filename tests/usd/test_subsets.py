@@ -47,7 +47,9 @@ def subset(faces: str, material: str = "red", name: str = "part", family: str = 
 
 def stage(*subsets: str, faces: str = TRIANGLES, api: str = "MaterialBindingAPI") -> str:
     """A body with a tetrahedron that is grey but for its subsets."""
-    materials = "".join(MATERIAL.format(name=name, colour=colour) for name, colour in (("grey", "0.5, 0.5, 0.5"), ("red", "1, 0, 0"), ("blue", "0, 0, 1")))
+    materials = "".join(
+        MATERIAL.format(name=name, colour=colour) for name, colour in (("grey", "0.5, 0.5, 0.5"), ("red", "1, 0, 0"), ("blue", "0, 0, 1"))
+    )
     return f"""{HEADER}
 def Xform "robot"
 {{{materials}

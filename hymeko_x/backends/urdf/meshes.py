@@ -1,24 +1,35 @@
-"""Meshes that have no file: each is written as a Wavefront OBJ file beside the URDF file, with its image in an MTL file."""
+"""Meshes that have no file: each is written as a Wavefront OBJ file beside the URDF file, with its materials in an MTL file."""
 
 from __future__ import annotations
 
 import posixpath
 import re
 from itertools import count
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Mesh
-from hymeko_x.ir.values import numbers_text
+from hymeko_x.ir.parts import Material, Mesh, Role
+from hymeko_x.ir.values import number_text, numbers_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
+    from hymeko_x.ir.parts import Rgba
 
 FOLDER = "shapes"
 _LOOK = "look"
+_WHITE = (1.0, 1.0, 1.0, 1.0)
+
+
+class _Look(NamedTuple):
+    """A material of an MTL file: its name there, its colour, the path of its image, and the triangles that show it (None = all)."""
+
+    name: str
+    rgba: Rgba | None
+    image: str | None
+    faces: tuple[int, ...] | None = None
 
 
 def files_of_meshes(mechanism: Mechanism) -> dict[Id, str]:
@@ -26,18 +37,23 @@ def files_of_meshes(mechanism: Mechanism) -> dict[Id, str]:
     within = mechanism.notation(ROOT, WITHIN) or ""
     found: dict[Id, str] = {}
     taken: set[str] = set()
-    known: dict[tuple[tuple[float, ...], ...], str] = {}
+    known: dict[object, str] = {}
+    shown = _shown(mechanism)
     for key, mesh in mechanism.vertices(Mesh):
         if mesh.uri is None and mesh.vertices:
-            content = mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces
+            content = mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces, _subsets(mechanism, shown.get(key))
             if content in known:
                 found[key] = known[content]
                 continue
-            stem = re.sub(r"[^A-Za-z0-9_-]+", "_", key.name).strip("_") or "mesh"
+            stem = _harmless(key.name) or "mesh"
             name = next(name for name in _numbered(stem) if name.lower() not in taken)
             taken.add(name.lower())
             found[key] = known[content] = f"{within}{FOLDER}/{name}.obj"
     return found
+
+
+def _harmless(name: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_-]+", "_", name).strip("_")
 
 
 def _numbered(stem: str) -> Iterator[str]:
@@ -45,22 +61,74 @@ def _numbered(stem: str) -> Iterator[str]:
     yield from (f"{stem}_{number}" for number in count(2))
 
 
+def _shown(mechanism: Mechanism) -> dict[Id, ShapeView]:
+    """The first shape that shows each mesh; what only collides shows nothing."""
+    views = (view for found in mechanism.shapes.values() for view in found)
+    found: dict[Id, ShapeView] = {}
+    for view in views:
+        if view.mesh is not None and view.shape.role is not Role.COLLISION:
+            found.setdefault(view.mesh, view)
+    return found
+
+
+def _subsets(mechanism: Mechanism, view: ShapeView | None) -> tuple[tuple[tuple[int, ...], Id], ...]:
+    return () if view is None else tuple((subset.faces, subset.material) for subset in mechanism.subsets.get(view.id, ()))
+
+
 def contents_of(mechanism: Mechanism, paths: Mapping[Id, str], images: Mapping[Id, str]) -> dict[str, bytes]:
     """The files of these meshes by relative path. ``images`` is the file of each material's image."""
-    shown: dict[Id, Id] = {}
-    for views in mechanism.shapes.values():
-        for view in views:
-            if view.mesh is not None and view.material is not None and view.material in images:
-                shown.setdefault(view.mesh, view.material)
+    shown, imaged = _shown(mechanism), _imaged(mechanism, images)
     found: dict[str, bytes] = {}
     for key, path in paths.items():
         mesh = mechanism.vertex(key, Mesh)
-        image = _way_to(images[shown[key]]) if mesh.texcoords and key in shown else None
+        looks = _looks(mechanism, mesh, shown.get(key), images) or _image(mesh, images[imaged[key]] if key in imaged else None)
         library = posixpath.splitext(path)[0] + ".mtl"
-        if path not in found or (image is not None and library not in found):
-            found[path] = obj_text(mesh, posixpath.basename(library) if image is not None else None)
-            found |= {} if image is None else {library: f"newmtl {_LOOK}\nKd 1 1 1\nmap_Kd {image}\n".encode()}
+        if path not in found or (looks and library not in found):
+            found[path] = obj_text(mesh, posixpath.basename(library), looks)
+            found |= {library: _library(looks)} if looks else {}
     return found
+
+
+def _imaged(mechanism: Mechanism, images: Mapping[Id, str]) -> dict[Id, Id]:
+    """For each mesh the first material with an image that a shape of it has."""
+    found: dict[Id, Id] = {}
+    for views in mechanism.shapes.values():
+        for view in views:
+            if view.mesh is not None and view.material is not None and view.material in images:
+                found.setdefault(view.mesh, view.material)
+    return found
+
+
+# ---- looks ---------------------------------------------------------------------------------------------------------------------
+
+
+def _image(mesh: Mesh, image: str | None) -> tuple[_Look, ...]:
+    """The one look of a mesh that shows an image."""
+    way = _way_to(image) if image is not None and mesh.texcoords else None
+    return () if way is None else (_Look(_LOOK, None, way),)
+
+
+def _looks(mechanism: Mechanism, mesh: Mesh, view: ShapeView | None, images: Mapping[Id, str]) -> tuple[_Look, ...]:
+    """What a shape shows on subsets of its mesh, and first what it shows on the rest; nothing where it has no subsets."""
+    total = len(mesh.faces) // 3
+    subsets = mechanism.subsets.get(view.id, ()) if view is not None else ()
+    known = [(subset.material, subset.faces) for subset in subsets if subset.faces and min(subset.faces) >= 0 and max(subset.faces) < total]
+    if view is None or not known:
+        return ()
+    taken = {face for _, faces in known for face in faces}
+    rest = tuple([face for face in range(total) if face not in taken])
+    names: set[str] = set()
+    found = []
+    for material, faces in [(view.material, rest), *known] if rest else known:
+        part = mechanism.graph.vertices.get(material) if material is not None else None
+        stem = _harmless(material.name if material is not None else "") or _LOOK
+        name = next(name for name in _numbered(stem) if name not in names)
+        names.add(name)
+        own = view.shape.rgba if faces is rest else None
+        rgba = own or (part.rgba if isinstance(part, Material) else None)
+        image = _way_to(images[material]) if own is None and mesh.texcoords and material in images else None
+        found.append(_Look(name, rgba, image, faces))
+    return tuple(found)
 
 
 def _way_to(image: str) -> str | None:
@@ -69,15 +137,41 @@ def _way_to(image: str) -> str | None:
     return posixpath.relpath(image, FOLDER) if is_relative else None
 
 
-def obj_text(mesh: Mesh, library: str | None = None) -> bytes:
-    """The points and faces of a mesh, unscaled, as Wavefront OBJ, with its texture coordinates, and its image in a library."""
+# ---- texts ---------------------------------------------------------------------------------------------------------------------
+
+
+def _library(looks: tuple[_Look, ...]) -> bytes:
+    """The MTL file; the colour of an image is its own, and a material about which nothing is known says nothing."""
+    lines: list[str] = []
+    for name, rgba, image, _ in looks:
+        lines.append(f"newmtl {name}")
+        colour = _WHITE if image is not None else rgba
+        if colour is not None:
+            lines.append(f"Kd {numbers_text(colour[:3])}")
+            lines += [f"d {number_text(colour[3])}"] if colour[3] != 1.0 else []
+        lines += [] if image is None else [f"map_Kd {image}"]
+    return "\n".join([*lines, ""]).encode()
+
+
+def obj_text(mesh: Mesh, library: str = "", looks: tuple[_Look, ...] = ()) -> bytes:
+    """The points and faces of a mesh in their order, unscaled, as Wavefront OBJ, with its texture coordinates and materials."""
     rows = mesh.texfaces or mesh.faces
     has_places = bool(mesh.texcoords) and len(rows) == len(mesh.faces)
     words = [f"{a + 1}/{b + 1}" for a, b in zip(mesh.faces, rows, strict=True)] if has_places else [str(a + 1) for a in mesh.faces]
-    lines = [] if library is None else [f"mtllib {library}"]
+    lines = [f"mtllib {library}"] if looks else []
     lines += [f"v {numbers_text(mesh.vertices[at : at + 3])}" for at in range(0, len(mesh.vertices), 3)]
     if has_places:
         lines += [f"vt {numbers_text(mesh.texcoords[at : at + 2])}" for at in range(0, len(mesh.texcoords), 2)]
-    lines += [] if library is None else [f"usemtl {_LOOK}"]
-    lines += [f"f {' '.join(words[at : at + 3])}" for at in range(0, len(words), 3)]
+    used = _uses(looks)
+    for number, at in enumerate(range(0, len(words), 3)):
+        lines += [f"usemtl {used[number]}"] if number in used else []
+        lines.append(f"f {' '.join(words[at : at + 3])}")
     return "\n".join([*lines, ""]).encode()
+
+
+def _uses(looks: tuple[_Look, ...]) -> dict[int, str]:
+    """The triangles before which another material begins, with its name."""
+    if len(looks) == 1 and looks[0].faces is None:
+        return {0: looks[0].name}
+    owner = {face: look.name for look in looks for face in look.faces or ()}
+    return {face: name for face, name in sorted(owner.items()) if owner.get(face - 1) != name}

@@ -212,7 +212,7 @@ def _write_subsets(sheet: Sheet, spec: Prim, view: ShapeView) -> None:
     for subset in sheet.mechanism.subsets.get(view.id, ()):
         if not subset.faces or min(subset.faces) < 0 or max(subset.faces) >= count or subset.material not in sheet.homes:
             continue
-        prim = sheet.place(subset.id, spec.path, "GeomSubset", below=True)
+        prim = sheet.place(subset.id, spec.path, "GeomSubset", subset.id.name.partition("#")[0], below=True)
         put(prim, "elementType", T.Token, words.FACE)
         put(prim, "familyName", T.Token, words.LOOKS)
         put(prim, "indices", T.IntArray, Vt.IntArray(subset.faces))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir.parts import Mesh
@@ -26,19 +25,16 @@ class _Shown(NamedTuple):
 
 
 def stored_points(mechanism: Mechanism, image: Mechanism) -> dict[str, Mesh]:
-    """By uri, the points that the image has where the mechanism refers to a file.
-
-    What the image shows in several parts, one for each colour, is one mesh again, if no other mesh has its place.
-    """
+    """By uri, the points that the image has where the mechanism refers to a file: those that the shape of the same name shows."""
     if not any(part.vertices for _, part in image.vertices(Mesh)):
         return {}
     found: dict[str, Mesh] = {}
     for body, views in mechanism.shapes.items():
-        named = list(_shown(views, mechanism))
-        for shown, parts in zip(named, _parts(named, list(_shown(image.shapes.get(body, ()), image))), strict=True):
-            uri = shown.mesh.uri
-            if uri is not None and uri not in found and parts and all(part.mesh.vertices for part in parts):
-                found[uri] = _joined([part.mesh for part in parts])
+        seen = {shown.id: shown for shown in _shown(image.shapes.get(body, ()), image)}
+        for shown in _shown(views, mechanism):
+            there, uri = seen.get(shown.id), shown.mesh.uri
+            if uri is not None and there is not None and there.place == shown.place and there.mesh.vertices:
+                found.setdefault(uri, Mesh(vertices=there.mesh.vertices, faces=there.mesh.faces))
     return found
 
 
@@ -50,26 +46,3 @@ def _shown(views: Iterable[ShapeView], mechanism: Mechanism) -> Iterator[_Shown]
             matrix = [factor * number for axis, factor in zip(axes, mesh.scale, strict=True) for number in axis]
             place = tuple(round(number, _DIGITS) + 0.0 for number in (*view.pose.xyz, *matrix))
             yield _Shown(view.id, mesh, (view.shape.role, place))
-
-
-def _parts(named: list[_Shown], image: list[_Shown]) -> Iterator[list[_Shown]]:
-    """What the image has of each: the shape itself, and what only the image has at its place; nothing where two could own that."""
-    own = {shown.id for shown in named}
-    owners = Counter(shown.place for shown in named)
-    seen: dict[Hashable, list[_Shown]] = defaultdict(list)
-    for shown in image:
-        seen[shown.id if shown.id in own else shown.place].append(shown)
-    for shown in named:
-        itself = [part for part in seen[shown.id] if part.place == shown.place]
-        others = seen[shown.place]
-        yield [] if others and owners[shown.place] > 1 else [*itself, *others]
-
-
-def _joined(meshes: list[Mesh]) -> Mesh:
-    vertices: list[float] = []
-    faces: list[int] = []
-    for mesh in meshes:
-        start = len(vertices) // 3
-        faces += [start + index for index in mesh.faces] if start else mesh.faces
-        vertices += mesh.vertices
-    return Mesh(vertices=tuple(vertices), faces=tuple(faces))
