@@ -1,4 +1,4 @@
-"""Colours of mesh files in a stage: what a COLLADA file shows in several colours is a mesh for each, with its material."""
+"""Colours of mesh files in a stage: what a COLLADA file shows in several colours is one mesh with a subset for each."""
 
 from __future__ import annotations
 
@@ -24,22 +24,28 @@ def converted(folder: Path, data: bytes, collision: str = COLLISION) -> Usd.Stag
 
 
 def shown(stage: Usd.Stage) -> list[tuple[int, tuple[float, ...] | None]]:
-    """How many triangles each mesh that is drawn has, and in which colour."""
+    """How many triangles each mesh or subset that is drawn has, and in which colour."""
     found = []
     for prim in stage.Traverse(Usd.TraverseInstanceProxies()):
         if prim.GetTypeName() == "Mesh" and prim.GetAttribute("purpose").Get() != "guide":
-            material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
-            surface = material.ComputeSurfaceSource()[0] if material else None
-            colour = surface.GetInput("diffuseColor").Get() if surface else None
-            found.append((len(prim.GetAttribute("faceVertexCounts").Get()), None if colour is None else tuple(colour)))
+            parts = [part.GetPrim() for part in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()]
+            found += [(len(part.GetAttribute("indices").Get()), colour_of(part)) for part in parts]
+            if not parts:
+                found.append((len(prim.GetAttribute("faceVertexCounts").Get()), colour_of(prim)))
     return found
 
 
-def test_each_colour_of_a_collada_file_is_a_mesh_with_that_material(tmp_path: Path) -> None:
+def colour_of(prim: Usd.Prim) -> tuple[float, ...] | None:
+    material = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial()[0]
+    surface = material.ComputeSurfaceSource()[0] if material else None
+    colour = surface.GetInput("diffuseColor").Get() if surface else None
+    return None if colour is None else tuple(colour)
+
+
+def test_each_colour_of_a_collada_file_is_a_subset_with_that_material(tmp_path: Path) -> None:
     stage = converted(tmp_path, dae())
+    assert [len(prim.GetAttribute("faceVertexCounts").Get()) for prim in stage.Traverse() if prim.GetTypeName() == "Mesh"] == [6, 6]
     assert shown(stage) == [(2, (1.0, 0.0, 0.0)), (2, (0.0, 1.0, 0.0)), (2, (0.0, 0.0, 1.0))]
-    guides = [prim for prim in stage.Traverse() if prim.GetTypeName() == "Mesh" and prim.GetAttribute("purpose").Get() == "guide"]
-    assert [len(prim.GetAttribute("faceVertexCounts").Get()) for prim in guides] == [6]
 
 
 def test_a_file_without_colours_is_shown_in_the_colour_of_its_shape(tmp_path: Path) -> None:

@@ -115,10 +115,9 @@ def test_a_stage_of_others_leaves_as_obj_with_its_image(tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     hx.convert(tmp_path / "r.usda", tmp_path / "out" / "r.urdf")
     mesh = next((tmp_path / "out").rglob("*.obj"))
-    (part,) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
+    part, ((look, rows),) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
     assert corners_of(part) == EXPECTED
-    assert part.look is not None
-    assert part.look.image == image()
+    assert (look.image, len(rows)) == (image(), len(part.faces))
     assert hx.verify(tmp_path / "r.usda", tmp_path / "out" / "r.urdf").verdict == "same"
     (tmp_path / "again").mkdir()
     hx.convert(tmp_path / "out" / "r.urdf", tmp_path / "again" / "r.usda")
@@ -136,14 +135,16 @@ def test_a_stage_leaves_for_mujoco_with_its_image(tmp_path: Path) -> None:
     assert (model.ntex, model.mesh_texcoordnum[0] > 0, model.mat_texid[model.geom_matid[0], 1]) == (1, True, 0)
 
 
-def test_a_file_in_an_image_and_a_colour_has_a_mesh_for_each(tmp_path: Path) -> None:
+def test_a_file_in_an_image_and_a_colour_is_one_mesh_with_a_subset_for_each(tmp_path: Path) -> None:
     hx.convert(lay_obj(tmp_path, IMAGE_FACES + RED_FACES), tmp_path / "r.usda")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
-    wood, paint = meshes(stage)
-    assert corners(wood) == EXPECTED
+    (prim,) = meshes(stage)
+    wood, paint = (part.GetPrim() for part in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets())
+    assert [list(part.GetAttribute("indices").Get()) for part in (wood, paint)] == [[0, 1, 2, 3], [4, 5]]
     assert shown_file(wood) == str(tmp_path / "textures" / "wood.png")
-    assert not UsdGeom.PrimvarsAPI(paint).GetPrimvar("st")
     assert tuple(surface_of(paint).GetInput("diffuseColor").Get()) == (1.0, 0.0, 0.0)
+    assert len(UsdGeom.Mesh(prim).GetPointsAttr().Get()) == 5
+    assert {corner for corner in corners(prim) if corner[3:] != (0.0, 0.0)} == {corner for corner in EXPECTED if corner[3:] != (0, 0)}
 
 
 @pytest.mark.parametrize(
@@ -303,10 +304,9 @@ def test_an_image_that_is_said_more_of_is_typed_and_stays_as_it_is(tmp_path: Pat
     assert not after.GetAttributeAtPath("/r/a/m.primvars:st:indices")
     hx.convert(tmp_path / "s.usda", tmp_path / "r.urdf", pure=True)
     mesh = next((tmp_path / "shapes").glob("*.obj"))
-    (part,) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
+    part, ((look, rows),) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
     assert corners_of(part) == {(0, 0, 0, 0, 0), (1, 0, 0, 1, 0), (1, 1, 0, 1, 1), (0, 1, 0, 0, 1)}
-    assert part.look is not None
-    assert part.look.image == image()
+    assert (look.image, len(rows)) == (image(), len(part.faces))
 
 
 @pytest.mark.parametrize("layout", ["single", "layered"])
