@@ -35,7 +35,7 @@ def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, mis
     for name in dict.fromkeys(table.finish.image for table in tables if table.finish.image and table.finish.image not in images):
         if miss is not None:
             miss(name)
-    shown = [table if table.finish.image in images else _without_image(table) for table in tables]
+    shown = [_with_image(table) if table.finish.image in images else _without_image(table) for table in tables]
     looks: dict[Finish, Look | None] = {}
     for table in shown:
         if table.finish not in looks:
@@ -86,6 +86,11 @@ def _fetched(name: str, fetch: Callable[[str], bytes]) -> bytes | None:
         except OSError:
             continue
     return None
+
+
+def _with_image(table: Table) -> Table:
+    """A table in the colours of its image alone."""
+    return table._replace(finish=table.finish._replace(rgba=None))
 
 
 def _without_image(table: Table) -> Table:

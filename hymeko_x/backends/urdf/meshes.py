@@ -126,8 +126,8 @@ def _looks(mechanism: Mechanism, mesh: Mesh, view: ShapeView | None, images: Map
         names.add(name)
         own = view.shape.rgba if faces is rest else None
         rgba = own or (part.rgba if isinstance(part, Material) else None)
-        image = _way_to(images[material]) if own is None and mesh.texcoords and material in images else None
-        found.append(_Look(name, rgba, image, faces))
+        image = images.get(material) if own is None and mesh.texcoords and material is not None else None
+        found.append(_Look(name, rgba, None if image is None else _way_to(image), faces))
     return tuple(found)
 
 
