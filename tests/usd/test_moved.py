@@ -58,7 +58,7 @@ def test_at_home_and_for_packages_of_ros_the_file_is_named_as_before(tmp_path: P
     assert not (tmp_path / "home" / "shapes").exists()
 
 
-def test_several_meshes_in_several_colours_at_one_place_are_not_mixed_up(tmp_path: Path) -> None:
+def test_several_meshes_in_several_colours_at_one_place_are_told_apart(tmp_path: Path) -> None:
     source, stage = moved(tmp_path)
     twice = source.read_text().replace("<collision>", '<visual><geometry><mesh filename="c.dae"/></geometry></visual><collision>')
     source.write_text(twice.replace('<origin xyz="0 0 1" rpy="0 1 0"/>', "").replace(' scale="2 -3 1"', ""))
@@ -66,4 +66,6 @@ def test_several_meshes_in_several_colours_at_one_place_are_not_mixed_up(tmp_pat
     hx.convert(source, stage)
     report = hx.convert(stage, tmp_path / "away" / "back.urdf").report
     said = {item.element: "becomes the points" in item.message for item in report if item.code.id == "HX201"}
-    assert said == {"mesh 'a'": False, "mesh 'c'": False, "mesh 'b'": True}
+    assert said == {"mesh 'a'": True, "mesh 'c'": True, "mesh 'b'": True}
+    files = {path.stem: len(trimesh.load(path, process=False).faces) for path in (tmp_path / "away").rglob("*.obj")}
+    assert files == {"a": 6, "b": 320}

@@ -267,8 +267,8 @@ def near(a: float | None, b: float | None) -> bool:
 # ---- validators ------------------------------------------------------------------------------------------------------------------
 
 
-VALIDATED = ["Acrobot_no_collision", "quadruped", "hand", "puma560_robot"]
-"""The last one has meshes of thousands of triangles."""
+VALIDATED = ["Acrobot_no_collision", "quadruped", "hand", "puma560_robot", "racecar"]
+"""The one before the last has meshes of thousands of triangles, the last one meshes in several looks."""
 
 
 @pytest.mark.parametrize("layout", ["single", "layered"])
