@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
-from hymeko_x.assets.stored import with_stored_points
+from hymeko_x.assets.stored import with_stored_meshes
 from hymeko_x.collector import uncollected
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.carrier import taken_off
@@ -214,7 +214,7 @@ def _written(
     """The package, and the mechanism as it was printed."""
     backend = writer(format)
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
-    mechanism = _explicit(with_stored_points(mechanism, format.name, files, report), format, files, report)
+    mechanism = _explicit(with_stored_meshes(mechanism, format.name, files, report), format, files, report)
     legal = legalize(mechanism, format.name, options, report)
     packed, new, copies = pack(legal, format.name, files, place.assets, report, out_dir=place.folder)
     package = backend(packed, report)

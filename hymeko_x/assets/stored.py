@@ -1,33 +1,67 @@
-"""Meshes whose files are not there, of which the file that carried the mechanism has the points: stages of USD hold their geometry."""
+"""Meshes whose files are not there, but in the file that carried the mechanism: stages of USD hold their geometry."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.assets.refer import is_of_package
-from hymeko_x.ir.parts import Mesh
+from hymeko_x.ir.mechanism import StoredLook, layer_edge, subset_edge
+from hymeko_x.ir.parts import Mesh, Role
+from hymeko_x.ir.rename import names_in_use
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.mechanism import Id, Mechanism, Names, RobotEdge, StoredMesh
+    from hymeko_x.ir.parts import Material, Texture, VertexPart
     from hymeko_x.source import Files
 
 _KEEP_PACKAGES = ("urdf", "xacro")
 """Where ``package://`` is written as it is: who reads the file finds packages in ways of his own."""
 
 
-def with_stored_points(mechanism: Mechanism, target: str, files: Files, report: Report) -> Mechanism:
-    """The mechanism with the points that are stored of every mesh whose file is missing. HyMeKo text keeps the reference."""
+@dataclass(slots=True)
+class _Standing:
+    """What stands in for files; equal looks share a material."""
+
+    names: Names
+    vertices: dict[Id, VertexPart] = field(default_factory=dict)
+    edges: dict[Id, RobotEdge] = field(default_factory=dict)
+    known: dict[tuple[Material, Texture | None], Id] = field(default_factory=dict)
+
+    def show(self, shape: Id, look: StoredLook) -> None:
+        """Let a shape look in places as its file does."""
+        material = self._material(look.material, look.texture)
+        self.edges[self.names.take("subset", material.name)] = subset_edge(look.faces, shape, material)
+
+    def _material(self, material: Material, texture: Texture | None) -> Id:
+        if (material, texture) not in self.known:
+            key = self.known[material, texture] = self.names.take("material", material.name or "material")
+            self.vertices[key] = replace(material, name=key.name)
+            if texture is not None:
+                image = self.names.take("texture", key.name)
+                self.vertices[image] = texture
+                self.edges[self.names.take("layer", key.name)] = layer_edge(image, key)
+        return self.known[material, texture]
+
+
+def with_stored_meshes(mechanism: Mechanism, target: str, files: Files, report: Report) -> Mechanism:
+    """The mechanism with the points and looks that are stored of every mesh whose file is missing. HyMeKo text keeps the reference."""
     if not mechanism.stored or target == "hymeko":
         return mechanism
-    changed: dict[Id, Mesh] = {}
+    standing = _Standing(names_in_use(mechanism))
+    found: dict[Id, StoredMesh] = {}
     for key, mesh in mechanism.vertices(Mesh):
-        points = mechanism.stored.get(mesh.uri or "")
-        if points is None or (target in _KEEP_PACKAGES and is_of_package(mesh.uri or "")) or files.find(mesh.uri or "") is not None:
+        stored = mechanism.stored.get(mesh.uri or "")
+        if stored is None or (target in _KEEP_PACKAGES and is_of_package(mesh.uri or "")) or files.find(mesh.uri or "") is not None:
             continue
-        changed[key] = replace(mesh, uri=None, vertices=points.vertices, faces=points.faces)
+        found[key] = stored
+        standing.vertices[key] = replace(stored.mesh, scale=mesh.scale, name=mesh.name)
         said = f"{key}: '{mesh.uri}' was not found; it becomes the points that the source has of it"
         report.note(codes.ASSET_NOT_FOUND, said, mechanism.origin(key), element=str(key))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+    for view in (view for views in mechanism.shapes.values() for view in views) if found else ():
+        if view.mesh in found and view.shape.role is Role.VISUAL and view.id not in mechanism.subsets:
+            for look in found[view.mesh].looks:
+                standing.show(view.id, look)
+    return mechanism.with_graph(mechanism.graph.replace(vertices=standing.vertices, edges=standing.edges)) if found else mechanism

@@ -94,6 +94,21 @@ class Extra:
     index: int = field(default=0, compare=False)
 
 
+class StoredLook(NamedTuple):
+    """What some triangles of a mesh show: a material, with its image if it has one."""
+
+    material: parts.Material
+    texture: parts.Texture | None
+    faces: tuple[int, ...]
+
+
+class StoredMesh(NamedTuple):
+    """A mesh that a file itself holds, which the mechanism only refers to: its points, and how it looks there."""
+
+    mesh: parts.Mesh
+    looks: tuple[StoredLook, ...] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class Mechanism:
     """Name, graph and side tables. Equality looks at name, graph and extras; places and notations do not count.
@@ -101,8 +116,8 @@ class Mechanism:
     ``notations`` keeps, by element and key, how an author wrote what he wrote where the value itself cannot remember
     it; ``stereotypes`` the classes, macros and templates that elements were made from; ``layout`` the order in
     which the author wrote the elements (of any kind), as far as known; ``places`` by uri how the file that carried the
-    mechanism calls a mesh or an image, which may lie there and no longer where the uri says; ``stored`` the points that
-    this file itself has of a mesh by its uri, which stand in where there is no such file.
+    mechanism calls a mesh or an image, which may lie there and no longer where the uri says; ``stored`` what
+    this file itself has of a mesh by its uri, which stands in where there is no such file.
     """
 
     name: str
@@ -113,7 +128,7 @@ class Mechanism:
     stereotypes: Mapping[Id, tuple[str, ...]] = field(default_factory=dict, compare=False)
     layout: tuple[Id, ...] = field(default=(), compare=False)
     places: Mapping[str, str] = field(default_factory=dict, compare=False)
-    stored: Mapping[str, parts.Mesh] = field(default_factory=dict, compare=False)
+    stored: Mapping[str, StoredMesh] = field(default_factory=dict, compare=False)
 
     __hash__ = None  # type: ignore[assignment]
 

@@ -67,5 +67,35 @@ def test_several_meshes_in_several_colours_at_one_place_are_told_apart(tmp_path:
     report = hx.convert(stage, tmp_path / "away" / "back.urdf").report
     said = {item.element: "becomes the points" in item.message for item in report if item.code.id == "HX201"}
     assert said == {"mesh 'a'": True, "mesh 'c'": True, "mesh 'b'": True}
-    files = {path.stem: len(trimesh.load(path, process=False).faces) for path in (tmp_path / "away").rglob("*.obj")}
-    assert files == {"a": 6, "b": 320}
+    files = {path.stem: path.read_text().count("\nf ") for path in (tmp_path / "away").rglob("*.obj")}
+    assert files == {"a": 6, "b": 320, "c": 6}
+
+
+@pytest.mark.parametrize("materials", [3, 1])
+def test_the_colours_of_the_file_stand_in_with_its_points(materials: int, tmp_path: Path) -> None:
+    _, stage = moved(tmp_path)
+    if materials == 1:
+        (tmp_path / "home" / "a.dae").write_bytes(dae().replace(b"#m1", b"#m0").replace(b"#m2", b"#m0"))
+        hx.convert(tmp_path / "home" / "r.urdf", stage)
+    hx.convert(stage, tmp_path / "away" / "back.urdf", pure=True)
+    library = (tmp_path / "away" / "shapes" / "a.mtl").read_text()
+    colours = ["1 0 0", "0 1 0", "0 0 1"][:materials]
+    assert [line for line in library.splitlines() if line.startswith("Kd")] == [f"Kd {colour}" for colour in colours]
+    hx.convert(stage, tmp_path / "away" / "back.xml", pure=True)
+    assert [f'rgba="{colour} 1"' in (tmp_path / "away" / "back.xml").read_text() for colour in colours] == [True] * materials
+    hx.convert(stage, tmp_path / "away" / "back.usda", pure=True)
+    shown = {view.material.name: view.faces for views in hx.load(tmp_path / "away" / "back.usda").subsets.values() for view in views}
+    assert sorted(shown.values()) == ([(0, 1), (2, 3), (4, 5)] if materials == 3 else [(0, 1, 2, 3, 4, 5)])
+
+
+def test_the_image_of_the_file_stands_in_with_its_points(tmp_path: Path) -> None:
+    from tests.usd.test_textures import IMAGE_FACES, RED_FACES, image, lay_obj
+
+    (tmp_path / "home").mkdir()
+    (tmp_path / "away").mkdir()
+    hx.convert(lay_obj(tmp_path / "home", IMAGE_FACES + RED_FACES), tmp_path / "away" / "r.usda")
+    hx.convert(tmp_path / "away" / "r.usda", tmp_path / "away" / "back.urdf", pure=True)
+    library = (tmp_path / "away" / "shapes" / "a.mtl").read_text().splitlines()
+    assert [line for line in library if line.startswith(("Kd", "map_Kd"))] == ["Kd 1 1 1", "map_Kd ../textures/wood.png", "Kd 1 0 0"]
+    assert (tmp_path / "away" / "textures" / "wood.png").read_bytes() == image()
+    assert (tmp_path / "away" / "shapes" / "a.obj").read_text().count("\nvt ") == 5

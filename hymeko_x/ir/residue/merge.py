@@ -17,7 +17,7 @@ from hymeko_x.ir.residue.follow import renamed_since, with_new_names, with_old_n
 from hymeko_x.ir.residue.order import by_kind, laid_out, moved
 from hymeko_x.ir.residue.paths import default_at, digest, get, guard_of, put
 from hymeko_x.ir.residue.prints import print_of, print_of_extra, shape_group, weight_print
-from hymeko_x.ir.residue.stored import stored_points
+from hymeko_x.ir.residue.stored import stored_meshes
 from hymeko_x.ir.residue.types import is_sound, settled
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ class _Merge:
         removed = self._remove(kept)
         self._let_nothing_dangle(removed)
         merged = replace(self.image, name=name, graph=self._ordered(), places={**self.image.places, **dict(self._places())})
-        stored = stored_points(merged, self.image)
+        stored = stored_meshes(merged, self.image)
         return _with_sides(replace(merged, stored=stored) if stored else merged, self.residue, self.image)
 
     # ---- fields ------------------------------------------------------------------------------------------------------------
