@@ -121,12 +121,13 @@ def _painted(pieces: list[tuple[Look | None, Table]]) -> Painted:
     whole_ones = are_whole(faces)
     uv, corners = _places(tables)
     part = Part(points, faces[whole_ones], uv, None, None if corners is None else corners[whole_ones])
-    looks = list(dict.fromkeys(look for look, _ in pieces if look is not None))
-    numbers = {look: number for number, look in enumerate(looks)}
-    owners = np.repeat([numbers[look] if look is not None else -1 for look, _ in pieces], [len(table.faces) for table in tables])[
-        whole_ones
-    ]
-    return Painted(sound((part,))[0], tuple((look, np.flatnonzero(owners == number)) for look, number in numbers.items()))
+    numbers = {look: number for number, look in enumerate(dict.fromkeys(look for look, _ in pieces if look is not None))}
+    own = np.array([-1 if look is None else numbers[look] for look, _ in pieces])
+    owners = np.repeat(own, [len(table.faces) for table in tables])[whole_ones]
+    order = np.argsort(owners, kind="stable")
+    ends = np.searchsorted(owners[order], np.arange(len(numbers) + 1)).tolist()
+    looks = tuple([(look, order[start:end]) for look, start, end in zip(numbers, ends, ends[1:], strict=False)])
+    return Painted(sound((part,))[0], looks)
 
 
 def _places(tables: list[Table]) -> tuple[NDArray[np.float64], NDArray[Any]] | tuple[None, None]:

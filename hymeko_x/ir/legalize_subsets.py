@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
 from hymeko_x.ir.mechanism import shape_edge
@@ -14,9 +14,14 @@ from hymeko_x.ir.rename import names_in_use
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from numpy.typing import NDArray
+
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.legalize import Options
     from hymeko_x.ir.mechanism import Id, Mechanism, Names, RobotEdge, ShapeView, SubsetView
+
+    _Table = tuple[NDArray[Any], NDArray[Any]]
+    """The corners of triangles (n x 3), and the table that they are rows of."""
 
 
 def split_subsets(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
@@ -75,6 +80,7 @@ class _Splitting:
     meshes: dict[Id, Mesh] = field(default_factory=dict)
     edges: dict[Id, RobotEdge] = field(default_factory=dict)
     known: dict[tuple[Id, tuple[int, ...]], Id] = field(default_factory=dict)
+    tables: dict[Id, list[_Table]] = field(default_factory=dict)
 
     def show(self, view: ShapeView, mesh: Id, pieces: list[_Piece]) -> None:
         """A shape for each piece. The first one is the shape itself, unless that collides and stays whole."""
@@ -93,26 +99,36 @@ class _Splitting:
         if (mesh, faces) not in self.known:
             key = self.names.take("mesh", f"{mesh.name}_{material.name if material is not None else 'rest'}")
             self.known[mesh, faces] = key
-            self.meshes[key] = _cut(self.mechanism.vertex(mesh, Mesh), faces)
+            self.meshes[key] = self._cut(mesh, faces)
         return self.known[mesh, faces]
 
+    def _cut(self, key: Id, faces: tuple[int, ...]) -> Mesh:
+        """Some triangles of a mesh, with the points and places that they are of."""
+        mesh = self.mechanism.vertex(key, Mesh)
+        if key not in self.tables:
+            self.tables[key] = _tables(mesh)
+        points, *places = [_of(rows, table, faces) for rows, table in self.tables[key]]
+        texcoords, texfaces = places[0] if places else ((), ())
+        return Mesh(None, mesh.scale, None, *points, texcoords, texfaces)
 
-def _cut(mesh: Mesh, faces: tuple[int, ...]) -> Mesh:
-    """Some triangles of a mesh, with the points and places that they are of."""
-    corners, points = _of(mesh.faces, faces, mesh.vertices, 3)
-    rows = mesh.texfaces or mesh.faces
-    if len(rows) != len(mesh.faces) or not _are_rows(rows, mesh.texcoords, 2):
-        return Mesh(None, mesh.scale, None, points, corners)
-    texfaces, texcoords = _of(rows, faces, mesh.texcoords, 2)
-    return Mesh(None, mesh.scale, None, points, corners, texcoords, texfaces)
 
-
-def _of(rows: tuple[int, ...], faces: tuple[int, ...], table: tuple[float, ...], width: int) -> tuple[tuple[int, ...], tuple[float, ...]]:
-    """The rows of a table at the corners of some triangles, counted anew, and the part of the table that they are of."""
+def _tables(mesh: Mesh) -> list[_Table]:
+    """The points of a mesh, and its places in an image where it has sound ones."""
     import numpy as np
 
-    used, index = np.unique(np.asarray(rows).reshape(-1, 3)[list(faces)], return_inverse=True)
-    return tuple(index.ravel().tolist()), tuple(np.asarray(table).reshape(-1, width)[used].ravel().tolist())
+    found = [(np.asarray(mesh.faces).reshape(-1, 3), np.asarray(mesh.vertices).reshape(-1, 3))]
+    rows = mesh.texfaces or mesh.faces
+    if len(rows) == len(mesh.faces) and _are_rows(rows, mesh.texcoords, 2):
+        found.append((np.asarray(rows).reshape(-1, 3), np.asarray(mesh.texcoords).reshape(-1, 2)))
+    return found
+
+
+def _of(rows: NDArray[Any], table: NDArray[Any], faces: tuple[int, ...]) -> tuple[tuple[float, ...], tuple[int, ...]]:
+    """The part of a table that the corners of some triangles are of, and its rows at these corners."""
+    import numpy as np
+
+    used, index = np.unique(rows[list(faces)], return_inverse=True)
+    return tuple(table[used].ravel().tolist()), tuple(index.ravel().tolist())
 
 
 def part_meshes_by_looks(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:

@@ -182,6 +182,25 @@ def test_a_mesh_that_is_shown_twice_has_the_subsets_of_each_shape(tmp_path: Path
     assert again(both) == both
 
 
+PROTOTYPES = """
+    def Xform "{name}" (
+        prepend apiSchemas = ["PhysicsRigidBodyAPI"]
+        instanceable = true
+        prepend references = </robot/body>
+    )
+    {{
+    }}
+"""
+
+
+def test_the_subsets_of_a_prototype_are_those_of_all_its_instances() -> None:
+    head, _, _ = stage(*TWO).rpartition("}")
+    robot = read_text(head + PROTOTYPES.format(name="second") + "}\n")
+    faces = [[view.faces for view in robot.subsets[view.id]] for views in robot.shapes.values() for view in views]
+    assert faces == [[(1, 2), (4, 5)]] * 2
+    assert again(robot) == robot
+
+
 def test_a_subset_goes_when_its_shape_or_its_material_goes() -> None:
     text = written(read_text(stage(*TWO))).decode()
     assert shown(read_residue(text.replace("int[] indices = [4, 5]", "int[] indices = [4, 6]")))["tip"] == ((4, 6), "blue")

@@ -60,9 +60,12 @@ def set_points_aside(layer: Any, name: str) -> dict[str, Any]:
         return {}
     aside = Sdf.Layer.CreateAnonymous(".usda")
     _copy_header(layer, aside, _HEADER)
+    above = {prefix.GetParentPath() for path in long for prefix in path.GetPrimPath().GetPrefixes()}
     with Sdf.ChangeBlock():
+        for spec in _prims(layer):
+            if spec.path.GetParentPath() in above:  # all of them: a stage begins with the children that its weaker layers name
+                Sdf.CreatePrimInLayer(aside, spec.path)
         for path in long:
-            Sdf.CreatePrimInLayer(aside, path.GetPrimPath())
             Sdf.CopySpec(layer, path, aside, path)
             spec = layer.GetPrimAtPath(path.GetPrimPath())
             del spec.properties[path.name]

@@ -27,6 +27,8 @@ def read_subsets(mesh: Prim, shape: Id, draft: Draft) -> None:
     import numpy as np
 
     sizes = np.asarray(mesh.value("faceVertexCounts"), dtype=np.int64)
+    counts = np.maximum(sizes - 2, 0)
+    starts, is_plain = np.cumsum(counts) - counts, bool((sizes == 3).all())
     free = np.ones(len(sizes), dtype=bool)
     for prim in found:
         faces = np.asarray(prim.value("indices"), dtype=np.int64)
@@ -36,14 +38,18 @@ def read_subsets(mesh: Prim, shape: Id, draft: Draft) -> None:
             draft.report.warn(codes.ASSET_UNREADABLE, said, draft.origin, element=prim.path)
             continue
         free[faces] = False
-        _add_subset(prim, faces, sizes, shape, draft)
+        ordered = np.sort(faces)
+        triangles = ordered if is_plain else _triangles(counts[ordered], starts[ordered])
+        _add_subset(prim, triangles, shape, draft, is_ours=is_plain and np.array_equal(ordered, faces))
     if mesh.value(words.FAMILY) == words.APART and not free.all():
         draft.take(mesh, words.FAMILY)
 
 
 def _is_bound(prim: Prim, draft: Draft) -> bool:
     """Whether a prim says of some faces that they show a material that was read."""
-    if prim.kind != "GeomSubset" or not prim.is_real or prim.value("familyName") != words.LOOKS or not prim.value("indices"):
+    if prim.kind != "GeomSubset" or not prim.is_real or prim.value("familyName") != words.LOOKS:
+        return False
+    if prim.types.get("indices") != "int[]" or not prim.value("indices"):
         return False
     if prim.value("elementType") not in (None, words.FACE) or any(map(prim.is_animated, ("indices", "elementType", "familyName"))):
         return False
@@ -59,17 +65,18 @@ def _broken(faces: NDArray[Any], free: NDArray[Any]) -> str | None:
     return None if free[faces].all() and len(np.unique(faces)) == len(faces) else "has a face that shows a material already"
 
 
-def _add_subset(prim: Prim, faces: NDArray[Any], sizes: NDArray[Any], shape: Id, draft: Draft) -> None:
-    """The edge of a subset, in triangles; polygons, and an order of the author's own, stay beside it."""
+def _triangles(counts: NDArray[Any], starts: NDArray[Any]) -> NDArray[Any]:
+    """The triangles of polygons, given by how many each has and the number of its first one."""
     import numpy as np
 
-    is_shown = np.zeros(len(sizes), dtype=bool)
-    is_shown[faces] = True
-    triangles = np.flatnonzero(np.repeat(is_shown, np.maximum(sizes - 2, 0)))
+    before = np.cumsum(counts) - counts
+    return np.repeat(starts - before, counts) + np.arange(int(counts.sum()))
+
+
+def _add_subset(prim: Prim, triangles: NDArray[Any], shape: Id, draft: Draft, *, is_ours: bool) -> None:
+    """The edge of a subset. Where its faces are no triangles, or in an order of the author's own, they stay beside it as well."""
     material = bound_material(prim, draft) if len(triangles) else None
     if material is None:
         return
-    draft.take(prim, "@type", "familyName", "elementType")
-    if (sizes == 3).all() and np.array_equal(triangles, faces):
-        draft.take(prim, "indices")
+    draft.take(prim, "@type", "familyName", "elementType", *(["indices"] if is_ours else []))
     draft.edges[draft.own(prim, "subset")] = subset_edge(tuple(triangles.tolist()), shape, material)
