@@ -112,6 +112,28 @@ def package_of(files: dict[str, str | bytes]) -> bytes:
 PART = HEADER.replace('"robot"', '"part"') + 'def Xform "part" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])\n{\n}\n'
 
 
+LONG = """robot : robot {
+  coarse : mesh { vertices [0 0 0 1 0 0 0 1 0 0 0 1] faces [0 1 2 0 1 3 1 2 3 0 2 3] }
+  fine : mesh { vertices [%s] faces [%s] }
+  a { mass 1 inertia [1 1 1] visual { mesh=coarse name=seen id "seen" } }
+  b { mass 1 inertia [1 1 1] visual { mesh=fine name=seen id "seen#2" } }
+  @j : joint { + a - b AXIS_X }
+}
+"""
+
+
+def test_prims_keep_their_order_where_only_some_have_long_arrays(tmp_path: Path) -> None:
+    points = " ".join(f"{number} {number * number} {number % 7}" for number in range(90))
+    faces = " ".join(f"{number} {number + 1} {number + 2}" for number in range(88))
+    hx.dump(hx.loads(LONG % (points, faces), "hymeko"), tmp_path / "r.usda", pure=True)
+    stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
+    assert (tmp_path / "r_meshes.usdc").exists()
+    assert [prim.GetName() for prim in stage.Traverse() if prim.HasAPI(UsdPhysics.RigidBodyAPI)] == ["a", "b"]
+    source = hx.load(tmp_path / "r.usda")
+    hx.dump(source, tmp_path / "again.usda", pure=True)
+    assert hx.diff(source, hx.load(tmp_path / "again.usda")) == ()
+
+
 def test_layers_inside_of_a_package_are_found_there() -> None:
     main = HEADER + 'def Xform "robot"\n{\n    def "a" (\n        prepend references = @./parts/part.usda@\n    )\n    {\n    }\n}\n'
     data = package_of({"main.usda": main, "parts/part.usda": PART, "../outside.usda": PART})
