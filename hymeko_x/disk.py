@@ -106,9 +106,9 @@ def in_the_way(package: Package, path: str, folder: str, files: Files) -> str | 
     Raises: Refusal HX002.
     """
     target = Path(path)
-    if _is_stream(target):
-        return None
     try:
+        if _is_stream(target):
+            return None
         for name, data in _assets(package, target, files):
             final, own = _beside(target, name), _beside(target, folder + name)
             if (own.exists() or not target.exists()) and final.is_file() and not _holds(final, data):

@@ -116,7 +116,12 @@ NUMBERS = (
         )
         for title, text in _NUMBERS.items()
     ),
-    *(reading(f"{title} as a size in MJCF: m.xml", MODEL.format(f"<geom size='{text}'/>"), "HX020") for title, text in _NUMBERS.items()),
+    *(
+        reading(f"{title} as a size in MJCF: m.xml", MODEL.format(f"<geom size='{text}'/>"), "HX020")
+        for title, text in _NUMBERS.items()
+        if title != "hexadecimal"
+    ),
+    reading("hexadecimal as a size in MJCF, where it is a number: m.xml", MODEL.format("<geom size='0x10'/>"), code=0),
 )
 
 INCLUDES = (

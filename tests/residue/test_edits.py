@@ -17,7 +17,7 @@ from hymeko_x.formats.carrier import taken_off
 from hymeko_x.ir.diff import Tolerance, diff
 from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
-from hymeko_x.ir.parts import Mesh
+from hymeko_x.ir.parts import Mesh, Tendon
 from hymeko_x.source import NoFiles, Source
 from tests.residue.edits import Edit, applied, applied_to_stage, mjcf_edits, urdf_edits, usd_edits, xacro_edits
 from tests.residue.exactness import unequal
@@ -90,10 +90,12 @@ def test_edits_of_a_stage_survive_and_the_rest_is_restored(source: str, own: str
 
 
 def _tidied(stage: Mechanism) -> Mechanism:
-    """A stage without what has no use when bodies are gone: a friction, an empty group, an actuator, an articulation root."""
+    """A stage without what has no use when bodies are gone: a friction, an empty group, an actuator, an articulation root, the ball
+    of a site whose cable is gone."""
     used = {arc.target for edge in stage.graph.edges.values() for arc in edge.arcs}
     idle = [key for key in stage.graph.vertices if key.kind == "material" and key not in used]
-    extras = {key: found for key, found in stage.extras.items() if key != ROOT}
+    cables = {arc.target for _, _, arcs in stage.edges(Tendon) for arc in arcs}
+    extras = {key: found for key, found in stage.extras.items() if key != ROOT and (key.kind != "frame" or key in cables)}
     return replace(stage, graph=stage.graph.replace(without=idle), extras=extras)
 
 
