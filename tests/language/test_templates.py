@@ -12,7 +12,7 @@ from hymeko_x.backends.hymeko import write
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir import parts
-from hymeko_x.ir.graph import Edge, Hypergraph
+from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, RobotArc, RobotEdge
 from hymeko_x.ir.parts import VertexPart
 from hymeko_x.ir.rename import rename
@@ -145,3 +145,10 @@ def test_whatever_repeats_reads_back_equal(mechanism: Mechanism) -> None:
     back = read(Source("robot.hymeko", printed), Report())
     assert back == mechanism
     assert write(back, Report()).main == printed
+
+
+def test_parameters_called_like_formats_keep_their_place() -> None:
+    said = (("urdf", 0.0), ("base", 0.0), ("limit", -1.7976931348623157e308))
+    edges: dict[Id, RobotEdge] = {Id("relation", name): Edge(parts.Relation(said), (Arc(Id("body", "a")),)) for name in "wxyz"}
+    mechanism = Mechanism("r", Hypergraph({Id("body", "a"): parts.Body()}, edges))
+    assert read(Source("robot.hymeko", write(mechanism, Report()).main), Report()) == mechanism

@@ -187,8 +187,9 @@ def _by_item(node: Node) -> Iterable[tuple[Item, list[_Unit]]]:
 
 
 def _is_sayable(item: Field) -> bool:
-    """Whether a stereotype could say a field: it is not one of a kind, and holds no parameter of a template around it."""
-    return item.name not in _ONE_OF_A_KIND and "${" not in print_item(item)
+    """Whether a stereotype could say a field: it is not one of a kind, called like a format, or with a parameter of a template around it."""
+    is_like_format = isinstance(item.name, QuotedName) and item.name in FOREIGN
+    return item.name not in _ONE_OF_A_KIND and not is_like_format and "${" not in print_item(item)
 
 
 def _units_of(item: Item) -> Iterable[_Unit]:
