@@ -187,7 +187,7 @@ def _by_item(node: Node) -> Iterable[tuple[Item, list[_Unit]]]:
 
 
 def _is_sayable(item: Field) -> bool:
-    """Whether a stereotype could say a field: it is not one of a kind, called like a format, or with a parameter of a template around it."""
+    """Whether a stereotype could say a field: it is not one of a kind, not called like a format, without parameters of a template."""
     is_like_format = isinstance(item.name, QuotedName) and item.name in FOREIGN
     return item.name not in _ONE_OF_A_KIND and not is_like_format and "${" not in print_item(item)
 
