@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import statistics
 import time
 from typing import TYPE_CHECKING
@@ -16,6 +17,8 @@ from hymeko_x.frontends.hymeko import read
 from hymeko_x.source import Source
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from tests.conftest import RealRobots
 
 _EVERY = 12
@@ -90,8 +93,19 @@ def test_printing_takes_little_longer_than_reading_where_thousands_of_values_are
     )
     bodies = (f"  b{n} {{ mass {n} }}" for n in range(3001))
     text = "\n".join(("r : robot {", *bodies, *joints, "}"))
+    source = Source("robot.hymeko", text.encode())
+    robot = read(source, Report())
+    reading = min(_seconds(lambda: read(source, Report())) for _ in range(3))
+    printing = min(_seconds(lambda: write(robot, Report())) for _ in range(3))
+    assert printing < 3.0 * reading
+
+
+def _seconds(work: Callable[[], object]) -> float:
+    """Processor time without what a collector of cycles finds in a process full of other tests."""
+    gc.collect()
+    gc.disable()
     start = time.process_time()
-    robot = read(Source("robot.hymeko", text.encode()), Report())
-    done = time.process_time()
-    write(robot, Report())
-    assert time.process_time() - done < 2.5 * (done - start)
+    work()
+    seconds = time.process_time() - start
+    gc.enable()
+    return seconds
