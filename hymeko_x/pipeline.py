@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import posixpath
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Protocol
 
@@ -25,7 +24,7 @@ from hymeko_x.ir.residue.align import aligned
 from hymeko_x.ir.residue.bridge import other_words
 from hymeko_x.ir.residue.delta import residue_behind
 from hymeko_x.language.residue import BadResidue, parse_residue, print_residue
-from hymeko_x.source import Package, Source
+from hymeko_x.source import Package, PackageFiles, PlacedFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -346,38 +345,3 @@ def carrier_of(format: Format) -> Carrier | None:
 def _offered(format: Format, name: str) -> Any:
     """A function that only some backends have; None where the format's has none."""
     return getattr(import_module(format.backend), name, None) if format.backend else None
-
-
-@dataclass(frozen=True, slots=True)
-class PackageFiles:
-    """The files of a package that has not been written yet; a :class:`hymeko_x.source.Files`."""
-
-    package: Package
-    behind: Files = field(repr=False)
-
-    def find(self, uri: str) -> str | None:
-        """The normalised relative name if the package has it."""
-        name = posixpath.normpath(uri)
-        return name if name in self.package.files or name in self.package.copies else self.behind.find(uri)
-
-    def read(self, path: str) -> bytes:
-        """The content of a path that :meth:`find` returned. Raises: OSError."""
-        if path in self.package.files:
-            return self.package.files[path]
-        return self.behind.read(self.package.copies.get(path, path))
-
-
-@dataclass(frozen=True, slots=True)
-class PlacedFiles:
-    """The files of a mechanism that another file carried: what is not where it was lies where that file has it."""
-
-    places: Mapping[str, str]
-    behind: Files = field(repr=False)
-
-    def find(self, uri: str) -> str | None:
-        """The path of a file, first by its own name."""
-        return self.behind.find(uri) or (self.behind.find(self.places[uri]) if uri in self.places else None)
-
-    def read(self, path: str) -> bytes:
-        """The content of a path that :meth:`find` returned. Raises: OSError."""
-        return self.behind.read(path)

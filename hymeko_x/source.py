@@ -6,6 +6,7 @@ Nothing here touches a disk. The shell gives a frontend a :class:`Source` whose 
 
 from __future__ import annotations
 
+import posixpath
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
@@ -67,3 +68,38 @@ class Package:
     main: bytes
     files: Mapping[str, bytes] = field(default_factory=dict)
     copies: Mapping[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class PackageFiles:
+    """The files of a package that has not been written yet; a :class:`Files`."""
+
+    package: Package
+    behind: Files = field(repr=False)
+
+    def find(self, uri: str) -> str | None:
+        """The normalised relative name if the package has it."""
+        name = posixpath.normpath(uri)
+        return name if name in self.package.files or name in self.package.copies else self.behind.find(uri)
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        if path in self.package.files:
+            return self.package.files[path]
+        return self.behind.read(self.package.copies.get(path, path))
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedFiles:
+    """The files of a mechanism that another file carried: what is not where it was lies where that file has it."""
+
+    places: Mapping[str, str]
+    behind: Files = field(repr=False)
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file, first by its own name."""
+        return self.behind.find(uri) or (self.behind.find(self.places[uri]) if uri in self.places else None)
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        return self.behind.read(path)

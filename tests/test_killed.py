@@ -20,7 +20,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
 from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Mechanism
-from hymeko_x.source import Files, Package, Source
+from hymeko_x.source import Files, Package, PlacedFiles, Source
 
 CHANGES = ("os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.chmod", "os.link", "os.symlink", "os.truncate")
 """What Python announces before it changes the disk; files that are opened for writing come on top."""
@@ -123,7 +123,7 @@ def _whole(source: Source, format: formats.Format) -> Mechanism:
 
 def _seen(robot: Mechanism, files: Files) -> tuple[object, ...]:
     """Masses, the points or the file of each mesh, the file of each texture."""
-    files = pipeline.PlacedFiles(robot.places, files)
+    files = PlacedFiles(robot.places, files)
     masses = [body.inertial.mass for _, body in robot.vertices(parts.Body) if body.inertial]
     meshes = [mesh.vertices or _content(mesh.uri, files) for _, mesh in robot.vertices(parts.Mesh)]
     return tuple(masses), tuple(meshes), tuple(_content(texture.uri, files) for _, texture in robot.vertices(parts.Texture))

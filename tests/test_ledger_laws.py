@@ -18,7 +18,7 @@ from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import WORLD, Extra, Id, Mechanism, RobotEdge, joint_edge, shape_edge
 from hymeko_x.ir.values import Pose, X, Y, Z
-from hymeko_x.source import NoFiles, Package, Source
+from hymeko_x.source import NoFiles, Package, PackageFiles, Source
 
 FEW = settings(max_examples=settings.default.max_examples // 10, deadline=None, suppress_health_check=list(HealthCheck))
 FORMATS = ("hymeko", "urdf", "mjcf", "usd", "usdc")
@@ -94,7 +94,7 @@ def _converted(mechanism: Mechanism, way: str) -> pipeline.Result:
 def _bare(package: Package, way: str) -> Mechanism:
     """What the stages of a package say themselves."""
     format = formats.by_name(way.partition(" ")[0])
-    files = pipeline.PackageFiles(package, NoFiles())
+    files = PackageFiles(package, NoFiles())
     return replace(pipeline.reader(format)(Source(f"r.{format.name}", package.main, files), Report()), extras={})
 
 
