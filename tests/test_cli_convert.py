@@ -13,6 +13,7 @@ import pytest
 import hymeko_x as hx
 from hymeko_x import pipeline
 from hymeko_x.cli import exits, main
+from hymeko_x.ledger import Loss
 from hymeko_x.source import Package
 
 ARM = """<?xml version="1.0"?>
@@ -157,9 +158,9 @@ def test_a_loss_is_measured_by_reading_the_result_back(
 
 
 def test_a_long_value_is_shown_in_one_short_line() -> None:
-    loss = pipeline.Loss("body 'a'", "urdf content", "<a>\n" + "x" * 200, None, "dropped")
+    loss = Loss("body 'a'", "urdf content", "<a>\n" + "x" * 200, None, "dropped")
     assert str(loss) == f"loss: body 'a' urdf content dropped: <a> {'x' * 116}... -> nothing"
-    assert str(pipeline.Loss("body 'a'", "name", "", "b", "approximated")) == "loss: body 'a' name approximated: '' -> b"
+    assert str(Loss("body 'a'", "name", "", "b", "approximated")) == "loss: body 'a' name approximated: '' -> b"
 
 
 def test_what_our_own_reader_refuses_is_a_bug_and_not_written(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -16,6 +16,7 @@ LAYERS = (
     ("ir",),
     ("assets", "formats", "language"),
     ("frontends", "backends"),
+    ("ledger",),
     ("pipeline", "disk", "verify", "draw", "corpus"),
     ("delivery",),
     ("api",),

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
-from hymeko_x import formats, pipeline
+from hymeko_x import formats, ledger, pipeline
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
 from hymeko_x.ir.diff import diff
@@ -106,7 +106,7 @@ def test_what_a_format_can_say_is_not_in_the_ledger_and_comes_back_without_what_
     result = _converted(robot, way)
     assert list(map(str, result.losses or ())) == []
     if way in LAYOUTS:
-        assert [str(found) for found in diff(robot, _bare(result.package, way), pipeline.LEDGER_TOLERANCE)] == []
+        assert [str(found) for found in diff(robot, _bare(result.package, way), ledger.TOLERANCE)] == []
 
 
 def _on_a_dof(**changed: object) -> Callable[[Mechanism], tuple[Mechanism, Id] | None]:

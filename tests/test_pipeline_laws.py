@@ -18,6 +18,7 @@ from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
 from hymeko_x.ir.rename import rename
 from hymeko_x.ir.residue.align import aligned
+from hymeko_x.ledger import losses_between
 from hymeko_x.source import NoFiles, Source
 from hymeko_x.testing import TREES, mechanisms, urdf_mechanisms
 
@@ -121,7 +122,7 @@ def test_what_is_taken_out_of_the_result_is_in_the_ledger(format: str, mechanism
     package = pipeline.write(_without(mechanism, victim), found, Options(), NoFiles(), Report(), place)
     image = pipeline.read_back(package, found, NoFiles())
     bridge, crossed = aligned(image, mechanism)
-    losses = pipeline.ledger(mechanism, crossed, bridge, found)
+    losses = losses_between(mechanism, crossed, bridge, found)
     assert str(victim) in {loss.element for loss in losses}
 
 

@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from hymeko_x.cli.inputs import Input
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
-    from hymeko_x.pipeline import Loss, Result
+    from hymeko_x.ledger import Loss
+    from hymeko_x.pipeline import Result
 
 FAIL_ON = ("error", "loss", "warning")
 

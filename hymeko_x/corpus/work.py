@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from hymeko_x.corpus.cases import Case
     from hymeko_x.corpus.plan import Plan
     from hymeko_x.ir.mechanism import Mechanism
-    from hymeko_x.pipeline import Loss
+    from hymeko_x.ledger import Loss
     from hymeko_x.source import Source
     from hymeko_x.verify.model import KinematicModel
     from hymeko_x.verify.surfaces import Meshes
