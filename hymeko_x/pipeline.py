@@ -143,11 +143,6 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
     return Result(mechanism, package, report, losses, bare)
 
 
-def within(folder: str, mechanism: Mechanism, format: Format, options: Options, files: Files, place: Place = HERE) -> Package:
-    """The package that :func:`convert` makes, with every file beside the main one below this folder, which ends in a slash."""
-    return convert(mechanism, format, replace(options, within=folder), files, Report(), place).package
-
-
 def write_unmeasured(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
     """The same without reading back: for a format that holds every mechanism exactly, where time counts.
 

@@ -16,6 +16,7 @@ import pytest
 import hymeko_x as hx
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.delivery import Delivery
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
 from hymeko_x.ir.legalize import Options
@@ -96,9 +97,10 @@ def written(way: Way, source: Path) -> Written:
     format = formats.of_output(way.target)
     options = Options(layout=way.layout, split=way.split, beside="o")
     place = pipeline.Place(assets="copy")
-    package = pipeline.convert(robot, format, options, files, Report(), place).package
+    delivery = Delivery(robot, format, options, files, place, path="")
+    package = delivery.convert(Report()).package
     draws = len(package.files) + len(package.copies) + 1  # the names of what is staged
-    below = pipeline.within(f".{way.target}-{draws.to_bytes(6).hex()}.part/", robot, format, options, files, place)
+    below = delivery.below(f".{way.target}-{draws.to_bytes(6).hex()}.part/").package
     return Written(package, lambda folder: below, files)
 
 

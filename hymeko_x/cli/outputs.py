@@ -55,9 +55,8 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
 
     With ``measured`` the result is read back and its losses are listed.
     """
-    stem = "" if output.path == "-" else Path(output.path).stem
-    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, stem)
-    path = None if output.path == "-" else output.path
+    path = "" if output.path == "-" else output.path
+    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, Path(path).stem)
     delivery = Delivery(given.mechanism, output.format, options, given.source.files, _place(output, chosen.assets), path)
     result = delivery.convert(report, measured=measured)
     beside = [*result.package.files, *result.package.copies]
@@ -66,7 +65,7 @@ def deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Re
         report.warn(codes.ASSET_NOT_WRITTEN, f"standard output cannot carry {names}", hint="-o FILE writes them beside the file")
     failed = is_reached(chosen.fail_on, report, result.losses)
     if not failed:
-        _write(delivery, result)
+        _write(delivery, output, result)
     show(report)
     _show_losses(result.losses or ())
     wants_json = getattr(chosen, "json", False)
@@ -85,8 +84,8 @@ def _place(output: Output, assets: Literal["copy", "reference"] | None) -> pipel
     return pipeline.Place(os.path.dirname(output.path) or ".", assets)
 
 
-def _write(delivery: Delivery, result: Result) -> None:
-    if delivery.path is None:
+def _write(delivery: Delivery, output: Output, result: Result) -> None:
+    if output.path == "-":
         sys.stdout.buffer.write(result.package.main)
     else:
         delivery.put(result)
