@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import errno
 import os
-import stat
 from collections.abc import Callable
 from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
@@ -15,7 +14,8 @@ from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Origin, Refusal, refuse
-from hymeko_x.source import Package, Source
+from hymeko_x.source import Package, PackageFiles, Source
+from hymeko_x.staging import Staging
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 2**30
 
-Move = tuple[Path, Path]
-"""A temporary file, and the place for which it is meant."""
 Within = Callable[[str], Package]
 """The same output with every file beside the main one below a folder, which ends in a slash."""
 
@@ -71,31 +69,31 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
 
     Raises: Refusal HX002; then no file of an earlier run has been touched, unless the very renaming failed.
     """
-    target = Path(path)
-    staged: list[Move] = []
-    made: list[Path] = []
+    target, contents = Path(path), PackageFiles(package, files)
+    assets, main = Staging(), Staging()
     try:
         if not target.parent.is_dir():
             raise FileNotFoundError(errno.ENOENT, f"there is no folder '{target.parent}'")
-        for name, data in _assets(package, target, files):
-            _make_folders(_beside(target, name).parent, made)
-            staged.append(_stage(_beside(target, name), data))
+        for name, place in _assets(package, target):
+            data = contents.read(name)
+            assets.make_folders(place.parent)
+            assets.add(place, data)
         if _is_stream(target):
             target.write_bytes(package.main)
         else:
-            staged.append(_stage(target, package.main))
+            main.add(target, package.main)
         with _alone_in(target.parent):
-            needed = within if target.is_file() and any(map(_is_replaced, staged[:-1])) else None
-            if needed:
-                _put_stand_in(target, files, needed)
-            for temporary, final in staged:
-                temporary.replace(final)
+            if within is not None and target.is_file() and assets.replace_others():
+                _put_stand_in(target, files, within)
+            assets.put()
+            main.put()
             for stand_in in _stand_ins(target):  # ours, and that of a run that was killed
                 rmtree(stand_in, ignore_errors=True)
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
     finally:
-        _clean([temporary for temporary, _ in staged], made)
+        main.clean()
+        assets.clean()
 
 
 def in_the_way(package: Package, path: str, folder: str, files: Files) -> str | None:
@@ -105,50 +103,43 @@ def in_the_way(package: Package, path: str, folder: str, files: Files) -> str | 
 
     Raises: Refusal HX002.
     """
-    target = Path(path)
+    target, contents = Path(path), PackageFiles(package, files)
     try:
         if _is_stream(target):
             return None
-        for name, data in _assets(package, target, files):
-            final, own = _beside(target, name), _beside(target, folder + name)
-            if (own.exists() or not target.exists()) and final.is_file() and not _holds(final, data):
+        is_new = not target.exists()
+        for name, place in _assets(package, target):
+            if place.is_file() and (is_new or _beside(target, folder + name).exists()) and not _holds(place, contents.read(name)):
                 return name
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
     return None
 
 
-def _is_replaced(move: Move) -> bool:
-    """Whether there is a file already, with another content."""
-    temporary, final = move
-    return final.exists() and not _holds(final, temporary.read_bytes())
-
-
-def _holds(final: Path, data: bytes) -> bool:
-    return final.stat().st_size == len(data) and final.read_bytes() == data
-
-
-def _stand_ins(target: Path) -> list[Path]:
-    """The folders with the assets of main files that stood in for this one."""
-    return [place for place in target.parent.glob(f".{safe_name(target.name)}-{'[0-9a-f]' * 12}.part") if place.is_dir()]
+# ---- while assets are replaced -----------------------------------------------------------------------------------------------
 
 
 def _put_stand_in(target: Path, files: Files, within: Within) -> None:
     """Replace the main file by one whose assets are in a folder of their own, so that those beside it are free."""
     folder = target.parent / f".{safe_name(target.name)}-{os.urandom(6).hex()}.part"
-    staged: list[Move] = []
+    main = Staging()
     try:
         package = within(f"{folder.name}/")
-        for name, data in _assets(package, target, files):
-            place = _beside(target, name)
+        contents = PackageFiles(package, files)
+        for name, place in _assets(package, target):
             place.parent.mkdir(parents=True, exist_ok=True)
-            place.write_bytes(data)
-        staged.append(_stage(target, package.main))
-        staged[0][0].replace(staged[0][1])
+            place.write_bytes(contents.read(name))
+        main.add(target, package.main)
+        main.put()
     except (OSError, ValueError, Refusal):
         rmtree(folder, ignore_errors=True)
-        _clean([temporary for temporary, _ in staged], [])
+        main.clean()
         raise
+
+
+def _stand_ins(target: Path) -> list[Path]:
+    """The folders with the assets of main files that stood in for this one."""
+    return [place for place in target.parent.glob(f".{safe_name(target.name)}-{'[0-9a-f]' * 12}.part") if place.is_dir()]
 
 
 @contextmanager
@@ -168,46 +159,17 @@ def _alone_in(folder: Path) -> Iterator[None]:
         os.close(handle)
 
 
-def _assets(package: Package, target: Path, files: Files) -> Iterator[tuple[str, bytes]]:
-    """Every asset with its content, except those that already are the very file that they would be copied from."""
-    yield from package.files.items()
+# ---- assets and their places -------------------------------------------------------------------------------------------------
+
+
+def _assets(package: Package, target: Path) -> Iterator[tuple[str, Path]]:
+    """Every asset with its place, except those that already are the very file that they would be copied from."""
+    for name in package.files:
+        yield name, _beside(target, name)
     for name, source in package.copies.items():
-        if not _is_same(_beside(target, name), source):
-            yield name, files.read(source)
-
-
-def _make_folders(folder: Path, made: list[Path]) -> None:
-    """Make the folders of an asset below the output's own folder, which must exist; note those that are new."""
-    missing = [place for place in (folder, *folder.parents) if not place.exists()]
-    folder.mkdir(parents=True, exist_ok=True)
-    made += missing
-
-
-def _stage(final: Path, data: bytes) -> Move:
-    """Put the data into a temporary sibling with the permissions of the file that it replaces, or of a new file."""
-    real = final.resolve() if final.is_symlink() else final
-    if real.is_dir():
-        raise IsADirectoryError(errno.EISDIR, f"'{final}' is a folder")
-    temporary = real.with_name(f".{real.name[:100]}.{os.urandom(6).hex()}.part")
-    try:
-        with temporary.open("xb") as file:
-            file.write(data)
-        if real.exists():
-            temporary.chmod(stat.S_IMODE(real.stat().st_mode))
-    except OSError:
-        temporary.unlink(missing_ok=True)
-        raise
-    return temporary, real
-
-
-def _clean(temporaries: list[Path], made: list[Path]) -> None:
-    """Remove what a failed run left: temporary files, and folders of its own that stayed empty."""
-    for temporary in temporaries:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
-    for folder in made:
-        with suppress(OSError):
-            folder.rmdir()
+        place = _beside(target, name)
+        if not _is_same(place, source):
+            yield name, place
 
 
 def _is_stream(target: Path) -> bool:
@@ -231,6 +193,10 @@ def _is_same(final: Path, source: str) -> bool:
     with suppress(OSError):
         return final.samefile(source)
     return False
+
+
+def _holds(place: Path, data: bytes) -> bool:
+    return place.stat().st_size == len(data) and place.read_bytes() == data
 
 
 def _reason(error: OSError | ValueError) -> str:

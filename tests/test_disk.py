@@ -19,6 +19,7 @@ class Shelf:
 
     def __init__(self, files: Mapping[str, bytes]) -> None:
         self.files = files
+        self.was_read: list[str] = []
 
     def find(self, uri: str) -> str | None:
         return uri if uri in self.files else None
@@ -26,6 +27,7 @@ class Shelf:
     def read(self, path: str) -> bytes:
         if path not in self.files:
             raise FileNotFoundError(2, "No such file or directory", path)
+        self.was_read.append(path)
         return self.files[path]
 
 
@@ -113,6 +115,27 @@ def test_a_pipe_is_written_into_and_not_replaced(tmp_path: Path) -> None:
     finally:
         os.close(reader)
     assert stat.S_ISFIFO((tmp_path / "pipe").stat().st_mode)
+
+
+def test_only_what_may_stand_in_the_way_is_read_and_compared(tmp_path: Path) -> None:
+    files = Shelf({"/source/a.stl": b"mesh a", "/source/b.stl": b"mesh b"})
+    package = Package(b"x", {}, {"a.stl": "/source/a.stl", "b.stl": "/source/b.stl"})
+
+    def found() -> tuple[str | None, list[str]]:
+        files.was_read.clear()
+        return disk.in_the_way(package, str(tmp_path / "robot.urdf"), "robot/", files), list(files.was_read)
+
+    assert found() == (None, [])
+    (tmp_path / "b.stl").write_bytes(b"other mesh")
+    assert found() == ("b.stl", ["/source/b.stl"])
+    (tmp_path / "b.stl").write_bytes(b"mesh b")
+    assert found() == (None, ["/source/b.stl"])
+    (tmp_path / "b.stl").write_bytes(b"other mesh")
+    (tmp_path / "robot.urdf").write_bytes(b"before")
+    assert found() == (None, [])
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "robot/b.stl").write_bytes(b"mesh b")
+    assert found() == ("b.stl", ["/source/b.stl"])
 
 
 # ---- reading -------------------------------------------------------------------------------------------------------------

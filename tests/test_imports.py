@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LAYERS = (
-    ("collector", "diagnostics", "codes", "source"),
+    ("collector", "diagnostics", "codes", "source", "staging"),
     ("ir",),
     ("assets", "formats", "language"),
     ("frontends", "backends"),
