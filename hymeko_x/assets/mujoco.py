@@ -11,8 +11,9 @@ from hymeko_x import codes
 from hymeko_x.assets.shelf import Shelf, read_file, stem_of, suffix_of
 from hymeko_x.assets.texture import UnreadableImage, png_bytes
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
+from hymeko_x.ir.additions import Additions
 from hymeko_x.ir.legalize_native import is_native
-from hymeko_x.ir.mechanism import Extra, Id, layer_edge, shape_edge
+from hymeko_x.ir.mechanism import Extra, Id, shape_edge
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.ir.rename import names_in_use
 
@@ -21,8 +22,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.assets.part import Look, Part
     from hymeko_x.diagnostics import Code, Report
-    from hymeko_x.ir.mechanism import Mechanism, Names, RobotEdge, ShapeView
-    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.ir.mechanism import Mechanism, ShapeView
     from hymeko_x.source import Files
 
 _MESHES = "meshes"
@@ -51,17 +51,14 @@ class _Piece:
     look: Id | None
 
 
-@dataclass(slots=True)
-class _Packing:
+@dataclass(slots=True, kw_only=True)
+class _Packing(Additions):
     """One run: what it reads from, and what it adds to the mechanism."""
 
     mechanism: Mechanism
     shelf: Shelf
     files: Files
     report: Report
-    names: Names
-    vertices: dict[Id, VertexPart] = field(default_factory=dict)
-    edges: dict[Id, RobotEdge] = field(default_factory=dict)
     gone: list[Id] = field(default_factory=list)
     surfaces: set[Id] = field(default_factory=set)
     looks: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
@@ -74,7 +71,7 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
         from hymeko_x.assets.native import pack_native
 
         return pack_native(mechanism, shelf, files, report)
-    run = _Packing(mechanism, shelf, files, report, names_in_use(mechanism))
+    run = _Packing(names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
     run.textured = frozenset(arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0)
     _pack_textures(run)
     _pack_meshes(run)
@@ -340,13 +337,9 @@ def _material(run: _Packing, look: Look | None, mesh: Mesh) -> Id | None:
     known = run.looks.get((look.rgba, look.image))
     if known is not None:
         return known
-    key = run.names.take("material", look.name or stem_of(mesh.uri or "") or "material")
-    run.vertices[key] = Material(key.name, look.rgba)
-    run.looks[look.rgba, look.image] = key
+    key = run.looks[look.rgba, look.image] = run.add_material(Material(look.name or stem_of(mesh.uri or ""), look.rgba))
     if look.image is not None:
-        texture = run.names.take("texture", key.name)
-        run.vertices[texture] = Texture(run.shelf.place(_TEXTURES, key.name, ".png", look.image))
-        run.edges[run.names.take("layer", key.name)] = layer_edge(texture, key)
+        run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", look.image)), key)
     return key
 
 

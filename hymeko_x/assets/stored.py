@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.assets.refer import is_of_package
-from hymeko_x.ir.mechanism import StoredLook, layer_edge, subset_edge
+from hymeko_x.ir.additions import Additions
+from hymeko_x.ir.mechanism import StoredLook, subset_edge
 from hymeko_x.ir.parts import Mesh, Role
 from hymeko_x.ir.rename import names_in_use
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Id, Mechanism, Names, RobotEdge, StoredMesh
-    from hymeko_x.ir.parts import Material, Texture, VertexPart
+    from hymeko_x.ir.mechanism import Id, Mechanism, StoredMesh
+    from hymeko_x.ir.parts import Material, Texture
     from hymeko_x.source import Files
 
 _KEEP_PACKAGES = ("urdf", "xacro")
@@ -22,28 +23,17 @@ _KEEP_PACKAGES = ("urdf", "xacro")
 
 
 @dataclass(slots=True)
-class _Standing:
+class _Standing(Additions):
     """What stands in for files; equal looks share a material."""
 
-    names: Names
-    vertices: dict[Id, VertexPart] = field(default_factory=dict)
-    edges: dict[Id, RobotEdge] = field(default_factory=dict)
     known: dict[tuple[Material, Texture | None], Id] = field(default_factory=dict)
 
     def show(self, shape: Id, look: StoredLook) -> None:
         """Let a shape look in places as its file does."""
-        material = self._material(look.material, look.texture)
+        if (look.material, look.texture) not in self.known:
+            self.known[look.material, look.texture] = self.add_material(look.material, look.texture)
+        material = self.known[look.material, look.texture]
         self.edges[self.names.take("subset", material.name)] = subset_edge(look.faces, shape, material)
-
-    def _material(self, material: Material, texture: Texture | None) -> Id:
-        if (material, texture) not in self.known:
-            key = self.known[material, texture] = self.names.take("material", material.name or "material")
-            self.vertices[key] = replace(material, name=key.name)
-            if texture is not None:
-                image = self.names.take("texture", key.name)
-                self.vertices[image] = texture
-                self.edges[self.names.take("layer", key.name)] = layer_edge(image, key)
-        return self.known[material, texture]
 
 
 def with_stored_meshes(mechanism: Mechanism, target: str, files: Files, report: Report) -> Mechanism:

@@ -9,8 +9,9 @@ from hymeko_x import codes
 from hymeko_x.assets.part import FilledMesh
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import read_file, stem_of, suffix_of
+from hymeko_x.ir.additions import Additions
 from hymeko_x.ir.legalize_native import is_native
-from hymeko_x.ir.mechanism import layer_edge, shape_edge, subset_edge
+from hymeko_x.ir.mechanism import shape_edge, subset_edge
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.ir.rename import names_in_use
 
@@ -23,22 +24,19 @@ if TYPE_CHECKING:
     from hymeko_x.assets.part import Look, Painted
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Code, Report
-    from hymeko_x.ir.mechanism import Id, Mechanism, Names, RobotEdge, ShapeView
-    from hymeko_x.ir.parts import Rgba, VertexPart
+    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
+    from hymeko_x.ir.parts import Rgba
     from hymeko_x.source import Files
 
 
-@dataclass(slots=True)
-class _Packing:
+@dataclass(slots=True, kw_only=True)
+class _Packing(Additions):
     """One run: what it reads from, and what it adds to the mechanism. ``known`` are the files that were read, by uri."""
 
     mechanism: Mechanism
     shelf: Shelf
     files: Files
     report: Report
-    names: Names
-    vertices: dict[Id, VertexPart] = field(default_factory=dict)
-    edges: dict[Id, RobotEdge] = field(default_factory=dict)
     known: dict[tuple[str, bool], Painted] = field(default_factory=dict)
     materials: dict[tuple[Rgba | None, bytes | None], Id | None] = field(default_factory=dict)
 
@@ -49,7 +47,7 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
     What a file shows in several colours or images becomes a subset for each of them; MuJoCo ignores those of files, and so do we in
     what came from there.
     """
-    run = _Packing(mechanism, shelf, files, report, names_in_use(mechanism))
+    run = _Packing(names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
     users, are_coloured = _users(mechanism), not is_native(mechanism)
     textured = {arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0}
     for key, mesh in mechanism.vertices(Mesh):
@@ -116,13 +114,7 @@ def _own_material(run: _Packing, mesh: Id, look: Look) -> Id | None:
     uri = None if look.image is None else _placed_image(run, mesh, look, look.image)
     if look.image is not None and uri is None:
         return None
-    key = run.names.take("material", look.name or "material")
-    run.vertices[key] = Material(key.name, look.rgba)
-    if uri is not None:
-        texture = run.names.take("texture", key.name)
-        run.vertices[texture] = Texture(uri)
-        run.edges[run.names.take("layer", key.name)] = layer_edge(texture, key)
-    return key
+    return run.add_material(Material(look.name, look.rgba), None if uri is None else Texture(uri))
 
 
 def _placed_image(run: _Packing, mesh: Id, look: Look, image: bytes) -> str | None:
