@@ -9,6 +9,7 @@ from xml.etree.ElementTree import ParseError
 
 import numpy as np
 
+from hymeko_x.assets.mtl import opacity
 from hymeko_x.assets.part import MOST_FACES, Look, Part, Unreadable
 
 if TYPE_CHECKING:
@@ -89,8 +90,8 @@ def _look_of(mesh: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
 def _simple_look(name: str, material: Any, uv: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
     """The look of an OBJ material. One without colour and without a named image is what trimesh makes up itself."""
     image = _png(material.image) if material.image is not None and "file_path" in material.image.info else None
-    color = material.kwargs.get("kd")
-    rgba = (float(color[0]), float(color[1]), float(color[2]), 1.0) if isinstance(color, list) and len(color) == 3 else None
+    color, alpha = material.kwargs.get("kd"), opacity(material.kwargs.get("d", ()), material.kwargs.get("tr", ()))
+    rgba = (float(color[0]), float(color[1]), float(color[2]), alpha) if isinstance(color, list) and len(color) == 3 else None
     if image is None and rgba is None:
         return None, None
     return Look(name, None if image else rgba, image), _uv(uv) if image else None

@@ -9,8 +9,9 @@ import pytest
 
 from hymeko_x.assets.collada import collada_tables
 from hymeko_x.assets.mesh import merged, read_parts, read_whole
+from hymeko_x.assets.mtl import finishes_of
 from hymeko_x.assets.obj import obj_tables
-from hymeko_x.assets.part import Finish
+from hymeko_x.assets.part import Finish, Look
 from tests.assets.test_mesh import IN_PLACE, dae, nothing_else, triangles
 
 POLYGONS = (
@@ -139,6 +140,34 @@ def test_materials_of_an_obj_file_are_runs_of_its_lines_each_in_its_own_form(end
         ("paint", PAINT, [[0, 1, 1]], None),
         ("other", Finish(), [[1, 2, 1]], None),
     ]
+
+
+@pytest.mark.parametrize(
+    ("said", "alpha"),
+    [
+        ("", 1.0),
+        ("d 0.25", 0.25),
+        ("d 0.25 # hides a quarter", 0.25),
+        ("Tr 0.9", 0.1),
+        ("Tr 0.9\nd 0.25", 0.25),
+        ("d 0.25\nTr 0.9", 0.25),
+        ("Tr 1.0", 1.0),
+        ("d 0", 1.0),
+        ("d 1\nTr 1", 1.0),
+        ("d -halo 0.5", 1.0),
+        ("d", 1.0),
+        ("d half\nTr nan", 1.0),
+        ("d 1.5\nTr -2", 1.0),
+    ],
+)
+def test_what_hides_a_part_of_what_is_behind_it_says_so_in_either_word(said: str, alpha: float) -> None:
+    library = f"newmtl glass\nKd 0.5 0.5 0.5\n{said}\nnewmtl paint\nKd 1 0 0\n".encode()
+    glass, paint = Finish((0.5, 0.5, 0.5, alpha)), Finish((1.0, 0.0, 0.0, 1.0))
+    assert finishes_of(library) == {"glass": glass, "paint": paint}
+    assert finishes_of(library.replace(b"Kd 0.5 0.5 0.5\n", b"")) == {"paint": paint}
+    data = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl glass\nf 1 2 3\nusemtl paint\nf 1 2 4\n"
+    looks = {part.look for part in read_parts(data, ".obj", {"a.mtl": library}.__getitem__)}
+    assert looks == {Look("glass", glass.rgba), Look("paint", paint.rgba)}
 
 
 def test_an_image_without_a_place_that_exists_is_not_shown() -> None:

@@ -54,6 +54,18 @@ def lay(folder: Path, suffix: str, material: str = "") -> Path:
     return folder / "r.urdf"
 
 
+GLASS = "newmtl glass\nKd 0.5 0.5 0.5\nd 0.25\nnewmtl paint\nKd 1 0 0\n"
+
+
+def lay_glass(folder: Path) -> Path:
+    """A robot whose mesh file has one colour to look through and another one; where it is opaque it says nothing about that."""
+    (folder / "a.obj").write_text(
+        f"mtllib a.mtl\n{PYRAMID}usemtl glass\nf 1 4 3\nf 1 3 2\nusemtl paint\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
+    )
+    (folder / "a.mtl").write_text(GLASS)
+    return lay(folder, ".obj")
+
+
 def meshes(stage: Usd.Stage) -> list[Usd.Prim]:
     return [prim for prim in stage.Traverse(Usd.TraverseInstanceProxies()) if prim.IsA(UsdGeom.Mesh)]
 
@@ -332,3 +344,35 @@ def test_an_image_comes_out_of_a_package_again(tmp_path: Path, layout: Literal["
     (texture,) = (part for _, part in hx.load(tmp_path / "back.urdf").vertices(Texture))
     assert texture.uri == ("textures/wood.png" if pure else "wood.png")
     assert (tmp_path / texture.uri).read_bytes() == image()
+
+
+# ---- colours to look through ---------------------------------------------------------------------------------------------------
+
+
+def test_a_colour_to_look_through_reaches_a_stage_and_comes_back_in_the_mesh_file(tmp_path: Path) -> None:
+    source = lay_glass(tmp_path)
+    hx.convert(source, tmp_path / "there.usda", pure=True)
+    out = Usd.Stage.Open(str(tmp_path / "there.usda"))
+    surfaces = [surface_of(prim) for prim in out.Traverse(Usd.TraverseInstanceProxies()) if prim.IsA(UsdGeom.Subset)]
+    assert [[surface.GetInput(name).Get() for name in ("diffuseColor", "opacity")] for surface in surfaces] == [
+        [(0.5, 0.5, 0.5), 0.25],
+        [(1, 0, 0), 1],
+    ]
+    for names in ("", "_2"):  # the URDF file names the materials of the stage as well
+        hx.convert(tmp_path / "there.usda", tmp_path / "back.urdf", pure=True)
+        (library,) = (tmp_path / "shapes").glob("*.mtl")
+        assert library.read_text() == GLASS.replace("glass", f"glass{names}").replace("paint", f"paint{names}")
+        hx.convert(tmp_path / "back.urdf", tmp_path / "there.usda", pure=True)
+
+
+def test_a_colour_to_look_through_is_one_in_mjcf_and_the_way_home_is_exact(tmp_path: Path) -> None:
+    import mujoco
+
+    source = lay_glass(tmp_path)
+    hx.convert(source, tmp_path / "there.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "there.xml"))
+    assert sorted(model.mat_rgba[model.geom_matid].tolist()) == [[0.5, 0.5, 0.5, 0.25], [1, 0, 0, 1]]
+    for target in ("there.xml", "there.usdc"):
+        hx.convert(source, tmp_path / target)
+        hx.convert(tmp_path / target, tmp_path / "back.urdf")
+        assert hx.diff(hx.load(source), hx.load(tmp_path / "back.urdf")) == ()
