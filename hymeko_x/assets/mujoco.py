@@ -206,7 +206,7 @@ def _pack_looks(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], fil
     """
     if len(parts) > 1:
         _say_converted(run, key, f"has {len(parts)} looks; each one becomes a mesh of its own")
-        return [_own_mesh(run, mesh, part) for part in parts]
+        return [_own_mesh(run, mesh, part) for part in _with_surface(run, key, parts)]
     part = parts[0]
     look = _material(run, part.look, mesh)
     if hull == key and not _is_altered(part):
@@ -251,12 +251,26 @@ def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Part, file: _Fi
 
 def _check_surface(part: Part) -> None:
     """Raises: Unreadable for a mesh that has no surface at all, which nothing can repair."""
-    from hymeko_x.assets.measures import extents
     from hymeko_x.assets.part import Unreadable
 
-    _, middle, high = extents(part)
-    if middle <= _FLAT * high:
+    if _is_line(part):
         raise Unreadable("all of its points lie on a line")
+
+
+def _with_surface(run: _Packing, key: Id, parts: tuple[Part, ...]) -> list[Part]:
+    """The parts that there is something to see of.
+
+    Raises: Unreadable when there are none.
+    """
+    from hymeko_x.assets.part import Unreadable
+
+    lines = [part for part in parts if _is_line(part)]
+    if len(lines) == len(parts):
+        raise Unreadable("all of its looks lie on lines")
+    if lines:
+        names = ", ".join(f"'{part.look.name if part.look else ''}'" for part in lines)
+        _say_converted(run, key, f"shows {names} on a line, where nothing is seen; that is left out")
+    return [part for part in parts if part not in lines]
 
 
 def _refusal(part: Part, suffix: str, data: bytes, *, solid: bool) -> str | None:
@@ -268,7 +282,7 @@ def _refusal(part: Part, suffix: str, data: bytes, *, solid: bool) -> str | None
     if solid and _is_flat(part):
         return f"is flat, and a hull needs a volume: it gets a thickness of {_THICKNESS:g} of its size"
     if len(part.points) < _FEWEST_POINTS:
-        return f"has {len(part.points)} points, and MuJoCo needs {_FEWEST_POINTS}: it gets a second side"
+        return f"has {len(part.points)} points, and MuJoCo needs {_FEWEST_POINTS}: one of them is said again"
     if suffix == ".obj" and (objects := _objects_in(data)) > 1:
         return f"has {objects} objects, and MuJoCo keeps the first of them"
     if suffix == ".stl" and not stl_is_exact(data):
@@ -284,14 +298,19 @@ def _objects_in(obj: bytes) -> int:
 
 
 def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part, stem: str, *, solid: bool, stl: bool = False) -> None:
-    """A converted file: STL stays STL where that is enough, all else becomes OBJ."""
+    """A converted file: STL stays STL where that is enough, all else becomes OBJ, which may say a point twice."""
+    import numpy as np
+
     from hymeko_x.assets.measures import thickened
     from hymeko_x.assets.obj import obj_bytes
     from hymeko_x.assets.stl import stl_bytes
 
-    if (solid and _is_flat(part)) or len(part.points) < _FEWEST_POINTS:
+    is_short = len(part.points) < _FEWEST_POINTS
+    if is_short and not solid and len(part.faces):
+        part = replace(part, points=np.resize(part.points, (_FEWEST_POINTS, 3)))
+    elif is_short or (solid and _is_flat(part)):
         part = thickened(part, _THICKNESS)
-    if stl and len(part.faces) <= MOST_STL_FACES:
+    if stl and not is_short and len(part.faces) <= MOST_STL_FACES:
         uri = run.shelf.place(_MESHES, stem, ".stl", stl_bytes(part))
     else:
         uri = run.shelf.place(_MESHES, stem, ".obj", obj_bytes(part))
@@ -312,6 +331,13 @@ def _is_flat(part: Part) -> bool:
 
     low, _, high = extents(part)
     return low <= _FLAT * high
+
+
+def _is_line(part: Part) -> bool:
+    from hymeko_x.assets.measures import extents
+
+    _, middle, high = extents(part)
+    return middle <= _FLAT * high
 
 
 def _is_sheet(part: Part, mesh: Mesh) -> bool:

@@ -153,6 +153,22 @@ def test_an_obj_with_one_material_is_copied_and_brings_its_colour_along() -> Non
 # ---- MuJoCo: meshes that it would refuse -----------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize("other", ["f 1 2 4\n", "f 1 2 3\n"])
+def test_a_look_that_lies_on_a_line_is_left_out(other: str) -> None:
+    obj = f"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\n{other}".encode()
+    files = {"a.obj": obj, "a.mtl": b"newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n"}
+    result, new, _, said = packed(with_meshes(Mesh("a.obj")), files)
+    is_seen = other == "f 1 2 4\n"
+    assert [view.material for view in result.shapes.get(body("b0"), ())] == [Id("material", "blue")] * is_seen
+    assert list(new) == ["meshes/a_blue.obj"] * is_seen
+    assert said[1:] == (
+        ["note HX202 mesh 'a/0' shows 'red' on a line, where nothing is seen; that is left out"]
+        if is_seen
+        else ["warning HX203 mesh 'a/0': 'a.obj' cannot be read: all of its looks lie on lines; left out: visual 's0' of body 'b0'"]
+    )
+    assert compiles(with_meshes(Mesh("a.obj")), files).ngeom == is_seen
+
+
 @pytest.mark.parametrize("role", list(Role))
 @pytest.mark.parametrize("scale", [(1.0, 1.0, 1.0), (-1.0, 1.0, 1.0), (1e-5, 1e-5, 1e-5)])
 @pytest.mark.parametrize("data", [FLAT, TRIANGLE, BOX.export(file_type="obj").encode()])

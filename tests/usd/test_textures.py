@@ -376,3 +376,20 @@ def test_a_colour_to_look_through_is_one_in_mjcf_and_the_way_home_is_exact(tmp_p
         hx.convert(source, tmp_path / target)
         hx.convert(tmp_path / target, tmp_path / "back.urdf")
         assert hx.diff(hx.load(source), hx.load(tmp_path / "back.urdf")) == ()
+
+
+# ---- looks of one triangle -----------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("faces", ["usemtl wood\nf 1/1 2/2 5/5\n" + RED_FACES, "usemtl paint\nf 1 2 3\nusemtl other\nf 1 2 5\nf 2 3 5\n"])
+def test_a_look_of_one_triangle_stays_that_surface_in_mjcf(faces: str, tmp_path: Path) -> None:
+    import mujoco
+
+    source = lay_obj(tmp_path, faces)
+    hx.convert(source, tmp_path / "there.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "there.xml"))
+    assert sorted(zip(model.mesh_vertnum.tolist(), model.mesh_facenum.tolist(), strict=True)) == [(4, 1), (4, 2)]
+    assert model.body_mass[1] == 1
+    assert hx.verify(source, tmp_path / "there.xml").verdict == "same"
+    hx.convert(tmp_path / "there.xml", tmp_path / "home.urdf")
+    assert hx.diff(hx.load(source), hx.load(tmp_path / "home.urdf")) == ()
