@@ -112,11 +112,7 @@ def _pack_texture(run: _Packing, key: Id, texture: Texture) -> bool:
 
 def _pack_meshes(run: _Packing) -> None:
     """Every mesh once for the eye and once for contact, as far as the two differ."""
-    users: dict[Id, list[ShapeView]] = {}
-    for views in run.mechanism.shapes.values():
-        for view in views:
-            if view.mesh is not None:
-                users.setdefault(view.mesh, []).append(view)
+    users = run.mechanism.shapes_by_mesh()
     for key, mesh in run.mechanism.vertices(Mesh):
         if mesh.uri is not None:
             _pack_mesh(run, key, mesh, users.get(key, []))

@@ -48,7 +48,7 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
     what came from there.
     """
     run = _Packing(names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
-    users, are_coloured = _users(mechanism), not is_native(mechanism)
+    users, are_coloured = mechanism.shapes_by_mesh(), not is_native(mechanism)
     textured = {arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0}
     for key, mesh in mechanism.vertices(Mesh):
         if mesh.uri is None or mesh.vertices:
@@ -60,16 +60,6 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
             _pack(run, key, mesh, painted, users.get(key, []))
     packed = _with_textures(mechanism, shelf, files, report)
     return packed.with_graph(packed.graph.replace(vertices=run.vertices, edges=run.edges)) if run.vertices else packed
-
-
-def _users(mechanism: Mechanism) -> dict[Id, list[ShapeView]]:
-    """The shapes of each mesh."""
-    found: dict[Id, list[ShapeView]] = {}
-    for views in mechanism.shapes.values():
-        for view in views:
-            if view.mesh is not None:
-                found.setdefault(view.mesh, []).append(view)
-    return found
 
 
 def _pack(run: _Packing, key: Id, mesh: Mesh, painted: Painted, views: list[ShapeView]) -> None:

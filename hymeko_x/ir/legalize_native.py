@@ -53,7 +53,7 @@ def drop_shapes_of_mujoco(mechanism: Mechanism, options: Options, report: Report
     del options
     if not is_native(mechanism):
         return mechanism
-    gone = [view.id for views in mechanism.shapes.values() for view in views if isinstance(view.shape.geometry, NoShape)]
+    gone = [view.id for view in mechanism.every_shape() if isinstance(view.shape.geometry, NoShape)]
     for key in gone:
         said = f"{key} has a geometry that only MuJoCo knows; it is left out"
         report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))

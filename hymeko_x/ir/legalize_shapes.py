@@ -24,14 +24,13 @@ def drop_empty_shapes(mechanism: Mechanism, options: Options, report: Report) ->
     """A shape without a geometry, or of a mesh that is not there, is left out; what came from MJCF has geometries of its own."""
     del options
     gone = []
-    for views in mechanism.shapes.values():
-        for view in views:
-            lost = isinstance(view.shape.geometry, MeshShape) and view.mesh not in mechanism.graph.vertices
-            if not lost and (not isinstance(view.shape.geometry, NoShape) or is_shape_of_mujoco(mechanism, view.id)):
-                continue
-            gone.append(view.id)
-            what = "has no mesh" if lost else "has no geometry that the target knows"
-            report.note(codes.NOT_SAID, f"{view.id} {what}; it is left out", mechanism.origin(view.id), element=str(view.id))
+    for view in mechanism.every_shape():
+        lost = isinstance(view.shape.geometry, MeshShape) and view.mesh not in mechanism.graph.vertices
+        if not lost and (not isinstance(view.shape.geometry, NoShape) or is_shape_of_mujoco(mechanism, view.id)):
+            continue
+        gone.append(view.id)
+        what = "has no mesh" if lost else "has no geometry that the target knows"
+        report.note(codes.NOT_SAID, f"{view.id} {what}; it is left out", mechanism.origin(view.id), element=str(view.id))
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 

@@ -30,7 +30,7 @@ def split_subsets(mechanism: Mechanism, options: Options, report: Report) -> Mec
     if not mechanism.subsets:
         return mechanism
     split = _Splitting(mechanism, names_in_use(mechanism))
-    views = {view.id: view for found in mechanism.shapes.values() for view in found}
+    views = {view.id: view for view in mechanism.every_shape()}
     users = Counter(view.mesh for view in views.values())
     gone = [subset.id for subsets in mechanism.subsets.values() for subset in subsets]
     for key, subsets in mechanism.subsets.items():
@@ -140,7 +140,7 @@ def part_meshes_by_looks(mechanism: Mechanism, options: Options, report: Report)
     looks: dict[Id, dict[object, Id]] = {}
     meshes: dict[Id, Mesh] = {}
     edges: dict[Id, RobotEdge] = {}
-    for view in (view for views in mechanism.shapes.values() for view in views):
+    for view in mechanism.every_shape():
         mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
         if view.mesh is None or not isinstance(mesh, Mesh) or mesh.uri is not None or view.shape.role is not Role.VISUAL:
             continue

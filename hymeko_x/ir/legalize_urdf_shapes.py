@@ -34,7 +34,7 @@ Piece = tuple["Geometry", Pose]
 def split_shared_shapes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """A shape that is seen and collides becomes a visual and a collision."""
     del options, report
-    shared = [view for view in _views(mechanism) if view.shape.role is Role.BOTH]
+    shared = [view for view in mechanism.every_shape() if view.shape.role is Role.BOTH]
     if not shared:
         return mechanism
     names = names_in_use(mechanism)
@@ -49,7 +49,7 @@ def prefer_own_colours(mechanism: Mechanism, options: Options, report: Report) -
     """A shape with a colour of its own beside a material keeps the colour, which is the one that is seen."""
     del options
     edges: dict[Id, RobotEdge] = {}
-    for view in _views(mechanism):
+    for view in mechanism.every_shape():
         if view.shape.rgba is None or view.material is None:
             continue
         edges[view.id] = shape_edge(view.shape, view.body, view.pose, view.mesh)
@@ -63,7 +63,7 @@ def approximate_shapes(mechanism: Mechanism, options: Options, report: Report) -
     del options
     keeps_capsules = CAPSULE_WORD in (mechanism.notation(ROOT, STYLE_NOTATION) or "").split()
     unsayable = (Ellipsoid, Plane) if keeps_capsules else (Ellipsoid, Plane, Capsule)
-    found = [view for view in _views(mechanism) if isinstance(view.shape.geometry, unsayable)]
+    found = [view for view in mechanism.every_shape() if isinstance(view.shape.geometry, unsayable)]
     if not found:
         return mechanism
     names = names_in_use(mechanism)
@@ -84,10 +84,6 @@ def approximate_shapes(mechanism: Mechanism, options: Options, report: Report) -
 
 
 _INSTEAD = {"capsule": "a cylinder and two spheres", "plane": "a thin box", "ellipsoid": "a mesh"}
-
-
-def _views(mechanism: Mechanism) -> list[ShapeView]:
-    return [view for views in mechanism.shapes.values() for view in views]
 
 
 def _pieces(view: ShapeView, names: Names, places: dict[tuple[int, Pose], Pose]) -> dict[Id, RobotEdge]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
@@ -230,6 +231,18 @@ class Mechanism:
                     material = arc.target
             found.setdefault(body.target, []).append(ShapeView(key, shape, body.target, pose_weight(body), mesh, material))
         return {key: tuple(views) for key, views in found.items()}
+
+    def every_shape(self) -> Iterator[ShapeView]:
+        """All shapes, those of one body after those of another."""
+        return chain.from_iterable(self.shapes.values())
+
+    def shapes_by_mesh(self) -> dict[Id, list[ShapeView]]:
+        """For each mesh that a shape has, its shapes."""
+        found: dict[Id, list[ShapeView]] = {}
+        for view in self.every_shape():
+            if view.mesh is not None:
+                found.setdefault(view.mesh, []).append(view)
+        return found
 
     @cached_property
     def subsets(self) -> Mapping[Id, tuple[SubsetView, ...]]:

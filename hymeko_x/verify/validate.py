@@ -208,11 +208,10 @@ def _check_presence(mechanism: Mechanism, role: parts.Role, report: Report) -> N
 
 def check_shapes(mechanism: Mechanism, files: Files, report: Report) -> None:
     """Sizes are positive and not absurd, and mesh files exist."""
-    for views in mechanism.shapes.values():
-        for view in views:
-            _check_size(mechanism, view, report)
-            if view.mesh is not None:
-                _check_mesh(mechanism, view, files, report)
+    for view in mechanism.every_shape():
+        _check_size(mechanism, view, report)
+        if view.mesh is not None:
+            _check_mesh(mechanism, view, files, report)
 
 
 def _check_size(mechanism: Mechanism, view: ShapeView, report: Report) -> None:

@@ -63,9 +63,8 @@ def _numbered(stem: str) -> Iterator[str]:
 
 def _shown(mechanism: Mechanism) -> dict[Id, ShapeView]:
     """The first shape that shows each mesh; what only collides shows nothing."""
-    views = (view for found in mechanism.shapes.values() for view in found)
     found: dict[Id, ShapeView] = {}
-    for view in views:
+    for view in mechanism.every_shape():
         if view.mesh is not None and view.shape.role is not Role.COLLISION:
             found.setdefault(view.mesh, view)
     return found
@@ -92,10 +91,9 @@ def contents_of(mechanism: Mechanism, paths: Mapping[Id, str], images: Mapping[I
 def _imaged(mechanism: Mechanism, images: Mapping[Id, str]) -> dict[Id, Id]:
     """For each mesh the first material with an image that a shape of it has."""
     found: dict[Id, Id] = {}
-    for views in mechanism.shapes.values():
-        for view in views:
-            if view.mesh is not None and view.material is not None and view.material in images:
-                found.setdefault(view.mesh, view.material)
+    for view in mechanism.every_shape():
+        if view.mesh is not None and view.material is not None and view.material in images:
+            found.setdefault(view.mesh, view.material)
     return found
 
 

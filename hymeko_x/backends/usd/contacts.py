@@ -36,17 +36,16 @@ def write_contacts(sheet: Sheet) -> None:
 def write_frictions(sheet: Sheet) -> None:
     """One physics material for all colliders of one friction; those that had a material of their own keep that."""
     materials: dict[tuple[float, ...], Any] = {}
-    for views in sheet.mechanism.shapes.values():
-        for view in views:
-            extras = sheet.mechanism.extras.get(view.id, ())
-            is_bound = any(extra.format == words.FORMAT and _BINDING in extra.text for extra in extras)
-            if not view.shape.friction or view.shape.role is Role.VISUAL or is_bound or view.id not in sheet.homes:
-                continue
-            if view.shape.friction not in materials:
-                materials[view.shape.friction] = _write_material(sheet, view.shape.friction)
-            spec = sheet.prims[sheet.homes[view.id]]
-            apply(spec, "MaterialBindingAPI")
-            point(spec, _BINDING, materials[view.shape.friction])
+    for view in sheet.mechanism.every_shape():
+        extras = sheet.mechanism.extras.get(view.id, ())
+        is_bound = any(extra.format == words.FORMAT and _BINDING in extra.text for extra in extras)
+        if not view.shape.friction or view.shape.role is Role.VISUAL or is_bound or view.id not in sheet.homes:
+            continue
+        if view.shape.friction not in materials:
+            materials[view.shape.friction] = _write_material(sheet, view.shape.friction)
+        spec = sheet.prims[sheet.homes[view.id]]
+        apply(spec, "MaterialBindingAPI")
+        point(spec, _BINDING, materials[view.shape.friction])
 
 
 def _write_material(sheet: Sheet, friction: tuple[float, ...]) -> Any:

@@ -28,13 +28,9 @@ _ST = "primvars:st"
 
 def write_shapes(sheet: Sheet) -> None:
     """Every shape of every body and of the world; a mesh that is shown more than once is authored once and referred to."""
-    users: dict[Id, int] = {}
-    views = [view for found in sheet.mechanism.shapes.values() for view in found]
-    for view in views:
-        if view.mesh is not None:
-            users[view.mesh] = users.get(view.mesh, 0) + 1
+    users = {mesh: len(views) for mesh, views in sheet.mechanism.shapes_by_mesh().items()}
     shared: dict[Id, Any] = {}
-    for view in views:
+    for view in sheet.mechanism.every_shape():
         write_shape(sheet, view, users, shared)
 
 

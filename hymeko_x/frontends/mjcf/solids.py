@@ -20,7 +20,7 @@ _MADE = ("@builtin", "@refpos", "@refquat")
 def unsolid(mechanism: Mechanism) -> tuple[list[Id], list[ShapeView]]:
     """The meshes and the shapes of a mechanism from MJCF that MuJoCo has to be asked about."""
     meshes = [key for key, mesh in mechanism.vertices(Mesh) if _is_made(mechanism, key, mesh)]
-    shapes = [view for views in mechanism.shapes.values() for view in views if _is_fitted(mechanism, view)]
+    shapes = [view for view in mechanism.every_shape() if _is_fitted(mechanism, view)]
     return meshes, shapes
 
 
