@@ -25,7 +25,7 @@ _SECTIONS = {
     "tendon": '<fixed name="tn"><joint joint="j" coef="1"/></fixed>',
     "actuator": '<motor name="m" joint="j"/>',
 }
-_BESIDE: dict[str, dict[str, str]] = {
+BESIDE: dict[str, dict[str, str]] = {
     "default/default": {"class": "c1"},
     "asset/material": {"name": "m2"},
     "asset/mesh": {"name": "m2", "vertex": "0 0 0 1 0 0 0 1 0 0 0 1"},
@@ -63,6 +63,7 @@ _BESIDE: dict[str, dict[str, str]] = {
     "custom/tuple/element": {"objtype": "body", "objname": "b"},
     "default/dcmotor": {"motorconst": "1", "resistance": "1"},
 }
+"""What an element needs beside its required attributes."""
 _REFERENCES = {
     "joint": "j",
     "site": "s",
@@ -162,7 +163,7 @@ def _needed(path: str) -> dict[str, str]:
     found = {name: _REFERENCES.get(name, "1") for name in REQUIRED.get(path, ())}
     if path.startswith("actuator/") and path not in ("actuator/adhesion", "actuator/orientation"):
         found = {"joint": "j"} | found
-    return found | _BESIDE.get(path, {})
+    return found | BESIDE.get(path, {})
 
 
 def places() -> Iterator[Place]:

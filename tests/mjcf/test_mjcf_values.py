@@ -9,29 +9,17 @@ import pytest
 
 from hymeko_x.formats.mjcf_schema import _ATTRIBUTES
 from hymeko_x.formats.mjcf_types import REQUIRED, Kind, kinds_of
+from tests.mjcf.mjnumbers import BESIDE
 
 # What an element needs so that MuJoCo gets as far as the attribute in question.
 NEEDED = {
     "role": "rgb", "plugin": "mujoco.pid", "size": "1 1 1 1", "bindpos": "0 0 0", "bindquat": "1 0 0 0", "vertid": "0", "vertweight": "1",
     "mass": "1", "pos": "0 0 0", "element": "0 1 2", "divisor": "1", "coef": "1", "objtype": "body", "dim": "1",
 }  # fmt: skip
-BESIDE = {
+NEEDED_BESIDE = {
+    **BESIDE,
     "default": {"class": "c"},
-    "asset/material": {"name": "m"},
-    "equality/connect": {"body1": "b", "anchor": "0 0 0"},
-    "equality/weld": {"body1": "b"},
-    "contact/pair": {"geom1": "g", "geom2": "h"},
-    "sensor/distance": {"geom1": "g", "geom2": "h"},
-    "sensor/normal": {"geom1": "g", "geom2": "h"},
-    "sensor/fromto": {"geom1": "g", "geom2": "h"},
-    "sensor/contact": {"geom1": "g"},
-    "sensor/rangefinder": {"site": "s"},
     "deformable/flex": {"body": "b", "element": "0 1 2", "vertex": "0 0 0 1 0 0 0 1 0"},
-    "actuator/adhesion": {"body": "b"},
-    "actuator/dcmotor": {"joint": "j", "motorconst": "1", "resistance": "1"},
-    "default/dcmotor": {"motorconst": "1", "resistance": "1"},
-    "custom/numeric": {"name": "n", "data": "1"},
-    "custom/text": {"name": "n", "data": "x"},
     "actuator/plugin": {"joint": "j"},
 }
 ELSEWHERE = {("asset/hfield", "elevation")}
@@ -68,7 +56,7 @@ def inner_path(tags: list[str], number: int) -> str:
 
 
 def attributes(path: str, said: dict[str, str], own: bool) -> str:
-    needed = {name: NEEDED.get(name, "x") for name in REQUIRED.get(path, ())} | BESIDE.get(path, {})
+    needed = {name: NEEDED.get(name, "x") for name in REQUIRED.get(path, ())} | NEEDED_BESIDE.get(path, {})
     found = needed | said if own else needed if path != "default" else {}
     return "".join(f' {name}="{value}"' for name, value in found.items())
 
