@@ -30,7 +30,7 @@ FAMILIES: Mapping[str, str] = MappingProxyType(
 
 TURNS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
 """The attributes that say an orientation; an element's own replaces whichever the class has."""
-_TURNS = frozenset(TURNS)
+ANY_TURN = frozenset(TURNS)
 
 ACTUATORS = frozenset(
     ("general", "motor", "position", "velocity", "intvelocity", "orientation", "pid", "damper", "cylinder", "muscle", "adhesion", "dcmotor")
@@ -151,8 +151,8 @@ def merge(base: Mapping[str, str], own: Mapping[str, str]) -> Mapping[str, str]:
     both = base.keys() & own.keys()
     for name in PARTIAL & both:
         merged[name] = _completed(own[name], base[name])
-    if not _TURNS.isdisjoint(own):
-        for turn in _TURNS & base.keys() - own.keys():
+    if not ANY_TURN.isdisjoint(own):
+        for turn in ANY_TURN & base.keys() - own.keys():
             del merged[turn]
     return merged
 

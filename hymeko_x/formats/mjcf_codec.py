@@ -12,7 +12,7 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.formats.mjcf_classes import TURNS
+from hymeko_x.formats.mjcf_classes import ANY_TURN, TURNS
 from hymeko_x.formats.xml import read_numbers
 from hymeko_x.ir.values import (
     NO_ROTATION,
@@ -195,14 +195,13 @@ def plain(said: Mapping[str, str], names: tuple[str, ...]) -> tuple[Any, ...]:
 
 
 _TURN_COUNTS = MappingProxyType({"quat": 4, "axisangle": 4, "xyaxes": 6})
-_ALL_TURNS = frozenset(TURNS)
 
 # ---- orientations -----------------------------------------------------------------------------------------------------------
 
 
 def written_turn(said: Mapping[str, str], settings: Settings) -> Written | None:
     """The orientation as it is written; angles in rad. None for none, or for no rotation. Raises: BadAttribute."""
-    if _ALL_TURNS.isdisjoint(said):
+    if ANY_TURN.isdisjoint(said):
         return None
     turn = next(turn for turn in TURNS if turn in said)
     count = _TURN_COUNTS.get(turn, 3)
@@ -274,7 +273,7 @@ def seen_pose(said: Mapping[str, str], settings: Settings) -> Any:
     return read_numbers(said.get("pos", "0 0 0")), turn if any(turn) else ((1.0, 0.0, 0.0, 0.0), *[None] * 4)
 
 
-_OTHER_TURNS = frozenset(TURNS) - {"quat"} | {"fromto"}
+_OTHER_TURNS = ANY_TURN - {"quat"} | {"fromto"}
 
 
 def repeats_pose(value: Pose, said: Mapping[str, str], settings: Settings) -> bool:

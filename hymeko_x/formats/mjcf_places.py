@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.formats.mjcf_classes import TURNS
+from hymeko_x.formats.mjcf_classes import ANY_TURN, TURNS
 from hymeko_x.formats.mjcf_codec import (
     POSE,
     POSE_NAMES,
@@ -336,10 +336,9 @@ def _write_inertial(value: Inertial, settings: Settings) -> dict[str, str]:
 
 def _repeats_inertial(value: Inertial, said: Mapping[str, str], settings: Settings) -> bool:
     """Without axes of its own, a tensor is written as it was read where it is said in six numbers because three would not do."""
-    return value.written is None and _NO_TURN.isdisjoint(said) and ("fullinertia" in said) == any((value.tensor or ())[3:])
+    return value.written is None and ANY_TURN.isdisjoint(said) and ("fullinertia" in said) == any((value.tensor or ())[3:])
 
 
-_NO_TURN = frozenset(TURNS)
 _INERTIAL_NAMES = ("pos", "mass", "diaginertia", "fullinertia", *TURNS)
 INERTIAL = Group(
     "inertial",

@@ -10,8 +10,7 @@ if TYPE_CHECKING:
 
 PRIM = "MjcTendon"
 KIND = "mjc:type"
-KINDS = ("spatial", "fixed")
-"""The kinds of tendons; the first one is the schema's default."""
+"""The kind of tendon, spatial where nothing is said."""
 
 PATH = "mjc:path"
 """What the path leads through, each prim once."""

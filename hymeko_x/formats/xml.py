@@ -349,15 +349,8 @@ def take_numbers(node: Node, attribute: str, count: int, report: Report, *, inst
 
 def take_number(node: Node, attribute: str, report: Report, *, instead: str) -> float | None:
     """The one number of an attribute; None when it is missing or bad. See :func:`take_numbers`."""
-    text = node.attributes.get(attribute)
-    if text is None:
-        return None
-    numbers = read_numbers(text)
-    if numbers is not None and len(numbers) == 1:
-        del node.attributes[attribute]
-        return numbers[0]
-    _report_bad(node, attribute, text, 1, report, instead)
-    return None
+    numbers = take_numbers(node, attribute, 1, report, instead=instead)
+    return None if numbers is None else numbers[0]
 
 
 def _report_bad(node: Node, attribute: str, text: str, count: int, report: Report, instead: str) -> None:

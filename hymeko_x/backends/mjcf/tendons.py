@@ -9,7 +9,7 @@ from hymeko_x.formats.mjcf_codec import parameter_text
 from hymeko_x.formats.mjcf_words import TENDON_PARAMETERS
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Shape, Tendon
-from hymeko_x.ir.tendons import PULLEY, SIDE
+from hymeko_x.ir.tendons import PULLEY, SIDE, SPATIAL
 
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.names import Printed
@@ -38,8 +38,8 @@ def _behaviour(tendon: Tendon) -> Attributes:
         "damping": number(tendon.damping, 0.0),
         "frictionloss": number(tendon.friction, 0.0),
         "armature": number(tendon.armature, 0.0),
-        "width": number(tendon.width) if tendon.kind == "spatial" else None,
-        "rgba": None if tendon.rgba is None or tendon.kind != "spatial" else numbers(*tendon.rgba),
+        "width": number(tendon.width) if tendon.kind == SPATIAL else None,
+        "rgba": None if tendon.rgba is None or tendon.kind != SPATIAL else numbers(*tendon.rgba),
         **{name: parameter_text(value) for name, value in tendon.parameters if name in TENDON_PARAMETERS},
     }
 
@@ -51,7 +51,7 @@ def _steps(mechanism: Mechanism, arcs: tuple[RobotArc, ...], names: Printed) -> 
         if arc.role == SIDE:
             steps[-1][1]["sidesite"] = names.of(arc.target)
         elif arc.role == PULLEY:
-            steps.append(("pulley", {"divisor": numbers(*numbers_weight(arc))}))
+            steps.append((PULLEY, {"divisor": numbers(*numbers_weight(arc))}))
         elif arc.target.kind == "joint":
             steps.append(("joint", {"joint": names.joint(arc), "coef": numbers(*numbers_weight(arc))}))
         elif arc.target.kind == "shape":

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from pxr import Vt
 
 from hymeko_x.backends.usd.prims import T
-from hymeko_x.backends.usd.relations import SERVOS, dof_of
+from hymeko_x.backends.usd.relations import SERVOS, prim_of
 from hymeko_x.backends.usd.sheet import point, put
 from hymeko_x.formats import usd_actuators as table
 from hymeko_x.ir.mechanism import numbers_weight
@@ -41,14 +41,11 @@ def write_actuators(sheet: Sheet) -> None:
 
 
 def _target(sheet: Sheet, arc: RobotArc) -> Any | None:
-    """The prim of what an arc means: of one dof where a joint has several. A joint that a body's freedom stands for has none."""
-    home = sheet.homes.get(arc.target)
-    if arc.target.kind != "joint":
-        return home
-    found = dof_of(sheet, arc)
-    if found is not None and not found[1]:
-        return found[0].path
-    return home if home is not None and sheet.prims[home].kind.startswith("Physics") else None
+    """The prim of what an arc means, or else of its whole joint. A joint that a body's freedom stands for has none."""
+    found, home = prim_of(sheet, arc), sheet.homes.get(arc.target)
+    if found is not None or home is None:
+        return found
+    return home if sheet.prims[home].kind.startswith("Physics") else None
 
 
 def _write_targets(spec: Prim, targets: list[tuple[RobotArc, Any]], drive: Drive) -> None:

@@ -70,6 +70,14 @@ def dof_of(sheet: Sheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
     return sheet.prims[place[0]], place[1], edge.data.dofs[number]
 
 
+def prim_of(sheet: Sheet, arc: RobotArc) -> Any | None:
+    """The path of the prim of what an arc means: of one dof where a joint has several; None where an axis of a joint is no prim."""
+    if arc.target.kind != "joint":
+        return sheet.homes.get(arc.target)
+    found = dof_of(sheet, arc)
+    return found[0].path if found is not None and not found[1] else None
+
+
 class _Follower(NamedTuple):
     """A coupling with one leader: the prims and dofs of both ends, and the coefficients."""
 

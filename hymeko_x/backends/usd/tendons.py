@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 from pxr import Gf, Vt
 
 from hymeko_x.backends.usd.prims import T
-from hymeko_x.backends.usd.relations import dof_of
+from hymeko_x.backends.usd.relations import prim_of
 from hymeko_x.backends.usd.sheet import point, put
 from hymeko_x.formats import usd_tendons as table
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Tendon
-from hymeko_x.ir.tendons import PULLEY, SIDE, wrong_path
+from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, wrong_path
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.prims import Prim
@@ -70,7 +70,7 @@ def _path(sheet: Sheet, arcs: tuple[RobotArc, ...]) -> _Path | None:
         if arc.role == PULLEY:
             path.divisors.append(numbers_weight(arc)[0])
             continue
-        prim = _prim_of(sheet, arc)
+        prim = prim_of(sheet, arc)
         if prim is None:
             return None
         if arc.role == SIDE:
@@ -84,17 +84,10 @@ def _path(sheet: Sheet, arcs: tuple[RobotArc, ...]) -> _Path | None:
     return path
 
 
-def _prim_of(sheet: Sheet, arc: RobotArc) -> Any | None:
-    if arc.target.kind != "joint":
-        return sheet.homes.get(arc.target)
-    found = dof_of(sheet, arc)
-    return found[0].path if found is not None and not found[1] else None
-
-
 def _write_path(spec: Prim, tendon: Tendon, path: _Path) -> None:
     point(spec, table.PATH, *path.steps.prims)
     put(spec, table.INDICES, T.IntArray, Vt.IntArray(path.steps.indices))
-    if tendon.kind == "fixed":
+    if tendon.kind == FIXED:
         put(spec, table.COEFFICIENTS, T.DoubleArray, Vt.DoubleArray(path.coefficients))
         return
     put(spec, table.SEGMENTS, T.IntArray, Vt.IntArray(path.segments))

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.formats.mjcf_classes import TURNS
+from hymeko_x.formats.mjcf_classes import ANY_TURN
 from hymeko_x.formats.mjcf_schema import CHILDREN, REMOVED, attributes_of
 from hymeko_x.formats.mjcf_tree import COMMENT
 from hymeko_x.formats.mjcf_types import EXCLUSIVE, FILLED, REQUIRED, kinds_of
@@ -52,9 +52,6 @@ _NAMED_APART: Mapping[str, str] = MappingProxyType(
     }
 )
 """Elements of which the IR has no part, and those that share their names with such: what their names must not be twice among."""
-
-
-_TURNS = frozenset(TURNS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +151,7 @@ def _check_attributes(element: Element, path: str, place: _Place) -> None:
             if name not in known and (path != "mujoco" or not (":" in name or name.startswith("xmlns"))):
                 changed = REMOVED.get(f"{element.tag}@{name}")
                 raise _unknown(element, f"<{element.tag}> has no attribute '{name}'", name, sorted(known), changed)
-    if len(said) > 1 and len(turns := _TURNS & said) > 1:
+    if len(said) > 1 and len(turns := ANY_TURN & said) > 1:
         found = ", ".join(name for name in said if name in turns)
         raise refuse(codes.REPEATED, f"<{element.tag}> has more than one orientation: {found}", element.origin)
 

@@ -13,7 +13,7 @@ from hymeko_x.formats.mjcf_tree import COMMENT
 from hymeko_x.formats.mjcf_words import TENDON_PARAMETERS
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import UNLIMITED, Limits, Tendon
-from hymeko_x.ir.tendons import wrong_path
+from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, SPATIAL, WRAP, wrong_path
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -28,7 +28,7 @@ def read_tendons(sections: list[Element], draft: Draft) -> None:
     """Spatial and fixed tendons in order."""
     for section in sections:
         for element in section.children:
-            if element.tag in ("spatial", "fixed"):
+            if element.tag in (SPATIAL, FIXED):
                 _read_tendon(element, draft)
             else:
                 draft.keep_at_root(element, "tendon")
@@ -52,7 +52,7 @@ def _read_tendon(element: Element, draft: Draft) -> None:
         _take_parameters(element, base),
     )
     arcs: list[RobotArc] = []
-    for step in element.take_children("joint", "site", "geom", "pulley"):
+    for step in element.take_children("joint", "site", "geom", PULLEY):
         arcs += _path(step, key, draft)
     _check_path(element, tendon, arcs, draft)
     draft.edges[key] = Edge(tendon, tuple(arcs))
@@ -79,20 +79,20 @@ def _check_path(element: Element, tendon: Tendon, arcs: list[RobotArc], draft: D
 
 def _path(step: Element, tendon: Id, draft: Draft) -> list[RobotArc]:
     """One step of the path: one arc, and one more for the side of a wrapping shape."""
-    if step.tag == "pulley":
+    if step.tag == PULLEY:
         divisor = _number(step, "divisor", draft)
         if divisor <= 0.0:
             raise refuse(codes.BAD_NUMBER, f"<pulley divisor> is {divisor}, expected a positive number", step.origin)
-        return [Arc(tendon, 0, (divisor,), "pulley")]
+        return [Arc(tendon, 0, (divisor,), PULLEY)]
     if step.tag == "joint":
         joint = draft.find(step, "joint", step.attributes.get("joint", ""))
         role = draft.roles.get(joint, {}).get(step.attributes["joint"], "")
         return [Arc(joint, 1, (_number(step, "coef", draft),), role)]
     if step.tag == "site":
         return [Arc(draft.find(step, "site", step.attributes.get("site", "")))]
-    arcs: list[RobotArc] = [Arc(draft.find(step, "geom", step.attributes.get("geom", "")), 0, None, "wrap")]
+    arcs: list[RobotArc] = [Arc(draft.find(step, "geom", step.attributes.get("geom", "")), 0, None, WRAP)]
     side = step.attributes.get("sidesite")
-    return arcs if side is None else [*arcs, Arc(draft.find(step, "site", side), 0, None, "side")]
+    return arcs if side is None else [*arcs, Arc(draft.find(step, "site", side), 0, None, SIDE)]
 
 
 def _number(step: Element, name: str, draft: Draft) -> float:

@@ -12,7 +12,7 @@ from hymeko_x.formats.mjcf_words import TENDON_PARAMETERS
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import UNLIMITED, DofKind, Joint, Limits, Tendon
-from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, WRAP, wrong_path
+from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, SPATIAL, WRAP, wrong_path
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -56,7 +56,7 @@ def _limits_are_automatic(prims: list[Prim]) -> bool:
 
 def _read_tendon(prim: Prim, ends: dict[str, Driven], draft: Draft, *, automatic: bool) -> None:
     """Raises: _BadPath."""
-    kind = prim.value(table.KIND) or table.KINDS[0]
+    kind = prim.value(table.KIND) or SPATIAL
     path = _joints(prim, ends, draft) if kind == FIXED else _cable(prim, ends, draft)
     wrong = wrong_path(Tendon(kind), path, draft.edges)
     if wrong is not None:

@@ -11,6 +11,7 @@ from hymeko_x.formats.mjcf_joints import TENDON
 from hymeko_x.formats.mjcf_words import shifted
 from hymeko_x.ir.mechanism import WORLD, numbers_weight, pose_weight
 from hymeko_x.ir.parts import Contact, Coupling, DofKind, Joint, Loop, Tendon
+from hymeko_x.ir.tendons import PULLEY, SIDE
 from hymeko_x.ir.values import number_text, numbers_text
 
 if TYPE_CHECKING:
@@ -162,7 +163,7 @@ def _path(sheet: Sheet, arcs: tuple[RobotArc, ...]) -> list[str]:
     steps: list[list[tuple[str, str]]] = []
     tags: list[str] = []
     for arc in arcs:
-        if arc.role == "side":
+        if arc.role == SIDE:
             steps[-1].append(("sidesite", sheet.reference(arc)))
             continue
         tag, attributes = _step(sheet, arc)
@@ -172,8 +173,8 @@ def _path(sheet: Sheet, arcs: tuple[RobotArc, ...]) -> list[str]:
 
 
 def _step(sheet: Sheet, arc: RobotArc) -> tuple[str, list[tuple[str, str]]]:
-    if arc.role == "pulley":
-        return "pulley", [("divisor", number_text(numbers_weight(arc)[0]))]
+    if arc.role == PULLEY:
+        return PULLEY, [("divisor", number_text(numbers_weight(arc)[0]))]
     if arc.target.kind == "joint":
         return "joint", [("joint", sheet.reference(arc)), ("coef", number_text(numbers_weight(arc)[0]))]
     if arc.target.kind == "shape":
