@@ -147,7 +147,7 @@ def _matrix(rows: tuple[PairRow, ...]) -> Figure:
     for row in rows:
         place = sources.index(row.source), targets.index(row.target)
         shares[place] = row.percent
-        axis.text(place[1], place[0], f"{row.percent:.0f} %\n{row.same}/{row.accepted}", ha="center", va="center", fontsize=8)
+        axis.text(place[1], place[0], f"{row.share}\n{row.same}/{row.accepted}", ha="center", va="center", fontsize=8)
     axis.imshow(shares, cmap="RdYlGn", vmin=0.0, vmax=100.0, aspect="auto", alpha=0.6)
     axis.set_xticks(range(len(targets)), targets)
     axis.set_yticks(range(len(sources)), sources)

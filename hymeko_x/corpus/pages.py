@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.corpus import blocks, statistics
 from hymeko_x.corpus.report import matrix, table
-from hymeko_x.corpus.statistics import FOUND, PRINTED
+from hymeko_x.corpus.statistics import FOUND, PRINTED, percentage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -56,11 +56,11 @@ def _summary(tables: Tables) -> str:
     accepted = len(robots.filter(robots["engine"] == "done"))
     asked, same = sum(row.accepted for row in rows), sum(row.same for row in rows)
     whole = len(robots.filter(robots["engine"] == "done")) - statistics.failures(tables)["key"].n_unique()
-    poor = [f"{row.source} -> {row.target} ({row.percent:.1f} %)" for row in rows if row.accepted and row.percent < ENOUGH]
+    poor = [f"{row.source} -> {row.target} ({row.share})" for row in rows if row.accepted and row.percent < ENOUGH]
     said = f"Below {ENOUGH:g} %: {', '.join(poor)}." if poor else f"No pair of formats is below {ENOUGH:g} %."
     return (
         f"{len(robots)} files, of which the reference readers accept {accepted}. Of {asked} conversions of accepted files {same} give the "
-        f"same robot ({_percent(same, asked)}); {whole} files are the same robot in every format ({_percent(whole, accepted)}). {said}"
+        f"same robot ({percentage(same, asked)}); {whole} files are the same robot in every format ({percentage(whole, accepted)}). {said}"
     )
 
 
@@ -175,10 +175,6 @@ def _pace(pace: pl.DataFrame | None) -> str:
         for row in pace.iter_rows(named=True)
     ]
     return table(["engine", "workers", "files", "time", "robots/s", "times one worker"], lines)
-
-
-def _percent(part: int, whole: int) -> str:
-    return f"{100.0 * part / whole:.1f} %" if whole else "none"
 
 
 _WRITERS: Mapping[str, Callable[[Tables], str]] = {

@@ -46,7 +46,7 @@ def files_of(tables: Tables) -> Iterator[tuple[str, bytes]]:
 def matrix(rows: Sequence[PairRow]) -> str:
     """The pairs as a Markdown table: of the files that the reference reader accepts, how many are the same robot afterwards."""
     sources, targets = (sorted({getattr(row, side) for row in rows}) for side in ("source", "target"))
-    cells = {(row.source, row.target): f"{row.same} of {row.accepted} ({row.percent:.0f} %)" for row in rows}
+    cells = {(row.source, row.target): f"{row.same} of {row.accepted} ({row.share})" for row in rows}
     lines = [["from \\ into", *targets], ["---"] * (len(targets) + 1)]
     lines += [[source, *(cells.get((source, target), "") for target in targets)] for source in sources]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)

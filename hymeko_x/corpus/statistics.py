@@ -159,6 +159,18 @@ class PairRow:
         """Of the accepted files those that converted into the same robot."""
         return 100.0 * self.same / self.accepted if self.accepted else 0.0
 
+    @property
+    def share(self) -> str:
+        """The same as a text."""
+        return percentage(self.same, self.accepted)
+
+
+def percentage(part: int, whole: int) -> str:
+    """A share rounded down to a tenth of a percent, so that only all is 100 %."""
+    if part == whole or not whole:
+        return "100 %" if whole else "none"
+    return f"{1000 * part // whole / 10.0:.1f} %"
+
 
 def pair_rows(tables: Tables) -> tuple[PairRow, ...]:
     """One row for every pair of formats of the run, in order."""
