@@ -14,6 +14,7 @@ from hymeko_x.verify.checks.motion import check_motion
 from hymeko_x.verify.checks.pair import Pair, counted, pair_up
 from hymeko_x.verify.checks.parts import check_parts
 from hymeko_x.verify.checks.shapes import check_shapes
+from hymeko_x.verify.checks.tendons import check_tendons
 from hymeko_x.verify.match import BASE, BODIES, JOINTS, match
 from hymeko_x.verify.surfaces import Meshes
 from hymeko_x.verify.verdict import Check, Verdict
@@ -55,6 +56,7 @@ def _checks(pair: Pair) -> list[Check]:
         *check_dynamics(pair),
         *check_shapes(pair),
         *check_parts(pair),
+        *check_tendons(pair),
     ]
 
 

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
+    from hymeko_x.verify.tendons import Tendon
+
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
@@ -76,6 +78,7 @@ class Feature(Enum):
     FIXED_JOINT_NAMES = "names of fixed joints"
     ACTUATORS = "actuators"
     TENDONS = "tendons"
+    TIED_TENDONS = "couplings of tendons"
     LOOPS = "loops"
     CURVES = "couplings that are no straight line of one leader"
 
@@ -230,7 +233,7 @@ class Loop:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Something that is compared word by word and number by number: an actuator or a tendon, and what it acts on."""
+    """Something that is compared word by word and number by number: an actuator or a coupling of tendons, and what it acts on."""
 
     name: str | None
     words: tuple[str, ...]
@@ -253,7 +256,8 @@ class KinematicModel:
     couplings: tuple[Coupling, ...] = ()
     loops: tuple[Loop, ...] = ()
     actuators: tuple[Part, ...] = ()
-    tendons: tuple[Part, ...] = ()
+    tendons: tuple[Tendon, ...] = ()
+    tied_tendons: tuple[Part, ...] = ()
     says: frozenset[Feature] = frozenset(Feature)
     mute: frozenset[tuple[Feature, Kind]] = frozenset()
     precision: float = 1e-15

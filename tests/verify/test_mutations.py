@@ -233,7 +233,7 @@ MJCF = [
     Planted("coupling's ratio", "rig.xml", "//equality/joint/@polycoef", "0.1 -3.001 0.5 0 0", "coupled coordinates", "gear_joint"),
     Planted("coupling's square term", "rig.xml", "//equality/joint/@polycoef", "0.1 -3 0 0 0", "coupled coordinates", "gear_joint"),
     Planted("coupling dropped", "rig.xml", "//equality/joint", None, "couplings", "gear_joint"),
-    Planted("tendon's coefficient", "rig.xml", "//fixed/joint[@joint='knee']/@coef", "0.25", "tendons, numbers", "hamstring"),
+    Planted("tendon's coefficient", "rig.xml", "//fixed/joint[@joint='knee']/@coef", "0.25", "tendons, coefficients", "hamstring"),
     Planted("tendon on another joint", "rig.xml", "//fixed/joint[@joint='knee']/@joint", "hip_x", "tendons", "hamstring"),
     Planted("tendon dropped", "rig.xml", "//tendon", None, "tendons", "hamstring"),
     Planted("actuator's gear", "rig.xml", "//motor/@gear", "-12", "actuators, numbers", "crank_motor"),

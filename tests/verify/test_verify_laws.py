@@ -20,12 +20,15 @@ from hymeko_x.testing import arms
 from hymeko_x.verify import model_of
 from hymeko_x.verify.bodies import plain
 from hymeko_x.verify.compare import compare
-from hymeko_x.verify.model import KinematicModel
+from hymeko_x.verify.model import Feature, KinematicModel
 from hymeko_x.verify.verdict import Verdict
 from tests.verify.one_change import PLANTERS, Change
+from tests.verify.one_tendon import TENDON_PLANTERS, cabled
 
 FILES = {"hymeko": "r.hymeko", "urdf": "r.urdf", "xacro": "r.xacro", "mjcf": "r.xml", "usd": "r.usda"}
 PAIRS = list(product(FILES, repeat=2))
+OF_TENDONS = list(product(("hymeko", "mjcf", "usd"), repeat=2))
+"""The pairs of formats that have tendons."""
 SAMPLES = 4
 _QUOTED = re.compile(r"'([^']*)'")
 
@@ -66,8 +69,40 @@ def test_one_change_makes_another_robot_in_every_two_formats(planted: str, data:
     robot = data.draw(arms())
     change = PLANTERS[planted](data.draw, robot)
     assume(change is not None)
-    first = [*PLANTERS].index(planted) % len(PAIRS)
-    pairs = data.draw(st.lists(st.sampled_from(PAIRS[first:] + PAIRS[:first]), min_size=2, max_size=3, unique=True))
+    pairs = data.draw(st.lists(st.sampled_from(_turned(PAIRS, [*PLANTERS].index(planted))), min_size=2, max_size=3, unique=True))
+    assert_found(robot, change, pairs, folder)
+
+
+@law(33)
+@given(robot=cabled())
+def test_tendons_are_the_same_in_every_two_formats_that_have_them(robot: Mechanism, folder: Path) -> None:
+    models = seen(robot, {a for a, _ in OF_TENDONS}, folder)
+    verdicts = {(a, b): compare(models[a], models[b], samples=SAMPLES) for a, b in OF_TENDONS}
+    assert {pair: verdict for pair, verdict in verdicts.items() if verdict.verdict != "same"} == {}
+    assert all(Feature.TENDONS.value in {check.quantity for check in verdict.checks} for verdict in verdicts.values())
+
+
+@pytest.mark.parametrize("planted", TENDON_PLANTERS)
+@law(50)
+@given(data=st.data())
+def test_one_change_to_a_tendon_makes_another_robot_in_every_two_formats_that_have_them(
+    planted: str, data: st.DataObject, folder: Path
+) -> None:
+    robot = data.draw(cabled())
+    change = TENDON_PLANTERS[planted](data.draw, robot)
+    assume(change is not None)
+    pairs = _turned(OF_TENDONS, [*TENDON_PLANTERS].index(planted))
+    assert_found(robot, change, data.draw(st.lists(st.sampled_from(pairs), min_size=2, max_size=3, unique=True)), folder)
+
+
+def _turned(pairs: list[tuple[str, str]], by: int) -> list[tuple[str, str]]:
+    """The same pairs, another one first."""
+    first = by % len(pairs)
+    return pairs[first:] + pairs[:first]
+
+
+def assert_found(robot: Mechanism, change: Change, pairs: list[tuple[str, str]], folder: Path) -> None:
+    """In each pair of formats that can say what was changed."""
     before, after = seen(robot, {a for a, _ in pairs}, folder), seen(change.robot, {b for _, b in pairs}, folder)
     for a, b in pairs:
         if change.feature is None or change.feature in before[a].says & after[b].says:

@@ -1,4 +1,4 @@
-"""Actuators and tendons: what they act on, word by word, and their numbers."""
+"""Actuators and couplings of tendons: what they act on, word by word, and their numbers."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 def check_parts(pair: Pair) -> Iterator[Check]:
-    """Every actuator and tendon of the first robot in the second, and no new ones."""
+    """Every actuator and coupling of tendons of the first robot in the second, and no new ones."""
     yield from _check(pair, Feature.ACTUATORS, pair.a.actuators, pair.b.actuators)
-    yield from _check(pair, Feature.TENDONS, pair.a.tendons, pair.b.tendons)
+    yield from _check(pair, Feature.TIED_TENDONS, pair.a.tied_tendons, pair.b.tied_tendons)
 
 
 def _check(pair: Pair, feature: Feature, ours: Sequence[Part], theirs: Sequence[Part]) -> Iterator[Check]:
@@ -44,28 +44,23 @@ def _note(pair: Pair, feature: Feature) -> None:
 
 
 def _parts(model: KinematicModel, feature: Feature) -> Sequence[Part]:
-    return model.actuators if feature is Feature.ACTUATORS else model.tendons
+    return model.actuators if feature is Feature.ACTUATORS else model.tied_tendons
 
 
 def _pair_parts(ours: Sequence[Part], theirs: Sequence[Part]) -> tuple[list[tuple[Part, Part]], list[str]]:
     """By name; unnamed ones in order, because that is how a controller addresses them."""
-    named = {_key(part): part for part in theirs if part.name is not None}
+    named = {part.name: part for part in theirs if part.name is not None}
     unnamed = [part for part in theirs if part.name is None]
     pairs: list[tuple[Part, Part]] = []
     findings: list[str] = []
     for part in ours:
-        other = named.pop(_key(part), None) if part.name is not None else (unnamed.pop(0) if unnamed else None)
+        other = named.pop(part.name, None) if part.name is not None else (unnamed.pop(0) if unnamed else None)
         if other is None:
             findings.append(f"{_label(part)} is missing")
         else:
             pairs.append((part, other))
     findings += [f"{_label(part)} is new" for part in (*named.values(), *unnamed)]
     return pairs, findings
-
-
-def _key(part: Part) -> tuple[str | None, bool]:
-    """A tendon and the equality that holds it may share a name."""
-    return part.name, part.words[:1] == ("equality",)
 
 
 def _label(part: Part) -> str:

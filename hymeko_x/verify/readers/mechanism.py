@@ -31,6 +31,7 @@ from hymeko_x.verify.model import (
     between_frames,
     grounded,
 )
+from hymeko_x.verify.readers.mechanism_tendons import read_tendons
 from hymeko_x.verify.spatial import frame_with_z, pose
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.values import Pose
 
-SAYS = frozenset(Feature) - {Feature.ACTUATORS, Feature.TENDONS}
+SAYS = frozenset(Feature) - {Feature.ACTUATORS, Feature.TIED_TENDONS}
 
 
 def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> KinematicModel:
@@ -55,14 +56,15 @@ def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> Kinema
         places[key] = len(bodies)
         bodies.append(_body(mechanism, key, view, places))
     bare = KinematicModel(mechanism.name, format, "hymeko-x", tuple(bodies))
-    dofs = _dof_places(mechanism, bare, places)
+    dofs, sites = _dof_places(mechanism, bare, places), _frames(mechanism, places)
     return KinematicModel(
         name=mechanism.name,
         format=format,
         engine="hymeko-x (its own reader)",
         bodies=bare.bodies,
         couplings=tuple(_couplings(mechanism, dofs)),
-        loops=tuple(_loops(mechanism, places)),
+        loops=tuple(_loops(mechanism, places, sites)),
+        tendons=tuple(read_tendons(mechanism, dofs, sites, _placed_shapes(mechanism, places))),
         says=SAYS,
         trusted=False,
     )
@@ -158,8 +160,7 @@ def _couplings(mechanism: Mechanism, dofs: Mapping[tuple[Id, str], int]) -> Iter
         yield Coupling(follower, constant / scale, tuple((d, tuple(c / scale for c in cs)) for d, cs in leaders), key.name)
 
 
-def _loops(mechanism: Mechanism, places: Mapping[Id, int]) -> Iterator[Loop]:
-    frames = _frames(mechanism, places)
+def _loops(mechanism: Mechanism, places: Mapping[Id, int], frames: Mapping[Id, tuple[int, Array]]) -> Iterator[Loop]:
     for key, loop, arcs in mechanism.edges(parts.Loop):
         ends = [end for arc in arcs if (end := _end(arc, places, frames)) is not None]
         if not loop.active or len(ends) < 2:
@@ -209,6 +210,11 @@ def _shapes(mechanism: Mechanism, key: Id) -> Iterator[Shape]:
             continue
         mesh = _mesh(mechanism, view)
         yield Shape(kind, Role(view.shape.role.value), _matrix(view.pose), size, view.shape.name, mesh)
+
+
+def _placed_shapes(mechanism: Mechanism, places: Mapping[Id, int]) -> dict[Id, tuple[int, Array]]:
+    """The body of each shape, and where on it the shape is."""
+    return {view.id: (places[key], _matrix(view.pose)) for key, views in mechanism.shapes.items() if key in places for view in views}
 
 
 def _geometry(geometry: parts.Geometry) -> tuple[str, tuple[float, ...]]:

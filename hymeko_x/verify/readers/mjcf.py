@@ -17,7 +17,8 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Role, Shape, Surface, grounded
-from hymeko_x.verify.readers.mjcf_constraints import read_actuators, read_couplings, read_loops, read_tendons
+from hymeko_x.verify.readers.mjcf_constraints import read_actuators, read_couplings, read_loops, read_tied_tendons
+from hymeko_x.verify.readers.mjcf_tendons import read_tendons
 from hymeko_x.verify.readers.words import overheard
 from hymeko_x.verify.sampling import draw
 from hymeko_x.verify.spatial import angle_between, pose, quat_from_rotation, rigid, rotation_from_quat
@@ -98,7 +99,8 @@ def from_compiled(compiled: Any) -> KinematicModel:
         couplings=tuple(read_couplings(compiled, joint_dofs)),
         loops=tuple(read_loops(compiled)),
         actuators=tuple(read_actuators(compiled)),
-        tendons=tuple(read_tendons(compiled)),
+        tendons=tuple(read_tendons(compiled, joint_dofs)) if compiled.ntendon else (),
+        tied_tendons=tuple(read_tied_tendons(compiled)),
         says=SAYS,
     )
 

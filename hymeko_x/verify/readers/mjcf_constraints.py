@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.model import Array
 
-_EQ, _OBJ, _WRAP, _TRN = mujoco.mjtEq, mujoco.mjtObj, mujoco.mjtWrap, mujoco.mjtTrn
+_EQ, _OBJ, _TRN = mujoco.mjtEq, mujoco.mjtObj, mujoco.mjtTrn
 _SCALAR = (int(mujoco.mjtJoint.mjJNT_HINGE), int(mujoco.mjtJoint.mjJNT_SLIDE))
 
 
@@ -92,42 +92,11 @@ def _anchors(data: Array, *, connect: bool) -> tuple[Array, Array]:
 # ---- tendons and actuators -------------------------------------------------------------------------------------------
 
 
-def read_tendons(compiled: Any) -> Iterator[Part]:
-    """Every tendon's path or coefficients and its mechanics, and the equalities between tendons."""
-    for tendon in range(compiled.ntendon):
-        first, count = int(compiled.tendon_adr[tendon]), int(compiled.tendon_num[tendon])
-        path = [_wrap(compiled, wrap) for wrap in range(first, first + count)]
-        yield Part(
-            compiled.tendon(tendon).name or None,
-            tuple(word for words, _ in path for word in words),
-            (*(number for _, numbers in path for number in numbers), *_tendon_numbers(compiled, tendon)),
-        )
+def read_tied_tendons(compiled: Any) -> Iterator[Part]:
+    """The equalities between tendons."""
     for i in _equalities(compiled, _EQ.mjEQ_TENDON):
         ends = [compiled.tendon(int(t)).name if t >= 0 else "" for t in (compiled.eq_obj1id[i], compiled.eq_obj2id[i])]
         yield Part(compiled.equality(i).name or None, ("equality", *ends), tuple(float(x) for x in compiled.eq_data[i][:5]))
-
-
-def _wrap(compiled: Any, wrap: int) -> tuple[tuple[str, ...], tuple[float, ...]]:
-    """One item of a path: a joint with its coefficient, a point on a body, a wrapping geometry, or a pulley."""
-    kind, target = int(compiled.wrap_type[wrap]), int(compiled.wrap_objid[wrap])
-    number = float(compiled.wrap_prm[wrap])
-    if kind == int(_WRAP.mjWRAP_JOINT):
-        return ("joint", str(compiled.joint(target).name)), (number,)
-    if kind == int(_WRAP.mjWRAP_SITE):
-        return ("site", str(compiled.body(int(compiled.site_bodyid[target])).name)), tuple(float(x) for x in compiled.site_pos[target])
-    if kind == int(_WRAP.mjWRAP_PULLEY):
-        return ("pulley",), (number,)
-    body = str(compiled.body(int(compiled.geom_bodyid[target])).name)
-    side = tuple(float(x) for x in compiled.site_pos[int(number)]) if number >= 0 else ()
-    return ("geom", body), (*(float(x) for x in compiled.geom_pos[target]), float(compiled.geom_size[target][0]), *side)
-
-
-def _tendon_numbers(compiled: Any, tendon: int) -> tuple[float, ...]:
-    names = ("stiffness", "damping", "frictionloss", "armature", "lengthspring", "range")
-    values = [np.ravel(getattr(compiled, f"tendon_{name}")[tendon]) for name in names]
-    if not compiled.tendon_limited[tendon]:
-        values[-1] = np.zeros(2)
-    return tuple(float(x) for x in np.concatenate(values))
 
 
 def read_actuators(compiled: Any) -> Iterator[Part]:

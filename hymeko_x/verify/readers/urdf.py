@@ -32,6 +32,7 @@ SAYS = frozenset(Feature) - {
     Feature.REFS,
     Feature.ACTUATORS,
     Feature.TENDONS,
+    Feature.TIED_TENDONS,
     Feature.LOOPS,
     Feature.CURVES,
 }

@@ -1,8 +1,8 @@
 """USD as Pixar's UsdPhysics parser sees it: bodies, joints with both local frames, limits, collision shapes.
 
 Masses come from MassAPI, tensors that have no principal moments from NewtonMassAPI, poses at rest and visual shapes from
-UsdGeom. Couplings are what NewtonMimicAPI and MjcEqualityJointAPI say, since UsdPhysics has no word for them. Physics is
-float32 and degrees in USD; lengths are in stage units. Everything is converted to SI, and to z up.
+UsdGeom. Couplings are what NewtonMimicAPI and MjcEqualityJointAPI say, tendons what MjcTendon says, since UsdPhysics has no
+words for them. Physics is float32 and degrees in USD; lengths are in stage units. Everything is converted to SI, and to z up.
 Source: UsdPhysics schema and parseDesc.h (OpenUSD); newton-usd-schemas for NewtonMimicAPI.
 """
 
@@ -20,6 +20,7 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.verify.model import WORLD, Array, Body, Feature, Joint, KinematicModel, Loop, grounded
 from hymeko_x.verify.readers.usd_joints import JointEdge, read_couplings, read_joint, read_loop
 from hymeko_x.verify.readers.usd_shapes import read_shapes
+from hymeko_x.verify.readers.usd_tendons import read_tendons, tendon_prims
 from hymeko_x.verify.readers.words import overheard
 from hymeko_x.verify.spatial import inverse, rigid, rotation_from_quat
 
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.readers import Places
 
-SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
+SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES, Feature.TENDONS})
 SINGLE = 1.2e-7
 """The relative precision of what UsdPhysics stores."""
 NEAR = 1e-6
@@ -124,7 +125,8 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
         says=SAYS,
         precision=SINGLE,
     )
-    return read_couplings(scene, model, tree)
+    cables = tendon_prims(scene)
+    return read_couplings(scene, read_tendons(scene, model, cables, _names(scene.stage, cables), tree, places), tree)
 
 
 def _is_ground(scene: Scene, path: str, edge: JointEdge | None) -> bool:

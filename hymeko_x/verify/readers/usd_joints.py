@@ -182,9 +182,14 @@ def read_couplings(scene: Scene, model: KinematicModel, tree: Mapping[str, Joint
     NewtonMimicAPI says are older and count where that says nothing.
     """
     paths = {edge.path: edge for first in tree.values() for edge in (first, *first.more)}
-    dofs = {dof.name: index for index, dof in enumerate(model.dofs) if dof.name is not None}
+    dofs = dof_names(model)
     found = [coupling for path in paths if (coupling := _coupling(scene, path, paths, dofs)) is not None]
     return replace(model, couplings=tuple(found))
+
+
+def dof_names(model: KinematicModel) -> dict[str, int]:
+    """The dof of each name."""
+    return {dof.name: index for index, dof in enumerate(model.dofs) if dof.name is not None}
 
 
 def _coupling(scene: Scene, path: str, paths: Mapping[str, JointEdge], dofs: Mapping[str, int]) -> Coupling | None:

@@ -12,7 +12,7 @@ from hymeko_x.verify.model import Array, Role, Shape, Surface
 from hymeko_x.verify.spatial import rigid
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Container, Mapping
 
     from hymeko_x.verify.readers.usd import Scene
 
@@ -35,9 +35,9 @@ def read_shapes(scene: Scene, found: Mapping[Any, Any], bodies: set[str]) -> dic
             continue
         path = str(prim.GetPath())
         role = _role(prim, path in colliding)
-        shape = None if role is None else _shape(scene, prim, _owner(prim, bodies), role)
+        shape = None if role is None else shape_of(scene, prim, owner(prim, bodies), role)
         if shape is not None:
-            shapes.setdefault(_owner(prim, bodies), []).append(shape)
+            shapes.setdefault(owner(prim, bodies), []).append(shape)
     return {path: tuple(items) for path, items in shapes.items()}
 
 
@@ -54,7 +54,7 @@ def _role(prim: Any, collides: bool) -> Role | None:
     return Role.VISUAL if drawn else None
 
 
-def _owner(prim: Any, bodies: set[str]) -> str:
+def owner(prim: Any, bodies: Container[str]) -> str:
     """The nearest body above a prim, or ""."""
     path = prim.GetPath()
     while not path.IsAbsoluteRootPath():
@@ -64,7 +64,7 @@ def _owner(prim: Any, bodies: set[str]) -> str:
     return ""
 
 
-def _shape(scene: Scene, prim: Any, body: str, role: Role) -> Shape | None:
+def shape_of(scene: Scene, prim: Any, body: str, role: Role) -> Shape | None:
     """A primitive in the body's frame; a mesh as triangles in it."""
     from hymeko_x.verify.readers.usd import relative
 

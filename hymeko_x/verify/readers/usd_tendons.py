@@ -1,0 +1,225 @@
+"""MjcTendon prims: the tendons of a stage as MuJoCo's schema says them, which no parser of UsdPhysics knows.
+
+Source: MjcPhysics (MuJoCo's USD schemas), mujoco-usd-converter, Newton's importer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from pxr import Sdf, Usd
+
+from hymeko_x.verify.model import Kind, Role
+from hymeko_x.verify.readers.usd_joints import dof_names
+from hymeko_x.verify.readers.usd_shapes import owner, shape_of
+from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Point, Spring, Step, Tendon
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from hymeko_x.verify.model import Array, KinematicModel
+    from hymeko_x.verify.readers.usd import Scene
+    from hymeko_x.verify.readers.usd_joints import JointEdge
+
+_TYPE, _SITE_API = "MjcTendon", "MjcSiteAPI"
+_ROUND = {"sphere": SPHERE, "cylinder": CYLINDER}
+
+
+class _BadPath(Exception):
+    """A path that nobody can follow; the text says why."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Guide:
+    """What paths lead through: each joint's dof by the joint's path, and the bodies by theirs; "" is the world."""
+
+    scene: Scene
+    dofs: Mapping[str, int]
+    kinds: Mapping[str, Kind]
+    bodies: Mapping[str, int]
+
+
+def tendon_prims(scene: Scene) -> list[str]:
+    """The paths of the tendons in the order of the stage."""
+    prims = scene.stage.Traverse(Usd.TraverseInstanceProxies())
+    return [str(prim.GetPath()) for prim in prims if prim.GetTypeName() == _TYPE]
+
+
+def read_tendons(
+    scene: Scene,
+    model: KinematicModel,
+    paths: Sequence[str],
+    names: Mapping[str, str],
+    tree: Mapping[str, JointEdge],
+    places: Mapping[str, int],
+) -> KinematicModel:
+    """The model with its tendons, and a note for each whose path leads nowhere. ``places`` are the bodies by path."""
+    if not paths:
+        return model
+    dofs = dof_names(model)
+    edges = [edge for first in tree.values() for edge in (first, *first.more) if edge.name in dofs]
+    known = {edge.path: dofs[edge.name] for edge in edges}
+    guide = _Guide(scene, known, {path: model.dofs[dof].kind for path, dof in known.items()}, places)
+    automatic = _limits_are_automatic(scene)
+    found: list[Tendon] = []
+    notes: list[str] = []
+    for path in paths:
+        try:
+            found.append(_tendon(guide, scene.stage.GetPrimAtPath(path), names[path], automatic=automatic))
+        except _BadPath as error:
+            notes.append(f"tendon '{names[path]}' is left out: its path {error}")
+    return replace(model, tendons=tuple(found), notes=(*model.notes, *notes))
+
+
+def _limits_are_automatic(scene: Scene) -> bool:
+    """Whether a range alone is a limit, as everywhere unless a scene says otherwise."""
+    prims = scene.stage.Traverse(Usd.TraverseInstanceProxies())
+    return not any(_value(prim, "mjc:compiler:autoLimits") is False for prim in prims)
+
+
+def _tendon(guide: _Guide, prim: Any, name: str, *, automatic: bool) -> Tendon:
+    """One tendon in SI units. Raises: _BadPath."""
+    metres, kilograms = guide.scene.metres, guide.scene.kilograms
+    newtons = metres * kilograms
+    fixed = _value(prim, "mjc:type") == "fixed"
+    stiffness = _number(prim, "mjc:stiffness") * kilograms
+    return Tendon(
+        name,
+        tuple(_sum(guide, prim) if fixed else _cable(guide, prim)),
+        (
+            stiffness,
+            _number(prim, "mjc:damping") * kilograms,
+            _number(prim, "mjc:frictionloss") * newtons,
+            _number(prim, "mjc:armature") * kilograms,
+        ),
+        _bounds(prim, "mjc:range", "mjc:limited", metres, automatic=automatic),
+        _bounds(prim, "mjc:actuatorfrcrange", "mjc:actuatorfrclimited", newtons, automatic=automatic),
+        _spring(prim, metres) if stiffness else RELAXED,
+    )
+
+
+def _bounds(prim: Any, name: str, limited: str, unit: float, *, automatic: bool) -> tuple[float, float] | None:
+    low, high = (_number(prim, f"{name}:{end}") for end in ("min", "max"))
+    word = _value(prim, limited) or "auto"
+    holds = word == "true" or (word == "auto" and automatic and low < high)
+    return (low * unit, high * unit) if holds else None
+
+
+def _spring(prim: Any, metres: float) -> Spring:
+    """Its lengths; -1 is the one at rest."""
+    said = _numbers(prim, "mjc:springlength")
+    if len(said) != 2 or said[0] == -1.0:
+        return RELAXED
+    return Spring((said[0] * metres, said[1] * metres), at_rest=False)
+
+
+# ---- paths -----------------------------------------------------------------------------------------------------------
+
+
+def _sum(guide: _Guide, prim: Any) -> Iterator[Step]:
+    """The joints of a fixed tendon. A coefficient is a length for an angle, or for a length."""
+    targets = _targets(prim, "mjc:path", "mjc:path:indices")
+    coefficients = _numbers(prim, "mjc:path:coef") or [1.0] * len(targets)
+    if len(coefficients) != len(targets):
+        raise _BadPath(f"has {len(targets)} joints and {len(coefficients)} coefficients")
+    for target, coefficient in zip(targets, coefficients, strict=True):
+        if target not in guide.dofs:
+            raise _BadPath(f"leads to {target}, which is no joint that one coordinate moves")
+        turns = guide.kinds[target] is Kind.HINGE
+        yield Step(JOINT, guide.dofs[target], coefficient * (guide.scene.metres if turns else 1.0))
+
+
+def _cable(guide: _Guide, prim: Any) -> Iterator[Step]:
+    """The sites and shapes of a cable; where a segment begins, there is a pulley, before the first one if it has a divisor."""
+    targets = _targets(prim, "mjc:path", "mjc:path:indices")
+    segments = _integers(prim, "mjc:path:segments") or [0] * len(targets)
+    divisors = _numbers(prim, "mjc:path:divisors") or [1.0]
+    sides = _sides(prim, len(targets))
+    if len(segments) != len(targets) or any(not 0 <= segment < len(divisors) for segment in segments):
+        raise _BadPath(f"has {len(targets)} steps, {len(segments)} segments, and {len(divisors)} divisors")
+    if divisors[0] != 1.0:
+        yield Step(PULLEY, number=divisors[0])
+    last = 0
+    for target, segment, side in zip(targets, segments, sides, strict=True):
+        if segment != last:
+            yield Step(PULLEY, number=divisors[segment])
+        last = segment
+        yield _knot(guide, target)
+        if side:
+            yield _site(guide, guide.scene.stage.GetPrimAtPath(side), SIDE)
+
+
+def _sides(prim: Any, count: int) -> list[str]:
+    """For each step the site beside it, or ""."""
+    found = [str(path) for path in _relation(prim, "mjc:sideSites")]
+    order = _integers(prim, "mjc:sideSites:indices") or [-1] * count
+    if len(order) != count or any(index >= len(found) for index in order):
+        raise _BadPath(f"has {count} steps, {len(found)} sites beside them, and {len(order)} indices of these")
+    return [found[index] if index >= 0 else "" for index in order]
+
+
+def _targets(prim: Any, name: str, indices: str) -> list[str]:
+    found = [str(path) for path in _relation(prim, name)]
+    order = _integers(prim, indices) or range(len(found))
+    if any(not 0 <= index < len(found) for index in order):
+        raise _BadPath(f"has {len(found)} targets and other indices")
+    return [found[index] for index in order]
+
+
+def _knot(guide: _Guide, path: str) -> Step:
+    """A site, or a ball or cylinder around which a cable goes."""
+    prim = guide.scene.stage.GetPrimAtPath(Sdf.Path(path))
+    if not prim:
+        raise _BadPath(f"leads to {path}, where nothing is")
+    if _SITE_API in prim.GetPrimTypeInfo().GetAppliedAPISchemas():
+        return _site(guide, prim, SITE)
+    on = owner(prim, guide.bodies)
+    shape = shape_of(guide.scene, prim, on, Role.VISUAL)
+    if shape is None or shape.kind not in _ROUND:
+        return _site(guide, prim, SITE)
+    axis = _point(shape.pose[:3, 2]) if shape.kind == "cylinder" else None
+    return Step(_ROUND[shape.kind], guide.bodies[on], shape.size[0], _point(shape.pose[:3, 3]), axis)
+
+
+def _site(guide: _Guide, prim: Any, kind: str) -> Step:
+    from hymeko_x.verify.readers.usd import relative
+
+    if not prim:
+        raise _BadPath("has a site beside it that is not there")
+    on = owner(prim, guide.bodies)
+    return Step(kind, guide.bodies[on], point=_point(relative(guide.scene, on, prim)[0][:3, 3]))
+
+
+def _point(numbers: Array) -> Point:
+    x, y, z = (float(number) for number in numbers)
+    return x, y, z
+
+
+# ---- values ----------------------------------------------------------------------------------------------------------
+
+
+def _value(prim: Any, name: str) -> Any:
+    attribute = prim.GetAttribute(name)
+    return attribute.Get() if attribute else None
+
+
+def _number(prim: Any, name: str) -> float:
+    value = _value(prim, name)
+    return float(value) if isinstance(value, int | float) else 0.0
+
+
+def _numbers(prim: Any, name: str) -> list[float]:
+    attribute = prim.GetAttribute(name)
+    array = attribute and attribute.GetTypeName() in (Sdf.ValueTypeNames.DoubleArray, Sdf.ValueTypeNames.FloatArray)
+    return [float(number) for number in attribute.Get() or ()] if array else []
+
+
+def _integers(prim: Any, name: str) -> list[int]:
+    attribute = prim.GetAttribute(name)
+    return list(attribute.Get() or ()) if attribute and attribute.GetTypeName() == Sdf.ValueTypeNames.IntArray else []
+
+
+def _relation(prim: Any, name: str) -> list[Any]:
+    relationship = prim.GetRelationship(name)
+    return list(relationship.GetForwardedTargets()) if relationship else []
