@@ -118,16 +118,24 @@ def _painted(pieces: list[tuple[Look | None, Table]]) -> Painted:
     """Tables as one part. Points are apart only where they are at different places; what has no places in an image is at its corner."""
     tables = [table for _, table in pieces]
     points, faces = put_in_one([(table.points, table.faces) for table in tables])
+    order = _order(tables)
+    faces = faces[order]
     whole_ones = are_whole(faces)
     uv, corners = _places(tables)
-    part = Part(points, faces[whole_ones], uv, None, None if corners is None else corners[whole_ones])
+    part = Part(points, faces[whole_ones], uv, None, None if corners is None else corners[order][whole_ones])
     numbers = {look: number for number, look in enumerate(dict.fromkeys(look for look, _ in pieces if look is not None))}
     own = np.array([-1 if look is None else numbers[look] for look, _ in pieces])
-    owners = np.repeat(own, [len(table.faces) for table in tables])[whole_ones]
+    owners = np.repeat(own, [len(table.faces) for table in tables])[order][whole_ones]
     order = np.argsort(owners, kind="stable")
     ends = np.searchsorted(owners[order], np.arange(len(numbers) + 1)).tolist()
     looks = tuple([(look, order[start:end]) for look, start, end in zip(numbers, ends, ends[1:], strict=False)])
     return Painted(sound((part,))[0], looks)
+
+
+def _order(tables: list[Table]) -> NDArray[np.intp] | slice:
+    """Which triangles of all tables, one table behind the other, make up the order of their file."""
+    said = [table.order for table in tables if table.order is not None]
+    return slice(None) if len(said) < 2 else np.argsort(np.concatenate(said), kind="stable")
 
 
 def _places(tables: list[Table]) -> tuple[NDArray[np.float64], NDArray[Any]] | tuple[None, None]:

@@ -6,6 +6,8 @@ are not even read.
 
 from __future__ import annotations
 
+import re
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -28,8 +30,17 @@ _WIDTHS = (3, 6)
 """A point, or a point with a colour."""
 _UV_WIDTHS = (2, 3)
 """Two coordinates in an image, or three, of which the last one is for solid textures."""
+_DIGITS = re.compile(rb"\d+")
 _END, _TAB, _BLANK, _STROKE = b"\n\t /"
 _POINT, _FACE, _PLACE, _USE, _LIBRARY = b"vftum"
+
+
+class _Some(NamedTuple):
+    """Some lines, each with blanks for its first two letters: where they begin, and at last where they end; their numbers in the file."""
+
+    text: NDArray[np.uint8]
+    starts: NDArray[np.intp]
+    numbers: NDArray[np.intp]
 
 
 class _Lines(NamedTuple):
@@ -55,8 +66,8 @@ def obj_tables(data: bytes, fetch: Callable[[str], bytes | None] | None = None, 
     finishes = _finishes(lines, fetch) if used and fetch is not None else {}
     is_imaged = mapped or any(finish.image for finish in finishes.values())
     try:
-        points = _rows(*_picked(lines, (lines.first == _POINT) & (lines.second == _BLANK)), _WIDTHS)
-        uv = _rows(*_picked(lines, (lines.first == _POINT) & (lines.second == _PLACE)), _UV_WIDTHS) if is_imaged else None
+        points = _rows(lines, _BLANK, _WIDTHS)
+        uv = _rows(lines, _PLACE, _UV_WIDTHS) if is_imaged else None
         if points is None:
             return None
         pieces = _pieces(lines, used if finishes else [])
@@ -76,17 +87,17 @@ def _finishes(lines: _Lines, fetch: Callable[[str], bytes | None]) -> dict[str, 
 
 
 def _table(
-    lines: _Lines, name: str, finish: Finish, points: NDArray[np.float64], uv: NDArray[np.float64] | None, *, mapped: bool
+    lines: _Some, name: str, finish: Finish, points: NDArray[np.float64], uv: NDArray[np.float64] | None, *, mapped: bool
 ) -> Table | None:
     """What one material is used for; an image that nothing says the place of is not shown."""
-    text, starts = _picked(lines, (lines.first == _FACE) & (lines.second == _BLANK))
-    corners = _Corners.of(text, starts)
+    corners = _Corners.of(lines.text, lines.starts)
     if corners is None:
         return None
     faces = fans(corners.sizes, corners.field(0))
     if not _are_rows(faces, points):
         return None
-    table = Table(*used_rows(points, faces), name, finish._replace(image=""))
+    order = np.repeat(lines.numbers, np.maximum(corners.sizes - 2, 0))
+    table = Table(*used_rows(points, faces), name, finish._replace(image=""), order=order)
     if not (finish.image or mapped) or uv is None or not corners.have_places:
         return table
     places = fans(corners.sizes, corners.field(1))
@@ -126,27 +137,52 @@ def _said(lines: _Lines, letter: int, word: bytes) -> list[tuple[int, str]]:
     return found
 
 
-def _pieces(lines: _Lines, used: list[tuple[int, str]]) -> Iterator[tuple[str, _Lines]]:
-    """The lines for each use of a material, those before the first one under no name."""
-    begins, names = [0, *(number for number, _ in used)], ["", *(name for _, name in used)]
-    for name, begin, end in zip(names, begins, [*begins[1:], len(lines.first)], strict=True):
-        if (lines.first[begin:end] == _FACE).any():
-            yield name, _Lines(lines.text, lines.starts[begin : end + 1], lines.first[begin:end], lines.second[begin:end])
+def _pieces(lines: _Lines, used: list[tuple[int, str]]) -> Iterator[tuple[str, _Some]]:
+    """The polygons by material, those before the first one under no name, and by the form of the first corner of each use."""
+    faces = np.flatnonzero((lines.first == _FACE) & (lines.second == _BLANK))
+    if not len(faces):
+        return
+    names, owners = _owners(lines, faces, used)
+    cuts = np.concatenate(([0], np.flatnonzero((np.diff(faces) > 1) | (np.diff(owners) != 0)) + 1, [len(faces)]))
+    order = np.argsort(owners[cuts[:-1]], kind="stable")
+    text, starts = _gathered(lines, faces[cuts[:-1]][order], faces[cuts[1:] - 1][order] + 1)
+    numbers = faces[np.argsort(owners, kind="stable")]
+    for name, (begin, end) in zip(names, pairwise([0, *np.cumsum(np.bincount(owners)).tolist()]), strict=True):
+        own = starts[begin : end + 1]
+        yield name, _Some(text[own[0] : own[-1]], own - own[0], numbers[begin:end])
 
 
-def _picked(lines: _Lines, is_wanted: NDArray[np.bool_]) -> tuple[NDArray[np.uint8], NDArray[np.intp]]:
-    """Some lines, each with blanks for its first two letters, and where each of them begins; at last, where they end."""
+def _owners(lines: _Lines, faces: NDArray[np.intp], used: list[tuple[int, str]]) -> tuple[list[str], NDArray[np.intp]]:
+    """The material of each piece, in the order of their first polygons, and the piece of every polygon."""
+    names, begins = ["", *(name for _, name in used)], np.searchsorted(faces, [0, *(number for number, _ in used)])
+    counts, piece_of = np.diff(begins, append=len(faces)), np.zeros(len(names), dtype=np.intp)
+    pieces: dict[tuple[str, bytes], int] = {}
+    for use in np.flatnonzero(counts).tolist():
+        piece_of[use] = pieces.setdefault((names[use], _form(lines, faces[begins[use]])), len(pieces))
+    return [name for name, _ in pieces], np.repeat(piece_of, counts)
+
+
+def _form(lines: _Lines, number: int) -> bytes:
+    """How the first corner of a polygon is written: ``0//0`` for ``12//7``."""
+    words = lines.text[lines.starts[number] : lines.starts[number + 1]].tobytes().split(None, 2)
+    return b"".join(_DIGITS.sub(b"0", word) for word in words[1:2])
+
+
+def _gathered(lines: _Lines, begins: NDArray[np.intp], ends: NDArray[np.intp]) -> tuple[NDArray[np.uint8], NDArray[np.intp]]:
+    """Runs of lines, each line with blanks for its first two letters, and where each of them begins; at last, where they end."""
+    runs = [*zip(begins.tolist(), ends.tolist(), strict=True)]
+    texts = zip(lines.starts[begins].tolist(), lines.starts[ends].tolist(), strict=True)
+    text = np.concatenate([lines.text[:0], *(lines.text[first:last] for first, last in texts)])
     lengths = np.diff(lines.starts)
-    turns = np.flatnonzero(np.diff(is_wanted, prepend=False, append=False))
-    runs = [lines.text[:0], *(lines.text[first:last] for first, last in lines.starts[turns].reshape(-1, 2).tolist())]
-    wanted = np.concatenate(runs)
-    begins = np.concatenate(([0], np.cumsum(lengths[is_wanted])))
-    wanted[begins[:-1]] = wanted[begins[:-1] + 1] = _BLANK
-    return wanted, begins
+    starts = np.cumsum(np.concatenate([[0], *(lengths[first:last] for first, last in runs)]))
+    text[starts[:-1]] = text[starts[:-1] + 1] = _BLANK
+    return text, starts
 
 
-def _rows(text: NDArray[np.uint8], starts: NDArray[np.intp], widths: tuple[int, int]) -> NDArray[np.float64] | None:
-    """As many numbers as the lesser width of each line; None where lines have other widths, or several."""
+def _rows(lines: _Lines, second: int, widths: tuple[int, int]) -> NDArray[np.float64] | None:
+    """As many numbers as the lesser width of each line of this kind of point; None where lines have other widths, or several."""
+    is_wanted = (lines.first == _POINT) & (lines.second == second)
+    text, starts = _gathered(lines, *np.flatnonzero(np.diff(is_wanted, prepend=False, append=False)).reshape(-1, 2).T)
     said = np.diff(np.searchsorted(words_in(text)[0], starts))
     if not len(said) or said[0] not in widths or (said != said[0]).any():
         return None

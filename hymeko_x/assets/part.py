@@ -31,6 +31,7 @@ class Table(NamedTuple):
     """What a file shows in one material: points (n, 3), triangles (m, 3) as rows of them, and the material's name.
 
     ``uv`` are places in an image (k, 2) from its lower left corner, ``corners`` (m, 3) the rows of them; None where there are none.
+    ``order`` (m) are ascending numbers by which the triangles of all tables are in the order of the file; None where they are already.
     """
 
     points: NDArray[np.float64]
@@ -39,6 +40,7 @@ class Table(NamedTuple):
     finish: Finish = Finish()
     uv: NDArray[np.float64] | None = None
     corners: NDArray[Any] | None = None
+    order: NDArray[np.intp] | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from hymeko_x.assets.collada import collada_tables
+from hymeko_x.assets.colours import read_colours
 from hymeko_x.assets.mesh import merged, read_parts, read_whole
 from hymeko_x.assets.mtl import finishes_of
 from hymeko_x.assets.obj import obj_tables
@@ -183,13 +184,43 @@ def test_without_a_library_all_of_an_obj_file_is_one_table() -> None:
 
 
 def test_thousands_of_uses_of_a_material_take_linear_time() -> None:
-    points = b"".join(b"v %d 0 1\n" % number for number in range(9000))
-    uses = b"".join(b"usemtl paint\nf %d %d %d\n" % (3 * number + 1, 3 * number + 2, 3 * number + 3) for number in range(3000))
+    count = 20_000
+    points = b"".join(b"v %d 0 1\n" % number for number in range(3 * count))
+    rows = np.arange(3 * count).reshape(count, 3)
+    names = (b"paint", b"other")
+    uses = b"".join(b"usemtl %s\nf %d %d %d\n" % (names[number % 2], *(rows[number] + 1).tolist()) for number in range(count))
     begin = time.process_time()
-    tables = obj_tables(b"mtllib a.mtl\n" + points + uses, {"a.mtl": LIBRARY}.get)
-    assert time.process_time() - begin < 5.0
-    assert tables is not None
-    assert [(len(table.points), len(table.faces)) for table in tables] == [(3, 1)] * 3000
+    painted = read_colours(b"mtllib a.mtl\n" + points + uses, ".obj", {"a.mtl": LIBRARY}.__getitem__)
+    assert time.process_time() - begin < 2.0
+    assert (painted.part.points[painted.part.faces][:, :, 0] == rows).all()
+    assert [(look, faces.tolist()) for look, faces in painted.looks] == [(Look("paint", PAINT.rgba), list(range(0, count, 2)))]
+
+
+def test_materials_that_take_turns_leave_triangles_and_their_places_in_the_order_of_the_file() -> None:
+    points = b"".join(b"v %d 0 1\nvt %d 1\n" % (number, 10 * number) for number in range(9))
+    uses = b"""usemtl paint
+f 1 2 3 4
+f 2 3 4
+usemtl wood
+f 3/3 4/4 5/5
+usemtl paint
+f 4//1 5//1 6//1
+usemtl wood
+f 5/1/1 6/2/1 7/3/1 8/4/1
+usemtl paint
+f 6 7 8
+usemtl wood
+f 7/7 8/8 9/9
+"""
+    painted = read_colours(b"mtllib a.mtl\n" + points + uses, ".obj", {"a.mtl": LIBRARY, "wood.png": b"image"}.__getitem__)
+    part = painted.part
+    assert part.uv is not None
+    assert part.corners is not None
+    triangles = [(1, 2, 3), (1, 3, 4), (2, 3, 4), (3, 4, 5), (4, 5, 6), (5, 6, 7), (5, 7, 8), (6, 7, 8), (7, 8, 9)]
+    assert (part.points[part.faces][:, :, 0] + 1).tolist() == [list(corners) for corners in triangles]
+    places = [(0, 0, 0), (0, 0, 0), (0, 0, 0), (20, 30, 40), (0, 0, 0), (0, 10, 20), (0, 20, 30), (0, 0, 0), (60, 70, 80)]
+    assert part.uv[part.corners][:, :, 0].tolist() == [list(corners) for corners in places]
+    assert [(look.name, faces.tolist()) for look, faces in painted.looks] == [("paint", [0, 1, 2, 4, 7]), ("wood", [3, 5, 6, 8])]
 
 
 def test_corners_from_the_end_of_an_obj_file_count_too() -> None:
