@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from hymeko_x import formats
 from hymeko_x.formats.usd import POSE
 from hymeko_x.ir.diff import Difference, Tolerance, diff
+from hymeko_x.ir.material import material
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.residue.bridge import other_words
 
@@ -81,8 +82,16 @@ def losses_between(
     ``crossed`` is what was read back, behind the bridge that leads to the mechanism; ``apart`` in what their elements differ, if
     that is known; ``is_carried`` whether the file will carry what got lost.
     """
-    found = (*other_words(bridge), *diff(mechanism, crossed, TOLERANCE, apart), *_unsaid_notes(mechanism, crossed))
+    apart_by = material(diff(mechanism, crossed, TOLERANCE, apart), mechanism, crossed, TOLERANCE)
+    renamed = (difference for difference in other_words(bridge) if not _is_number(difference, mechanism))
+    found = (*renamed, *apart_by, *_unsaid_notes(mechanism, crossed))
     return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_dress(difference, format)])
+
+
+def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
+    """Whether an element is only called otherwise that had no name of its own: the name of a shape is one of its fields."""
+    key = difference.element
+    return difference.field == "name" and (key.kind == "shape" or mechanism.notation(key, "unnamed") is not None)
 
 
 def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:

@@ -16,8 +16,9 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.diff import diff
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.legalize import Options
+from hymeko_x.ir.material import material
 from hymeko_x.ir.mechanism import WORLD, Extra, Id, Mechanism, RobotEdge, joint_edge, shape_edge
-from hymeko_x.ir.values import Pose, X, Y, Z
+from hymeko_x.ir.values import Pose, Vec3, X, Y, Z, compose, inverse, rotate, scaled
 from hymeko_x.source import NoFiles, Package, PackageFiles, Source
 
 FEW = settings(max_examples=settings.default.max_examples // 10, deadline=None, suppress_health_check=list(HealthCheck))
@@ -123,6 +124,19 @@ def _on_a_dof(**changed: object) -> Callable[[Mechanism], tuple[Mechanism, Id] |
     return change
 
 
+def _on_a_weighed_shape(**changed: object) -> Callable[[Mechanism], tuple[Mechanism, Id] | None]:
+    """The same, where the mass of its body comes from its shapes."""
+
+    def change(robot: Mechanism) -> tuple[Mechanism, Id] | None:
+        found = _on_a_shape(**changed)(robot)
+        if found is None:
+            return None
+        body = found[0].graph.edges[found[1]].arcs[0].target
+        return found[0].with_graph(found[0].graph.replace(vertices={body: parts.Body()})), found[1]
+
+    return change
+
+
 def _on_a_shape(**changed: object) -> Callable[[Mechanism], tuple[Mechanism, Id] | None]:
     """Change the first shape that touches."""
 
@@ -147,9 +161,9 @@ _SAFETY = _on_a_dof(safety=parts.Safety(1.0, 2.0, -1.0, 1.0))
 _CALIBRATION = _on_a_dof(calibration=parts.Calibration(1.0))
 _IN_URDF = [_on_a_dof(**{name: 0.5}) for name in ("armature", "stiffness", "spring_ref")]
 UNSAID = {
-    "urdf": [*_IN_URDF, _on_a_shape(friction=(0.5,)), _on_a_shape(mass=0.5), _extra],
+    "urdf": [*_IN_URDF, _on_a_shape(friction=(0.5,)), _on_a_weighed_shape(mass=0.5), _extra],
     "mjcf": [_on_a_dof(limits=_LIMITED), _SAFETY, _CALIBRATION, _extra],
-    "usd": [_SAFETY, _CALIBRATION, _on_a_shape(density=0.5), _extra],
+    "usd": [_SAFETY, _CALIBRATION, _extra],
 }
 """Of each format, changes of a single field for which it has no word."""
 UNSAID |= {"usdc": UNSAID["usd"], "hymeko": []}
@@ -163,3 +177,65 @@ def test_what_a_format_cannot_say_is_in_the_ledger_at_its_element(way: str, data
     assume(changed is not None)
     robot, element = changed
     assert {loss.element for loss in _converted(robot, way).losses or ()} == {str(element)}
+
+
+# ---- what is no loss -------------------------------------------------------------------------------------------------------------
+
+
+def _axis_of_a_free_joint(robot: Mechanism) -> tuple[Mechanism, Id] | None:
+    for key, view in robot.joints.items():
+        if view.joint.dofs and view.joint.dofs[0].kind is parts.DofKind.FREE:
+            edge = replace(robot.graph.edges[key], data=parts.Joint((parts.Dof(parts.DofKind.FREE, Y),)))
+            return robot.with_graph(robot.graph.replace(edges={key: edge})), key
+    return None
+
+
+def _in_other_frames(robot: Mechanism) -> tuple[Mechanism, Id] | None:
+    """Describe the first joint in another frame on both bodies, whose origin is on the axis of a hinge, or anywhere for a slide."""
+    for key, view in robot.joints.items():
+        if view.joint.dofs and view.joint.dofs[0].kind is not parts.DofKind.FREE:
+            dof = view.joint.dofs[0]
+            frame = Pose(scaled(dof.axis, 0.5) if dof.kind is parts.DofKind.HINGE else (0.5, 1.0, -0.25), (0.5, 0.5, 0.5, 0.5))
+            turned = parts.Joint((replace(dof, axis=rotate(inverse(frame).quat, dof.axis)),))
+            above, below = (compose(each, frame) for each in (view.parent_pose, view.child_pose))
+            return robot.with_graph(robot.graph.replace(edges={key: joint_edge(turned, view.parent, view.child, above, below)})), key
+    return None
+
+
+_UNUSED = [_on_a_shape(density=500.0), _on_a_shape(mass=0.5)]
+NO_LOSS = {"urdf": _UNUSED, "mjcf": [*_UNUSED, _axis_of_a_free_joint, _in_other_frames], "usd": [*_UNUSED, _axis_of_a_free_joint]}
+"""What no reader of a format uses, and what says the same in other words."""
+
+
+@pytest.mark.parametrize("way", NO_LOSS)
+@FEW
+@given(data=st.data())
+def test_what_nobody_uses_and_what_moves_alike_is_no_loss(way: str, data: st.DataObject) -> None:
+    changed = data.draw(st.sampled_from(NO_LOSS[way]))(data.draw(plain_robots(way)))
+    assume(changed is not None)
+    assert list(map(str, _converted(changed[0], way).losses or ())) == []
+
+
+@pytest.mark.parametrize(
+    ("above", "below", "axis"),
+    [
+        ((0.0, 0.0, 0.001), (0.0, 0.0, 0.0), Z),
+        ((0.0, 0.0, 0.0), (0.001, 0.0, 0.0), Z),
+        ((0.001, 0.0, 0.0), (0.001, 0.0, 0.0), Z),
+        ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.6, 0.8)),
+    ],
+)
+def test_a_joint_that_moves_otherwise_is_a_loss(above: Vec3, below: Vec3, axis: Vec3) -> None:
+    """Another frame on one of the bodies only, another line for its axis, another direction."""
+    ends = Id("body", "a"), Id("body", "b")
+    bodies = dict.fromkeys(ends, parts.Body())
+    before, after = (
+        Mechanism("r", Hypergraph(bodies, {Id("joint", "j"): joint_edge(parts.Joint((dof,)), *ends, Pose(first), Pose(second))}))
+        for dof, first, second in (
+            (parts.Dof(parts.DofKind.HINGE, Z), (0.0,) * 3, (0.0,) * 3),
+            (parts.Dof(parts.DofKind.HINGE, axis), above, below),
+        )
+    )
+    found = diff(before, after, ledger.TOLERANCE)
+    assert found
+    assert tuple(material(found, before, after, ledger.TOLERANCE)) == found

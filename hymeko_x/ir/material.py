@@ -1,0 +1,107 @@
+"""Which differences between two mechanisms are ones of the robot: no one misses what nobody uses, or what is only said in other words."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.legalize_native import compiler_says
+from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
+from hymeko_x.ir.parts import Body, DofKind, Joint, Shape
+from hymeko_x.ir.values import apply, compose, cross, inverse, rotate, rotation_angle
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from hymeko_x.ir.diff import Difference, Tolerance
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+    from hymeko_x.ir.parts import Dof
+    from hymeko_x.ir.values import Pose, Vec3
+
+_AXIS = re.compile(r"dofs\[(\d+)\]\.axis")
+_FRAMES = re.compile(r"\[[01]\]\.weight.*|dofs\[\d+\]\.(axis|anchor)")
+_TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
+_WEIGHTS = ("mass", "density")
+
+
+def material(found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
+    """The differences from ``before`` to ``after`` without those that are none of the robot.
+
+    A ball and a free joint have no axis; nobody weighs a shape of the world, or of a body whose mass and tensor are said; and a joint
+    moves alike whatever frames it is described in.
+    """
+    alike: dict[Id, bool] = {}
+    weighed = not compiler_says(before, ("inertiafromgeom",))
+    for difference in found:
+        key = difference.element
+        if key.kind == "shape" and difference.field in _WEIGHTS and weighed and not _is_weighed(before, key):
+            continue
+        if key.kind == "joint" and _FRAMES.fullmatch(difference.field):
+            if _is_axis_of_none(before, difference):
+                continue
+            if key not in alike:
+                alike[key] = _move_alike(before.graph.edges[key], after.graph.edges[key], tolerance)
+            if alike[key]:
+                continue
+        yield difference
+
+
+def _is_weighed(mechanism: Mechanism, shape: Id) -> bool:
+    """Whether the mass of a shape's body comes from its shapes. Only that of a body where neither mass nor tensor is left open does not."""
+    edge = mechanism.graph.edges.get(shape)
+    if edge is None or not isinstance(edge.data, Shape):
+        return True
+    owner = next((arc.target for arc in edge.arcs if arc.sign > 0), WORLD)
+    if owner == WORLD:
+        return False
+    body = mechanism.graph.vertices.get(owner)
+    inertial = body.inertial if isinstance(body, Body) else None
+    return inertial is None or inertial.mass is None or inertial.tensor is None
+
+
+def _is_axis_of_none(mechanism: Mechanism, difference: Difference) -> bool:
+    match, edge = _AXIS.fullmatch(difference.field), mechanism.graph.edges[difference.element]
+    if match is None or not isinstance(edge.data, Joint):
+        return False
+    return edge.data.dofs[int(match[1])].kind in _TURNING_FREELY
+
+
+def _move_alike(a: RobotEdge, b: RobotEdge, tolerance: Tolerance) -> bool:
+    """Whether two joints between the same bodies move these alike, and are where they are at rest.
+
+    P M C^-1 = (P C^-1) (C M C^-1), in which C M C^-1 turns about C's image of the axis, through C's image of the anchor.
+    """
+    first, second = a.data, b.data
+    if not (isinstance(first, Joint) and isinstance(second, Joint)) or len(a.arcs) != 2 or len(b.arcs) != 2:
+        return False
+    if [(arc.target, arc.sign, arc.role) for arc in a.arcs] != [(arc.target, arc.sign, arc.role) for arc in b.arcs]:
+        return False
+    if [dof.kind for dof in first.dofs] != [dof.kind for dof in second.dofs]:
+        return False
+    (above, below), (other_above, other_below) = (tuple(pose_weight(arc) for arc in edge.arcs) for edge in (a, b))
+    return _same(compose(above, inverse(below)), compose(other_above, inverse(other_below)), tolerance) and all(
+        _dofs_alike(dof, below, other, other_below, tolerance) for dof, other in zip(first.dofs, second.dofs, strict=True)
+    )
+
+
+def _same(a: Pose, b: Pose, tolerance: Tolerance) -> bool:
+    return _near(a.xyz, b.xyz, tolerance) and rotation_angle(a.quat, b.quat) <= tolerance.absolute + tolerance.relative
+
+
+def _near(a: Vec3, b: Vec3, tolerance: Tolerance) -> bool:
+    """Whether two points are one, up to what is lost when numbers as large as theirs are turned and added."""
+    size = max(map(abs, (*a, *b)))
+    return all(abs(x - y) <= tolerance.absolute + tolerance.relative * size for x, y in zip(a, b, strict=True))
+
+
+def _dofs_alike(dof: Dof, below: Pose, other: Dof, other_below: Pose, tolerance: Tolerance) -> bool:
+    """The same for two dofs of a kind in frames ``below``: a slide is anchored nowhere, a hinge on its line."""
+    if dof.kind is DofKind.FREE:
+        return True
+    anchor, other_anchor = apply(below, dof.anchor), apply(other_below, other.anchor)
+    if dof.kind is DofKind.BALL:
+        return _near(anchor, other_anchor, tolerance)
+    axis, other_axis = rotate(below.quat, dof.axis), rotate(other_below.quat, other.axis)
+    if dof.kind is DofKind.SLIDE or not _near(axis, other_axis, tolerance):
+        return _near(axis, other_axis, tolerance)
+    return _near(cross(axis, anchor), cross(axis, other_anchor), tolerance)
