@@ -149,6 +149,13 @@ TRANSMISSIONS = ("joint", "jointinparent", "tendon", "site", "body", "cranksite"
 RESOLVED = ("kp", "kv", "ctrlrange", "forcerange")
 """Parameters of an actuator that are typed even where its class gives them."""
 
+LAW = (
+    *("dyntype", "gaintype", "biastype", "dynprm", "gainprm", "biasprm", "ctrllimited", "forcelimited", "actlimited"),
+    *("actrange", "lengthrange", "actdim", "cranklength", "inheritrange", "dampratio", "timeconst", "tausmooth"),
+    *("range", "force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"),
+)
+"""What else says how an actuator drives; typed as well, behind what the actuator says itself."""
+
 TENDON_PARAMETERS = (
     "springlength",
     "margin",

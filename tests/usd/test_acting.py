@@ -4,9 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import mujoco
+import numpy as np
 import pytest
 
+import hymeko_x as hx
 from hymeko_x import formats, pipeline
+from hymeko_x.corpus import catalog
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends import mjcf
 from hymeko_x.ir.legalize import Options
@@ -93,3 +97,50 @@ def test_what_mjcf_says_stands_in_the_schemas_of_the_stage(tmp_path: Path) -> No
     assert material.GetAttribute("physics:dynamicFriction").Get() == 0.5
     assert (material.GetAttribute("mjc:torsionalfriction").Get(), material.GetAttribute("mjc:rollingfriction").Get()) == (0.02, 0.003)
     assert stage.GetPrimAtPath(f"{root}/a/sun").GetTypeName() == "DistantLight"
+
+
+# ---- what a class of MJCF says ---------------------------------------------------------------------------------------------------
+
+CLASSES = """<mujoco><default><general dyntype="none"/>
+  <default class="k"><general dyntype="integrator" gainprm="5 0 0" biastype="affine" biasprm="1 -5 -2" ctrlrange="-1 1" gear="3"
+    actlimited="true" actrange="-2 2"/></default>
+  <default class="m"><general gaintype="muscle" biastype="muscle" dyntype="muscle" dynprm=".01 .04"
+    gainprm=".7 1 -1 200 .5 1.6 1.5 1.3 1.2"/></default>
+  </default>
+  <worldbody><body name="a"><joint name="j"/><geom size=".1"/></body></worldbody>
+  <actuator><general name="u" class="k" joint="j"/><general name="v" class="m" joint="j" lengthrange="1 2"
+    biasprm=".7 1 -1 200 .5 1.6 1.5 1.3 1.2"/>
+    <general name="w" class="k" joint="j" gainprm="7" dyntype="filter" dynprm=".3"/></actuator>
+</mujoco>"""
+LAWS = (
+    *("dyntype", "gaintype", "biastype", "dynprm", "gainprm", "biasprm", "gear"),
+    *("ctrllimited", "ctrlrange", "forcelimited", "forcerange", "actlimited", "actrange"),
+)
+
+
+def other_laws(source: Path, folder: Path) -> list[str]:
+    """How actuators drive otherwise in the MJCF of the stage without residue that the source becomes, by name."""
+    stage, back = folder / "stage.usda", folder / "back.xml"
+    hx.convert(source, stage, pure=True)
+    hx.convert(stage, back, pure=True)
+    a, b = (mujoco.MjModel.from_xml_path(str(path)) for path in (source, back))
+    assert a.nu == b.nu > 0
+    pairs = [(i, b.actuator(a.actuator(i).name).id) for i in range(a.nu)]
+    values = {name: (getattr(a, f"actuator_{name}"), getattr(b, f"actuator_{name}")) for name in LAWS}
+    return [f"{a.actuator(i).name} {name}" for i, j in pairs for name, (x, y) in values.items() if not np.allclose(x[i], y[j], rtol=1e-6)]
+
+
+def test_what_a_class_says_of_an_actuator_is_in_a_stage_without_residue(tmp_path: Path) -> None:
+    source = tmp_path / "classes.xml"
+    source.write_text(CLASSES)
+    assert other_laws(source, tmp_path) == []
+
+
+FEW = ("rodent.xml", "adroit_hammer.xml", "panda_free_base.xml", "manipulator.xml")
+REAL = [file for file in catalog.development_files("mjcf") if Path(file.path).name in FEW]
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("robot", REAL, ids=lambda file: file.id, indirect=True)
+def test_actuators_of_a_real_robot_drive_alike_in_a_stage_without_residue(robot: Path, tmp_path: Path) -> None:
+    assert other_laws(robot, tmp_path) == []

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_words import RESOLVED, TRANSMISSIONS
+from hymeko_x.formats.mjcf_words import LAW, RESOLVED, TRANSMISSIONS
 from hymeko_x.formats.xml import read_numbers
 from hymeko_x.frontends.mjcf.mounts import take_parameters
 from hymeko_x.ir.graph import Arc, Edge
@@ -46,7 +46,7 @@ def _read_actuator(element: Element, draft: Draft) -> None:
     if not words and gear is not None:
         element.attributes["gear"] = gear
     kind = "jointinparent" if "jointinparent" in words else ""
-    draft.vertices[key] = Actuator(element.tag, take_parameters(element, base, RESOLVED))
+    draft.vertices[key] = Actuator(element.tag, take_parameters(element, base, RESOLVED, LAW))
     draft.keep(element, key)
     draft.show(key)
     if words:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Parameters
 
+    Names = tuple[str, ...]
+
 
 def read_site(element: Element, spot: Spot, draft: Draft) -> None:
     """A named pose on a body."""
@@ -45,18 +47,20 @@ def read_light(element: Element, spot: Spot, draft: Draft) -> None:
     draft.keep(element, key)
 
 
-def take_parameters(element: Element, base: Mapping[str, str], resolved: tuple[str, ...] = ()) -> Parameters:
+def take_parameters(element: Element, base: Mapping[str, str], resolved: Names = (), law: Names = ()) -> Parameters:
     """Every attribute that is left and says something else than the class, as a parameter.
 
-    Those in ``resolved`` come first, and are parameters even where the class gives them.
+    Those in ``resolved`` and ``law`` are parameters even where the class gives them; the former come first, of the latter come last
+    those that only the class gives.
     """
     own = {name: element.attributes.pop(name) for name in list(element.attributes) if name not in PLAIN_ATTRIBUTES}
     first = [(name, own.get(name, base.get(name))) for name in resolved]
     found = [(name, parameter_value(name, text)) for name, text in first if text is not None]
     for name, text in own.items():
         value = parameter_value(name, text)
-        if name not in resolved and (name not in base or parameter_value(name, base[name]) != value):
+        if name not in resolved and (name in law or name not in base or parameter_value(name, base[name]) != value):
             found.append((name, value))
+    found += [(name, parameter_value(name, base[name])) for name in law if name in base and name not in own]
     return tuple(found)
 
 
