@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.legalize_native import compiler_says
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Body, DofKind, Joint, Shape
-from hymeko_x.ir.values import apply, compose, cross, inverse, rotate, rotation_angle
+from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -21,49 +21,50 @@ if TYPE_CHECKING:
 _AXIS = re.compile(r"dofs\[(\d+)\]\.axis")
 _FRAMES = re.compile(r"\[[01]\]\.weight.*|dofs\[\d+\]\.(axis|anchor)")
 _TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
+_NO_AXES = (X, Z)
+"""What URDF and MJCF have where no axis is said."""
 _WEIGHTS = ("mass", "density")
 
 
 def material(found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
     """The differences from ``before`` to ``after`` without those that are none of the robot.
 
-    A ball and a free joint have no axis; nobody weighs a shape of the world, or of a body whose mass and tensor are said; and a joint
-    moves alike whatever frames it is described in.
+    A ball and a free joint have no axis, and what stands for none is not the same everywhere; nobody asks what a shape weighs that says
+    nothing of it, if it is one of the world or of a body whose mass and tensor are said; and a joint moves alike whatever frames it is
+    described in. What an author said is not left out, whether or not somebody uses it.
     """
     alike: dict[Id, bool] = {}
     weighed = not compiler_says(before, ("inertiafromgeom",))
     for difference in found:
         key = difference.element
-        if key.kind == "shape" and difference.field in _WEIGHTS and weighed and not _is_weighed(before, key):
+        if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _weighs_nothing(before, key, difference.field):
             continue
         if key.kind == "joint" and _FRAMES.fullmatch(difference.field):
-            if _is_axis_of_none(before, difference):
-                continue
             if key not in alike:
                 alike[key] = _move_alike(before.graph.edges[key], after.graph.edges[key], tolerance)
-            if alike[key]:
+            if alike[key] and not _is_idle_axis(before, difference):
                 continue
         yield difference
 
 
-def _is_weighed(mechanism: Mechanism, shape: Id) -> bool:
-    """Whether the mass of a shape's body comes from its shapes. Only that of a body where neither mass nor tensor is left open does not."""
+def _weighs_nothing(mechanism: Mechanism, shape: Id, field: str) -> bool:
+    """Whether a shape says nothing of this weight, and its body needs none: neither the body's mass nor its tensor is left open."""
     edge = mechanism.graph.edges.get(shape)
-    if edge is None or not isinstance(edge.data, Shape):
-        return True
-    owner = next((arc.target for arc in edge.arcs if arc.sign > 0), WORLD)
-    if owner == WORLD:
+    if edge is None or not isinstance(edge.data, Shape) or getattr(edge.data, field) is not None:
         return False
+    owner = next((arc.target for arc in edge.arcs if arc.sign > 0), WORLD)
     body = mechanism.graph.vertices.get(owner)
     inertial = body.inertial if isinstance(body, Body) else None
-    return inertial is None or inertial.mass is None or inertial.tensor is None
+    return owner == WORLD or (inertial is not None and inertial.mass is not None and inertial.tensor is not None)
 
 
-def _is_axis_of_none(mechanism: Mechanism, difference: Difference) -> bool:
+def _is_idle_axis(mechanism: Mechanism, difference: Difference) -> bool:
+    """Whether an author said an axis of a joint that turns about all."""
     match, edge = _AXIS.fullmatch(difference.field), mechanism.graph.edges[difference.element]
     if match is None or not isinstance(edge.data, Joint):
         return False
-    return edge.data.dofs[int(match[1])].kind in _TURNING_FREELY
+    dof = edge.data.dofs[int(match[1])]
+    return dof.kind in _TURNING_FREELY and dof.axis not in _NO_AXES
 
 
 def _move_alike(a: RobotEdge, b: RobotEdge, tolerance: Tolerance) -> bool:
