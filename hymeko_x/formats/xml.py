@@ -138,6 +138,14 @@ class Node:
         """Undo the taking of a child: it becomes an extra as a whole, in the words of the file."""
         child.taken = False
 
+    def let_go(self) -> None:
+        """Take the element apart: nodes that know each other would wait for the collector of cycles, and a large robot has millions."""
+        stack = [self]
+        while stack:
+            member = stack.pop()
+            stack.extend([kid for kid in member.kids if kid.kids])
+            member.kids = []
+
     # ---- looking without taking ------------------------------------------------------------------------------------------
 
     def has(self, tag: str) -> bool:
@@ -240,7 +248,10 @@ class Leftovers:
         found += [Extra(self._format, path, self.verbatim(kid), place) for place, kid in enumerate(elements) if not kid.taken]
 
     def finish(self) -> dict[Id, tuple[Extra, ...]]:
-        """Everything that was left, by element. The root's comments, and its namespaces (``@xmlns:drake``), are among it."""
+        """Everything that was left, by element. The root's comments, and its namespaces (``@xmlns:drake``), are among it.
+
+        Nobody looks at the file's elements again.
+        """
         own = self._found.setdefault(ROOT, [])
         for place, kid in enumerate(self._root.kids):
             if not kid.is_element:
@@ -248,6 +259,7 @@ class Leftovers:
             elif not kid.taken:
                 own.append(Extra(self._format, "", self.verbatim(kid), place))
         self._keep(self._root)  # last, since prefixes may have been declared at the root
+        self._root.let_go()
         return {owner: tuple(sorted(extras, key=_by_place)) for owner, extras in self._found.items() if extras}
 
     @property

@@ -98,7 +98,7 @@ class Draft:
                         member.origin,
                         element=member.about,
                     )
-        node.kids = []  # nobody looks at them again, and a large robot has millions
+        node.let_go()
 
     def mechanism(self, name: str, around: list[Extra]) -> Mechanism:
         """The finished mechanism; ``around`` is what stood before and after the root element."""
