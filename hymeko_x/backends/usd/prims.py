@@ -51,11 +51,17 @@ class Prim:
 
 
 def author(prims: Iterable[Prim], layer: Any) -> None:
-    """Write every prim into the layer, parents before their children."""
-    specs: dict[Any, Any] = {Sdf.Path.absoluteRootPath: layer}
+    """Write every prim into the layer, parents before their children.
+
+    No spec is kept: of a layer of which many were held at once the text takes longer per prim the more there were.
+    """
+    above, parent = Sdf.Path.absoluteRootPath, layer
     for prim in prims:
         path = prim.path
-        spec = specs[path] = Sdf.PrimSpec(specs[path.GetParentPath()], path.name, prim.specifier, prim.kind)
+        if path.GetParentPath() != above:
+            above = path.GetParentPath()
+            parent = layer if above.IsAbsoluteRootPath() else layer.GetPrimAtPath(above)
+        spec = Sdf.PrimSpec(parent, path.name, prim.specifier, prim.kind)
         for name, value in prim.info.items():
             spec.SetInfo(name, value)
         if prim.schemas:
