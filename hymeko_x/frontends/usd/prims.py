@@ -140,6 +140,14 @@ class Layer:
         """What a stage of the layer consists of."""
         return [prim for prim in self.prims.values() if prim.is_real]
 
+    def close(self) -> None:
+        """Let go of everything, so that nothing waits for the collector of cycles: prims know each other, and USD's objects."""
+        for prim in self.prims.values():
+            prim.parent = None
+            prim.children.clear()
+        self.prims.clear()
+        self.stage = None
+
 
 def read_layer(layer: Any, most: int) -> Layer | None:
     """Every prim of a layer; None where there are more than ``most``. Not recursive."""

@@ -99,7 +99,7 @@ def _opened(source: Source, report: Report) -> Iterator[Scene]:
         try:
             yield Scene(stage, found.prims, world, kilograms, metres, base, flat)
         finally:
-            found.stage = None
+            found.close()
             del stage, layers, flat
 
 
