@@ -3,8 +3,8 @@
 python -m benchmarks.growth [LINKS [WAY ...]]   (default 100,000, and every way)
 
 A process for each way measures small robots, the large one, and small robots again, so that a machine whose pace changes disturbs
-both alike. All robots have other numbers. What grows as well are the caches that miss: how much that is shows in what XML alone
-takes, and MuJoCo where it ends.
+both alike. All robots have other names and numbers, so that none finds in a cache what another one left there. What grows as well
+are the caches that miss: how much that is shows in what XML alone takes, and MuJoCo where it ends.
 """
 
 from __future__ import annotations
@@ -125,17 +125,17 @@ YARDSTICKS: Mapping[str, Callable[[str], Work]] = {"lxml reads the URDF": _xml, 
 
 
 def robot(links: int, fan: int, number: int) -> str:
-    """A URDF with this many links, ``fan`` of them on each, whose masses and places are those of no other ``number``."""
+    """A URDF with this many links, ``fan`` of them on each, whose names, masses and places are those of no other ``number``."""
     parts = ['<robot name="grown">']
     for i in range(links):
         value = 1.0 + (number + 2) * 0.001 + i * 1e-6
         tensor = f'<inertia ixx="{value:.6f}" ixy="0" ixz="0" iyy="{value:.6f}" iyz="0" izz="{value:.6f}"/>'
         shape = '<collision><geometry><box size="0.1 0.1 0.2"/></geometry></collision>'
-        parts.append(f'<link name="l{i}"><inertial><mass value="{value:.6f}"/>{tensor}</inertial>{shape}</link>')
+        parts.append(f'<link name="l{number}_{i}"><inertial><mass value="{value:.6f}"/>{tensor}</inertial>{shape}</link>')
     for i in range(1, links):
-        ends = f'<parent link="l{(i - 1) // fan}"/><child link="l{i}"/>'
+        ends = f'<parent link="l{number}_{(i - 1) // fan}"/><child link="l{number}_{i}"/>'
         place = f'<origin xyz="0 {i * 1e-6:.6f} 0.{number + 2:03d}"/><axis xyz="0 1 0"/>'
-        parts.append(f'<joint name="j{i}" type="continuous">{ends}{place}</joint>')
+        parts.append(f'<joint name="j{number}_{i}" type="continuous">{ends}{place}</joint>')
     return "\n".join([*parts, "</robot>"])
 
 
