@@ -60,7 +60,7 @@ def read_mass(prim: Prim, key: Id, shapes: list[tuple[Prim, Shape, Pose, Any]], 
     solids = [solid for item in shapes for solid in [_solid(*item, density, draft)] if solid is not None]
     if not solids and stated == Inertial():
         return
-    draft.vertices[key] = Body(_completed(stated, joined(solids)) if solids else stated)
+    draft.vertices[key] = Body(_completed(stated, joined(solids)) if solids else _massless(stated))
     draft.take(prim, f"@{MASS}", *(["physics:mass"] if solids else []))
 
 
@@ -120,6 +120,11 @@ def _plain(prim: Prim, name: str) -> float:
     """A number that stays an extra even though it counts here; 0 without one."""
     value = prim.value(name)
     return words.single(value) if isinstance(value, float) and value > 0.0 else 0.0
+
+
+def _massless(stated: Inertial) -> Inertial:
+    """What was said of a body that no collider gives a mass: none at all, where it has a tensor."""
+    return replace(stated, mass=0.0) if stated.mass is None and stated.tensor is not None else stated
 
 
 def _completed(stated: Inertial, solid: Solid) -> Inertial:
