@@ -93,9 +93,15 @@ def print_field(name: str, value: Value | None, type: str = "") -> str:
     return f"{text}={_ref(value, '')}" if isinstance(value, Ref) else f"{text} {print_value(value)}"
 
 
-@lru_cache(8192, typed=True)
 def print_name(name: str) -> str:
     """A name, in backticks unless it is a plain word (or was quoted by its author)."""
+    if name.isidentifier() and name.isascii() and type(name) is str and name not in _WORDS:
+        return name  # nearly all, and seen sooner than a cache misses
+    return _print_rare_name(name)
+
+
+@lru_cache(8192, typed=True)
+def _print_rare_name(name: str) -> str:
     if _PLAIN_NAME.fullmatch(name) and name not in _WORDS and not isinstance(name, QuotedName):
         return name
     escaped = name.translate(_ESCAPES).replace("`", "\\`")
