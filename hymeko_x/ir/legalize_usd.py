@@ -1,4 +1,4 @@
-"""What a stage has besides the robot: how it is laid out, noted where the writer finds it, and collision groups that still hold."""
+"""What is legal in a stage, and what it has besides the robot: how it is laid out, and collision groups that still hold."""
 
 from __future__ import annotations
 
@@ -7,15 +7,16 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Contact
+from hymeko_x.ir.legalize_shapes import THINNEST
+from hymeko_x.ir.mechanism import ROOT, WORLD
+from hymeko_x.ir.parts import Box, Contact, Loop, Plane, Role, Shape
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.legalize import Options
-    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotArc, RobotEdge
 
 LAYOUT = "usd.layout"
 """The notation of the mechanism that says ``layered`` where the stage has a file for each of its aspects."""
@@ -38,6 +39,43 @@ def choose_layout(mechanism: Mechanism, options: Options, report: Report) -> Mec
     if options.beside:
         wanted[POINTS] = f"{options.beside}_meshes.usdc"
     return replace(mechanism, notations={**mechanism.notations, ROOT: wanted}) if wanted != own else mechanism
+
+
+# ---- what UsdPhysics has no collider or joint for --------------------------------------------------------------------------------
+
+
+def thicken_colliding_planes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """A plane that collides on a body becomes a thin box, an infinite one is left out: UsdPhysics has planes of the world alone."""
+    del options
+    changed: dict[Id, RobotEdge] = {}
+    gone: list[Id] = []
+    for key, shape, arcs in mechanism.edges(Shape):
+        if not isinstance(shape.geometry, Plane) or shape.role is Role.VISUAL or _owner(arcs) == WORLD:
+            continue
+        x, y = shape.geometry.half_size
+        if x and y:
+            changed[key] = replace(mechanism.graph.edges[key], data=replace(shape, geometry=Box((2.0 * x, 2.0 * y, THINNEST))))
+            said = f"{key} is a plane that collides on a body; it is written as a thin box"
+            report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
+        else:
+            gone.append(key)
+            said = f"{key} is an infinite plane that collides on a body; it is left out"
+            report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
+    return mechanism.with_graph(mechanism.graph.replace(edges=changed, without=gone)) if changed or gone else mechanism
+
+
+def _owner(arcs: tuple[RobotArc, ...]) -> Id:
+    return next((arc.target for arc in arcs if arc.sign > 0), WORLD)
+
+
+def drop_loops_without_bodies(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """A closure of the world with itself holds nothing; a joint of UsdPhysics needs a body."""
+    del options
+    frames = {view.thing: view.body for views in mechanism.mounts.values() for view in views}
+    gone = [key for key, _, arcs in mechanism.edges(Loop) if all(frames.get(arc.target, arc.target) == WORLD for arc in arcs)]
+    for key in gone:
+        report.warn(codes.NOT_SAID, f"{key} is left out: it joins no body", mechanism.origin(key), element=str(key))
+    return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 
 # ---- collision groups ------------------------------------------------------------------------------------------------------------
