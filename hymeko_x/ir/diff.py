@@ -266,4 +266,5 @@ def _short_edge(edge: RobotEdge) -> str:
 
 def _short_arc(arc: RobotArc) -> str:
     weight = "" if arc.weight is None else f"{_short(arc.weight)} "
-    return f"{weight}{'-~+'[arc.sign + 1]} {arc.target}"
+    role = f" as {arc.role!r}" if arc.role else ""
+    return f"{weight}{'-~+'[arc.sign + 1]} {arc.target}{role}"

@@ -250,3 +250,12 @@ def test_no_pose_and_nearly_none_are_the_same_within_a_tolerance() -> None:
     assert diff(nearly, none, Tolerance(1e-9)) == diff(none, nearly, Tolerance(1e-9)) == ()
     assert len(diff(nearly, none)) == 1
     assert len(diff(with_part(parts.Mount(), replace(ARC, weight=Pose((1e-3, 0.0, 0.0)))), none, Tolerance(1e-9))) == 1
+
+
+def test_the_words_of_an_edge_say_the_roles_of_its_ends() -> None:
+    ends = Id("body", "a"), Id("body", "b")
+    edges = {Id("drive", "d"): Edge(parts.Drive(), (Arc(ends[0], 1, None, "first"), Arc(ends[1], -1)))}
+    bodies = dict.fromkeys(ends, parts.Body())
+    (found,) = diff(Mechanism("r", Hypergraph(bodies, edges)), Mechanism("r", Hypergraph(bodies)))
+    assert found.before is not None
+    assert found.before.endswith("{+ body 'a' as 'first', - body 'b'}")
