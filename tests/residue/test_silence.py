@@ -60,5 +60,5 @@ def test_without_a_ledger_silence_is_found(monkeypatch: pytest.MonkeyPatch) -> N
     frozen = pipeline.write(robot, formats.URDF, Options(pure=True), NoFiles(), Report())
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: Package(frozen.main))
     assert len(silent(URDF.encode(), "urdf", ["urdf"], most=20)) < 3
-    monkeypatch.setattr(pipeline, "ledger", lambda *_, **__: ())
+    monkeypatch.setattr(pipeline, "losses_between", lambda *_, **__: ())
     assert len(silent(URDF.encode(), "urdf", ["urdf"], most=20)) > 10
