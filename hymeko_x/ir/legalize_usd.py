@@ -7,16 +7,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.ir.legalize_shapes import THINNEST
 from hymeko_x.ir.mechanism import ROOT, WORLD
-from hymeko_x.ir.parts import Box, Contact, Loop, Plane, Role, Shape
+from hymeko_x.ir.parts import Contact, Loop
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.legalize import Options
-    from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotArc, RobotEdge
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
 
 LAYOUT = "usd.layout"
 """The notation of the mechanism that says ``layered`` where the stage has a file for each of its aspects."""
@@ -41,31 +40,7 @@ def choose_layout(mechanism: Mechanism, options: Options, report: Report) -> Mec
     return replace(mechanism, notations={**mechanism.notations, ROOT: wanted}) if wanted != own else mechanism
 
 
-# ---- what UsdPhysics has no collider or joint for --------------------------------------------------------------------------------
-
-
-def thicken_colliding_planes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
-    """A plane that collides on a body becomes a thin box, an infinite one is left out: UsdPhysics has planes of the world alone."""
-    del options
-    changed: dict[Id, RobotEdge] = {}
-    gone: list[Id] = []
-    for key, shape, arcs in mechanism.edges(Shape):
-        if not isinstance(shape.geometry, Plane) or shape.role is Role.VISUAL or _owner(arcs) == WORLD:
-            continue
-        x, y = shape.geometry.half_size
-        if x and y:
-            changed[key] = replace(mechanism.graph.edges[key], data=replace(shape, geometry=Box((2.0 * x, 2.0 * y, THINNEST))))
-            said = f"{key} is a plane that collides on a body; it is written as a thin box"
-            report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
-        else:
-            gone.append(key)
-            said = f"{key} is an infinite plane that collides on a body; it is left out"
-            report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
-    return mechanism.with_graph(mechanism.graph.replace(edges=changed, without=gone)) if changed or gone else mechanism
-
-
-def _owner(arcs: tuple[RobotArc, ...]) -> Id:
-    return next((arc.target for arc in arcs if arc.sign > 0), WORLD)
+# ---- what UsdPhysics has no joint for --------------------------------------------------------------------------------------------
 
 
 def drop_loops_without_bodies(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.legalize_joints import expand_screws
 from hymeko_x.ir.legalize_names import make_names_usable
 from hymeko_x.ir.legalize_urdf import hold_or_free_open_bases
-from hymeko_x.ir.legalize_usd import choose_layout, drop_loops_without_bodies, drop_stale_groups, thicken_colliding_planes
+from hymeko_x.ir.legalize_usd import choose_layout, drop_loops_without_bodies, drop_stale_groups
 
 if TYPE_CHECKING:
     from hymeko_x.ir.legalize import Rule
@@ -16,7 +16,6 @@ RULES: tuple[Rule, ...] = (
     make_names_usable,
     hold_or_free_open_bases,
     expand_screws,
-    thicken_colliding_planes,
     drop_loops_without_bodies,
     drop_stale_groups,
     choose_layout,

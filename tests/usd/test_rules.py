@@ -96,21 +96,6 @@ def test_a_sphere_that_its_author_scaled_stays_a_sphere(tmp_path: Path) -> None:
     assert [prim.GetTypeName() for prim in stage.Traverse() if prim.GetName() == "s"] == ["Sphere"]
 
 
-PLATE = """<mujoco model="plate"><worldbody><geom name="floor" type="plane" size="0 0 1"/><body name="plate"><freejoint/>
-<geom name="weight" size="0.1"/><geom name="top" type="plane" size="1 2 .1" pos="0 0 .2"/><geom name="endless" type="plane" size="0 0 .1"/>
-<geom name="shade" type="plane" size="1 2 .1" contype="0" conaffinity="0"/></body></worldbody></mujoco>"""
-
-
-def test_a_plane_that_collides_on_a_body_is_a_thin_box_and_a_plane_again_with_the_residue(tmp_path: Path) -> None:
-    source, stage, back = (tmp_path / name for name in ("plate.xml", "plate.usda", "back.xml"))
-    source.write_text(PLATE, encoding="utf-8")
-    report = hx.convert(source, stage)
-    assert complaints(stage) == []
-    assert {"shape 'plate/shape#2'", "shape 'plate/shape#3'"} <= {loss.element for loss in report.losses or ()}
-    hx.convert(stage, back)
-    assert diff(hx.load(source), hx.load(back)) == ()
-
-
 def test_a_closure_of_the_world_with_itself_is_left_out_and_there_again_with_the_residue(tmp_path: Path) -> None:
     source, stage, back = (tmp_path / name for name in ("closed.hymeko", "closed.usda", "back.hymeko"))
     source.write_text(
