@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from hymeko_x import formats
 from hymeko_x.formats.usd import POSE
 from hymeko_x.ir.diff import Difference, Tolerance, diff
-from hymeko_x.ir.material import material
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.relevance import relevant
 from hymeko_x.ir.residue.bridge import other_words
 
 if TYPE_CHECKING:
@@ -82,9 +82,9 @@ def losses_between(
     ``crossed`` is what was read back, behind the bridge that leads to the mechanism; ``apart`` in what their elements differ, if
     that is known; ``is_carried`` whether the file will carry what got lost.
     """
-    apart_by = material(diff(mechanism, crossed, TOLERANCE, apart), mechanism, crossed, TOLERANCE)
+    kept = relevant(diff(mechanism, crossed, TOLERANCE, apart), mechanism, crossed, TOLERANCE)
     renamed = (difference for difference in other_words(bridge) if not _is_number(difference, mechanism))
-    found = (*renamed, *apart_by, *_unsaid_notes(mechanism, crossed))
+    found = (*renamed, *kept, *_unsaid_notes(mechanism, crossed))
     return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_dress(difference, format)])
 
 

@@ -16,8 +16,8 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.diff import diff
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.legalize import Options
-from hymeko_x.ir.material import material
 from hymeko_x.ir.mechanism import WORLD, Extra, Id, Mechanism, RobotEdge, joint_edge, shape_edge
+from hymeko_x.ir.relevance import relevant
 from hymeko_x.ir.values import Pose, Vec3, X, Y, Z, compose, inverse, rotate, scaled
 from hymeko_x.source import NoFiles, Package, PackageFiles, Source
 
@@ -229,4 +229,4 @@ def test_a_joint_that_moves_otherwise_is_a_loss(above: Vec3, below: Vec3, axis: 
     )
     found = diff(before, after, ledger.TOLERANCE)
     assert found
-    assert tuple(material(found, before, after, ledger.TOLERANCE)) == found
+    assert tuple(relevant(found, before, after, ledger.TOLERANCE)) == found

@@ -126,9 +126,9 @@ def _painted(pieces: list[tuple[Look | None, Table]]) -> Painted:
     numbers = {look: number for number, look in enumerate(dict.fromkeys(look for look, _ in pieces if look is not None))}
     own = np.array([-1 if look is None else numbers[look] for look, _ in pieces])
     owners = np.repeat(own, [len(table.faces) for table in tables])[order][whole_ones]
-    order = np.argsort(owners, kind="stable")
-    ends = np.searchsorted(owners[order], np.arange(len(numbers) + 1)).tolist()
-    looks = tuple([(look, order[start:end]) for look, start, end in zip(numbers, ends, ends[1:], strict=False)])
+    by_look = np.argsort(owners, kind="stable")
+    ends = np.searchsorted(owners[by_look], np.arange(len(numbers) + 1)).tolist()
+    looks = tuple([(look, by_look[start:end]) for look, start, end in zip(numbers, ends, ends[1:], strict=False)])
     return Painted(sound((part,))[0], looks)
 
 

@@ -260,13 +260,18 @@ def _with_surface(run: _Packing, key: Id, parts: tuple[Part, ...]) -> list[Part]
     """
     from hymeko_x.assets.part import Unreadable
 
-    lines = [part for part in parts if _is_line(part)]
-    if len(lines) == len(parts):
+    seen: list[Part] = []
+    lines: list[str] = []
+    for part in parts:
+        if _is_line(part):
+            lines.append(f"'{part.look.name if part.look else ''}'")
+        else:
+            seen.append(part)
+    if not seen:
         raise Unreadable("all of its looks lie on lines")
     if lines:
-        names = ", ".join(f"'{part.look.name if part.look else ''}'" for part in lines)
-        _say_converted(run, key, f"shows {names} on a line, where nothing is seen; that is left out")
-    return [part for part in parts if part not in lines]
+        _say_converted(run, key, f"shows {', '.join(lines)} on a line, where nothing is seen; that is left out")
+    return seen
 
 
 def _refusal(part: Part, suffix: str, data: bytes, *, solid: bool) -> str | None:

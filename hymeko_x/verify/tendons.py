@@ -3,11 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hymeko_x.verify.model import Array
 
 Point = tuple[float, float, float]
 
 JOINT, SITE, SIDE, SPHERE, CYLINDER, PULLEY = "joint", "site", "side", "sphere", "cylinder", "pulley"
 """The kinds of steps. A side is a point beside the shape before it, which says on which side of it a cable passes."""
+
+
+def point_of(numbers: Array) -> Point:
+    """Three numbers of an array, in m or without unit, as they are."""
+    x, y, z = (float(number) for number in numbers)
+    return x, y, z
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.values import Pose
+    from hymeko_x.verify.tendons import Tendon
 
 SAYS = frozenset(Feature) - {Feature.ACTUATORS, Feature.TIED_TENDONS}
 
@@ -64,7 +65,7 @@ def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> Kinema
         bodies=bare.bodies,
         couplings=tuple(_couplings(mechanism, dofs)),
         loops=tuple(_loops(mechanism, places, sites)),
-        tendons=tuple(read_tendons(mechanism, dofs, sites, _placed_shapes(mechanism, places))),
+        tendons=_tendons(mechanism, dofs, sites, places),
         says=SAYS,
         trusted=False,
     )
@@ -210,6 +211,15 @@ def _shapes(mechanism: Mechanism, key: Id) -> Iterator[Shape]:
             continue
         mesh = _mesh(mechanism, view)
         yield Shape(kind, Role(view.shape.role.value), _matrix(view.pose), size, view.shape.name, mesh)
+
+
+def _tendons(
+    mechanism: Mechanism, dofs: Mapping[tuple[Id, str], int], sites: Mapping[Id, tuple[int, Array]], places: Mapping[Id, int]
+) -> tuple[Tendon, ...]:
+    """All tendons; only for them it matters where the shapes are."""
+    if next(mechanism.edges(parts.Tendon), None) is None:
+        return ()
+    return tuple(read_tendons(mechanism, dofs, sites, _placed_shapes(mechanism, places)))
 
 
 def _placed_shapes(mechanism: Mechanism, places: Mapping[Id, int]) -> dict[Id, tuple[int, Array]]:

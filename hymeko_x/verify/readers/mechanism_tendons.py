@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir import parts
+from hymeko_x.ir import tendons as words
 from hymeko_x.ir.mechanism import numbers_weight
-from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Point, Spring, Step, Tendon
+from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Spring, Step, Tendon, point_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -67,11 +68,11 @@ def _step(
     shapes: Mapping[Id, Placed],
 ) -> Step | None:
     """What an arc is in a path; None where it leads to nothing."""
-    if arc.role == "pulley":
+    if arc.role == words.PULLEY:
         return Step(PULLEY, number=numbers_weight(arc)[0])
     if arc.target in sites:
         body, pose = sites[arc.target]
-        return Step(SIDE if arc.role == "side" else SITE, body, point=_point(pose[:3, 3]))
+        return Step(SIDE if arc.role == words.SIDE else SITE, body, point=point_of(pose[:3, 3]))
     if arc.target in shapes:
         return _shape(mechanism.graph.edges[arc.target].data, *shapes[arc.target])
     dof = dofs.get((arc.target, arc.role))
@@ -81,13 +82,8 @@ def _step(
 def _shape(data: parts.EdgePart, body: int, pose: Array) -> Step | None:
     match data:
         case parts.Shape(parts.Sphere(radius)):
-            return Step(SPHERE, body, radius, _point(pose[:3, 3]))
+            return Step(SPHERE, body, radius, point_of(pose[:3, 3]))
         case parts.Shape(parts.Cylinder(radius, _)):
-            return Step(CYLINDER, body, radius, _point(pose[:3, 3]), _point(pose[:3, 2]))
+            return Step(CYLINDER, body, radius, point_of(pose[:3, 3]), point_of(pose[:3, 2]))
         case _:
             return None
-
-
-def _point(numbers: Array) -> Point:
-    x, y, z = (float(number) for number in numbers)
-    return x, y, z

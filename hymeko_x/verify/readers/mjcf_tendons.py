@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 
 from hymeko_x.verify.spatial import rotation_from_quat
-from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Point, Spring, Step, Tendon
+from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Spring, Step, Tendon, point_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -75,15 +75,10 @@ def _steps(compiled: Any, wrap: int, dofs: Mapping[int, int]) -> Iterator[Step]:
 
 
 def _site(compiled: Any, site: int, kind: str) -> Step:
-    return Step(kind, int(compiled.site_bodyid[site]), point=_point(compiled.site_pos[site]))
+    return Step(kind, int(compiled.site_bodyid[site]), point=point_of(compiled.site_pos[site]))
 
 
 def _shape(compiled: Any, geom: int, *, round_all_over: bool) -> Step:
-    axis = None if round_all_over else _point(rotation_from_quat(compiled.geom_quat[geom])[:, 2])
-    radius, centre = float(compiled.geom_size[geom][0]), _point(compiled.geom_pos[geom])
+    axis = None if round_all_over else point_of(rotation_from_quat(compiled.geom_quat[geom])[:, 2])
+    radius, centre = float(compiled.geom_size[geom][0]), point_of(compiled.geom_pos[geom])
     return Step(SPHERE if round_all_over else CYLINDER, int(compiled.geom_bodyid[geom]), radius, centre, axis)
-
-
-def _point(numbers: Array) -> Point:
-    x, y, z = (float(number) for number in numbers)
-    return x, y, z

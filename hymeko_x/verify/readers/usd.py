@@ -20,7 +20,7 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.verify.model import WORLD, Array, Body, Feature, Joint, KinematicModel, Loop, grounded
 from hymeko_x.verify.readers.usd_joints import JointEdge, read_couplings, read_joint, read_loop
 from hymeko_x.verify.readers.usd_shapes import read_shapes
-from hymeko_x.verify.readers.usd_tendons import read_tendons, tendon_prims
+from hymeko_x.verify.readers.usd_tendons import limits_are_automatic, read_tendons, tendon_paths
 from hymeko_x.verify.readers.words import overheard
 from hymeko_x.verify.spatial import inverse, rigid, rotation_from_quat
 
@@ -102,7 +102,8 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     kinds = UsdPhysics.ObjectType
     rigid_bodies = {str(desc.primPath): desc for desc in found.get(kinds.RigidBody, ((), ()))[1] if desc.rigidBodyEnabled}
     joints = [desc for word in _JOINTS for desc in found.get(getattr(kinds, word), ((), ()))[1] if desc.jointEnabled and desc.isValid]
-    ranks: dict[str, int] = {str(prim.GetPath()): rank for rank, prim in enumerate(scene.stage.Traverse(Usd.TraverseInstanceProxies()))}
+    prims = list(scene.stage.Traverse(Usd.TraverseInstanceProxies()))
+    ranks: dict[str, int] = {str(prim.GetPath()): rank for rank, prim in enumerate(prims)}
     joints.sort(key=lambda desc: ranks.get(str(desc.primPath), len(ranks)))
     called = _names(scene.stage, [str(desc.primPath) for desc in joints])
     edges = [read_joint(scene, desc, called[str(desc.primPath)]) for desc in joints]
@@ -125,8 +126,11 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
         says=SAYS,
         precision=SINGLE,
     )
-    cables = tendon_prims(scene)
-    return read_couplings(scene, read_tendons(scene, model, cables, _names(scene.stage, cables), tree, places), tree)
+    cables = tendon_paths(prims)
+    if cables:
+        named = _names(scene.stage, cables)
+        model = read_tendons(scene, model, named, tree, places, automatic=limits_are_automatic(prims))
+    return read_couplings(scene, model, tree)
 
 
 def _is_ground(scene: Scene, path: str, edge: JointEdge | None) -> bool:

@@ -200,7 +200,7 @@ def _coupling(scene: Scene, path: str, paths: Mapping[str, JointEdge], dofs: Map
     leader = _leader(prim, "newton:mimicJoint", paths, dofs) or _leader(prim, "mjc:target", paths, dofs)
     if leader is None or not _enabled(prim):
         return None
-    others = [_first(prim, ("newton:mimicCoef1", "mjc:coef1"), 1.0), *(_number(prim, f"mjc:coef{k}", 0.0) for k in (2, 3, 4))]
+    others = [_first(prim, ("newton:mimicCoef1", "mjc:coef1"), 1.0), *(number_of(prim, f"mjc:coef{k}", 0.0) for k in (2, 3, 4))]
     while len(others) > 1 and others[-1] == 0.0:
         others.pop()
     return Coupling(follower, _constant(scene, prim, paths[path]), ((leader[1], tuple(others)),))
@@ -209,13 +209,13 @@ def _coupling(scene: Scene, path: str, paths: Mapping[str, JointEdge], dofs: Map
 def _constant(scene: Scene, prim: Any, edge: JointEdge) -> float:
     """The constant of a coupling: Newton's is a coordinate of the follower in the file, MuJoCo's in rad or m."""
     if not prim.HasAttribute("newton:mimicCoef0"):
-        return _number(prim, "mjc:coef0", 0.0)
+        return number_of(prim, "mjc:coef0", 0.0)
     unit = scene.metres if edge.dofs[0].kind is Kind.SLIDE else math.radians(1.0)
-    return _number(prim, "newton:mimicCoef0", 0.0) * unit
+    return number_of(prim, "newton:mimicCoef0", 0.0) * unit
 
 
 def _first(prim: Any, names: tuple[str, ...], default: float) -> float:
-    return next((_number(prim, name, default) for name in names if prim.HasAttribute(name)), default)
+    return next((number_of(prim, name, default) for name in names if prim.HasAttribute(name)), default)
 
 
 def _leader(prim: Any, name: str, paths: Mapping[str, JointEdge], dofs: Mapping[str, int]) -> tuple[str, int] | None:
@@ -231,7 +231,8 @@ def _enabled(prim: Any) -> bool:
     return value is not False
 
 
-def _number(prim: Any, name: str, default: float) -> float:
+def number_of(prim: Any, name: str, default: float) -> float:
+    """The number that an attribute holds."""
     attribute = prim.GetAttribute(name)
     value = attribute.Get() if attribute else None
-    return default if value is None else float(value)
+    return float(value) if isinstance(value, int | float) else default

@@ -8,17 +8,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from pxr import Sdf, Usd
+from pxr import Sdf
 
 from hymeko_x.verify.model import Kind, Role
-from hymeko_x.verify.readers.usd_joints import dof_names
+from hymeko_x.verify.readers.usd_joints import dof_names, number_of
 from hymeko_x.verify.readers.usd_shapes import owner, shape_of
-from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Point, Spring, Step, Tendon
+from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Spring, Step, Tendon, point_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from hymeko_x.verify.model import Array, KinematicModel
+    from hymeko_x.verify.model import KinematicModel
     from hymeko_x.verify.readers.usd import Scene
     from hymeko_x.verify.readers.usd_joints import JointEdge
 
@@ -40,41 +40,40 @@ class _Guide:
     bodies: Mapping[str, int]
 
 
-def tendon_prims(scene: Scene) -> list[str]:
-    """The paths of the tendons in the order of the stage."""
-    prims = scene.stage.Traverse(Usd.TraverseInstanceProxies())
+def tendon_paths(prims: Sequence[Any]) -> list[str]:
+    """The paths of the tendons among all prims of a stage, in its order."""
     return [str(prim.GetPath()) for prim in prims if prim.GetTypeName() == _TYPE]
 
 
 def read_tendons(
     scene: Scene,
     model: KinematicModel,
-    paths: Sequence[str],
     names: Mapping[str, str],
     tree: Mapping[str, JointEdge],
     places: Mapping[str, int],
+    *,
+    automatic: bool,
 ) -> KinematicModel:
-    """The model with its tendons, and a note for each whose path leads nowhere. ``places`` are the bodies by path."""
-    if not paths:
-        return model
+    """The model with its tendons, and a note for each whose path leads nowhere.
+
+    ``names`` are those of the tendons and ``places`` the bodies, both by path; ``automatic``: whether a range alone is a limit.
+    """
     dofs = dof_names(model)
     edges = [edge for first in tree.values() for edge in (first, *first.more) if edge.name in dofs]
     known = {edge.path: dofs[edge.name] for edge in edges}
     guide = _Guide(scene, known, {path: model.dofs[dof].kind for path, dof in known.items()}, places)
-    automatic = _limits_are_automatic(scene)
     found: list[Tendon] = []
     notes: list[str] = []
-    for path in paths:
+    for path, name in names.items():
         try:
-            found.append(_tendon(guide, scene.stage.GetPrimAtPath(path), names[path], automatic=automatic))
+            found.append(_tendon(guide, scene.stage.GetPrimAtPath(path), name, automatic=automatic))
         except _BadPath as error:
-            notes.append(f"tendon '{names[path]}' is left out: its path {error}")
+            notes.append(f"tendon '{name}' is left out: its path {error}")
     return replace(model, tendons=tuple(found), notes=(*model.notes, *notes))
 
 
-def _limits_are_automatic(scene: Scene) -> bool:
+def limits_are_automatic(prims: Sequence[Any]) -> bool:
     """Whether a range alone is a limit, as everywhere unless a scene says otherwise."""
-    prims = scene.stage.Traverse(Usd.TraverseInstanceProxies())
     return not any(_value(prim, "mjc:compiler:autoLimits") is False for prim in prims)
 
 
@@ -83,15 +82,15 @@ def _tendon(guide: _Guide, prim: Any, name: str, *, automatic: bool) -> Tendon:
     metres, kilograms = guide.scene.metres, guide.scene.kilograms
     newtons = metres * kilograms
     fixed = _value(prim, "mjc:type") == "fixed"
-    stiffness = _number(prim, "mjc:stiffness") * kilograms
+    stiffness = number_of(prim, "mjc:stiffness", 0.0) * kilograms
     return Tendon(
         name,
         tuple(_sum(guide, prim) if fixed else _cable(guide, prim)),
         (
             stiffness,
-            _number(prim, "mjc:damping") * kilograms,
-            _number(prim, "mjc:frictionloss") * newtons,
-            _number(prim, "mjc:armature") * kilograms,
+            number_of(prim, "mjc:damping", 0.0) * kilograms,
+            number_of(prim, "mjc:frictionloss", 0.0) * newtons,
+            number_of(prim, "mjc:armature", 0.0) * kilograms,
         ),
         _bounds(prim, "mjc:range", "mjc:limited", metres, automatic=automatic),
         _bounds(prim, "mjc:actuatorfrcrange", "mjc:actuatorfrclimited", newtons, automatic=automatic),
@@ -100,7 +99,7 @@ def _tendon(guide: _Guide, prim: Any, name: str, *, automatic: bool) -> Tendon:
 
 
 def _bounds(prim: Any, name: str, limited: str, unit: float, *, automatic: bool) -> tuple[float, float] | None:
-    low, high = (_number(prim, f"{name}:{end}") for end in ("min", "max"))
+    low, high = (number_of(prim, f"{name}:{end}", 0.0) for end in ("min", "max"))
     word = _value(prim, limited) or "auto"
     holds = word == "true" or (word == "auto" and automatic and low < high)
     return (low * unit, high * unit) if holds else None
@@ -178,8 +177,8 @@ def _knot(guide: _Guide, path: str) -> Step:
     shape = shape_of(guide.scene, prim, on, Role.VISUAL)
     if shape is None or shape.kind not in _ROUND:
         return _site(guide, prim, SITE)
-    axis = _point(shape.pose[:3, 2]) if shape.kind == "cylinder" else None
-    return Step(_ROUND[shape.kind], guide.bodies[on], shape.size[0], _point(shape.pose[:3, 3]), axis)
+    axis = point_of(shape.pose[:3, 2]) if shape.kind == "cylinder" else None
+    return Step(_ROUND[shape.kind], guide.bodies[on], shape.size[0], point_of(shape.pose[:3, 3]), axis)
 
 
 def _site(guide: _Guide, prim: Any, kind: str) -> Step:
@@ -188,12 +187,7 @@ def _site(guide: _Guide, prim: Any, kind: str) -> Step:
     if not prim:
         raise _BadPath("has a site beside it that is not there")
     on = owner(prim, guide.bodies)
-    return Step(kind, guide.bodies[on], point=_point(relative(guide.scene, on, prim)[0][:3, 3]))
-
-
-def _point(numbers: Array) -> Point:
-    x, y, z = (float(number) for number in numbers)
-    return x, y, z
+    return Step(kind, guide.bodies[on], point=point_of(relative(guide.scene, on, prim)[0][:3, 3]))
 
 
 # ---- values ----------------------------------------------------------------------------------------------------------
@@ -202,11 +196,6 @@ def _point(numbers: Array) -> Point:
 def _value(prim: Any, name: str) -> Any:
     attribute = prim.GetAttribute(name)
     return attribute.Get() if attribute else None
-
-
-def _number(prim: Any, name: str) -> float:
-    value = _value(prim, name)
-    return float(value) if isinstance(value, int | float) else 0.0
 
 
 def _numbers(prim: Any, name: str) -> list[float]:

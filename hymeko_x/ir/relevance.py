@@ -26,7 +26,7 @@ _NO_AXES = (X, Z)
 _WEIGHTS = ("mass", "density")
 
 
-def material(found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
+def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
     """The differences from ``before`` to ``after`` without those that are none of the robot.
 
     A ball and a free joint have no axis, and what stands for none is not the same everywhere; nobody asks what a shape weighs that says
