@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x import codes
 from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.formats.mjcf_words import NAME, joined, settings_of
+from hymeko_x.frontends.mjcf.lean import lean_text
 from hymeko_x.frontends.mjcf.solids import fitted_shape, solid_mesh, unsolid
 from hymeko_x.ir.legalize_native import compiler_says, compilers
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
@@ -31,6 +32,9 @@ Printed = Callable[[], tuple[Mechanism, bytes]]
 _SCALES = ("settotalmass", "boundmass", "boundinertia", "balanceinertia")
 """Attributes of <compiler> that change inertias which are said."""
 
+_LEAST = 1e-14
+"""Moving bodies that weigh no more than 1e-15 are refused by MuJoCo, in kg and kg m^2."""
+
 
 def weigh(mechanism: Mechanism, printed: Printed, files: Files, report: Report) -> Mechanism:
     """The mechanism, which came from MJCF and goes there as it is ``printed``, with what only MuJoCo knows.
@@ -44,6 +48,9 @@ def weigh(mechanism: Mechanism, printed: Printed, files: Files, report: Report) 
     meshes, fitted = unsolid(mechanism)
     if not (wanted or scaled or sprung or meshes or fitted):
         return mechanism
+    alone = None if scaled or sprung or meshes or fitted else _weighed_alone(mechanism, wanted)
+    if alone is not None:
+        return mechanism.with_graph(mechanism.graph.replace(vertices=alone))
     native, text = printed()
     try:
         import mujoco
@@ -63,6 +70,22 @@ def weigh(mechanism: Mechanism, printed: Printed, files: Files, report: Report) 
     edges |= _fitted(mechanism, mujoco, model, fitted, order)
     solid = {key: solid_mesh(mechanism, mujoco, model, key) for key in meshes}
     return mechanism.with_graph(mechanism.graph.replace(vertices={**bodies, **solid}, edges=edges))
+
+
+def _weighed_alone(mechanism: Mechanism, wanted: list[Id]) -> dict[Id, Body] | None:
+    """These bodies with what they weigh, without printing the rest; None where the whole model has to be asked, or might be refused."""
+    text = lean_text(mechanism, wanted)
+    if text is None:
+        return None
+    try:
+        import mujoco
+
+        model = mujoco.MjSpec.from_string(text).compile()
+    except (ImportError, ValueError, mujoco.FatalError):
+        return None
+    if model.body_mass[1:].min() < _LEAST or model.body_inertia[1:].min() < _LEAST:
+        return None
+    return _weighed(mechanism, model, {key: number for number, key in enumerate(wanted, 1)})
 
 
 def _may_be_sprung(mechanism: Mechanism) -> bool:

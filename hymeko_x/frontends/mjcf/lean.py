@@ -1,0 +1,80 @@
+"""A model of nothing but the bodies that MuJoCo has to weigh, where their shapes are all that counts for it.
+
+MuJoCo gets a few bodies of plain solids, each on its own, instead of the whole robot: what a body weighs in its own frame does
+not depend on where it is nor on what hangs on it. Wherever something else may count, there is no such model.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.mjcf_places import PLACE, Place
+from hymeko_x.formats.mjcf_tree import parse_text
+from hymeko_x.formats.mjcf_words import NAME, settings_of
+from hymeko_x.ir.legalize_native import compilers
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Sphere
+from hymeko_x.ir.values import number_text
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.mjcf_codec import Settings
+    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
+
+_SOLIDS = (Box, Capsule, Cylinder, Ellipsoid, Sphere)
+_FREE = frozenset(
+    (
+        *("angle", "eulerseq", "autolimits", "coordinate", "meshdir", "texturedir", "assetdir", "strippath", "convexhull", "fitaabb"),
+        *("discardvisual", "fusestatic", "alignfree", "usethread", "saveinertial", "LRopt"),
+    )
+)
+"""Attributes of <compiler> under which a body of solids weighs what it weighs without them, or which the text here heeds."""
+_PLACED = frozenset((*(f"@{name}" for name in PLACE.names), "frame"))
+"""The notations of a shape that is placed in words of its author's which only the writer of the whole model knows."""
+
+
+def lean_text(mechanism: Mechanism, bodies: list[Id]) -> str | None:
+    """The bodies of a mechanism from MJCF, in this order, each a child of the world with nothing but its solids.
+
+    None where more than their own shapes may count for what they weigh, or where they stand is not known.
+    """
+    said = [parse_text(text).attributes for text in compilers(mechanism)]
+    if not all(_FREE.issuperset(own) or _weighs_shapes(own) for own in said) or _has_shells(mechanism):
+        return None
+    reached = set(mechanism.depth_first())
+    if not all(key in reached and _is_solid(mechanism, key) for key in bodies):
+        return None
+    settings = settings_of(said)
+    unit = "degree" if settings.degree else "radian"
+    content = "".join([f"<body>{''.join([_geom(view, settings) for view in mechanism.shapes[key]])}</body>" for key in bodies])
+    return f'<mujoco><compiler angle="{unit}" eulerseq="{settings.eulerseq}"/><worldbody>{content}</worldbody></mujoco>'
+
+
+def _weighs_shapes(said: dict[str, str]) -> bool:
+    return said.get("inertiafromgeom") in ("auto", "true") and _FREE.issuperset(said.keys() - {"inertiafromgeom"})
+
+
+def _has_shells(mechanism: Mechanism) -> bool:
+    """Whether an element or a class says <geom shellinertia>."""
+    return any("shellinertia" in extra.path or "shellinertia" in extra.text for own in mechanism.extras.values() for extra in own)
+
+
+def _is_solid(mechanism: Mechanism, body: Id) -> bool:
+    """Whether a body has nothing but solids whose places the parts say, and no element inside that only MuJoCo knows."""
+    return not _has_elements(mechanism, body) and all(
+        isinstance(view.shape.geometry, _SOLIDS)
+        and _PLACED.isdisjoint(mechanism.notations.get(view.id, ()))
+        and not _has_elements(mechanism, view.id)
+        for view in mechanism.shapes[body]
+    )
+
+
+def _has_elements(mechanism: Mechanism, key: Id) -> bool:
+    return any(extra.format == NAME and extra.text.startswith("<") for extra in mechanism.extras.get(key, ()))
+
+
+def _geom(view: ShapeView, settings: Settings) -> str:
+    said = PLACE.write(Place(view.shape.geometry, view.pose), settings)
+    if view.shape.mass is not None:
+        said["mass"] = number_text(view.shape.mass)
+    if view.shape.density is not None:
+        said["density"] = number_text(view.shape.density)
+    return "<geom" + "".join([f' {name}="{text}"' for name, text in said.items()]) + "/>"

@@ -1,0 +1,107 @@
+"""MuJoCo weighs a body of solids alone as it weighs it in the whole robot, and where it might not, the whole robot is asked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from mjmodels import read_text, write
+
+from hymeko_x import formats, pipeline
+from hymeko_x.corpus.catalog import development_files
+from hymeko_x.diagnostics import Report
+from hymeko_x.disk import open_source
+from hymeko_x.frontends.mjcf import weigh as weigh_module
+from hymeko_x.frontends.mjcf.lean import lean_text
+from hymeko_x.frontends.mjcf.weigh import weigh
+from hymeko_x.ir.legalize import Options, legalize
+from hymeko_x.ir.mechanism import Id, Mechanism
+from hymeko_x.ir.parts import Body
+from hymeko_x.source import Files, NoFiles
+
+FILES = development_files("mjcf")
+NAMES = ("ant.xml", "three_joint_link.xml", "walker2d_v5.xml", "tendon.xml", "01_humanoids.xml")
+FEW = [file for file in FILES if Path(file.path).name in NAMES]
+
+
+def unweighed(mechanism: Mechanism) -> list[Id]:
+    return [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
+
+
+def weighed_whole(mechanism: Mechanism, files: Files) -> Mechanism:
+    native = legalize(mechanism, "mjcf", Options(), Report())
+    return weigh(mechanism, lambda: (native, write(native).encode()), files, Report())
+
+
+def assert_same_alone(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    source = open_source(str(robot))
+    mechanism = pipeline.read(source, formats.MJCF, Report())
+    alone = weighed_whole(mechanism, source.files)
+    monkeypatch.setattr(weigh_module, "lean_text", lambda *_: None)
+    assert repr(alone.graph.vertices) == repr(weighed_whole(mechanism, source.files).graph.vertices)
+
+
+@pytest.mark.corpus
+@pytest.mark.parametrize("robot", FEW, ids=lambda file: file.id, indirect=True)
+def test_bodies_of_a_real_robot_weigh_alone_what_they_weigh_in_it_to_the_last_bit(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mechanism = pipeline.read(open_source(str(robot)), formats.MJCF, Report())
+    assert lean_text(mechanism, unweighed(mechanism))
+    assert_same_alone(robot, monkeypatch)
+
+
+@pytest.mark.corpus
+@pytest.mark.full
+@pytest.mark.parametrize("robot", [file for file in FILES if file not in FEW], ids=lambda file: file.id, indirect=True)
+def test_bodies_of_every_real_robot_weigh_alone_what_they_weigh_in_it(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert_same_alone(robot, monkeypatch)
+
+
+SOLID = '<geom size=".1"/>'
+
+
+def text_of(content: str = SOLID, head: str = "", around: str = "") -> str | None:
+    mechanism = read_text(f'<mujoco>{head}<worldbody><body name="b" {around}><freejoint/>{content}</body></worldbody></mujoco>')
+    return lean_text(mechanism, [Id("body", "b")])
+
+
+def test_solids_are_asked_about_as_their_author_placed_them() -> None:
+    head = '<compiler angle="radian" eulerseq="XYZ"/><default><geom type="box" density="5"/></default>'
+    geoms = '<geom size="1 2 3" pos="4 5 6" euler=".1 .2 .3"/><geom type="capsule" size=".1" fromto="0 0 0 1 1 1" mass="2"/>'
+    assert text_of(geoms, head) == (
+        '<mujoco><compiler angle="radian" eulerseq="XYZ"/><worldbody><body>'
+        '<geom type="box" size="1 2 3" pos="4 5 6" euler="0.1 0.2 0.3" density="5"/>'
+        '<geom type="capsule" size="0.1" fromto="0 0 0 1 1 1" mass="2" density="5"/>'
+        "</body></worldbody></mujoco>"
+    )
+
+
+@pytest.mark.parametrize(
+    ("content", "head"),
+    [
+        (SOLID, '<compiler inertiafromgeom="false"/>'),
+        (SOLID, '<compiler inertiagrouprange="0 1"/>'),
+        (SOLID, '<compiler inertiafromgeom="true" boundmass="1"/>'),
+        (SOLID, '<default><geom shellinertia="true"/></default>'),
+        ('<geom size=".1" shellinertia="true"/>', ""),
+        (f'<frame euler="10 20 30">{SOLID}</frame>', ""),
+        ('<geom size=".1"><plugin plugin="p"/></geom>', '<extension><plugin plugin="p"/></extension>'),
+        ('<geom type="mesh" mesh="m"/>', '<asset><mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/></asset>'),
+        (SOLID + '<geom type="box" mesh="m"/>', '<asset><mesh name="m" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/></asset>'),
+    ],
+)
+def test_wherever_more_than_solids_counts_the_whole_robot_is_asked(content: str, head: str) -> None:
+    assert text_of() is not None
+    assert text_of(content, head) is None
+
+
+def test_what_weighs_nothing_is_left_to_the_whole_robot_which_mujoco_refuses() -> None:
+    body = '<body name="b"><freejoint/><geom size=".1" mass="0"/></body>'
+    robot, report = read_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>"), Report()
+    assert weigh(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
+    assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
+
+
+def test_nothing_is_printed_for_a_robot_of_solids() -> None:
+    robot = read_text(f'<mujoco><worldbody><body name="b"><freejoint/>{SOLID}</body></worldbody></mujoco>')
+    found = weigh(robot, lambda: pytest.fail("it was printed"), NoFiles(), Report())
+    assert found.vertex(Id("body", "b"), Body).inertial is not None
