@@ -2,9 +2,9 @@
 
 python -m benchmarks.growth [LINKS [WAY ...]]   (default 100,000, and every way)
 
-A process for each way measures small robots, the large one, and small robots again, so that a machine whose pace changes disturbs
-both alike. All robots have other names and numbers, so that none finds in a cache what another one left there. What grows as well
-are the caches that miss: how much that is shows in what XML alone takes, and MuJoCo where it ends.
+A process for each way measures small robots, a large one, and small robots again, and all that once more, so that a machine whose
+pace changes disturbs both alike. All robots have other names and numbers, so that none finds in a cache what another one left
+there. What grows as well are the caches that miss: how much that is shows in what XML alone takes, and MuJoCo where it ends.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import statistics
 import subprocess
 import sys
 import time
+from itertools import count
 from typing import TYPE_CHECKING
 
 import hymeko_x as hx
@@ -27,9 +28,11 @@ if TYPE_CHECKING:
 BOUND = 1.2
 SHAPES: Mapping[str, int] = {"chain": 1, "tree": 4}
 """How many links hang on each."""
-SMALL = 10
-"""How many small robots are converted before the large one, and after it."""
-LIMIT = 900.0
+ROUNDS = 2
+"""How many large robots are converted."""
+SMALL = 8
+"""How many small robots are converted before each large one, and after it."""
+LIMIT = 1800.0
 """Seconds after which nobody waits for a process any longer."""
 
 
@@ -56,15 +59,19 @@ def _asked(shape: str, name: str, links: int) -> tuple[float, float]:
 
 
 def _measured(shape: str, name: str, links: int) -> tuple[float, float]:
-    """The time per link of small robots, as a median, and of the large one."""
-    prepared, few = {**WAYS, **YARDSTICKS}[name], links // 100
-    works = [prepared(robot(few, SHAPES[shape], number)) for number in range(2 * SMALL + 1)]
-    large = prepared(robot(links, SHAPES[shape], len(works)))
-    works.pop()()
-    before = [_seconds(work) for work in works[:SMALL]]
-    most = _seconds(large)
-    after = [_seconds(work) for work in works[SMALL:]]
-    return statistics.median(before + after) / few, most / links
+    """The time per link of small robots and of large ones, as medians."""
+    prepared, few, fan = {**WAYS, **YARDSTICKS}[name], links // 100, SHAPES[shape]
+    numbers = count()
+    few_links: list[float] = []
+    many_links: list[float] = []
+    prepared(robot(few, fan, next(numbers)))()
+    for _ in range(ROUNDS):
+        small = [prepared(robot(few, fan, next(numbers))) for _ in range(2 * SMALL)]
+        large = prepared(robot(links, fan, next(numbers)))
+        few_links += map(_seconds, small[:SMALL])
+        many_links.append(_seconds(large))
+        few_links += map(_seconds, small[SMALL:])
+    return statistics.median(few_links) / few, statistics.median(many_links) / links
 
 
 def _seconds(work: Work) -> float:

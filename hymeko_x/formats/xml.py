@@ -58,7 +58,7 @@ class Node:
         self.file = file
         self.line = line
         self.start = start
-        self.kids: list[Node] = []
+        self.kids: list[Node] | tuple[()] = ()
         self.taken = False
         self.owner: Id | None = None
         self.text: str | None = None
@@ -90,6 +90,13 @@ class Node:
         while node.owner is None and node.parent is not None:
             node = node.parent
         return node
+
+    def adopt(self, kid: Node) -> None:
+        """Put a node behind the children; most elements never have one, and do without a list."""
+        if self.kids:
+            self.kids.append(kid)
+        else:
+            self.kids = [kid]
 
     # ---- taking ----------------------------------------------------------------------------------------------------------
 
@@ -124,7 +131,7 @@ class Node:
         """Take the first child of this name with all that is in it, without reading it."""
         child = self.child(tag)
         if child is not None:
-            child.attributes, child.kids, child.text = {}, [], None
+            child.attributes, child.kids, child.text = {}, (), None
 
     def words(self) -> str:
         """The text of the element, stripped; none, and nothing taken, where elements stand between the words."""
@@ -144,7 +151,7 @@ class Node:
         while stack:
             member = stack.pop()
             stack.extend([kid for kid in member.kids if kid.kids])
-            member.kids = []
+            member.kids = ()
 
     # ---- looking without taking ------------------------------------------------------------------------------------------
 

@@ -121,7 +121,7 @@ class Builder:
             nonlocal current, depth
             line = parser.CurrentLineNumber if lines is None else next(lines)
             node = make(tag, attributes, current, file, line, parser.CurrentByteIndex)
-            current.kids.append(node)
+            current.adopt(node)
             current = node
             depth += 1
             if depth > MAX_DEPTH:
@@ -145,7 +145,7 @@ class Builder:
                 return
             node = make(tag, {}, current, file, parser.CurrentLineNumber, parser.CurrentByteIndex)
             node.text = text
-            current.kids.append(node)
+            current.adopt(node)
 
         parser.StartElementHandler = start
         parser.EndElementHandler = end

@@ -136,6 +136,11 @@ def render(tag: Tag, depth: int = 0) -> list[str]:
     return lines
 
 
+def ready(tag: Tag, depth: int) -> str:
+    """A tag as ready text for another tag at this depth: its lines, of which the first one is not indented."""
+    return "\n".join(render(tag, depth))[len(_INDENT) * depth :]
+
+
 def _render(tag: Tag, indent: str, lines: list[str]) -> None:
     name, children = tag.name, tag.children
     start = f"{indent}<{name}{attributes_text(tag.attributes)}"

@@ -87,7 +87,7 @@ def shared_attributes(leaves: Iterable[Leaf]) -> Defaults:
 def _row(leaf: Leaf) -> Row:
     """What a class may say of an element."""
     allowed = _SHARED[leaf.tag]
-    return [(name, text) for name, text in leaf.attributes.items() if text is not None and name in allowed]
+    return [(name, text) for name, text in leaf.attributes.items() if name in allowed]
 
 
 def _say_for_most(tag: str, around: str, group: list[Leaf], defaults: Defaults) -> None:
@@ -109,7 +109,7 @@ def _say_for_most(tag: str, around: str, group: list[Leaf], defaults: Defaults) 
 
 
 def _leave_to_class(leaf: Leaf, said: Mapping[str, str]) -> None:
-    leaf.attributes = {name: text for name, text in leaf.attributes.items() if text is None or said.get(name) != text}
+    leaf.attributes = {name: text for name, text in leaf.attributes.items() if said.get(name) != text}
 
 
 def _say_for_some(tag: str, own_class: str | None, group: list[Leaf], defaults: Defaults) -> None:
@@ -130,7 +130,7 @@ def _say_for_some(tag: str, own_class: str | None, group: list[Leaf], defaults: 
             _leave_to_class(leaf, said)
             leaf.attributes["class"] = name
     for leaf in group:
-        first = {name: leaf.attributes.get(name) for name in ("name", "class")}
+        first: dict[str, str] = {name: leaf.attributes[name] for name in ("name", "class") if name in leaf.attributes}
         leaf.attributes = {**first, **leaf.attributes}
 
 

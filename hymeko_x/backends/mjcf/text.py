@@ -36,7 +36,7 @@ class Leaf:
 
     __slots__ = ("about", "attributes", "indent", "tag")
 
-    def __init__(self, tag: str, attributes: Attributes, indent: str, about: str) -> None:
+    def __init__(self, tag: str, attributes: dict[str, str], indent: str, about: str) -> None:
         self.tag = tag
         self.attributes = attributes
         self.indent = indent
@@ -76,7 +76,8 @@ class Text:
 
     def later(self, tag: str, attributes: Attributes, about: str) -> None:
         """Add an element without children that is one of ``leaves`` until the text is done; ``about`` names what it belongs to."""
-        leaf = Leaf(tag, attributes, self._indent, about)
+        said = {name: value for name, value in attributes.items() if value is not None}
+        leaf = Leaf(tag, said, self._indent, about)
         self._lines.append(leaf)
         self.leaves.append(leaf)
 

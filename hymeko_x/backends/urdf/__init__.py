@@ -19,19 +19,25 @@ from hymeko_x.backends.urdf.transmissions import transmission_tag
 from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml import COMMENT, FOLLOWING, PRECEDING
-from hymeko_x.formats.xml_print import Tag, escaped, foreign_text, put_back, render
+from hymeko_x.formats.xml_print import Tag, escaped, foreign_text, put_back, ready, render
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
 
 
 class Draft(NamedTuple):
-    """A URDF file before it is text: the root element, ready lines before and after it, and mesh files beside it."""
+    """A URDF file before it is text: the root, what is to stand in it, ready lines before and after it, and mesh files beside it.
+
+    Each of the ``elements`` is made when it is asked for, so that those of a large robot are never there all at once.
+    """
 
     root: Tag
+    elements: Iterator[Tag | str]
     before: list[str]
     after: list[str]
     meshes: dict[str, bytes]
@@ -44,6 +50,7 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     """
     del report  # printing takes no decisions, so there is nothing to say
     made = draft(mechanism)
+    made.root.children += [element if isinstance(element, str) else ready(element, 1) for element in made.elements]
     lines = ['<?xml version="1.0"?>', *made.before, *render(made.root), *made.after, ""]
     return Package("\n".join(lines).encode(), made.meshes)
 
@@ -56,9 +63,8 @@ def draft(mechanism: Mechanism) -> Draft:
     root = _root_tag(mechanism)
     sheet = Sheet(mechanism, _declared(root))
     extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.FORMAT, COMMENT)]
-    root.children += _merged(_typed(sheet), extras, sheet)
     meshes = contents_of(mechanism, sheet.mesh_files, sheet.textures)
-    return Draft(root, _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)
+    return Draft(root, _merged(extras, sheet), _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)
 
 
 def carry_residue(package: Package, text: str) -> Package:
@@ -79,11 +85,6 @@ def _declared(root: Tag) -> dict[str, str]:
     return {name: uri for name, uri in root.attributes.items() if name.startswith("xmlns")}
 
 
-def _typed(sheet: Sheet) -> list[Tag]:
-    """The top-level elements in their order, each with its extras."""
-    return [_tag(key, sheet) for key in order(sheet)]
-
-
 def _tag(key: Id, sheet: Sheet) -> Tag:
     tag = _WRITERS[key.kind](key, sheet)
     tag.owner = key
@@ -94,21 +95,22 @@ def _tag(key: Id, sheet: Sheet) -> Tag:
 _WRITERS = {"body": link_tag, "joint": joint_tag, "material": robot_material_tag, "drive": transmission_tag}
 
 
-def _merged(typed: list[Tag], extras: list[Extra], sheet: Sheet) -> list[Tag | str]:
+def _merged(extras: list[Extra], sheet: Sheet) -> Iterator[Tag | str]:
     """Typed elements and extras in one row: an extra stands where it stood, as far as there is something before it."""
     foreign = sorted((extra for extra in extras if extra.path in ("", "text()")), key=lambda extra: (extra.index, extra.path == ""))
-    row: list[Tag | str] = []
     waiting = iter(foreign)
     extra = next(waiting, None)
-    for tag in typed:
-        while extra is not None and extra.index <= len(row):
-            row.append(_text(extra, sheet))
+    place = 0
+    for key in order(sheet):
+        while extra is not None and extra.index <= place:
+            yield _text(extra, sheet)
             extra = next(waiting, None)
-        row.append(tag)
+            place += 1
+        yield _tag(key, sheet)
+        place += 1
     while extra is not None:
-        row.append(_text(extra, sheet))
+        yield _text(extra, sheet)
         extra = next(waiting, None)
-    return row
 
 
 def _text(extra: Extra, sheet: Sheet) -> str:

@@ -21,6 +21,10 @@ if TYPE_CHECKING:
     from hymeko_x.ir.values import Pose
 
 
+_RECENT = 256
+"""How many poses are remembered: those of one link are near each other."""
+
+
 class Sheet:
     """A mechanism to be printed, with its style and the look-ups that printing needs; all of them linear to build."""
 
@@ -135,5 +139,7 @@ class Sheet:
         """The attributes of <origin>; what is seen at a place often collides there too, and then both have the same pose."""
         found = self._origins.get(id(pose))
         if found is None:  # the pose is kept as well, so that its identity stays its own
+            if len(self._origins) == _RECENT:
+                self._origins.clear()
             found = self._origins[id(pose)] = pose, {"xyz": numbers_text(pose.xyz), "rpy": numbers_text(rpy_of(pose))}
         return found[1]

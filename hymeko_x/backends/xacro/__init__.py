@@ -35,7 +35,7 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     """
     del report  # printing takes no decisions, so there is nothing to say
     draft = urdf.draft(mechanism)
-    forms, remarks = top_level(draft.root, mechanism)
+    forms, remarks = top_level(draft.elements, mechanism)
     factored = factor(forms, DIALECT)
     if not factored.macros or mechanism.notation(ROOT, SPLIT) is None:
         return Package(print_file(draft, factored, placed(factored, remarks)).encode(), draft.meshes)

@@ -10,6 +10,8 @@ from hymeko_x.formats.xml_text import unescape
 from hymeko_x.ir.forms import Element
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from hymeko_x.formats.xml_print import Tag
     from hymeko_x.ir.mechanism import Mechanism
 
@@ -42,11 +44,11 @@ class _Open:
         return Element(self.tag, self.leaves, tuple(kids), self.hint)
 
 
-def top_level(root: Tag, mechanism: Mechanism) -> tuple[list[Element], Remarks]:
-    """What stands in the root element: forms, and the comments before each of them."""
+def top_level(elements: Iterable[Tag | str], mechanism: Mechanism) -> tuple[list[Element], Remarks]:
+    """What is to stand in the root element: forms, and the comments before each of them."""
     forms: list[Element] = []
     remarks: Remarks = {}
-    for child in root.children:
+    for child in elements:
         if isinstance(child, str) and child.startswith("<!--"):
             remarks.setdefault(len(forms), []).append(child)
         elif isinstance(child, str):
