@@ -40,6 +40,25 @@ def the_joint(mechanism: Mechanism, name: str = "j"):  # type: ignore[no-untyped
     return mechanism.joints[Id("joint", name)]
 
 
+@pytest.mark.parametrize(
+    ("order", "missing"),
+    [
+        ('token[] xformOpOrder = ["xformOp:translate", "xformOp:scale"]', "xformOp:scale, which is"),
+        (
+            'token[] xformOpOrder = ["!resetXformStack!", "!invert!xformOp:orient", "xformOp:rotateX"]',
+            "xformOp:orient, xformOp:rotateX, which are",
+        ),
+        ('token[] xformOpOrder = ["!resetXformStack!", "!invert!xformOp:translate"]', None),
+        ("int xformOpOrder = 3", None),
+    ],
+)
+def test_a_step_to_a_place_that_is_named_and_not_there_is_said(order: str, missing: str | None) -> None:
+    report = Report()
+    read_text(robot(body("a", f"    double3 xformOp:translate = (1, 2, 3)\n    uniform {order}\n")), report=report)
+    said = [diagnostic.message for diagnostic in report if diagnostic.code is codes.UNDEFINED_REFERENCE]
+    assert said == ([] if missing is None else [f"xformOpOrder names {missing} not there; passed over"])
+
+
 # ---- units -------------------------------------------------------------------------------------------------------------------
 
 

@@ -25,6 +25,7 @@ from hymeko_x.frontends.usd.joints import TYPES, ReadJoint, read_joint
 from hymeko_x.frontends.usd.leftovers import gather_leftovers
 from hymeko_x.frontends.usd.lights import read_light
 from hymeko_x.frontends.usd.materials import read_material
+from hymeko_x.frontends.usd.places import check_ops
 from hymeko_x.frontends.usd.relations import Driven, driven_ends, read_camera, read_drives, read_mimic, read_site
 from hymeko_x.frontends.usd.shapes import SITES, Read, is_shape, read_shape
 from hymeko_x.frontends.usd.stage import Scene, open_scene
@@ -54,6 +55,7 @@ def read(source: Source, report: Report) -> Mechanism:
         draft = Draft(source, report, scene)
         prims = _prims(scene)
         for prim in prims:
+            check_ops(prim, draft)
             if prim.has_api(BODY):
                 read_body(prim, draft)
         bare = read_bare_links(prims, draft)

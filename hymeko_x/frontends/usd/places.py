@@ -9,12 +9,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Gf, UsdGeom
 
+from hymeko_x import codes
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, cross, scaled, unit_quat
 
 if TYPE_CHECKING:
+    from hymeko_x.frontends.usd.draft import Draft
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.stage import Scene
 
+_ORDER = "xformOpOrder"
+_RESET = "!resetXformStack!"
 _UNIT = 1e-6
 """Scales this close to one another, or to 1, are rounding errors of single-precision rotations."""
 
@@ -56,6 +60,17 @@ class Places:
         if body is None:
             return self.matrix(prim)
         return self.matrix(prim) * matrix_of(self.of(body).pose).GetInverse()
+
+
+def check_ops(prim: Prim, draft: Draft) -> None:
+    """Say which steps of the way to a prim are named and not there; USD goes on without them."""
+    if prim.types.get(_ORDER) != "token[]":
+        return
+    steps = {step.removeprefix("!invert!"): None for step in prim.value(_ORDER) or ()}
+    missing = [step for step in steps if step not in prim.types and step != _RESET]
+    if missing:
+        said = f"{_ORDER} names {', '.join(missing)}, which {'are' if missing[1:] else 'is'} not there; passed over"
+        draft.report.warn(codes.UNDEFINED_REFERENCE, said, draft.origin, element=prim.path)
 
 
 def matrix_of(pose: Pose) -> Any:

@@ -32,6 +32,7 @@ _CLASSES = MappingProxyType(
         "int[]": Vt.IntArray,
         "float[]": Vt.FloatArray,
         "double[]": Vt.DoubleArray,
+        "token[]": Vt.TokenArray,
         **dict.fromkeys(("point3f[]", "color3f[]", "float3[]"), Vt.Vec3fArray),
         **dict.fromkeys(("texCoord2f[]", "float2[]"), Vt.Vec2fArray),
     }
