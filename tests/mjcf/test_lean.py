@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from hymeko_x.corpus.catalog import development_files
 from hymeko_x.diagnostics import Report
 from hymeko_x.disk import open_source
 from hymeko_x.frontends.mjcf import weigh as weigh_module
-from hymeko_x.frontends.mjcf.lean import lean_text
+from hymeko_x.frontends.mjcf.lean import can_be_lean
 from hymeko_x.frontends.mjcf.weigh import weigh
 from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Id, Mechanism
@@ -37,7 +38,7 @@ def assert_same_alone(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     source = open_source(str(robot))
     mechanism = pipeline.read(source, formats.MJCF, Report())
     alone = weighed_whole(mechanism, source.files)
-    monkeypatch.setattr(weigh_module, "lean_text", lambda *_: None)
+    monkeypatch.setattr(weigh_module, "can_be_lean", lambda *_: False)
     assert repr(alone.graph.vertices) == repr(weighed_whole(mechanism, source.files).graph.vertices)
 
 
@@ -45,7 +46,7 @@ def assert_same_alone(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("robot", FEW, ids=lambda file: file.id, indirect=True)
 def test_bodies_of_a_real_robot_weigh_alone_what_they_weigh_in_it_to_the_last_bit(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = pipeline.read(open_source(str(robot)), formats.MJCF, Report())
-    assert lean_text(mechanism, unweighed(mechanism))
+    assert can_be_lean(mechanism, unweighed(mechanism))
     assert_same_alone(robot, monkeypatch)
 
 
@@ -59,20 +60,36 @@ def test_bodies_of_every_real_robot_weigh_alone_what_they_weigh_in_it(robot: Pat
 SOLID = '<geom size=".1"/>'
 
 
-def text_of(content: str = SOLID, head: str = "", around: str = "") -> str | None:
-    mechanism = read_text(f'<mujoco>{head}<worldbody><body name="b" {around}><freejoint/>{content}</body></worldbody></mujoco>')
-    return lean_text(mechanism, [Id("body", "b")])
+def robot_of(content: str = SOLID, head: str = "") -> Mechanism:
+    return read_text(f'<mujoco>{head}<worldbody><body name="b"><freejoint/>{content}</body></worldbody></mujoco>')
 
 
-def test_solids_are_asked_about_as_their_author_placed_them() -> None:
-    head = '<compiler angle="radian" eulerseq="XYZ"/><default><geom type="box" density="5"/></default>'
-    geoms = '<geom size="1 2 3" pos="4 5 6" euler=".1 .2 .3"/><geom type="capsule" size=".1" fromto="0 0 0 1 1 1" mass="2"/>'
-    assert text_of(geoms, head) == (
-        '<mujoco><compiler angle="radian" eulerseq="XYZ"/><worldbody><body>'
-        '<geom type="box" size="1 2 3" pos="4 5 6" euler="0.1 0.2 0.3" density="5"/>'
-        '<geom type="capsule" size="0.1" fromto="0 0 0 1 1 1" mass="2" density="5"/>'
-        "</body></worldbody></mujoco>"
-    )
+@pytest.mark.parametrize(
+    "place",
+    [
+        'euler="10 20 30"',
+        'axisangle="1 2 3 40"',
+        'xyaxes="1 2 3 -2 1 0"',
+        'zaxis="1 2 3"',
+        'quat="1 2 3 4"',
+        'quat="0.5 0.5 0.5 0.5" mass="7"',
+        'type="capsule" fromto=".1 .2 .3 .4 .5 .7"',
+        'type="cylinder" euler="-.1 77 1e-9"',
+        'type="ellipsoid" pos="0 0 1e9"',
+        'type="sphere" density="1e-3"',
+    ],
+)
+@pytest.mark.parametrize("angles", ['angle="radian" eulerseq="XyZ"', 'angle="degree"'])
+def test_however_a_solid_is_placed_it_weighs_alone_what_it_weighs_in_the_robot(
+    place: str, angles: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    position = "" if "fromto" in place or "pos" in place else 'pos="4 5 6"'
+    head = f'<compiler {angles}/><default><geom type="box" density="5" size=".1 .2 .3"/></default>'
+    robot = robot_of(f'<geom {place} {position}/><geom size="3 2 1"/>', head)
+    assert can_be_lean(robot, unweighed(robot))
+    alone = weighed_whole(robot, NoFiles())
+    monkeypatch.setattr(weigh_module, "can_be_lean", lambda *_: False)
+    assert repr(alone.graph.vertices) == repr(weighed_whole(robot, NoFiles()).graph.vertices)
 
 
 @pytest.mark.parametrize(
@@ -90,18 +107,24 @@ def test_solids_are_asked_about_as_their_author_placed_them() -> None:
     ],
 )
 def test_wherever_more_than_solids_counts_the_whole_robot_is_asked(content: str, head: str) -> None:
-    assert text_of() is not None
-    assert text_of(content, head) is None
+    plain, robot = robot_of(), robot_of(content, head)
+    assert can_be_lean(plain, unweighed(plain))
+    assert not can_be_lean(robot, unweighed(robot))
+
+
+def test_without_mujoco_there_is_a_warning_and_no_inertia(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    robot, report = robot_of(), Report()
+    assert weigh(robot, lambda: pytest.fail("it was printed"), NoFiles(), report) is robot
+    assert [str(said)[:15] for said in report] == ["warning[HX301]:"]
 
 
 def test_what_weighs_nothing_is_left_to_the_whole_robot_which_mujoco_refuses() -> None:
-    body = '<body name="b"><freejoint/><geom size=".1" mass="0"/></body>'
-    robot, report = read_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>"), Report()
+    robot, report = robot_of('<geom size=".1" mass="0"/>'), Report()
     assert weigh(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
     assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
 
 
 def test_nothing_is_printed_for_a_robot_of_solids() -> None:
-    robot = read_text(f'<mujoco><worldbody><body name="b"><freejoint/>{SOLID}</body></worldbody></mujoco>')
-    found = weigh(robot, lambda: pytest.fail("it was printed"), NoFiles(), Report())
+    found = weigh(robot_of(), lambda: pytest.fail("it was printed"), NoFiles(), Report())
     assert found.vertex(Id("body", "b"), Body).inertial is not None

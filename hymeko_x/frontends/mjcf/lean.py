@@ -6,14 +6,13 @@ not depend on where it is nor on what hangs on it. Wherever something else may c
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from hymeko_x.formats.mjcf_places import PLACE, Place
 from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.formats.mjcf_words import NAME, settings_of
 from hymeko_x.ir.legalize_native import compilers
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Sphere
-from hymeko_x.ir.values import number_text
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf_codec import Settings
@@ -31,21 +30,30 @@ _PLACED = frozenset((*(f"@{name}" for name in PLACE.names), "frame"))
 """The notations of a shape that is placed in words of its author's which only the writer of the whole model knows."""
 
 
-def lean_text(mechanism: Mechanism, bodies: list[Id]) -> str | None:
-    """The bodies of a mechanism from MJCF, in this order, each a child of the world with nothing but its solids.
-
-    None where more than their own shapes may count for what they weigh, or where they stand is not known.
-    """
+def can_be_lean(mechanism: Mechanism, bodies: list[Id]) -> bool:
+    """Whether nothing but their own solids counts for what these bodies of a mechanism from MJCF weigh, and where they stand is known."""
     said = [parse_text(text).attributes for text in compilers(mechanism)]
     if not all(_FREE.issuperset(own) or _weighs_shapes(own) for own in said) or _has_shells(mechanism):
-        return None
+        return False
     reached = set(mechanism.depth_first())
-    if not all(key in reached and _is_solid(mechanism, key) for key in bodies):
-        return None
-    settings = settings_of(said)
-    unit = "degree" if settings.degree else "radian"
-    content = "".join([f"<body>{''.join([_geom(view, settings) for view in mechanism.shapes[key]])}</body>" for key in bodies])
-    return f'<mujoco><compiler angle="{unit}" eulerseq="{settings.eulerseq}"/><worldbody>{content}</worldbody></mujoco>'
+    return all(key in reached and _is_solid(mechanism, key) for key in bodies)
+
+
+def lean_model(mujoco: Any, mechanism: Mechanism, bodies: list[Id]) -> Any:
+    """MuJoCo's model of these bodies in this order, each a child of the world with nothing but its solids, placed as their author did.
+
+    Raises: ValueError or mujoco.FatalError when MuJoCo refuses it.
+    """
+    settings = settings_of([parse_text(text).attributes for text in compilers(mechanism)])
+    spec = mujoco.MjSpec()
+    spec.compiler.degree = settings.degree
+    for place, axis in enumerate(settings.eulerseq):
+        spec.compiler.eulerseq[place] = axis
+    for key in bodies:
+        body = spec.worldbody.add_body()
+        for view in mechanism.shapes[key]:
+            body.add_geom(**_geom(mujoco, view, settings))
+    return spec.compile()
 
 
 def _weighs_shapes(said: dict[str, str]) -> bool:
@@ -71,10 +79,13 @@ def _has_elements(mechanism: Mechanism, key: Id) -> bool:
     return any(extra.format == NAME and extra.text.startswith("<") for extra in mechanism.extras.get(key, ()))
 
 
-def _geom(view: ShapeView, settings: Settings) -> str:
+def _geom(mujoco: Any, view: ShapeView, settings: Settings) -> dict[str, Any]:
     said = PLACE.write(Place(view.shape.geometry, view.pose), settings)
+    found: dict[str, Any] = {"type": getattr(mujoco.mjtGeom, f"mjGEOM_{said.pop('type').upper()}")}
+    found |= {name: [float(number) for number in text.split()] for name, text in said.items()}
+    found["size"] += [0.0] * (3 - len(found["size"]))
     if view.shape.mass is not None:
-        said["mass"] = number_text(view.shape.mass)
+        found["mass"] = view.shape.mass
     if view.shape.density is not None:
-        said["density"] = number_text(view.shape.density)
-    return "<geom" + "".join([f' {name}="{text}"' for name, text in said.items()]) + "/>"
+        found["density"] = view.shape.density
+    return found

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x import codes
 from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.formats.mjcf_words import NAME, joined, settings_of
-from hymeko_x.frontends.mjcf.lean import lean_text
+from hymeko_x.frontends.mjcf.lean import can_be_lean, lean_model
 from hymeko_x.frontends.mjcf.solids import fitted_shape, solid_mesh, unsolid
 from hymeko_x.ir.legalize_native import compiler_says, compilers
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
@@ -48,15 +48,15 @@ def weigh(mechanism: Mechanism, printed: Printed, files: Files, report: Report) 
     meshes, fitted = unsolid(mechanism)
     if not (wanted or scaled or sprung or meshes or fitted):
         return mechanism
-    alone = None if scaled or sprung or meshes or fitted else _weighed_alone(mechanism, wanted)
-    if alone is not None:
-        return mechanism.with_graph(mechanism.graph.replace(vertices=alone))
-    native, text = printed()
     try:
         import mujoco
     except ImportError:
         report.warn(codes.ENGINE_MISSING, "MuJoCo computes inertias from geoms and some meshes, and is not installed; they are left out")
         return mechanism
+    alone = None if scaled or sprung or meshes or fitted else _weighed_alone(mujoco, mechanism, wanted)
+    if alone is not None:
+        return mechanism.with_graph(mechanism.graph.replace(vertices=alone))
+    native, text = printed()
     try:
         model = _compiled(mujoco, text, _assets(mechanism, files))
     except (ValueError, mujoco.FatalError) as error:
@@ -72,16 +72,13 @@ def weigh(mechanism: Mechanism, printed: Printed, files: Files, report: Report) 
     return mechanism.with_graph(mechanism.graph.replace(vertices={**bodies, **solid}, edges=edges))
 
 
-def _weighed_alone(mechanism: Mechanism, wanted: list[Id]) -> dict[Id, Body] | None:
+def _weighed_alone(mujoco: Any, mechanism: Mechanism, wanted: list[Id]) -> dict[Id, Body] | None:
     """These bodies with what they weigh, without printing the rest; None where the whole model has to be asked, or might be refused."""
-    text = lean_text(mechanism, wanted)
-    if text is None:
+    if not can_be_lean(mechanism, wanted):
         return None
     try:
-        import mujoco
-
-        model = mujoco.MjSpec.from_string(text).compile()
-    except (ImportError, ValueError, mujoco.FatalError):
+        model = lean_model(mujoco, mechanism, wanted)
+    except (ValueError, mujoco.FatalError):
         return None
     if model.body_mass[1:].min() < _LEAST or model.body_inertia[1:].min() < _LEAST:
         return None
