@@ -12,7 +12,7 @@ from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.leaves import TURN, leaves_between, leaves_of
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
-from hymeko_x.ir.values import IDENTITY, Pose, number_text, rotation_angle
+from hymeko_x.ir.values import IDENTITY, Pose, are_numbers, number_text, numbers_text, rotation_angle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -234,6 +234,8 @@ def _short(value: object) -> str:
     if isinstance(value, tuple):
         if _is_array(value):
             return _excerpt(value)
+        if are_numbers(value):
+            return f"[{numbers_text(value)}]"
         return "[" + " ".join([_short(item) for item in value]) + "]"
     layout = layout_of(kind)
     if layout is not None:

@@ -312,4 +312,10 @@ def numbers_text(values: tuple[float, ...]) -> str:
     return f"{text} ".replace(".0 ", " ")[:-1]
 
 
+def are_numbers(values: tuple[object, ...]) -> bool:
+    """Whether these are floating-point numbers and nothing else, as :func:`numbers_text` writes them fastest."""
+    return {*map(type, values)} == _FLOATS
+
+
+_FLOATS = {float}
 _exact = float.__repr__

@@ -7,7 +7,7 @@ from functools import lru_cache
 from itertools import zip_longest
 from typing import NamedTuple
 
-from hymeko_x.ir.values import number_text
+from hymeko_x.ir.values import are_numbers, number_text, numbers_text
 from hymeko_x.language.syntax import (
     ArcItem,
     Comment,
@@ -123,6 +123,8 @@ def print_value(value: Value) -> str:
     if kind is float:
         return number_text(value)  # type: ignore[arg-type]
     if kind is tuple:
+        if are_numbers(value):  # type: ignore[arg-type]
+            return f"[{numbers_text(value)}]"  # type: ignore[arg-type]
         return "[" + " ".join([number_text(item) if type(item) is float else print_value(item) for item in value]) + "]"  # type: ignore[union-attr]
     if kind is Ref:
         return _ref(value)  # type: ignore[arg-type]
@@ -181,6 +183,9 @@ def _head(node: Node | Block) -> str:
 def _in_line(node: Node | Block, room: int) -> str | None:
     """A node with items in one line; None as soon as it is clear that it is longer than ``room`` or has line breaks."""
     head = _head(node)
+    if isinstance(node, Block) and {*map(type, node.items)} == {str}:
+        line = f"{head} {{ {' '.join(node.items)} }}"  # type: ignore[arg-type]
+        return line if len(line) <= room and "\n" not in line else None
     used = len(head) + 4
     texts = []
     for item, following in zip_longest(node.items, node.items[1:]):
@@ -227,7 +232,7 @@ def _filled(items: list[Piece], width: int, behind: Piece | None = None) -> list
     lines: list[Piece] = []
     line = ""
     for position, item in enumerate(items):
-        text = _text(item)
+        text = item if isinstance(item, str) else _text(item)
         following = items[position + 1] if position + 1 < len(items) else behind
         if following is not None and _needs_comma(item, following):
             text += ","

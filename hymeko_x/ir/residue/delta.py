@@ -14,7 +14,7 @@ from hymeko_x.ir.residue import Addition, Change, Removal, Residue, Sides
 from hymeko_x.ir.residue.align import aligned
 from hymeko_x.ir.residue.order import by_kind, moves
 from hymeko_x.ir.residue.paths import digest, guard_of
-from hymeko_x.ir.residue.prints import Prints, print_of_extra, shape_group, weight_print
+from hymeko_x.ir.residue.prints import Prints, print_of_extra, shape_group
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -35,9 +35,10 @@ def residue_of(source: Mechanism, image: Mechanism) -> Residue:
 
 def residue_behind(source: Mechanism, image: Mechanism, bridge: Bridge, crossed: Mechanism, apart: Mapping[Id, Leaves]) -> Residue:
     """The same where the bridge is known, the image behind it, and in which leaves that and the source are apart."""
-    changes = tuple(_changes(crossed, source, apart))
+    prints = Prints(crossed)
+    changes = tuple(_changes(crossed, source, apart, prints))
     additions = tuple(_additions(crossed, source))
-    removals = tuple(_removals(crossed, source))
+    removals = tuple(_removals(crossed, source, prints))
     found = Residue(
         bridge,
         changes,
@@ -47,23 +48,23 @@ def residue_behind(source: Mechanism, image: Mechanism, bridge: Bridge, crossed:
         tuple(_order(crossed, source)),
         *_layout(crossed, source),
     )
-    return replace(found, known=tuple(_known(image, found)))
+    return replace(found, known=tuple(_known(image, found, Prints(image, prints))))
 
 
-def _changes(image: Mechanism, source: Mechanism, apart: Mapping[Id, Leaves]) -> Iterator[Change]:
+def _changes(image: Mechanism, source: Mechanism, apart: Mapping[Id, Leaves], prints: Prints) -> Iterator[Change]:
     if image.name != source.name:
         yield Change(ROOT, ("name",), source.name, digest(image.name))
     for key, leaves in apart.items():
         for leaf in leaves:
-            yield Change(key, leaf.path, leaf.before, _guard(image, key, leaf))
+            yield Change(key, leaf.path, leaf.before, _guard(image, key, leaf, prints))
 
 
-def _guard(image: Mechanism, key: Id, leaf: Leaf) -> str:
+def _guard(image: Mechanism, key: Id, leaf: Leaf, prints: Prints) -> str:
     """What the image said there. A mass that follows from shapes holds only as long as the shapes do."""
     if leaf.path[-1] == TURN:
         return digest(leaf.after[0])  # type: ignore[index]
     if leaf.path[0] == "inertial" and leaf.before is None and isinstance(image.graph.vertices.get(key), Body):
-        return weight_print(image, key)
+        return prints.of_weight(key)
     return guard_of(leaf.after, leaf.default)
 
 
@@ -76,8 +77,7 @@ def _additions(image: Mechanism, source: Mechanism) -> Iterator[Addition]:
             yield Addition(key, edge)
 
 
-def _removals(image: Mechanism, source: Mechanism) -> Iterator[Removal]:
-    prints = Prints(image)
+def _removals(image: Mechanism, source: Mechanism, prints: Prints) -> Iterator[Removal]:
     for key in (*image.graph.vertices, *image.graph.edges):
         if key not in source.graph:
             edge = image.graph.edges.get(key)
@@ -158,11 +158,10 @@ def _extras(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, Extra, bo
 # ---- what an editor may rename -----------------------------------------------------------------------------------------------
 
 
-def _known(image: Mechanism, residue: Residue) -> Iterator[tuple[Id, str]]:
+def _known(image: Mechanism, residue: Residue, prints: Prints) -> Iterator[tuple[Id, str]]:
     """The elements of the image with names of their own that the residue speaks of, with their digests."""
     names = {new: old for old, new in residue.bridge.names}
     spoken = dict.fromkeys(names.get(key, key) for key in map(_named, _spoken_of(residue)) if key.kind in _NAMED)
-    prints = Prints(image)
     yield from ((key, prints.of(key)) for key in spoken if key in image.graph)
 
 

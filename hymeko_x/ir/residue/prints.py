@@ -28,16 +28,18 @@ def print_of(mechanism: Mechanism, key: Id) -> str:
 
 def weight_print(mechanism: Mechanism, body: Id) -> str:
     """The digest of everything that a body's mass may follow from."""
-    prints = Prints(mechanism)
-    return digest_of_texts([prints.text(mechanism.graph.vertices[body]), *prints.shapes(body)])
+    return Prints(mechanism).of_weight(body)
 
 
 class Prints:
-    """The digests of the elements of a mechanism; what several of them are made from is put into words once."""
+    """The digests of the elements of a mechanism; what several of them are made from is put into words once.
 
-    def __init__(self, mechanism: Mechanism) -> None:
+    ``alike`` are those of a mechanism that shares most of its parts with this one and lives as long.
+    """
+
+    def __init__(self, mechanism: Mechanism, alike: Prints | None = None) -> None:
         self._mechanism = mechanism
-        self._texts: dict[int, str] = {}
+        self._texts: dict[int, str] = {} if alike is None else alike._texts
 
     def of(self, key: Id) -> str:
         """The digest of an element with what it is on, or of a body with what is on it."""
@@ -50,6 +52,10 @@ class Prints:
         above = self._mechanism.parent_joint.get(key)
         joint = () if above is None else (self.nameless(above.joint), self.text(above.parent_pose), self.text(above.child_pose))
         return digest_of_texts([self.text(part), *joint, *self.shapes(key)])
+
+    def of_weight(self, body: Id) -> str:
+        """The digest of everything that a body's mass may follow from."""
+        return digest_of_texts([self.text(self._mechanism.graph.vertices[body]), *self.shapes(body)])
 
     def text(self, value: object) -> str:
         """The canonical text of a value that the mechanism holds."""
