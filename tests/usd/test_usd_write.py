@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import math
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -64,6 +66,13 @@ def test_text_crate_and_package_say_the_same_twice_the_same_way(format: str) -> 
     data = written(arm(), format)
     assert data == written(arm(), format)
     assert pipeline.read(Source(f"arm.{format}", data), formats.by_name(format), Report()) == arm()
+
+
+def test_a_package_does_not_tell_when_it_was_made() -> None:
+    robot = pipeline.convert(arm(), formats.by_name("usdz"), Options(), NoFiles(), Report())
+    for data in (written(arm(), "usdz"), robot.package.main):
+        with zipfile.ZipFile(io.BytesIO(data)) as package:
+            assert {inside.date_time for inside in package.infolist()} == {(1980, 1, 1, 0, 0, 0)}
 
 
 def test_the_stage_has_units_a_default_prim_and_one_articulation(tmp_path: Path) -> None:

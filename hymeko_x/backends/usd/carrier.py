@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Sdf, Tf
 
+from hymeko_x.backends.usd.archive import unzipped, zipped
 from hymeko_x.formats import carrier
 
 if TYPE_CHECKING:
@@ -43,17 +44,9 @@ def carry_in_crate(package: Package, text: str) -> Package:
 
 def carry_in_zip(package: Package, text: str) -> Package:
     """The package with a residue in the first layer of its zip file; everything else in it stays."""
-    with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
-        old, new = Path(folder) / "old.usdz", Path(folder) / "new.usdz"
-        old.write_bytes(package.main)
-        inside = Sdf.ZipFile.Open(str(old))
-        with Sdf.ZipFileWriter.CreateNew(str(new)) as writer:
-            for number, name in enumerate(inside.GetFileNames()):
-                data = inside.GetFile(name)
-                part = Path(folder) / f"{number}{Path(name).suffix}"
-                part.write_bytes(data if number else _rewritten(data, text))
-                writer.AddFile(str(part), name)
-        return replace(package, main=new.read_bytes())
+    files = unzipped(package.main)
+    first = next(iter(files))
+    return replace(package, main=zipped(files | {first: _rewritten(files[first], text)}))
 
 
 def _rewritten(crate: bytes, text: str) -> bytes:
