@@ -76,3 +76,30 @@ def test_what_has_other_numbers_or_none_is_reported_and_not_used(said: str) -> N
     assert [found.code for found in report if found.severity == Severity.ERROR] == [codes.BAD_VALUE]
     assert frame(robot) == IDENTITY
     assert hx.loads(hx.dumps(robot, "usd"), "usd") == robot
+
+
+TRIANGLE = (
+    "float3[] extent = [(0, 0, 0), (1, 1, 0)]",
+    "int[] faceVertexCounts = [3]",
+    "int[] faceVertexIndices = [0, 1, 2]",
+    "normal3f[] normals = [(0, 0, 1)]",
+    "point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]",
+    "color3f[] primvars:displayColor = [(1, 0, 0)]",
+    "float[] primvars:displayOpacity = [1]",
+    'texCoord2f[] primvars:st = [(0, 0)] (interpolation = "faceVarying")',
+    "int[] primvars:st:indices = [0, 0, 0]",
+)
+WRONG = ("int {} = 3", "float {} = 3", "int[] {} = [3]", "point3f[] {} = [(0, 0, 0)]", 'string[] {} = ["a", "b"]', "float2[] {} = [(1, 2)]")
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+@pytest.mark.parametrize("place", range(len(TRIANGLE)), ids=[line.split()[1] for line in TRIANGLE])
+def test_rows_of_another_type_are_kept_and_not_used(place: int, wrong: str) -> None:
+    lines = list(TRIANGLE)
+    lines[place] = wrong.format(lines[place].split()[1])
+    mesh = 'def Mesh "m" (prepend apiSchemas = ["PhysicsCollisionAPI"]) {\n' + "\n".join(lines) + "\n}"
+    report = Report()
+    robot = read(mesh, "", report)
+    assert hx.loads(hx.dumps(robot, "usd"), "usd", report=Report()) == robot
+    is_needed = lines[place].split()[1] in ("points", "faceVertexCounts", "faceVertexIndices") and lines[place] != TRIANGLE[place]
+    assert [found.code for found in report] == ([codes.ASSET_UNREADABLE] if is_needed else [])

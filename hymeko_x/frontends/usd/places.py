@@ -64,8 +64,6 @@ class Places:
 
 def check_ops(prim: Prim, draft: Draft) -> None:
     """Say which steps of the way to a prim are named and not there; USD goes on without them."""
-    if prim.types.get(_ORDER) != "token[]":
-        return
     steps = {step.removeprefix("!invert!"): None for step in prim.value(_ORDER) or ()}
     missing = [step for step in steps if step not in prim.types and step != _RESET]
     if missing:

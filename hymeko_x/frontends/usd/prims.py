@@ -33,11 +33,24 @@ _CLASSES = MappingProxyType(
         "float[]": Vt.FloatArray,
         "double[]": Vt.DoubleArray,
         "token[]": Vt.TokenArray,
-        **dict.fromkeys(("point3f[]", "color3f[]", "float3[]"), Vt.Vec3fArray),
+        **dict.fromkeys(("point3f[]", "vector3f[]", "normal3f[]", "color3f[]", "float3[]"), Vt.Vec3fArray),
+        **dict.fromkeys(("point3d[]", "vector3d[]", "normal3d[]", "color3d[]", "double3[]"), Vt.Vec3dArray),
+        **dict.fromkeys(("point3h[]", "vector3h[]", "normal3h[]", "color3h[]", "half3[]"), Vt.Vec3hArray),
         **dict.fromkeys(("texCoord2f[]", "float2[]"), Vt.Vec2fArray),
     }
 )
 """What the values of the types are that somebody reads: in a damaged file they may be anything else."""
+
+_TRIPLES = frozenset(f"{word}[]" for kind in ("point3", "vector3", "normal3", "color3") for word in (f"{kind}f", f"{kind}d", f"{kind}h"))
+_TYPES_OF = MappingProxyType(
+    {
+        **dict.fromkeys(("points", "extent", "normals", "primvars:displayColor"), _TRIPLES | {"float3[]", "double3[]", "half3[]"}),
+        **dict.fromkeys(("faceVertexCounts", "faceVertexIndices", "indices", "primvars:st:indices"), frozenset(("int[]",))),
+        "primvars:displayOpacity": frozenset(("float[]", "double[]", "half[]")),
+        "xformOpOrder": frozenset(("token[]",)),
+    }
+)
+"""The types that the rows of UsdGeom's schemas may have; one that is said to be anything else has no value for us."""
 
 
 @dataclass(slots=True, eq=False)
@@ -86,7 +99,8 @@ class Prim:
 
     def value(self, name: str) -> Any:
         """The value of an attribute that does not change with time; None where there is none."""
-        if name not in self.types:
+        kind = self.types.get(name)
+        if kind is None or (name in _TYPES_OF and kind not in _TYPES_OF[name]):
             return None
         return self._sound(name, self.spec.layer.GetAttributeAtPath(f"{self.path}.{name}").default)
 

@@ -49,7 +49,7 @@ def _is_bound(prim: Prim, draft: Draft) -> bool:
     """Whether a prim says of some faces that they show a material that was read."""
     if prim.kind != "GeomSubset" or not prim.is_real or prim.value("familyName") != words.LOOKS:
         return False
-    if prim.types.get("indices") != "int[]" or not prim.value("indices"):
+    if not prim.value("indices"):
         return False
     if prim.value("elementType") not in (None, words.FACE) or any(map(prim.is_animated, ("indices", "elementType", "familyName"))):
         return False
