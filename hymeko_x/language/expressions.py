@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import math
+import warnings
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -68,7 +69,9 @@ def evaluate(text: str, parameters: Mapping[str, float | str]) -> float | str:
     if len(text) > _MAX_LENGTH:
         raise ExpressionError(f"the expression has more than {_MAX_LENGTH} characters")
     try:
-        tree = ast.parse(text.strip(), mode="eval")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", SyntaxWarning)  # what Python would rather not read, such as 1or 2
+            tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
         raise ExpressionError("it is not arithmetic") from error
     try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from contextlib import suppress
 
 import pytest
@@ -51,6 +52,14 @@ VALUES = {
 @pytest.mark.parametrize(("text", "value"), VALUES.items())
 def test_expressions_are_arithmetic(text: str, value: float | str) -> None:
     assert evaluate(text, {"x": 3.0, "s": "text"}) == value
+
+
+def test_what_python_only_reads_with_a_warning_is_no_arithmetic_and_nothing_else_is_said() -> None:
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        with pytest.raises(ExpressionError, match="^it is not arithmetic$"):
+            evaluate("1or 2", {})
+    assert said == []
 
 
 HOSTILE = [
