@@ -32,6 +32,11 @@ def engine_mends_inertias(mechanism: Mechanism) -> bool:
     return compiler_says(mechanism, _MENDS)
 
 
+def someone_says(mechanism: Mechanism, word: str) -> bool:
+    """Whether an element or a class has an attribute of this name, as far as can be told without printing."""
+    return any(word in extra.path or word in extra.text for own in mechanism.extras.values() for extra in own)
+
+
 def compiler_says(mechanism: Mechanism, names: Iterable[str]) -> bool:
     """Whether a <compiler> of the file has one of these attributes."""
     return any(f"{name}=" in text for text in compilers(mechanism) for name in names)

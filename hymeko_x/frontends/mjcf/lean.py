@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x.formats.mjcf_places import PLACE, Place
 from hymeko_x.formats.mjcf_tree import parse_text
-from hymeko_x.formats.mjcf_words import NAME, settings_of
-from hymeko_x.ir.legalize_native import compilers
+from hymeko_x.formats.mjcf_words import NAME
+from hymeko_x.ir.legalize_native import compilers, someone_says
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Sphere
 
 if TYPE_CHECKING:
@@ -32,19 +32,19 @@ _PLACED = frozenset((*(f"@{name}" for name in PLACE.names), "frame"))
 
 def can_be_lean(mechanism: Mechanism, bodies: list[Id]) -> bool:
     """Whether nothing but their own solids counts for what these bodies of a mechanism from MJCF weigh, and where they stand is known."""
-    said = [parse_text(text).attributes for text in compilers(mechanism)]
-    if not all(_FREE.issuperset(own) or _weighs_shapes(own) for own in said) or _has_shells(mechanism):
+    if not all(_is_free(parse_text(text).attributes) for text in compilers(mechanism)) or someone_says(mechanism, "shellinertia"):
         return False
     reached = set(mechanism.depth_first())
     return all(key in reached and _is_solid(mechanism, key) for key in bodies)
 
 
-def lean_model(mujoco: Any, mechanism: Mechanism, bodies: list[Id]) -> Any:
+def lean_model(mujoco: Any, mechanism: Mechanism, bodies: list[Id], settings: Settings) -> Any:
     """MuJoCo's model of these bodies in this order, each a child of the world with nothing but its solids, placed as their author did.
+
+    ``settings`` are those of the mechanism's <compiler>.
 
     Raises: ValueError or mujoco.FatalError when MuJoCo refuses it.
     """
-    settings = settings_of([parse_text(text).attributes for text in compilers(mechanism)])
     spec = mujoco.MjSpec()
     spec.compiler.degree = settings.degree
     for place, axis in enumerate(settings.eulerseq):
@@ -56,13 +56,9 @@ def lean_model(mujoco: Any, mechanism: Mechanism, bodies: list[Id]) -> Any:
     return spec.compile()
 
 
-def _weighs_shapes(said: dict[str, str]) -> bool:
-    return said.get("inertiafromgeom") in ("auto", "true") and _FREE.issuperset(said.keys() - {"inertiafromgeom"})
-
-
-def _has_shells(mechanism: Mechanism) -> bool:
-    """Whether an element or a class says <geom shellinertia>."""
-    return any("shellinertia" in extra.path or "shellinertia" in extra.text for own in mechanism.extras.values() for extra in own)
+def _is_free(said: dict[str, str]) -> bool:
+    """Whether a <compiler> says nothing but what leaves the weight of solids as it is."""
+    return said.get("inertiafromgeom", "auto") in ("auto", "true") and _FREE.issuperset(said.keys() - {"inertiafromgeom"})
 
 
 def _is_solid(mechanism: Mechanism, body: Id) -> bool:

@@ -15,7 +15,7 @@ from hymeko_x.formats.mjcf_tree import parse_text
 from hymeko_x.formats.mjcf_words import NAME, joined, settings_of
 from hymeko_x.frontends.mjcf.lean import can_be_lean, lean_model
 from hymeko_x.frontends.mjcf.solids import fitted_shape, solid_mesh, unsolid
-from hymeko_x.ir.legalize_native import compiler_says, compilers
+from hymeko_x.ir.legalize_native import compiler_says, compilers, someone_says
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
 from hymeko_x.ir.parts import Body, DofKind, Inertial, Joint, Mesh
 from hymeko_x.ir.values import rotate_tensor, unit_quat
@@ -44,7 +44,7 @@ def weigh(mechanism: Mechanism, printed: Printed, files: Files, report: Report) 
     """
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
     scaled = compiler_says(mechanism, _SCALES)
-    sprung = _may_be_sprung(mechanism)
+    sprung = someone_says(mechanism, "springdamper")
     meshes, fitted = unsolid(mechanism)
     if not (wanted or scaled or sprung or meshes or fitted):
         return mechanism
@@ -77,17 +77,12 @@ def _weighed_alone(mujoco: Any, mechanism: Mechanism, wanted: list[Id]) -> dict[
     if not can_be_lean(mechanism, wanted):
         return None
     try:
-        model = lean_model(mujoco, mechanism, wanted)
+        model = lean_model(mujoco, mechanism, wanted, _settings(mechanism))
     except (ValueError, mujoco.FatalError):
         return None
     if model.body_mass[1:].min() < _LEAST or model.body_inertia[1:].min() < _LEAST:
         return None
     return _weighed(mechanism, model, {key: number for number, key in enumerate(wanted, 1)})
-
-
-def _may_be_sprung(mechanism: Mechanism) -> bool:
-    """Whether an element or a class says <joint springdamper>, as far as can be told without printing."""
-    return any("springdamper" in extra.path or "springdamper" in extra.text for own in mechanism.extras.values() for extra in own)
 
 
 def _compiled(mujoco: Any, text: bytes, assets: dict[str, bytes]) -> Any:

@@ -41,10 +41,10 @@ _CLASSES = MappingProxyType(
 )
 """What the values of the types are that somebody reads: in a damaged file they may be anything else."""
 
-_TRIPLES = frozenset(f"{word}[]" for kind in ("point3", "vector3", "normal3", "color3") for word in (f"{kind}f", f"{kind}d", f"{kind}h"))
+_TRIPLES = frozenset(kind for kind, found in _CLASSES.items() if found in (Vt.Vec3fArray, Vt.Vec3dArray, Vt.Vec3hArray))
 _TYPES_OF = MappingProxyType(
     {
-        **dict.fromkeys(("points", "extent", "normals", "primvars:displayColor"), _TRIPLES | {"float3[]", "double3[]", "half3[]"}),
+        **dict.fromkeys(("points", "extent", "normals", "primvars:displayColor"), _TRIPLES),
         **dict.fromkeys(("faceVertexCounts", "faceVertexIndices", "indices", "primvars:st:indices"), frozenset(("int[]",))),
         "primvars:displayOpacity": frozenset(("float[]", "double[]", "half[]")),
         "xformOpOrder": frozenset(("token[]",)),
