@@ -2,9 +2,10 @@
 
 python -m benchmarks.growth [LINKS [WAY ...]]   (default 100,000, and every way)
 
-A process for each way measures small robots, a large one, and small robots again, and all that once more, so that a machine whose
-pace changes disturbs both alike. All robots have other names and numbers, so that none finds in a cache what another one left
-there. What grows as well are the caches that miss: how much that is shows in what XML alone takes, and MuJoCo where it ends.
+A process for each way measures small robots, a large one, and small robots again, and all that twice more; the median of the three
+ratios counts, each of which compares what ran within a minute, since the pace of a machine may change. All robots have other names
+and numbers, so that none finds in a cache what another one left there. What grows as well are the caches that miss: how much that
+is shows in what XML alone takes, and MuJoCo where it ends.
 """
 
 from __future__ import annotations
@@ -21,14 +22,14 @@ import hymeko_x as hx
 from benchmarks.yardstick import verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     Work = Callable[[], object]
 
 BOUND = 1.2
 SHAPES: Mapping[str, int] = {"chain": 1, "tree": 4}
 """How many links hang on each."""
-ROUNDS = 2
+ROUNDS = 3
 """How many large robots are converted."""
 SMALL = 8
 """How many small robots are converted before each large one, and after it."""
@@ -41,37 +42,37 @@ def main(links: int, names: tuple[str, ...]) -> int:
     kept = True
     for shape in SHAPES:
         for name in names or (*WAYS, *YARDSTICKS):
-            small, large = _asked(shape, name, links)
-            print(f"{shape}, {name}: {small * 1e6:.1f} us per link, {large * 1e6:.1f} us of {links}, {large / small:.2f} times", flush=True)
+            rounds = _asked(shape, name, links)
+            grown = statistics.median([large / small for small, large in rounds])
+            said = ", ".join(f"{small * 1e6:.1f} -> {large * 1e6:.1f}" for small, large in rounds)
+            print(f"{shape}, {name}: {said} us per link, {grown:.2f} times", flush=True)
             if name in WAYS:
-                kept = verdict(f"  growth from {links // 100} to {links} links", large / small, BOUND, at_least=False) and kept
+                kept = verdict(f"  growth from {links // 100} to {links} links", grown, BOUND, at_least=False) and kept
     return 0 if kept else 1
 
 
-def _asked(shape: str, name: str, links: int) -> tuple[float, float]:
-    """The time per link in s of a way, for few links and for many, as another process says it; infinite where it does not end."""
+def _asked(shape: str, name: str, links: int) -> list[tuple[float, float]]:
+    """The times per link in s of a way, for few links and for many, as another process says them; infinite where it does not end."""
     command = [sys.executable, "-m", "benchmarks.growth", "--measure", shape, name, str(links)]
     try:
-        said = subprocess.run(command, capture_output=True, check=True, timeout=LIMIT).stdout.split()
-        return float(said[0]), float(said[1])
-    except (subprocess.SubprocessError, ValueError):
-        return float("inf"), float("inf")
+        said = subprocess.run(command, capture_output=True, check=True, timeout=LIMIT, text=True).stdout.splitlines()
+        return [(float(small), float(large)) for small, large in map(str.split, said)]
+    except subprocess.SubprocessError:
+        return [(1.0, float("inf"))]
 
 
-def _measured(shape: str, name: str, links: int) -> tuple[float, float]:
-    """The time per link of small robots and of large ones, as medians."""
+def _measured(shape: str, name: str, links: int) -> Iterator[tuple[float, float]]:
+    """The time per link of small robots, as a median, and of a large one between them, in each round."""
     prepared, few, fan = {**WAYS, **YARDSTICKS}[name], links // 100, SHAPES[shape]
     numbers = count()
-    few_links: list[float] = []
-    many_links: list[float] = []
     prepared(robot(few, fan, next(numbers)))()
     for _ in range(ROUNDS):
         small = [prepared(robot(few, fan, next(numbers))) for _ in range(2 * SMALL)]
         large = prepared(robot(links, fan, next(numbers)))
-        few_links += map(_seconds, small[:SMALL])
-        many_links.append(_seconds(large))
-        few_links += map(_seconds, small[SMALL:])
-    return statistics.median(few_links) / few, statistics.median(many_links) / links
+        before = [*map(_seconds, small[:SMALL])]
+        many_links = _seconds(large)
+        after = [*map(_seconds, small[SMALL:])]
+        yield statistics.median([*before, *after]) / few, many_links / links
 
 
 def _seconds(work: Work) -> float:
@@ -148,6 +149,7 @@ def robot(links: int, fan: int, number: int) -> str:
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--measure"]:
-        print(*_measured(sys.argv[2], sys.argv[3], int(sys.argv[4])))
+        for small, large in _measured(sys.argv[2], sys.argv[3], int(sys.argv[4])):
+            print(small, large, flush=True)
     else:
         sys.exit(main(int(sys.argv[1]) if len(sys.argv) > 1 else 100_000, tuple(sys.argv[2:])))

@@ -16,7 +16,7 @@ from hymeko_x.ir.fields import NUMBERS, attributes_of, identical
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.residue.types import is_sound, settled
-from hymeko_x.ir.values import ZERO, Written
+from hymeko_x.ir.values import ZERO, Written, are_numbers
 from hymeko_x.ir.written import pose_as_written
 from hymeko_x.language.syntax import Ref, is_list
 
@@ -64,7 +64,7 @@ def encoded(value: object) -> Value:
     if isinstance(value, Written):
         return (name_ref("Written"), value.kind, value.numbers)
     if isinstance(value, tuple):
-        return tuple(encoded(item) for item in value)
+        return value if are_numbers(value) else tuple([encoded(item) for item in value])
     return (name_ref(type(value).__name__), *(word for name, inner in said(value) for word in (name_ref(name), inner)))
 
 

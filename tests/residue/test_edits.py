@@ -284,3 +284,14 @@ def test_a_file_that_was_copied_is_found_on_the_way_back(tmp_path: Path) -> None
     result = hx.convert(tmp_path / "b" / "c" / "robot.xml", tmp_path / "b" / "home.urdf")
     assert list(result.report) == []
     assert [(tmp_path / "b" / name).is_file() for name in (*result.package.files, *result.package.copies)] == [True]
+
+
+def test_a_rotation_that_is_rounded_moves_no_frame_however_far_away() -> None:
+    """URDF says rotations as angles; what that rounds moves a body at 10^12 m by more than a millimetre."""
+    text = """
+<mujoco><worldbody><body name="base"><geom size="1"/><body name="arm" quat="0.7 0.1 -0.5 0.3"><geom size="1"/>
+<body name="hand" pos="1e12 0 0"><geom size="1"/></body></body></body></worldbody></mujoco>"""
+    robot = hx.loads(text, "mjcf")
+    carrying = hx.dumps(robot, "urdf")
+    assert "frames {" not in carrying
+    assert unequal(robot, hx.loads(carrying, "urdf")) == []

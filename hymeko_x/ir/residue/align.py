@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
 _SAME_PLACE = 1e-5
 """Frames closer than this (m, rad) are the same: what is left is rounding, in single precision for some formats."""
+_ROUNDING = 1e-13
+"""What a number of a quaternion may change when it is said as angles."""
 _SCALAR = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 
 
@@ -197,11 +199,18 @@ def _stand_alike(image: Mechanism, source: Mechanism) -> bool:
     below = image.parent_joint
     for body, view in source.parent_joint.items():
         other = below.get(body)
-        if other is None or view.parent != other.parent or view.parent_pose != other.parent_pose or view.child_pose != other.child_pose:
+        if other is None or view.parent != other.parent:
+            return False
+        if not (_alike(view.parent_pose, other.parent_pose) and _alike(view.child_pose, other.child_pose)):
             return False
         if list(map(_moved_to_zero, view.joint.dofs)) != list(map(_moved_to_zero, other.joint.dofs)):
             return False
     return True
+
+
+def _alike(a: Pose, b: Pose) -> bool:
+    """Whether two poses are the same but for the rounding of a rotation that was said in another notation."""
+    return a.xyz == b.xyz and (a.quat == b.quat or all(abs(x - y) <= _ROUNDING for x, y in zip(a.quat, b.quat, strict=True)))
 
 
 def _frames(image: Mechanism, source: Mechanism) -> Iterable[tuple[Id, Pose]]:
