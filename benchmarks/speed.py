@@ -1,9 +1,11 @@
-"""URDF -> MJCF and MJCF -> URDF in process, against MuJoCo's own parse + compile + write of the same text without meshes.
+"""URDF -> MJCF and MJCF -> URDF in process, against MuJoCo's own parse + compile + write of the same robot without meshes.
 
 python -m benchmarks.speed [NAME ...]
 
 Both run in turns, and every figure is a ratio of processor times. ``write`` is reading and writing alone, ``measured`` is all
-that `convert` does: the ledger and the residue too. The bounds are on the medians over the robots.
+that `convert` does: the ledger and the residue too. The bounds are on the medians over the robots. Robots that come as URDF go both
+ways, and MuJoCo always gets the URDF; robots that come as MJCF have capsules, classes and joints of several dofs as well, and MuJoCo
+gets the MJCF.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import mujoco
 from lxml import etree
 
+import hymeko_x as hx
 from benchmarks.robots import robots
 from benchmarks.yardstick import in_turns, verdict
 from hymeko_x import formats, pipeline
@@ -29,16 +32,26 @@ if TYPE_CHECKING:
 
 
 class Way(NamedTuple):
-    """A direction, and how many times MuJoCo's time it may take to write, and to measure as well."""
+    """The format that robots come in, a direction, and how many times MuJoCo's time it may take to write, and to measure as well."""
 
+    robots: Format
     own: Format
     target: Format
-    write: float
-    measured: float
     every: int
+    write: float
+    measured: float | None
+
+    @property
+    def name(self) -> str:
+        """What goes where."""
+        return f"{self.own.name} -> {self.target.name} of {self.robots.name} robots"
 
 
-WAYS = (Way(formats.URDF, formats.MJCF, 2.0, 4.0, 3), Way(formats.MJCF, formats.URDF, 4.0, 4.0, 4))
+WAYS = (
+    Way(formats.URDF, formats.URDF, formats.MJCF, 3, 2.0, 4.0),
+    Way(formats.URDF, formats.MJCF, formats.URDF, 3, 4.0, 4.0),
+    Way(formats.MJCF, formats.MJCF, formats.URDF, 4, 4.0, None),
+)
 
 
 def main(names: tuple[str, ...]) -> int:
@@ -49,20 +62,24 @@ def main(names: tuple[str, ...]) -> int:
 
 def _compare(way: Way, names: tuple[str, ...]) -> bool:
     writes, measures = [], []
-    paths = robots(way.own.name, names)
+    paths = robots(way.robots.name, names)
     for path in paths if names else paths[:: way.every]:
         text = without_meshes(path)
         if text is None or not _mujoco_takes(text):
             print(f"{path.name}: MuJoCo does not take it without meshes")
             continue
-        theirs, write, measured = in_turns(lambda: _mujoco(text), lambda: _write(text, way), lambda: _measure(text, way))  # noqa: B023
+        own = text if way.own is way.robots else hx.dumps(hx.loads(text, way.robots.name), way.own.name, pure=True)
+        theirs, write, measured = in_turns(lambda: _mujoco(text), lambda: _write(own, way), lambda: _measure(own, way))  # noqa: B023
         writes.append(write / theirs)
         measures.append(measured / theirs)
         print(f"{theirs * 1e3:8.2f} ms, write {write / theirs:5.2f}, measured {measured / theirs:5.2f}  {path.name}", flush=True)
     if not writes:
         return True
-    name = f"{way.own.name} -> {way.target.name} / MuJoCo, median of {len(writes)}"
+    name = f"{way.name} / MuJoCo, median of {len(writes)}"
     written = verdict(f"{name}, reading and writing", statistics.median(writes), way.write, at_least=False)
+    if way.measured is None:
+        print(f"{name}, with ledger and residue: ratio {statistics.median(measures):.2f}")
+        return written
     return verdict(f"{name}, with ledger and residue", statistics.median(measures), way.measured, at_least=False) and written
 
 

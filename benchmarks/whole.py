@@ -35,7 +35,7 @@ def main(name: str) -> int:
     with tempfile.TemporaryDirectory() as folder:
         source, out = Path(folder, "robot.urdf"), str(Path(folder, "robot.xml"))
         source.write_text(text)
-        ours = [sys.executable, "-m", "hymeko_x.cli", "convert", str(source), out]
+        ours = [sys.executable, "-m", "hymeko_x", "convert", str(source), out]
         theirs = [sys.executable, "-c", SCRIPT, str(source), out]
         runs = [(process.run(ours), process.run(theirs)) for _ in range(ROUNDS + 1)][1:]
     seconds = [statistics.median(run[side][0] for run in runs) for side in (0, 1)]

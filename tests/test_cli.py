@@ -19,7 +19,7 @@ def hymeko_x(*words: str, stdin: bytes = b"", cwd: Path | None = None, **environ
     """Run the program as a user does."""
     here = str(Path(__file__).parents[1])
     environment = {**os.environ, "PYTHONPATH": here, "PYTHONWARNINGS": "error", **environ}
-    command = [sys.executable, "-m", "hymeko_x.cli", *words]
+    command = [sys.executable, "-m", "hymeko_x", *words]
     return subprocess.run(command, input=stdin, capture_output=True, cwd=cwd, env=environment, timeout=120, check=False)
 
 

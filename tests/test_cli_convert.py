@@ -59,7 +59,7 @@ def piped(*commands: list[str], stdin: str = "") -> subprocess.CompletedProcess[
     data = stdin
     for words in commands:
         run = subprocess.run(
-            [sys.executable, "-m", "hymeko_x.cli", *words], input=data, capture_output=True, text=True, env=environment, check=False
+            [sys.executable, "-m", "hymeko_x", *words], input=data, capture_output=True, text=True, env=environment, check=False
         )
         data = run.stdout
     return run

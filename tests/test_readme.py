@@ -25,7 +25,7 @@ BLOCK = re.compile(r"```(\w+)(?: (\S+))?\n(.*?)```\n", re.DOTALL)
 
 def shell(command: str, folder: Path) -> str:
     """What a user sees who types the command."""
-    program = f'hymeko-x() {{ {shlex.quote(sys.executable)} -m hymeko_x.cli "$@"; }}\n{command}'
+    program = f'hymeko-x() {{ {shlex.quote(sys.executable)} -m hymeko_x "$@"; }}\n{command}'
     environment = {**os.environ, "PYTHONPATH": str(README.parent), "COLUMNS": "120"}
     run = subprocess.run(
         ["bash", "-c", program], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, check=False

@@ -91,7 +91,7 @@ class _Runner:
         if not self.entrant.measure:
             return self.entrant.peer.command(self.job(robot))
         self.job(robot)
-        return [sys.executable, "-m", "hymeko_x.cli", "convert", str(robot.path), str(self.out(robot))]
+        return [sys.executable, "-m", "hymeko_x", "convert", str(robot.path), str(self.out(robot))]
 
     def _missing(self, robot: Input, said: dict[str, Any]) -> str:
         if not self.way.target or "stage" in said or self.out(robot).is_file():

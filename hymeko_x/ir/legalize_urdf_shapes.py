@@ -101,8 +101,9 @@ def _pieces(view: ShapeView, names: Names, places: dict[tuple[int, Pose], Pose])
         case _:
             pieces = []
     found: dict[Id, RobotEdge] = {}
+    role = view.shape.role
     for geometry, pose in pieces:
-        key = view.id if not found else names.take("shape", f"{view.body.name}/{view.shape.role.value}")
+        key = view.id if not found else names.take("shape", f"{view.body.name}/{'shape' if role is Role.BOTH else role.value}")
         place = id(view.pose), pose
         if place not in places:
             places[place] = compose(view.pose, pose)

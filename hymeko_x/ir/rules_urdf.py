@@ -24,9 +24,9 @@ RULES: tuple[Rule, ...] = (
     hold_or_free_open_bases,
     make_world_a_link,
     join_roots,
-    split_shared_shapes,
     prefer_own_colours,
-    part_meshes_by_looks,
     approximate_shapes,
+    split_shared_shapes,
+    part_meshes_by_looks,
     make_names_usable,  # once more, for what the rules have added
 )

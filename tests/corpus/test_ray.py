@@ -21,7 +21,7 @@ PAIRS = "urdf:hymeko,urdf:mjcf,mjcf:urdf,hymeko:urdf"
 @pytest.mark.full
 def test_a_node_that_dies_changes_nothing(tmp_path: Path) -> None:
     robots = fill(tmp_path / "toys", robots=8)
-    words = [sys.executable, "-m", "hymeko_x.cli", "corpus", "run", "--from", str(robots), "--pairs", PAIRS, "--verify"]
+    words = [sys.executable, "-m", "hymeko_x", "corpus", "run", "--from", str(robots), "--pairs", PAIRS, "--verify"]
     results = tmp_path / "ray"
     with cluster(nodes=2) as ray:
         distributed = [*words, "--engine", "ray", "--address", ray.address, "-o", str(results)]
@@ -42,6 +42,6 @@ def test_a_cluster_that_is_not_there_is_said_in_one_line(tmp_path: Path) -> None
     robots = fill(tmp_path / "toys", robots=1)
     where = ["--engine", "ray", "--address", "127.0.0.1:1", "-o", str(tmp_path / "o")]
     words = ["corpus", "run", "--from", str(robots), "--pairs", "urdf:hymeko", *where]
-    run = subprocess.run([sys.executable, "-m", "hymeko_x.cli", *words], cwd=ROOT, capture_output=True, text=True, check=False)
+    run = subprocess.run([sys.executable, "-m", "hymeko_x", *words], cwd=ROOT, capture_output=True, text=True, check=False)
     assert run.returncode == 1, run.stderr
     assert "no Ray cluster answers at '127.0.0.1:1'" in run.stderr

@@ -23,7 +23,7 @@ PAIRS = "urdf:hymeko,urdf:mjcf,mjcf:urdf,hymeko:urdf"
 
 
 def command(*words: str) -> list[str]:
-    return [sys.executable, "-m", "hymeko_x.cli", "corpus", *words]
+    return [sys.executable, "-m", "hymeko_x", "corpus", *words]
 
 
 def corpus(*words: str, code: int = 0) -> subprocess.CompletedProcess[str]:

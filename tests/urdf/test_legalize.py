@@ -176,6 +176,15 @@ def test_a_capsule_becomes_a_cylinder_and_two_spheres() -> None:
     ]
 
 
+@pytest.mark.parametrize("geometry", [Capsule(0.5, 2.0), Plane((2.0, 2.0)), Ellipsoid((1.0, 2.0, 3.0))])
+def test_what_is_seen_and_collides_is_rewritten_and_told_once(geometry: object) -> None:
+    report = Report()
+    after = legalize(shaped(geometry, Role.BOTH), "urdf", Options(), report)
+    assert [(said.code.id, said.element) for said in report] == [("HX101", "shape 's'")]
+    seen, touched = ([v for v in after.shapes[A] if v.shape.role is role] for role in (Role.VISUAL, Role.COLLISION))
+    assert [(v.shape.geometry, v.pose, v.mesh) for v in seen] == [(v.shape.geometry, v.pose, v.mesh) for v in touched] != []
+
+
 def test_a_capsule_that_urdf_said_is_left_alone() -> None:
     mechanism = load(robot(visual('<geometry><capsule radius="1" length="2"/></geometry>')))
     assert legal(mechanism) == mechanism

@@ -1,4 +1,4 @@
-"""`python -m hymeko_x.cli` is `hymeko-x`."""
+"""`python -m hymeko_x` is `hymeko-x`."""
 
 import sys
 
