@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.fields import Layout
     from hymeko_x.ir.leaves import Leaves, Path
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+    from hymeko_x.ir.parts import Parameters
     from hymeko_x.ir.values import Quat
 
 P = TypeVar("P")
@@ -68,8 +70,8 @@ _LONG, _SHOWN = 64, 8
 def diff(a: Mechanism, b: Mechanism, tolerance: Tolerance = EXACT, apart: Mapping[Id, Leaves] | None = None) -> tuple[Difference, ...]:
     """Everything that differs from ``a`` to ``b``: the name, elements, their fields and arcs, and their extras.
 
-    Order, places and notations do not count. Linear in the size of both. ``apart`` are the leaves of the elements that
-    both have, if they are known.
+    Order (of elements and of parameters), places and notations do not count. Linear in the size of both. ``apart`` are the leaves of
+    the elements that both have, if they are known.
     """
     return tuple(_differences(a, b, tolerance, leaves_between(a, b) if apart is None else apart))
 
@@ -109,6 +111,8 @@ def _found(where: str, leaves: Leaves, tolerance: Tolerance) -> Iterator[Found]:
                 yield _joined(where, path), number_text(a), number_text(b)
         elif tolerance != EXACT and isinstance(a or b, Pose) and path[-1:] == ("weight",) and _same_pose(a, b, tolerance):
             continue
+        elif path and path[-1] == "parameters":
+            yield from _parameters(_joined(where, path), a, b, tolerance)  # type: ignore[arg-type]
         elif isinstance(a, tuple) and isinstance(b, tuple) and not isinstance(a, Id):
             yield from _tuples(_joined(where, path), a, b, tolerance)
         elif a != b:
@@ -118,6 +122,31 @@ def _found(where: str, leaves: Leaves, tolerance: Tolerance) -> Iterator[Found]:
 def _same_pose(a: object, b: object, tolerance: Tolerance) -> bool:
     """Whether two weights are the same pose; an arc without one stands for the identity."""
     return not any(_found("", leaves_of(a or IDENTITY, b or IDENTITY), tolerance))
+
+
+def _parameters(where: str, a: Parameters, b: Parameters, tolerance: Tolerance) -> Iterator[Found]:
+    """Parameters have names: where one stands does not count, nor whether a number stands in a list of its own."""
+    before, after = _by_name(a), _by_name(b)
+    for name in dict.fromkeys([*before, *after]):
+        path = f"{where}.{name}"
+        if name not in after:
+            yield path, _short(before[name]), None
+        elif name not in before:
+            yield path, None, _short(after[name])
+        else:
+            yield from _found(path, leaves_of(before[name], after[name]), tolerance)
+
+
+def _by_name(parameters: Parameters) -> dict[str, object]:
+    """The value of each parameter; one that is said again has a number (``name[2]``)."""
+    found: dict[str, object] = {}
+    said: Counter[str] = Counter()
+    for name, *values in parameters:
+        said[name] += 1
+        key = name if said[name] == 1 else f"{name}[{said[name]}]"
+        value = values[0] if len(values) == 1 else tuple(values)
+        found[key] = value[0] if isinstance(value, tuple) and len(value) == 1 else value
+    return found
 
 
 def _turns(where: str, a: tuple[Quat, object], b: tuple[Quat, object], tolerance: Tolerance) -> Iterator[Found]:

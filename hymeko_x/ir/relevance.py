@@ -24,19 +24,23 @@ _TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
 _NO_AXES = (X, Z)
 """What URDF and MJCF have where no axis is said."""
 _WEIGHTS = ("mass", "density")
+_NO_NAME = "none"
+"""How a difference shows that there is no name; a name is shown in quotes."""
 
 
 def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
     """The differences from ``before`` to ``after`` without those that are none of the robot.
 
     A ball and a free joint have no axis, and what stands for none is not the same everywhere; nobody asks what a shape weighs that says
-    nothing of it, if it is one of the world or of a body whose mass and tensor are said; and a joint moves alike whatever frames it is
-    described in. What an author said is not left out, whether or not somebody uses it.
+    nothing of it, if it is one of the world or of a body whose mass and tensor are said; a joint moves alike whatever frames it is
+    described in; and what has no name may get one. What an author said is not left out, whether or not somebody uses it.
     """
     alike: dict[Id, bool] = {}
     weighed = not compiler_says(before, ("inertiafromgeom",))
     for difference in found:
         key = difference.element
+        if difference.field == "name" and difference.before == _NO_NAME:
+            continue
         if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _weighs_nothing(before, key, difference.field):
             continue
         if key.kind == "joint" and _FRAMES.fullmatch(difference.field):

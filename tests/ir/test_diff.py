@@ -259,3 +259,18 @@ def test_the_words_of_an_edge_say_the_roles_of_its_ends() -> None:
     (found,) = diff(Mechanism("r", Hypergraph(bodies, edges)), Mechanism("r", Hypergraph(bodies)))
     assert found.before is not None
     assert found.before.endswith("{+ body 'a' as 'first', - body 'b'}")
+
+
+def test_parameters_are_compared_by_name_wherever_they_stand() -> None:
+    def said(*parameters: tuple[str, float | str | tuple[float, ...]]) -> Mechanism:
+        return with_part(parts.Actuator("general", parameters))
+
+    one = said(("ctrlrange", (-1.0, 1.0)), ("kp", 4.0), ("dyntype", "filter"), ("user", 1.0), ("user", 2.0))
+    assert diff(one, said(("dyntype", "filter"), ("user", 1.0), ("kp", (4.0,)), ("user", 2.0), ("ctrlrange", (-1.0, 1.0)))) == ()
+    other = said(("kp", 5.0), ("gear", (1.0, 0.0)), ("ctrlrange", (-1.0, 2.0)), ("dyntype", "filter"), ("user", 1.0), ("user", 3.0))
+    assert [(found.field, found.before, found.after) for found in diff(one, other)] == [
+        ("parameters.ctrlrange", "[-1 1]", "[-1 2]"),
+        ("parameters.kp", "4", "5"),
+        ("parameters.user[2]", "2", "3"),
+        ("parameters.gear", None, "[1 0]"),
+    ]
