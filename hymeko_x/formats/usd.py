@@ -55,6 +55,10 @@ D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 LIGHTS: Mapping[str, str] = MappingProxyType({"DistantLight": "directional", "SphereLight": "point", "DomeLight": "image"})
 """The lights of UsdLux that the IR has a word for; a sphere light with a cone is a spot."""
 CONE = "ShapingAPI"
+SITES = ("MjcSiteAPI", "NewtonSiteAPI")
+"""The schemas of a prim that marks a place, MuJoCo's and Newton's."""
+APERTURE = 15.2908
+"""How high the film of a camera is that says nothing of it, in mm as is its focal length."""
 DRIVES = ("angular", "linear", *D6_AXES)
 """The instances of a DriveAPI."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 from types import MappingProxyType
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Actuator, DofKind, NoShape
+from hymeko_x.ir.parts import Actuator, Camera, DofKind, NoShape
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -63,6 +64,24 @@ def drop_shapes_of_mujoco(mechanism: Mechanism, options: Options, report: Report
         said = f"{key} has a geometry that only MuJoCo knows; it is left out"
         report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+
+
+_FOVY = math.radians(45.0)
+_LENS = frozenset(("focal", "focalpixel", "projection"))
+"""What says of a camera in MJCF that it sees something else."""
+
+
+def say_what_cameras_see(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """A camera in MJCF that says nothing of its lens sees 45 degrees from top to bottom; elsewhere that is not understood."""
+    del options, report
+    if not is_native(mechanism):
+        return mechanism
+    cameras = {
+        key: replace(camera, fovy=_FOVY)
+        for key, camera in mechanism.vertices(Camera)
+        if camera.fovy is None and _LENS.isdisjoint([name for name, _ in camera.parameters])
+    }
+    return mechanism.with_graph(mechanism.graph.replace(vertices=cameras)) if cameras else mechanism
 
 
 _COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.ir.legalize_joints import expand_screws
 from hymeko_x.ir.legalize_names import make_names_usable
+from hymeko_x.ir.legalize_native import say_what_cameras_see
 from hymeko_x.ir.legalize_urdf import hold_or_free_open_bases
 from hymeko_x.ir.legalize_usd import choose_layout, drop_loops_without_bodies, drop_stale_groups
 
@@ -18,5 +19,6 @@ RULES: tuple[Rule, ...] = (
     expand_screws,
     drop_loops_without_bodies,
     drop_stale_groups,
+    say_what_cameras_see,
     choose_layout,
 )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from pxr import Usd
+import pytest
+from pxr import Gf, Usd, UsdGeom
 
 import hymeko_x as hx
 
@@ -60,3 +61,28 @@ def test_a_shape_that_mujoco_fits_to_a_mesh_is_that_shape(tmp_path: Path) -> Non
     assert different(source, stage) == []
     opened = Usd.Stage.Open(str(stage))
     assert "Capsule" in [str(prim.GetTypeName()) for prim in opened.Traverse()]
+
+
+def test_a_camera_sees_what_it_sees_in_mujoco(tmp_path: Path) -> None:
+    """45 degrees where nothing is said, which in USD would mean 17."""
+    geom = '<geom size="0.1"/>'
+    source, stage = stage_of(f'<body name="b">{geom}<camera name="usual"/><camera name="narrow" fovy="20"/></body>', tmp_path)
+    opened = Usd.Stage.Open(str(stage))
+    seen = {
+        str(prim.GetName()): UsdGeom.Camera(prim).GetCamera().GetFieldOfView(Gf.Camera.FOVVertical)
+        for prim in opened.Traverse()
+        if prim.IsA(UsdGeom.Camera)
+    }
+    assert seen == {"usual": pytest.approx(45.0), "narrow": pytest.approx(20.0)}
+    assert hx.load(stage) == hx.load(source)
+
+
+def test_sites_and_cameras_are_no_more_than_that(tmp_path: Path) -> None:
+    """What we write of them is read, so that a stage without a residue has nothing more to tell."""
+    things = '<site name="tip" pos="0.1 0 0" size="0.005"/><camera name="eye" fovy="45" pos="0 0 1"/>'
+    robot = hx.loads(f'<mujoco><worldbody><body name="b"><geom size="0.1"/>{things}</body></worldbody></mujoco>', "mjcf")
+    again = hx.loads(hx.dumps(robot, "usd", pure=True), "usd")
+    assert {key.kind: again.extras.get(key, ()) for key in robot.graph.vertices if key.kind in ("frame", "camera")} == {
+        "frame": (),
+        "camera": (),
+    }

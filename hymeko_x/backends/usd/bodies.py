@@ -210,13 +210,12 @@ def _type_of(part: Frame | Camera | Light) -> str:
 def _write_thing(spec: Any, part: Frame | Camera | Light) -> None:
     """What a frame, a camera or a light says beside where it is."""
     if isinstance(part, Frame):
-        apply(spec, "MjcSiteAPI", "NewtonSiteAPI")
+        apply(spec, *words.SITES)
     elif isinstance(part, Light):
         if part.kind == "spot":
             apply(spec, words.CONE)
         if part.diffuse is not None:
             put(spec, "inputs:color", T.Color3f, Gf.Vec3f(*part.diffuse))
     elif part.fovy is not None and 0.0 < part.fovy < math.pi:
-        aperture = 15.2908
-        put(spec, "verticalAperture", T.Float, aperture)
-        put(spec, "focalLength", T.Float, aperture / 2.0 / math.tan(part.fovy / 2.0))
+        put(spec, "verticalAperture", T.Float, words.APERTURE)
+        put(spec, "focalLength", T.Float, words.APERTURE / 2.0 / math.tan(part.fovy / 2.0))

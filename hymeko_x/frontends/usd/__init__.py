@@ -27,7 +27,7 @@ from hymeko_x.frontends.usd.lights import read_light
 from hymeko_x.frontends.usd.materials import read_material
 from hymeko_x.frontends.usd.places import check_ops
 from hymeko_x.frontends.usd.relations import Driven, driven_ends, read_camera, read_drives, read_mimic, read_site
-from hymeko_x.frontends.usd.shapes import SITES, Read, is_shape, read_shape
+from hymeko_x.frontends.usd.shapes import Read, is_shape, read_shape
 from hymeko_x.frontends.usd.stage import Scene, open_scene
 from hymeko_x.frontends.usd.structure import build_trees, note_poses
 from hymeko_x.frontends.usd.tendons import read_tendons
@@ -103,7 +103,7 @@ def _read_things(prims: list[Prim], ends: dict[str, Driven], draft: Draft) -> No
             read_camera(prim, draft)
         elif kind in words.LIGHTS:
             read_light(prim, draft)
-        elif any(prim.has_api(site) for site in SITES):
+        elif any(prim.has_api(site) for site in words.SITES):
             read_site(prim, draft)
     read_tendons(prims, ends, draft)
     for prim in prims:

@@ -141,18 +141,24 @@ def _says_more(prim: Prim) -> bool:
 
 
 def read_site(prim: Prim, draft: Draft) -> None:
-    """A frame at the prim; the shape by which it is shown stays an extra."""
+    """A frame at the prim, which is no more than that if it says all that we would say; the shape by which it is shown stays an extra."""
     key = draft.own(prim, "frame")
     draft.vertices[key] = Frame()
+    if prim.kind == "Xform" and all(map(prim.has_api, words.SITES)):
+        draft.take(prim, "@type", *(f"@{schema}" for schema in words.SITES))
     mount(prim, key, draft)
 
 
 def read_camera(prim: Prim, draft: Draft) -> None:
     """A camera with its vertical field of view, 2 atan(aperture / 2 f); the rest of its lens stays extras."""
     key = draft.own(prim, "camera")
-    focal = prim.value("focalLength") or 50.0
-    aperture = prim.value("verticalAperture") or 15.2908
-    draft.vertices[key] = Camera(2.0 * math.atan(words.single(aperture) / (2.0 * words.single(focal))))
+    focal = words.single(prim.value("focalLength") or 50.0)
+    aperture = words.single(prim.value("verticalAperture") or words.APERTURE)
+    fovy = 2.0 * math.atan(aperture / (2.0 * focal))
+    draft.vertices[key] = Camera(fovy)
+    draft.take(prim, "@type")
+    if aperture == words.APERTURE and 0.0 < fovy < math.pi:  # as we say it
+        draft.take(prim, *(name for name in ("focalLength", "verticalAperture") if not prim.is_animated(name)))
     mount(prim, key, draft)
 
 

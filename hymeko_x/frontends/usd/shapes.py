@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Geometry, Rgba
 
 COLLISION = "PhysicsCollisionAPI"
-SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 TYPES = ("Cube", "Sphere", "Cylinder", "Capsule", "Plane", "Mesh")
 _XFORM = "xformOp"
 _HULL = "PhysicsMeshCollisionAPI"
@@ -41,7 +40,7 @@ Read = tuple["Prim", Shape, Pose, "NDArray[Any] | None"]
 
 def is_shape(prim: Prim) -> bool:
     """Whether a prim is a geometry that the IR has, and no site."""
-    return prim.kind in TYPES and not any(prim.has_api(site) for site in SITES)
+    return prim.kind in TYPES and not any(prim.has_api(site) for site in words.SITES)
 
 
 def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
