@@ -67,8 +67,6 @@ def drop_shapes_of_mujoco(mechanism: Mechanism, options: Options, report: Report
 
 
 _FOVY = math.radians(45.0)
-_LENS = frozenset(("focal", "focalpixel", "projection"))
-"""What says of a camera in MJCF that it sees something else."""
 
 
 def say_what_cameras_see(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
@@ -76,12 +74,14 @@ def say_what_cameras_see(mechanism: Mechanism, options: Options, report: Report)
     del options, report
     if not is_native(mechanism):
         return mechanism
-    cameras = {
-        key: replace(camera, fovy=_FOVY)
-        for key, camera in mechanism.vertices(Camera)
-        if camera.fovy is None and _LENS.isdisjoint([name for name, _ in camera.parameters])
-    }
+    cameras = {key: replace(camera, fovy=_FOVY) for key, camera in mechanism.vertices(Camera) if _has_usual_lens(camera)}
     return mechanism.with_graph(mechanism.graph.replace(vertices=cameras)) if cameras else mechanism
+
+
+def _has_usual_lens(camera: Camera) -> bool:
+    """Whether a camera of MJCF says nothing of what it sees."""
+    said = dict(camera.parameters)
+    return camera.fovy is None and not {"focal", "focalpixel"} & said.keys() and said.get("projection") != "orthographic"
 
 
 _COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})
