@@ -21,6 +21,7 @@ LAYERS = (
     ("delivery",),
     ("api",),
     ("cli", "testing"),
+    ("__main__",),
 )
 """A module may import from its own part of the program and from the layers before its own; within a layer see BESIDE."""
 

@@ -17,7 +17,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.formats.carrier import taken_off
 from hymeko_x.ir.diff import Tolerance, diff
 from hymeko_x.ir.legalize import Options
-from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
+from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
 from hymeko_x.ir.parts import Mesh, Tendon
 from hymeko_x.source import NoFiles, Source
 from tests.residue.edits import Edit, applied, applied_to_stage, mjcf_edits, urdf_edits, usd_edits, xacro_edits
@@ -96,16 +96,15 @@ def _tidied(stage: Mechanism) -> Mechanism:
     used = {arc.target for edge in stage.graph.edges.values() for arc in edge.arcs}
     idle = [key for key in stage.graph.vertices if key.kind == "material" and key not in used]
     cables = {arc.target for _, _, arcs in stage.edges(Tendon) for arc in arcs}
-    extras = {key: found if key in cables else tuple(map(_without_ball, found)) for key, found in stage.extras.items() if key != ROOT}
+    extras = {
+        key: found if key in cables else tuple(extra for extra in found if not _BALL.fullmatch(extra.text))
+        for key, found in stage.extras.items()
+        if key != ROOT
+    }
     return replace(stage, graph=stage.graph.replace(without=idle), extras=extras)
 
 
-def _without_ball(extra: Extra) -> Extra:
-    """A site as it is where it is not one of a cable."""
-    return replace(extra, text=_BALL.sub(r"def Xform\1\n{\n}", extra.text))
-
-
-_BALL = re.compile(r'def Sphere( .*MjcSiteAPI.*\n\))\n\{\n.* extent = .*\n.* purpose = "guide"\n.* radius = .*\n\}', re.DOTALL)
+_BALL = re.compile(r'def Sphere .*MjcSiteAPI.*\n\)\n\{\n.* extent = .*\n.* purpose = "guide"\n.* radius = .*\n\}', re.DOTALL)
 
 
 def _expect_same(edited: Mechanism, again: Mechanism, done: list[str]) -> None:
