@@ -69,14 +69,13 @@ def approximate_shapes(mechanism: Mechanism, options: Options, report: Report) -
     names = names_in_use(mechanism)
     edges: dict[Id, RobotEdge] = {}
     meshes: dict[Id, Mesh] = {}
-    places: dict[tuple[int, Pose], Pose] = {}
     for view in found:
         geometry = view.shape.geometry
         if isinstance(geometry, Ellipsoid):
             meshes[names.take("mesh", f"{view.body.name}_ellipsoid")] = Mesh(None, geometry.radii, None, *_unit_sphere())
             edges[view.id] = _in_place(view, MeshShape(), view.pose, next(reversed(meshes)))
         else:
-            edges |= _pieces(view, names, places)
+            edges |= _pieces(view, names)
         kind = type(geometry).__name__.lower()
         said = f"{view.id} is {'an' if kind[0] in 'aeiou' else 'a'} {kind}, for which URDF has no word; it is written as {_INSTEAD[kind]}"
         report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
@@ -86,11 +85,8 @@ def approximate_shapes(mechanism: Mechanism, options: Options, report: Report) -
 _INSTEAD = {"capsule": "a cylinder and two spheres", "plane": "a thin box", "ellipsoid": "a mesh"}
 
 
-def _pieces(view: ShapeView, names: Names, places: dict[tuple[int, Pose], Pose]) -> dict[Id, RobotEdge]:
-    """The shapes that stand for a capsule or a plane; the first one keeps the id.
-
-    ``places`` remembers where pieces stand: what is seen at a place and what collides there have the same pose, and so have theirs.
-    """
+def _pieces(view: ShapeView, names: Names) -> dict[Id, RobotEdge]:
+    """The shapes that stand for a capsule or a plane; the first one keeps the id."""
     match view.shape.geometry:
         case Capsule(radius, length):
             ends = [(Sphere(radius), Pose((0.0, 0.0, z))) for z in (length / 2.0, -length / 2.0)]
@@ -104,10 +100,7 @@ def _pieces(view: ShapeView, names: Names, places: dict[tuple[int, Pose], Pose])
     role = view.shape.role
     for geometry, pose in pieces:
         key = view.id if not found else names.take("shape", f"{view.body.name}/{'shape' if role is Role.BOTH else role.value}")
-        place = id(view.pose), pose
-        if place not in places:
-            places[place] = compose(view.pose, pose)
-        found[key] = _in_place(view, geometry, places[place], None)
+        found[key] = _in_place(view, geometry, compose(view.pose, pose), None)
     return found
 
 
