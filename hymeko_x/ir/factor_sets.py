@@ -101,14 +101,14 @@ def _ranked(rows: Sequence[Row]) -> list[tuple[frozenset[Pair], Members]]:
     if len(sharing) > 8 * _SEEDS:
         ranked = nsmallest(8 * _SEEDS, sharing, key=lambda members: (-_worth(members, sharing[members]), sorted(sharing[members])))
     closed = {members: common(members) for members in ranked}
-    seeds = sorted(closed, key=lambda members: (-_worth(members, closed[members]), sorted(closed[members])))[:_SEEDS]
-    for first, second in combinations(seeds, 2):
+    ranks = {members: (-_worth(members, shared), sorted(shared)) for members, shared in closed.items()}
+    for first, second in combinations(sorted(ranks, key=ranks.__getitem__)[:_SEEDS], 2):
         both = first & second
         if len(both) > 1 and both not in closed:
-            closed[both] = common(both)
-    scored = [(_worth(members, shared), shared, members) for members, shared in closed.items()]
-    worthy = sorted((entry for entry in scored if entry[0] >= _LEAST), key=lambda entry: (-entry[0], sorted(entry[1])))
-    return [(shared, members) for _, shared, members in worthy[:_SEEDS]]
+            shared = closed[both] = common(both)
+            ranks[both] = -_worth(both, shared), sorted(shared)
+    worthy = sorted([members for members, (cost, _) in ranks.items() if -cost >= _LEAST], key=ranks.__getitem__)
+    return [(closed[members], members) for members in worthy[:_SEEDS]]
 
 
 def _owners(rows: Sequence[Row]) -> dict[Pair, Members]:

@@ -174,7 +174,7 @@ class Mechanism:
         """Every joint with its two ends, in order. Joints without exactly one parent and one child arc are left out."""
         found: dict[Id, JointView] = {}
         for key, joint, arcs in self.edges(parts.Joint):
-            above, below = _end(arcs, 1), _end(arcs, -1)
+            above, below = _ends(arcs)
             if above is not None and below is not None:
                 found[key] = JointView(key, joint, above.target, below.target, pose_weight(above), pose_weight(below))
         return found
@@ -249,7 +249,7 @@ class Mechanism:
         """For each shape what of its mesh shows another material, in order."""
         found: dict[Id, list[SubsetView]] = {}
         for key, subset, arcs in self.edges(parts.Subset):
-            shape, material = _end(arcs, 1), _end(arcs, -1)
+            shape, material = _ends(arcs)
             if shape is not None and material is not None:
                 found.setdefault(shape.target, []).append(SubsetView(key, subset.faces, material.target))
         return {key: tuple(views) for key, views in found.items()}
@@ -259,7 +259,7 @@ class Mechanism:
         """For each body (and the world) the frames, cameras, lights and sensors on it, in order."""
         found: dict[Id, list[MountView]] = {}
         for key, _, arcs in self.edges(parts.Mount):
-            body, thing = _end(arcs, 1), _end(arcs, -1)
+            body, thing = _ends(arcs)
             if body is not None and thing is not None:
                 found.setdefault(body.target, []).append(MountView(key, thing.target, body.target, pose_weight(body)))
         return {key: tuple(views) for key, views in found.items()}
@@ -348,6 +348,13 @@ def _end(arcs: tuple[RobotArc, ...], sign: int) -> RobotArc | None:
         if arc.sign * sign > 0:
             return arc
     return None
+
+
+def _ends(arcs: tuple[RobotArc, ...]) -> tuple[RobotArc | None, RobotArc | None]:
+    """The first arc into the edge and the first one out of it: nearly always these two and no other."""
+    if len(arcs) == 2 and arcs[0].sign > 0 > arcs[1].sign:
+        return arcs
+    return _end(arcs, 1), _end(arcs, -1)
 
 
 def pose_weight(arc: RobotArc) -> Pose:

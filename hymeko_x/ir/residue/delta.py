@@ -78,10 +78,12 @@ def _additions(image: Mechanism, source: Mechanism) -> Iterator[Addition]:
 
 
 def _removals(image: Mechanism, source: Mechanism, prints: Prints) -> Iterator[Removal]:
-    for key in (*image.graph.vertices, *image.graph.edges):
-        if key not in source.graph:
-            edge = image.graph.edges.get(key)
-            yield Removal(key, prints.of(key), "" if edge is None else shape_group(edge))
+    for key in image.graph.vertices:
+        if key not in source.graph.vertices:
+            yield Removal(key, prints.of(key), "")
+    for key, edge in image.graph.edges.items():
+        if key not in source.graph.edges:
+            yield Removal(key, prints.of(key), shape_group(edge))
 
 
 # ---- order -----------------------------------------------------------------------------------------------------------------
@@ -167,8 +169,10 @@ def _known(image: Mechanism, residue: Residue, prints: Prints) -> Iterator[tuple
 
 def _named(key: Id) -> Id:
     """The element itself, or the body that it is called after."""
+    if key.kind in _NAMED:
+        return key
     body, stroke, _ = key.name.partition("/")
-    return Id("body", body) if stroke and key.kind not in _NAMED else key
+    return Id("body", body) if stroke else key
 
 
 def _spoken_of(residue: Residue) -> Iterator[Id]:

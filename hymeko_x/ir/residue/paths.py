@@ -82,15 +82,8 @@ def digest(*values: object) -> str:
 def digest_of_texts(texts: Iterable[str]) -> str:
     """The digest of values whose canonical texts these are."""
     number = int.from_bytes(blake2b("\0".join(texts).encode("utf-8", "surrogatepass"), digest_size=5).digest())
-    return chr(97 + number % 26) + _base36(number // 26)
-
-
-def _base36(number: int) -> str:
-    digits = ""
-    for _ in range(3):
-        number, rest = divmod(number, 1296)
-        digits += _PAIRS[rest]
-    return digits
+    number, letter = divmod(number, 26)
+    return chr(97 + letter) + _PAIRS[number % 1296] + _PAIRS[number // 1296 % 1296] + _PAIRS[number // 1679616 % 1296]
 
 
 def canonical(value: object) -> str:
