@@ -192,6 +192,15 @@ def test_a_long_list_of_one_severity_is_cut_and_counted(capsys: pytest.CaptureFi
     assert lines[-1] == "... and 10 more of severity warning (--report FILE.json lists all)"
 
 
+def test_notes_that_say_the_same_of_other_elements_are_shown_by_examples(capsys: pytest.CaptureFixture[str]) -> None:
+    capsules = [Diagnostic(codes.REWRITTEN, Severity.NOTE, f"shape 'leg/{i}' is a capsule", Origin("a.xml", i)) for i in range(20)]
+    other = Diagnostic(codes.REWRITTEN, Severity.NOTE, "shape 'floor' is a plane", Origin("a.xml", 3))
+    warnings = [Diagnostic(codes.MISSING_LIMIT, Severity.WARNING, f"joint 'j{i}' has no <limit>", Origin("a.xml", i)) for i in range(5)]
+    terminal.show([*capsules[:5], other, *warnings, *capsules[5:]])
+    shown = [*map(str, capsules[:3]), "... and 17 more like it (--report FILE.json lists all)", str(other), *map(str, warnings)]
+    assert capsys.readouterr().err.splitlines() == shown
+
+
 # ---- how fast it starts --------------------------------------------------------------------------------------------------
 
 HEAVY = ("numpy", "scipy", "mujoco", "pinocchio", "pxr", "trimesh", "rich", "yourdfpy", "xacro", "lxml", "lark")

@@ -194,7 +194,15 @@ def _in_other_frames(robot: Mechanism) -> tuple[Mechanism, Id] | None:
     return None
 
 
-NO_LOSS = {"mjcf": [_on_a_free_joint(X), _in_other_frames], "usd": [_on_a_free_joint(X), _on_a_shape(name=None)]}
+def _with_a_bare_world(robot: Mechanism) -> tuple[Mechanism, Id]:
+    return robot.with_graph(robot.graph.replace(vertices={WORLD: parts.World()})), WORLD
+
+
+NO_LOSS = {
+    "urdf": [_with_a_bare_world],
+    "mjcf": [_on_a_free_joint(X), _in_other_frames],
+    "usd": [_on_a_free_joint(X), _on_a_shape(name=None)],
+}
 """What says the same in other words."""
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from typing import TYPE_CHECKING, TextIO
 
@@ -13,22 +14,42 @@ if TYPE_CHECKING:
 
 MOST_LINES = 40
 """How many diagnostics of one severity are shown; a summary names the rest. `--report` has them all."""
+_EXAMPLES = 3
+_ALL = "(--report FILE.json lists all)"
+_NAMES = re.compile(r"'[^']*'|\d+")
 
 _COLOURS = {Severity.NOTE: "36", Severity.WARNING: "33", Severity.ERROR: "31"}
 
 
 def show(diagnostics: Iterable[Diagnostic], stream: TextIO | None = None) -> None:
-    """Print diagnostics, the worst kinds in full and long lists cut, to standard error."""
+    """Print diagnostics to standard error: a few notes that say the same of different elements stand for all, and long lists are cut."""
     stream = sys.stderr if stream is None else stream
     coloured = is_coloured(stream)
-    shown = dict.fromkeys(Severity, 0)
-    for diagnostic in diagnostics:
-        shown[diagnostic.severity] += 1
-        if shown[diagnostic.severity] <= MOST_LINES:
+    room = dict.fromkeys(Severity, MOST_LINES)
+    left = dict.fromkeys(Severity, 0)
+    for alike in _alike(diagnostics):
+        severity = alike[0].severity
+        shown = alike[: min(room[severity], _EXAMPLES)]
+        for diagnostic in shown:
             print(render(diagnostic, coloured), file=stream)
-    for severity, count in shown.items():
-        if count > MOST_LINES:
-            print(f"... and {count - MOST_LINES} more of severity {severity.value} (--report FILE.json lists all)", file=stream)
+        room[severity] -= len(shown)
+        if shown and len(shown) < len(alike):
+            print(f"... and {len(alike) - len(shown)} more like it {_ALL}", file=stream)
+        elif not shown:
+            left[severity] += len(alike)
+    for severity, count in left.items():
+        if count:
+            print(f"... and {count} more of severity {severity.value} {_ALL}", file=stream)
+
+
+def _alike(diagnostics: Iterable[Diagnostic]) -> Iterable[list[Diagnostic]]:
+    """Notes that only differ in names and numbers together, where the first of them was made; every warning and error alone."""
+    groups: dict[object, list[Diagnostic]] = {}
+    for number, diagnostic in enumerate(diagnostics):
+        is_note = diagnostic.severity is Severity.NOTE
+        said = (diagnostic.code.id, _NAMES.sub("", diagnostic.message)) if is_note else number
+        groups.setdefault(said, []).append(diagnostic)
+    return groups.values()
 
 
 def render(diagnostic: Diagnostic, coloured: bool) -> str:

@@ -127,7 +127,7 @@ def chain_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechan
     for view in unsayable:
         count = _add_chain(view, chains)
         if count:
-            said = f"{view.id} has dofs or a frame that URDF has no word for; it is written as a chain with {count} more links"
+            said = f"{view.id} has dofs or a frame that URDF has no word for; it is written as a chain of {count + 1} joints"
             report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
     edges = dict(_following(mechanism, chains.moved)) | chains.edges
     old = {view.id for view in unsayable}

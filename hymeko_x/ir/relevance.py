@@ -33,13 +33,16 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
 
     A ball and a free joint have no axis, and what stands for none is not the same everywhere; nobody asks what a shape weighs that says
     nothing of it, if it is one of the world or of a body whose mass and tensor are said; a joint moves alike whatever frames it is
-    described in; and what has no name may get one. What an author said is not left out, whether or not somebody uses it.
+    described in; what has no name may get one; and that there is a world says nothing, as what stands on it or hangs there is told by
+    itself. What an author said is not left out, whether or not somebody uses it.
     """
     alike: dict[Id, bool] = {}
     weighed = not compiler_says(before, ("inertiafromgeom",))
     for difference in found:
         key = difference.element
         if difference.field == "name" and difference.before == _NO_NAME:
+            continue
+        if key == WORLD and not difference.field:
             continue
         if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _weighs_nothing(before, key, difference.field):
             continue
