@@ -33,7 +33,7 @@ ROUNDS = 3
 """How many large robots are converted."""
 SMALL = 32
 """How many small robots are converted before each large one, and after it: seconds, as the machine's pace changes within seconds."""
-LIMIT = 1800.0
+LIMIT = 3600.0
 """Seconds after which nobody waits for a process any longer."""
 
 

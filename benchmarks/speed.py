@@ -56,6 +56,7 @@ WAYS = (
 
 def main(names: tuple[str, ...]) -> int:
     """Both directions; the exit code is 1 when a bound is missed."""
+    print(f"Python {sys.version}")
     kept = [_compare(way, names) for way in WAYS]
     return 0 if all(kept) else 1
 

@@ -85,7 +85,7 @@ def losses_between(
     kept = relevant(diff(mechanism, crossed, TOLERANCE, apart), mechanism, crossed, TOLERANCE)
     renamed = (difference for difference in other_words(bridge) if not _is_number(difference, mechanism))
     found = (*renamed, *kept, *_unsaid_notes(mechanism, crossed))
-    return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_dress(difference, format)])
+    return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_dress(difference, mechanism, format)])
 
 
 def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
@@ -101,10 +101,10 @@ def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference
             yield Difference(key, "pose on the stage", table[POSE], image.notation(key, POSE))
 
 
-def _is_dress(difference: Difference, format: Format) -> bool:
-    """Whether the format only wears its own clothes: settings of the file that every file of the format has."""
+def _is_dress(difference: Difference, mechanism: Mechanism, format: Format) -> bool:
+    """Whether the format only wears its own clothes: settings that every file of it has, and what else it says of an element that is new."""
     if difference.element != ROOT:
-        return False
+        return difference.before is None and difference.field != "" and difference.element not in mechanism.graph
     if format == formats.XACRO and difference.field == "urdf @xmlns:xacro":
         return True  # each xacro file declares its own prefix, and no expansion does
     own = "usd" if format.name.startswith("usd") else format.name  # the extras of each kind of USD are USD text

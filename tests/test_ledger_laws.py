@@ -18,6 +18,7 @@ from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import WORLD, Extra, Id, Mechanism, RobotEdge, joint_edge, shape_edge
 from hymeko_x.ir.relevance import relevant
+from hymeko_x.ir.residue import Bridge
 from hymeko_x.ir.values import Pose, Vec3, X, Y, Z, compose, inverse, rotate, scaled
 from hymeko_x.source import NoFiles, Package, PackageFiles, Source
 
@@ -238,3 +239,14 @@ def test_a_joint_that_moves_otherwise_is_a_loss(above: Vec3, below: Vec3, axis: 
     found = diff(before, after, ledger.TOLERANCE)
     assert found
     assert tuple(relevant(found, before, after, ledger.TOLERANCE)) == found
+
+
+def test_what_a_format_says_of_an_element_that_is_new_is_told_with_the_element() -> None:
+    key = Id("texture", "steel")
+    before = Mechanism("r")
+    after = Mechanism("r", Hypergraph({key: parts.Texture("steel.png")}), {key: (Extra("mjcf", "@type", "2d"),)})
+    there = Mechanism("r", after.graph)
+    told = [(loss.element, loss.field) for loss in ledger.losses_between(before, after, Bridge(), formats.MJCF)]
+    assert told == [(str(key), "")]
+    told = [(loss.element, loss.field) for loss in ledger.losses_between(there, after, Bridge(), formats.MJCF)]
+    assert told == [(str(key), "mjcf @type")]
