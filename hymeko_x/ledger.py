@@ -88,10 +88,13 @@ def losses_between(
     return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_dress(difference, mechanism, format)])
 
 
+_NAMED_BY_A_FIELD = frozenset({"shape", "mesh", "texture", "material"})
+
+
 def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
-    """Whether an element is only called otherwise that had no name of its own: the name of a shape is one of its fields."""
+    """Whether an element is only called otherwise that had no name of its own; what may go without one has its name in a field."""
     key = difference.element
-    return difference.field == "name" and (key.kind == "shape" or mechanism.notation(key, "unnamed") is not None)
+    return difference.field == "name" and (key.kind in _NAMED_BY_A_FIELD or mechanism.notation(key, "unnamed") is not None)
 
 
 def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:
@@ -102,7 +105,7 @@ def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference
 
 
 def _is_dress(difference: Difference, mechanism: Mechanism, format: Format) -> bool:
-    """Whether the format only wears its own clothes: settings that every file of it has, and what else it says of an element that is new."""
+    """Whether the format only wears its own clothes: settings that every file of it has, and more words for an element that is new."""
     if difference.element != ROOT:
         return difference.before is None and difference.field != "" and difference.element not in mechanism.graph
     if format == formats.XACRO and difference.field == "urdf @xmlns:xacro":

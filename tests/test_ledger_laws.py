@@ -241,12 +241,24 @@ def test_a_joint_that_moves_otherwise_is_a_loss(above: Vec3, below: Vec3, axis: 
     assert tuple(relevant(found, before, after, ledger.TOLERANCE)) == found
 
 
+def _told(before: Mechanism, after: Mechanism, bridge: Bridge) -> list[tuple[str, str]]:
+    return [(loss.element, loss.field) for loss in ledger.losses_between(before, after, bridge, formats.MJCF)]
+
+
 def test_what_a_format_says_of_an_element_that_is_new_is_told_with_the_element() -> None:
     key = Id("texture", "steel")
-    before = Mechanism("r")
     after = Mechanism("r", Hypergraph({key: parts.Texture("steel.png")}), {key: (Extra("mjcf", "@type", "2d"),)})
-    there = Mechanism("r", after.graph)
-    told = [(loss.element, loss.field) for loss in ledger.losses_between(before, after, Bridge(), formats.MJCF)]
-    assert told == [(str(key), "")]
-    told = [(loss.element, loss.field) for loss in ledger.losses_between(there, after, Bridge(), formats.MJCF)]
-    assert told == [(str(key), "mjcf @type")]
+    assert _told(Mechanism("r"), after, Bridge()) == [(str(key), "")]
+    assert _told(Mechanism("r", after.graph), after, Bridge()) == [(str(key), "mjcf @type")]
+
+
+def test_a_mesh_that_the_file_holds_has_lost_its_uri_and_nothing_else() -> None:
+    key, held = Id("mesh", "hip"), parts.Mesh(vertices=(0.0,) * 9, faces=(0, 1, 2))
+    after = Mechanism("r", Hypergraph({key: held}))
+    assert _told(Mechanism("r", Hypergraph({key: parts.Mesh("hip.stl")})), after, Bridge(((Id("mesh", "visual"), key),))) == [
+        (str(key), "uri")
+    ]
+    there = replace(held, vertices=(1.0,) * 9)
+    assert _told(Mechanism("r", Hypergraph({key: there})), after, Bridge()) == [(str(key), "vertices")]
+    named = Mechanism("r", Hypergraph({key: replace(held, name="hip")}))
+    assert _told(named, after, Bridge()) == [(str(key), "name")]

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.ir.legalize_native import compiler_says
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
-from hymeko_x.ir.parts import Body, DofKind, Joint, Shape
+from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Shape
 from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ _TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
 _NO_AXES = (X, Z)
 """What URDF and MJCF have where no axis is said."""
 _WEIGHTS = ("mass", "density")
+_POINTS = ("vertices", "faces", "texcoords", "texfaces")
 _NO_NAME = "none"
 """How a difference shows that there is no name; a name is shown in quotes."""
 
@@ -33,16 +34,13 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
 
     A ball and a free joint have no axis, and what stands for none is not the same everywhere; nobody asks what a shape weighs that says
     nothing of it, if it is one of the world or of a body whose mass and tensor are said; a joint moves alike whatever frames it is
-    described in; what has no name may get one; and that there is a world says nothing, as what stands on it or hangs there is told by
-    itself. What an author said is not left out, whether or not somebody uses it.
+    described in. What an author said is not left out, whether or not somebody uses it.
     """
     alike: dict[Id, bool] = {}
     weighed = not compiler_says(before, ("inertiafromgeom",))
     for difference in found:
         key = difference.element
-        if difference.field == "name" and difference.before == _NO_NAME:
-            continue
-        if key == WORLD and not difference.field:
+        if _is_told_otherwise(difference, before, after):
             continue
         if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _weighs_nothing(before, key, difference.field):
             continue
@@ -52,6 +50,21 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
             if alike[key] and not _is_idle_axis(before, difference):
                 continue
         yield difference
+
+
+def _is_told_otherwise(difference: Difference, before: Mechanism, after: Mechanism) -> bool:
+    """A name where there was none; a world, of which what stands there tells; the points of a mesh, which are those of its file."""
+    key, field = difference.element, difference.field
+    if key == WORLD:
+        return not field
+    if field == "name":
+        return difference.before == _NO_NAME
+    return key.kind == "mesh" and field in _POINTS and _came_as_file(before.graph.vertices.get(key), after.graph.vertices.get(key))
+
+
+def _came_as_file(before: object, after: object) -> bool:
+    """Whether a mesh that was a file is held by the file that was written, which the mesh's uri tells."""
+    return isinstance(before, Mesh) and before.uri is not None and not before.vertices and isinstance(after, Mesh) and after.uri is None
 
 
 def _weighs_nothing(mechanism: Mechanism, shape: Id, field: str) -> bool:
