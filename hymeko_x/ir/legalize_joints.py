@@ -121,6 +121,37 @@ def name_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechani
     return _with_edges(mechanism, edges, moved)
 
 
+def name_dofs_once(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """A name that two dofs have, as edits may leave it, stays with the first one. Dofs without a name stay without."""
+    del options
+    named = [(view, number, name) for view in mechanism.joints.values() for number, name in enumerate(_said_names(mechanism, view)) if name]
+    taken = {name for _, _, name in named}
+    if len(taken) == len(named):
+        return mechanism
+    changed: dict[Id, list[Dof]] = {}
+    moved: dict[Place, Place] = {}
+    seen: set[str] = set()
+    for view, number, wanted in named:
+        if wanted not in seen:
+            seen.add(wanted)
+            continue
+        name = _unused(wanted, taken)
+        said = f"'{wanted}' would name two dofs; the one of {view.id} is written as '{name}'"
+        report.warn(codes.RENAMED, said, mechanism.origin(view.id), element=str(view.id))
+        taken.add(name)
+        changed.setdefault(view.id, list(view.joint.dofs))[number] = replace(view.joint.dofs[number], name=name)
+        _remember(moved, view, number, (view.id, name))
+    return _with_edges(mechanism, {key: _with_dofs(mechanism, key, tuple(dofs)) for key, dofs in changed.items()}, moved)
+
+
+def _said_names(mechanism: Mechanism, view: JointView) -> list[str | None]:
+    """What the dofs of a joint are called where nobody has to have a name."""
+    if len(view.joint.dofs) == 1:
+        only = view.joint.dofs[0].name
+        return [only or (None if mechanism.notation(view.id, "unnamed") else view.id.name)]
+    return [dof.name for dof in view.joint.dofs]
+
+
 def split_overfull_joints(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """Dofs that cannot sit on one body (more than six, or a rotation below a ball) are spread over bodies in between."""
     del options

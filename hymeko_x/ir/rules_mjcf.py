@@ -8,7 +8,7 @@ from hymeko_x.ir.legalize_actuators import choose_actuators
 from hymeko_x.ir.legalize_base import choose_base, put_world_link_into_world
 from hymeko_x.ir.legalize_couplings import make_couplings_scalar
 from hymeko_x.ir.legalize_inertia import give_moving_bodies_mass, make_tensors_physical
-from hymeko_x.ir.legalize_joints import expand_screws, lower_inner_free_joints, name_dofs, split_overfull_joints
+from hymeko_x.ir.legalize_joints import expand_screws, lower_inner_free_joints, name_dofs, name_dofs_once, split_overfull_joints
 from hymeko_x.ir.legalize_limits import make_limits_intervals
 from hymeko_x.ir.legalize_loops import anchor_closures, close_by_points, open_second_parents
 from hymeko_x.ir.legalize_names import make_names_usable, name_assets_once
@@ -53,5 +53,5 @@ RULES: tuple[Rule, ...] = (
 _FOREIGN = (anchor_closures, name_dofs, give_moving_bodies_mass)
 """What MJCF says in more ways than others, and what MuJoCo finds out itself or the model that a part is made for."""
 
-NATIVE: tuple[Rule, ...] = (*(rule for rule in RULES if rule not in _FOREIGN), drop_stale_keyframes)
+NATIVE: tuple[Rule, ...] = (*(rule for rule in RULES if rule not in _FOREIGN), name_dofs_once, drop_stale_keyframes)
 """The rules for what came from MJCF: none changes what MuJoCo reads, all hold for what was edited in another format since."""

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import hymeko_x as hx
-from hymeko_x import formats, pipeline
+from hymeko_x import codes, formats, pipeline
 from hymeko_x.diagnostics import Report
 from hymeko_x.formats.carrier import taken_off
 from hymeko_x.ir.diff import Tolerance, diff
@@ -184,6 +184,41 @@ def test_a_limit_on_a_chain_of_joints_changes_the_joint_of_several_dofs() -> Non
     (found,) = diff(source, back)
     assert (found.element, found.field, found.after) == (Id("joint", "left_thigh"), "dofs[1].limits.upper", "1.5")
     mujoco.MjModel.from_xml_string(hx.dumps(back, "mjcf"))
+
+
+_PLANAR = """<mujoco model="planar">
+  <worldbody>
+    <body name="torso" pos="0 0 1">
+      <joint name="x" type="slide" axis="1 0 0" damping="0.5"/>
+      <joint name="z" type="slide"/>
+      <joint name="y" axis="0 1 0"/>
+      <geom name="t" type="sphere" size="0.1"/>
+    </body>
+  </worldbody>
+  <actuator>
+    <motor name="m" joint="z"/>
+  </actuator>
+</mujoco>
+"""
+
+
+def test_an_edit_of_a_chain_below_the_world_comes_home() -> None:
+    """No shape and no other joint of the source says which link of the URDF the world is."""
+    home = hx.dumps(hx.loads(_PLANAR, "mjcf"), "mjcf")
+    text = hx.dumps(hx.loads(_PLANAR, "mjcf"), "urdf")
+    assert hx.dumps(hx.loads(text, "urdf"), "mjcf") == home
+    edited = text.replace('damping="0.5"', 'damping="0.75"')
+    assert hx.dumps(hx.loads(edited, "urdf"), "mjcf") == home.replace('damping="0.5"', 'damping="0.75"') != home
+
+
+def test_two_dofs_with_one_name_get_two_in_mjcf() -> None:
+    other = '<body name="other" pos="0 0 2"><joint name="o" axis="1 0 0"/><geom type="sphere" size="0.1"/></body>'
+    robot = hx.loads(_PLANAR.replace("  </worldbody>", f"{other}</worldbody>"), "mjcf")
+    text = hx.dumps(robot, "hymeko").replace("z : slide", "o : slide").replace("{ z - torso }", "{ o - torso }")
+    report = Report()
+    model = mujoco.MjModel.from_xml_string(hx.dumps(hx.loads(text, "hymeko"), "mjcf", report=report))
+    assert [model.joint(number).name for number in range(model.njnt)] == ["x", "o", "y", "o#2"]
+    assert [said.code for said in report if said.severity.rank] == [codes.RENAMED]
 
 
 def test_a_renamed_link_of_a_chain_takes_along_what_was_carried_for_it() -> None:

@@ -50,6 +50,7 @@ def aligned(image: Mechanism, source: Mechanism) -> tuple[Bridge, Mechanism]:
 def _other_names(image: Mechanism, source: Mechanism) -> dict[Id, Id]:
     """The source's id of every element of the image that goes by another one."""
     pairs = _Pairs(image.graph, source.graph)
+    pairs.match_world()
     pairs.match_ends()  # bodies by the joints that both have, materials and meshes by the shapes
     for _ in range(2):  # then edges by what they connect, and once more what only those lead to
         pairs.match_edges()
@@ -74,6 +75,11 @@ class _Pairs:
             self.names[old] = new
             self.strange.discard(old)
             self.missing.discard(new)
+
+    def match_world(self) -> None:
+        """The link that a format without a world calls so, where the source knows no body of that name."""
+        if WORLD in self.source.vertices:
+            self.pair(Id("body", WORLD.name), WORLD)
 
     def match_ends(self) -> None:
         """What the arcs of an edge lead to, for the edges that both have."""
