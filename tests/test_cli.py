@@ -12,7 +12,9 @@ import pytest
 
 from hymeko_x import codes
 from hymeko_x.cli import VERBS, exits, guard, main, terminal
+from hymeko_x.cli.losses import lines
 from hymeko_x.diagnostics import Diagnostic, Origin, Severity, refuse
+from hymeko_x.ledger import Loss
 
 
 def hymeko_x(*words: str, stdin: bytes = b"", cwd: Path | None = None, **environ: str) -> subprocess.CompletedProcess[bytes]:
@@ -199,6 +201,21 @@ def test_notes_that_say_the_same_of_other_elements_are_shown_by_examples(capsys:
     terminal.show([*capsules[:5], other, *warnings, *capsules[5:]])
     shown = [*map(str, capsules[:3]), "... and 17 more like it (--report FILE.json lists all)", str(other), *map(str, warnings)]
     assert capsys.readouterr().err.splitlines() == shown
+
+
+def test_losses_of_a_kind_say_on_which_side_their_elements_are() -> None:
+    gone = [Loss(f"shape 'hip/{number}'", "", "shape(...)", None, "carried", Origin("a.xml", number)) for number in range(5)]
+    new = [Loss(f"shape 'thigh/{number}'", "", None, "shape(...)", "carried") for number in range(2)]
+    changed = [Loss(f"joint '{name}'", f"dofs[{place}].damping", "1", "0", "carried") for place, name in enumerate("xy")]
+    said = [
+        Loss("mechanism", "comment content", text, None, "carried") for text in ("left", "the right leg, of which this is said at length")
+    ]
+    assert list(lines([*gone, *new, *changed, *said])) == [
+        "loss: 2 x joint dofs[].damping carried: 'x' 1 -> 0, 'y' 1 -> 0",
+        "a.xml:0: loss: 5 x shape carried: 'hip/0', 'hip/1', 'hip/2', and 2 more -> nothing",
+        "loss: 2 x shape carried: nothing -> 'thigh/0', 'thigh/1'",
+        "loss: 2 x mechanism comment content carried: left, the right leg, of which this is said... -> nothing",
+    ]
 
 
 # ---- how fast it starts --------------------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
+from textwrap import shorten
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -17,17 +18,17 @@ _KINDS = ("mechanism", "body", "joint", "loop", "coupling", "tendon", "actuator"
 
 _PLACE = re.compile(r"\[\d+\]")
 _EXAMPLES = 3
+_WORDS = 40
 
 
 def lines(losses: Sequence[Loss]) -> Iterator[str]:
-    """A line for every group of elements of one kind that lost the same field in the same way."""
-    groups: dict[tuple[str, str, str], list[Loss]] = defaultdict(list)
+    """A line for every group of elements of one kind in which the same became of the same field."""
+    groups: dict[tuple[str, str, str, bool, bool], list[Loss]] = defaultdict(list)
     for loss in losses:
-        groups[loss.fate, _kind(loss), _PLACE.sub("[]", loss.field)].append(loss)
-    ranked = sorted(groups, key=lambda group: (_FATES.index(group[0]), _rank(group[1], group[2])))
-    for group in ranked:
+        groups[loss.fate, _kind(loss), _PLACE.sub("[]", loss.field), loss.after is None, loss.before is None].append(loss)
+    for group in sorted(groups, key=lambda group: (_FATES.index(group[0]), _rank(group[1], group[2]))):
         found = groups[group]
-        yield str(found[0]) if len(found) == 1 else _summary(*group, found)
+        yield str(found[0]) if len(found) == 1 else _summary(*group[:3], found)
 
 
 def _kind(loss: Loss) -> str:
@@ -40,12 +41,19 @@ def _rank(kind: str, field: str) -> tuple[bool, int]:
 
 
 def _summary(fate: str, kind: str, field: str, losses: list[Loss]) -> str:
-    place = f"{losses[0].origin}: " if losses[0].origin else ""
+    """A few of them stand for all: with what they were and are, or on the side of the arrow on which they are there."""
+    first = losses[0]
+    place = f"{first.origin}: " if first.origin else ""
     shown = [_example(loss) for loss in losses[:_EXAMPLES]]
     more = [f"and {len(losses) - _EXAMPLES} more"] if len(losses) > _EXAMPLES else []
-    return f"{place}loss: {len(losses)} x {f'{kind} {field}'.rstrip()} {fate}: {', '.join([*shown, *more])}"
+    said = ", ".join([*shown, *more])
+    said = f"nothing -> {said}" if first.before is None else f"{said} -> nothing" if first.after is None else said
+    return f"{place}loss: {len(losses)} x {f'{kind} {field}'.rstrip()} {fate}: {said}"
 
 
 def _example(loss: Loss) -> str:
-    name = loss.element.partition(" ")[2] or loss.element
-    return f"{name} {loss.change}" if loss.after is not None and loss.before is not None else name
+    """The name of the element and what became of it; what the mechanism itself has goes by its first words."""
+    name = loss.element.partition(" ")[2]
+    if loss.before is not None and loss.after is not None:
+        return f"{name} {loss.change}".strip()
+    return name or shorten(loss.before or loss.after or "", _WORDS, placeholder="...")
