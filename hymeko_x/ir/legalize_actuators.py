@@ -67,6 +67,21 @@ def choose_actuators(mechanism: Mechanism, options: Options, report: Report) -> 
     return bare.with_graph(bare.graph.replace(vertices=vertices, edges=edges))
 
 
+def drop_idle_actuators(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """An actuator that drives nothing is left out: MuJoCo refuses it."""
+    del options
+    driving: set[Id] = set()
+    pointless: set[Id] = set()
+    for _, _, arcs in mechanism.edges(Drive):
+        found = driving if any(arc.sign < 0 for arc in arcs) else pointless
+        found.update(arc.target for arc in arcs if arc.sign > 0)
+    idle = [key for key, _ in mechanism.vertices(Actuator) if key not in driving]
+    for key in idle:
+        hint = "a '-' arc of its drive leads to what it drives" if key in pointless else ""
+        report.warn(codes.NOT_SAID, f"{key} drives nothing, and is left out", mechanism.origin(key), element=str(key), hint=hint)
+    return _without(mechanism, idle)
+
+
 def _without(mechanism: Mechanism, actuators: list[Id]) -> Mechanism:
     """The mechanism without these actuators and the edges that hang on them."""
     if not actuators:

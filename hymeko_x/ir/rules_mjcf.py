@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.legalize_actuators import choose_actuators
+from hymeko_x.ir.legalize_actuators import choose_actuators, drop_idle_actuators
 from hymeko_x.ir.legalize_base import choose_base, put_world_link_into_world
 from hymeko_x.ir.legalize_couplings import make_couplings_scalar
 from hymeko_x.ir.legalize_inertia import give_moving_bodies_mass, make_tensors_physical
@@ -47,6 +47,7 @@ RULES: tuple[Rule, ...] = (
     name_shapes_once,
     name_wrapped_shapes,
     choose_actuators,
+    drop_idle_actuators,
     make_names_usable,  # once more, for what the rules have added
 )
 

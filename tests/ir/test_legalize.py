@@ -484,6 +484,17 @@ def test_chosen_actuators_replace_those_of_the_source() -> None:
     assert actuators(legal(driven("motor"), Options("fixed", "none"))[0]) == {}
 
 
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_an_actuator_that_drives_nothing_is_left_out(sign: int) -> None:
+    drive = {Id("drive", "d"): Edge(Drive(), (Arc(Id("actuator", "a"), 1), Arc(joint("j1"), sign)))}
+    mechanism = chain(LIMITED, edges=drive, vertices={Id("actuator", name): Actuator("motor") for name in "ab"})
+    result, said = legal(mechanism)
+    idle = "b" if sign < 0 else "ab"
+    assert actuators(result) == {name: ("motor", {}) for name in "ab" if name not in idle}
+    assert said == [f"warning HX104 actuator '{name}' drives nothing, and is left out" for name in idle]
+    assert len(list(result.edges(Drive))) == (sign < 0)
+
+
 def test_repairs_of_inertia_are_the_only_warnings_that_a_massless_chain_causes() -> None:
     report = Report()
     legalize(chain(*[hinge(axis=Z)] * 20, inertial=None), "mjcf", Options(), report)
