@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from hymeko_x import formats
 from hymeko_x.formats.usd import POSE
 from hymeko_x.ir.diff import Difference, Tolerance, diff
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.mechanism import ROOT, file_stem
+from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.ir.relevance import relevant
 from hymeko_x.ir.residue.bridge import other_words
 
@@ -88,13 +89,14 @@ def losses_between(
     return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_dress(difference, mechanism, format)])
 
 
-_NAMED_BY_A_FIELD = frozenset({"shape", "mesh", "texture", "material"})
-
-
 def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
-    """Whether an element is only called otherwise that had no name of its own; what may go without one has its name in a field."""
+    """Whether an element without a name of its own is only called otherwise: a shape's is a field, a mesh may be called after its file."""
     key = difference.element
-    return difference.field == "name" and (key.kind in _NAMED_BY_A_FIELD or mechanism.notation(key, "unnamed") is not None)
+    if difference.field != "name":
+        return False
+    part = mechanism.graph.vertices.get(key)
+    of_file = isinstance(part, Mesh | Texture) and part.name is None and part.uri and key.name.partition("#")[0] == file_stem(part.uri)
+    return key.kind == "shape" or bool(of_file) or mechanism.notation(key, "unnamed") is not None
 
 
 def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:

@@ -262,3 +262,10 @@ def test_a_mesh_that_the_file_holds_has_lost_its_uri_and_nothing_else() -> None:
     assert _told(Mechanism("r", Hypergraph({key: there})), after, Bridge()) == [(str(key), "vertices")]
     named = Mechanism("r", Hypergraph({key: replace(held, name="hip")}))
     assert _told(named, after, Bridge()) == [(str(key), "name")]
+
+
+@pytest.mark.parametrize(("uri", "told"), [("a/hip.stl", ["uri"]), ("a/thigh.stl", ["name", "uri"]), (None, ["name"])])
+def test_a_mesh_that_is_called_after_its_file_has_no_name_to_lose(uri: str | None, told: list[str]) -> None:
+    key, other = Id("mesh", "hip#2"), Id("mesh", "visual")
+    before, after = (Mechanism("r", Hypergraph({key: parts.Mesh(each, vertices=(0.0,) * 9)})) for each in (uri, None))
+    assert [field for _, field in _told(before, after, Bridge(((other, key),)))] == told
