@@ -109,9 +109,9 @@ def _closure_attributes(loop: Loop, first: RobotArc, second: RobotArc, names: Pr
 
 
 def write_actuators(text: Text, mechanism: Mechanism, names: Printed) -> None:
-    """Every actuator that drives something, as the element of its kind."""
+    """Every actuator, as the element of its kind."""
     drives = {driver.target: arcs for _, _, arcs in mechanism.edges(Drive) for driver in arcs if driver.sign > 0}
-    actuators = [(key, actuator) for key, actuator in mechanism.vertices(Actuator) if key in drives]
+    actuators = list(mechanism.vertices(Actuator))
     if not actuators:
         return
     text.section("actuator")

@@ -83,7 +83,7 @@ def digest_of_texts(texts: Iterable[str]) -> str:
     """The digest of values whose canonical texts these are."""
     number = int.from_bytes(blake2b("\0".join(texts).encode("utf-8", "surrogatepass"), digest_size=5).digest())
     number, letter = divmod(number, 26)
-    return chr(97 + letter) + _PAIRS[number % 1296] + _PAIRS[number // 1296 % 1296] + _PAIRS[number // 1679616 % 1296]
+    return chr(97 + letter) + _PAIRS[number % 1296] + _PAIRS[number // 1296 % 1296] + _PAIRS[number // 1296**2 % 1296]
 
 
 def canonical(value: object) -> str:

@@ -35,7 +35,7 @@ def write_actuators(sheet: Sheet) -> None:
         attributes: Attributes = {
             "name": sheet.name(key),
             "class": own_class,
-            **(_targets(sheet, *drives[key], base) if key in drives else {}),
+            **_targets(sheet, *drives[key], base),
             **parameter_attributes(actuator.parameters, base),
             **sheet.said(key),
         }
