@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -11,6 +11,10 @@ from hypothesis import strategies as st
 
 from hymeko_x.ir.factor import Dialect, factor
 from hymeko_x.ir.forms import Call, Element, Factored, Hole, Item, Macro, Parameter, Piece, Signed, Text, expand
+from tests.pace import assert_at_most
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 CHEAP = Dialect(macro=4, call=1, argument=1, hole=1, default=1, least=1)
 """Under which nearly everything that repeats becomes a macro."""
@@ -174,14 +178,10 @@ def test_planted_limbs_are_found(segments: list[tuple[str, float, float]], legs:
 
 @pytest.mark.slow
 def test_the_time_is_near_linear_in_the_number_of_links() -> None:
-    def seconds(links: int) -> float:
+    def factoring(links: int) -> Callable[[], object]:
         limbs = [(f"s{number}", 0.1 + number / 7, 0.3) for number in range(10)]
         forms = tuple(form for number in range(links // 10) for form in instance(limbs, f"leg{number}", 1 - number % 2 * 2))
-        start = time.process_time()
-        found = factor(forms, Dialect())
-        spent = time.process_time() - start
-        assert len(found.items) <= links // 10
-        return spent
+        assert len(factor(forms, Dialect()).items) <= links // 10
+        return lambda: factor(forms, Dialect())
 
-    few = min(seconds(1000) for _ in range(3))
-    assert seconds(5000) < 5 * 2.5 * few
+    assert_at_most(1.5, factoring(5000), factoring(1000), count=5)

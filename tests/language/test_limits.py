@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 import warnings
 from contextlib import suppress
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import given, settings
@@ -18,6 +19,10 @@ from hymeko_x.language import expand
 from hymeko_x.language.expressions import ExpressionError, evaluate
 from hymeko_x.language.parser import parse
 from hymeko_x.source import Source
+from tests.pace import assert_at_most
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def read_text(text: str) -> Mechanism:
@@ -104,13 +109,13 @@ HOSTILE = [
 
 @pytest.mark.parametrize("text", HOSTILE, ids=lambda text: text[:20])
 def test_nothing_else_can_be_said_in_an_expression(text: str) -> None:
-    begin = time.perf_counter()
+    begin = time.process_time()
     try:
         value = evaluate(text, {"x": 3.0, "s": "text"})
     except ExpressionError:
         value = None
     assert value is None or text.startswith(("(((", "---"))
-    assert time.perf_counter() - begin < 0.5
+    assert time.process_time() - begin < 2.0
 
 
 @settings(max_examples=200, deadline=None)
@@ -210,10 +215,10 @@ def test_everything_up_to_the_depth_is_handled_without_a_crash() -> None:
 @pytest.mark.parametrize("piece", ["a.", "a, ", "1 ", "[1] ", "'", '"', "`", "/*", "${", "((", "@ ", "+ a ", "[[1] ", "[1 [", "\\"])
 def test_a_long_run_of_anything_takes_linear_time(piece: str) -> None:
     for text in (piece * 30_000, "a { b " + piece * 30_000 + "}"):
-        begin = time.perf_counter()
+        begin = time.process_time()
         with suppress(Refusal):
             parse(text)
-        assert time.perf_counter() - begin < 5.0
+        assert time.process_time() - begin < 5.0
 
 
 # ---- size ---------------------------------------------------------------------------------------------------------------------
@@ -225,18 +230,18 @@ def _chain(count: int) -> str:
     return "chain : robot { units { angle rad }\n" + "\n".join([*links, *joints]) + "\n}"
 
 
-def _seconds(count: int) -> float:
+def _converting(count: int) -> Callable[[], object]:
     text = _chain(count)
-    begin = time.perf_counter()
-    robot = read_text(text)
-    written = write(robot, Report()).main.decode()
-    seconds = time.perf_counter() - begin
-    assert len(robot.joints) == count
-    assert sum(1 for _ in robot.depth_first()) == count + 1
-    assert len(written) < len(text)
-    return seconds
+
+    def work() -> None:
+        robot = read_text(text)
+        written = write(robot, Report()).main.decode()
+        assert len(robot.joints) == count
+        assert sum(1 for _ in robot.depth_first()) == count + 1
+        assert len(written) < len(text)
+
+    return work
 
 
 def test_reading_and_writing_a_chain_is_linear() -> None:
-    short = min(_seconds(500) for _ in range(3))
-    assert _seconds(4000) < 8 * 2.5 * short
+    assert_at_most(1.5, _converting(4000), _converting(500), count=8)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import gc
 import statistics
-import time
 from typing import TYPE_CHECKING
 
 import pytest
@@ -15,10 +13,9 @@ from hymeko_x.corpus.catalog import development_files
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.hymeko import read
 from hymeko_x.source import Source
+from tests.pace import assert_at_most
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from tests.conftest import RealRobots
 
 _EVERY = 12
@@ -95,17 +92,4 @@ def test_printing_takes_little_longer_than_reading_where_thousands_of_values_are
     text = "\n".join(("r : robot {", *bodies, *joints, "}"))
     source = Source("robot.hymeko", text.encode())
     robot = read(source, Report())
-    works = (lambda: read(source, Report())), (lambda: write(robot, Report()))
-    reading, printing = map(min, zip(*[[_seconds(work) for work in works] for _ in range(5)], strict=True))  # in turns, as the pace changes
-    assert printing < 2.5 * reading
-
-
-def _seconds(work: Callable[[], object]) -> float:
-    """Processor time without what a collector of cycles finds in a process full of other tests."""
-    gc.collect()
-    gc.disable()
-    start = time.process_time()
-    work()
-    seconds = time.process_time() - start
-    gc.enable()
-    return seconds
+    assert_at_most(2.5, lambda: write(robot, Report()), lambda: read(source, Report()))

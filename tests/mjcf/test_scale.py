@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import gc
-import time
 from typing import TYPE_CHECKING
 
 import pytest
@@ -11,6 +9,7 @@ from mjmodels import read_text, write
 
 from hymeko_x.backends import hymeko
 from hymeko_x.diagnostics import Report
+from tests.pace import assert_at_most
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -33,15 +32,16 @@ def one_mesh(count: int) -> str:
     return f'<geom type="mesh" mesh="m"/></worldbody><asset><mesh name="m" vertex="{points}"/></asset><worldbody>'
 
 
-def seconds(content: str) -> float:
-    """The processor time to read a model and to write it as MJCF and as HyMeKo text."""
+def converting(content: str) -> Callable[[], object]:
+    """The work to read a model and to write it as MJCF and as HyMeKo text."""
     text = f"<mujoco><worldbody>{content}</worldbody></mujoco>"
-    gc.collect()
-    start = time.process_time()
-    robot = read_text(text)
-    write(robot)
-    hymeko.write(robot, Report())
-    return time.process_time() - start
+
+    def work() -> None:
+        robot = read_text(text)
+        write(robot)
+        hymeko.write(robot, Report())
+
+    return work
 
 
 @pytest.mark.parametrize(
@@ -54,8 +54,7 @@ def seconds(content: str) -> float:
     ],
 )
 def test_ten_times_as_many_take_ten_times_as_long(make: Callable[[int], str], count: int) -> None:
-    few, many = min(seconds(make(count)) for _ in range(3)), min(seconds(make(10 * count)) for _ in range(2))
-    assert many / few < 2.2 * 10
+    assert_at_most(1.5, converting(make(10 * count)), converting(make(count)), count=10)
 
 
 @pytest.mark.full
@@ -69,5 +68,4 @@ def test_ten_times_as_many_take_ten_times_as_long(make: Callable[[int], str], co
     ],
 )
 def test_the_largest_files_take_no_longer_per_element_than_small_ones(make: Callable[[int], str], count: int) -> None:
-    few, many = min(seconds(make(count // 100)) for _ in range(3)), seconds(make(count))
-    assert many / few < 3.5 * 100
+    assert_at_most(2.0, converting(make(count)), converting(make(count // 100)), count=100)
