@@ -8,12 +8,12 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.assets.shelf import Shelf, read_file, stem_of, suffix_of
+from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
 from hymeko_x.assets.texture import UnreadableImage, png_bytes
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
 from hymeko_x.ir.additions import Additions
 from hymeko_x.ir.legalize_native import is_native
-from hymeko_x.ir.mechanism import Extra, Id, shape_edge
+from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.ir.rename import names_in_use
 
@@ -101,7 +101,7 @@ def _pack_texture(run: _Packing, key: Id, texture: Texture) -> bool:
     except UnreadableImage as error:
         _warn(run, key, codes.ASSET_UNREADABLE, f"'{texture.uri}' cannot be read: {error}; the texture is left out")
         return False
-    stem, same = stem_of(texture.uri or ""), png is data
+    stem, same = file_stem(texture.uri or ""), png is data
     uri = run.shelf.copy(_TEXTURES, stem, ".png", path, data) if same else run.shelf.place(_TEXTURES, stem, ".png", png)
     run.vertices[key] = replace(texture, uri=uri)
     return True
@@ -156,7 +156,7 @@ def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> No
         return
     path, data = found
     if suffix_of(path) == ".msh":
-        run.vertices[key] = replace(mesh, uri=run.shelf.copy(_MESHES, stem_of(path), ".msh", path, data))
+        run.vertices[key] = replace(mesh, uri=run.shelf.copy(_MESHES, file_stem(path), ".msh", path, data))
         return
     seen = [view for view in users if view.shape.role is Role.VISUAL]
     felt = [view for view in users if view.shape.role is not Role.VISUAL]
@@ -214,7 +214,7 @@ def _pack_looks(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], fil
 
 def _own_mesh(run: _Packing, mesh: Mesh, part: Part) -> _Piece:
     """A part of a file as a mesh of its own."""
-    name = f"{stem_of(mesh.uri or '')}_{part.look.name}" if part.look and part.look.name else stem_of(mesh.uri or "")
+    name = f"{file_stem(mesh.uri or '')}_{part.look.name}" if part.look and part.look.name else file_stem(mesh.uri or "")
     key = run.names.take("mesh", name)
     _write_mesh(run, key, mesh, part, name, solid=False)
     return _Piece(key, _material(run, part.look, mesh))
@@ -238,11 +238,11 @@ def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Part, file: _Fi
     suffix = suffix_of(path)
     reason = _refusal(part, suffix, data, solid=solid)
     if reason is None:
-        uri = run.shelf.copy(_MESHES, stem_of(mesh.uri or path), suffix, path, data)
+        uri = run.shelf.copy(_MESHES, file_stem(mesh.uri or path), suffix, path, data)
         _add_mesh(run, target, replace(mesh, uri=uri), part)
         return
     _say_converted(run, key, reason)
-    _write_mesh(run, target, mesh, part, stem_of(mesh.uri or path), solid=solid, stl=suffix == ".stl")
+    _write_mesh(run, target, mesh, part, file_stem(mesh.uri or path), solid=solid, stl=suffix == ".stl")
 
 
 def _check_surface(part: Part) -> None:
@@ -364,7 +364,7 @@ def _material(run: _Packing, look: Look | None, mesh: Mesh) -> Id | None:
     known = run.looks.get((look.rgba, look.image))
     if known is not None:
         return known
-    key = run.looks[look.rgba, look.image] = run.add_material(Material(look.name or stem_of(mesh.uri or ""), look.rgba))
+    key = run.looks[look.rgba, look.image] = run.add_material(Material(look.name or file_stem(mesh.uri or ""), look.rgba))
     if look.image is not None:
         run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", look.image)), key)
     return key

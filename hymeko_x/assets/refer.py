@@ -10,7 +10,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.assets.shelf import Shelf, read_file, stem_of, suffix_of
+from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
+from hymeko_x.ir.mechanism import file_stem
 from hymeko_x.ir.parts import Mesh, Texture
 
 if TYPE_CHECKING:
@@ -69,7 +70,7 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> st
     if keep is Keep.PACKAGES_AND_PATHS and _is_below(uri) and shelf.copy_as(plain, path):
         return uri
     found = read_file(files, uri)
-    return None if found is None else shelf.copy(folder, stem_of(uri), suffix_of(path), *found)
+    return None if found is None else shelf.copy(folder, file_stem(uri), suffix_of(path), *found)
 
 
 def is_of_package(uri: str) -> bool:

@@ -92,11 +92,6 @@ def safe_name(name: str) -> str:
     return f"_{safe}" if _DEVICES.fullmatch(safe.split(".")[0]) else safe
 
 
-def stem_of(uri: str) -> str:
-    """The file name in a uri or path without folders and suffix."""
-    return posixpath.splitext(posixpath.basename(uri.replace("\\", "/").rstrip("/]")))[0]
-
-
 def suffix_of(path: str) -> str:
     """The suffix of a path in small letters, with its dot."""
     return posixpath.splitext(path.replace("\\", "/").rstrip("]"))[1].lower()

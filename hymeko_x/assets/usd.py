@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.assets.part import FilledMesh
 from hymeko_x.assets.refer import Keep, keep_references
-from hymeko_x.assets.shelf import read_file, stem_of, suffix_of
+from hymeko_x.assets.shelf import read_file, suffix_of
 from hymeko_x.ir.additions import Additions
 from hymeko_x.ir.legalize_native import is_native
-from hymeko_x.ir.mechanism import shape_edge, subset_edge
+from hymeko_x.ir.mechanism import file_stem, shape_edge, subset_edge
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.ir.rename import names_in_use
 
@@ -115,7 +115,7 @@ def _placed_image(run: _Packing, mesh: Id, look: Look, image: bytes) -> str | No
     except UnreadableImage as error:
         _warn(run, mesh, codes.ASSET_UNREADABLE, f"its image '{look.file or look.name}' cannot be read: {error}")
         return None
-    return run.shelf.place("textures", stem_of(look.file) or look.name or mesh.name, suffix, data)
+    return run.shelf.place("textures", file_stem(look.file) or look.name or mesh.name, suffix, data)
 
 
 def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: bool) -> Painted | None:

@@ -108,9 +108,7 @@ def name_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechani
             wanted = dof.name or f"{view.id.name}{_suffix(dof, dofs)}"
             name = _unused(wanted, seen) if len(dofs) == 1 else _unused(wanted, alone, seen)
             if wanted != name:
-                report.warn(
-                    codes.RENAMED, f"'{wanted}' would name two dofs; the one of {view.id} is written as '{name}'", element=str(view.id)
-                )
+                _warn_of_name(mechanism, view.id, wanted, name, report)
             seen.add(name)
             if len(dofs) > 1 or wanted != name:
                 dof = replace(dof, name=name)
@@ -136,8 +134,7 @@ def name_dofs_once(mechanism: Mechanism, options: Options, report: Report) -> Me
             seen.add(wanted)
             continue
         name = _unused(wanted, taken)
-        said = f"'{wanted}' would name two dofs; the one of {view.id} is written as '{name}'"
-        report.warn(codes.RENAMED, said, mechanism.origin(view.id), element=str(view.id))
+        _warn_of_name(mechanism, view.id, wanted, name, report)
         taken.add(name)
         changed.setdefault(view.id, list(view.joint.dofs))[number] = replace(view.joint.dofs[number], name=name)
         _remember(moved, view, number, (view.id, name))
@@ -213,6 +210,11 @@ def _suffix(dof: Dof, among: tuple[Dof, ...]) -> str:
 def _only_name(view: JointView) -> str:
     """The name of the only dof of a joint: its own where it has one, else the joint's."""
     return view.joint.dofs[0].name or view.id.name
+
+
+def _warn_of_name(mechanism: Mechanism, joint: Id, wanted: str, name: str, report: Report) -> None:
+    said = f"'{wanted}' would name two dofs; the one of {joint} is written as '{name}'"
+    report.warn(codes.RENAMED, said, mechanism.origin(joint), element=str(joint))
 
 
 def _unused(name: str, *taken: set[str]) -> str:

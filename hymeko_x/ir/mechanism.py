@@ -437,6 +437,6 @@ class Names:
 
 
 def file_stem(uri: str) -> str:
-    """The name of an asset after its file: the last part of the path without its suffix (``package://a/b/hip.stl`` -> ``hip``)."""
-    last = uri.replace("\\", "/").rstrip("/").rsplit("/", 1)[-1]
-    return last.rsplit(".", 1)[0] or last or "file"
+    """The name of a file without folders and suffix (``package://a/b/hip.stl``, ``a.usdz[b/hip.png]`` -> ``hip``); may be empty."""
+    last = uri.replace("\\", "/").rstrip("/]").rpartition("/")[2]
+    return last.rpartition(".")[0] or last

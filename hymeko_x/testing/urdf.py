@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 from hypothesis import strategies as st
 
-from hymeko_x.frontends.urdf.draft import stem
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import Id, Mechanism, Names, coupling_edge, joint_edge, layer_edge, shape_edge
+from hymeko_x.ir.mechanism import Id, Mechanism, Names, coupling_edge, file_stem, joint_edge, layer_edge, shape_edge
 from hymeko_x.ir.values import Pose, Written, plane_axes, pose_from_rpy, rotate_tensor, unit
 
 if TYPE_CHECKING:
@@ -109,7 +108,7 @@ def _materials(draw: st.DrawFn, vertices: dict[Id, parts.VertexPart], edges: dic
 
 def _mesh(mesh: parts.Mesh, known: dict[parts.Mesh, Id], vertices: dict[Id, parts.VertexPart], names: Names) -> Id:
     if mesh not in known:
-        known[mesh] = names.take("mesh", stem(mesh.uri or ""))
+        known[mesh] = names.take("mesh", file_stem(mesh.uri or ""))
         vertices[known[mesh]] = mesh
     return known[mesh]
 

@@ -14,10 +14,10 @@ from PIL import Image
 
 from hymeko_x.assets.pack import Mode, pack
 from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.assets.shelf import Shelf, safe_name, stem_of
+from hymeko_x.assets.shelf import Shelf, safe_name
 from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.mechanism import Id, Mechanism, layer_edge, shape_edge
+from hymeko_x.ir.mechanism import Id, Mechanism, file_stem, layer_edge, shape_edge
 from hymeko_x.ir.parts import Material, Mesh, MeshShape, Role, Shape, Texture
 from hymeko_x.ir.values import IDENTITY
 from tests.assets.test_mesh import BOX, STL, dae
@@ -36,7 +36,7 @@ def png(colour: tuple[int, int, int] = (255, 0, 0), kind: str = "PNG") -> bytes:
 
 def with_meshes(*meshes: Mesh, role: Role = Role.VISUAL, material: Id | None = None) -> Mechanism:
     """One body with one shape per mesh."""
-    vertices = {Id("mesh", f"{stem_of(mesh.uri or 'inline')}/{n}"): mesh for n, mesh in enumerate(meshes)}
+    vertices = {Id("mesh", f"{file_stem(mesh.uri or 'inline')}/{n}"): mesh for n, mesh in enumerate(meshes)}
     edges = {
         Id("shape", f"s{n}"): shape_edge(Shape(MeshShape(), role, f"s{n}"), body("b0"), IDENTITY, key, material)
         for n, key in enumerate(vertices)
@@ -310,7 +310,7 @@ def test_two_files_that_want_the_same_place_do_not_overwrite_each_other() -> Non
 
 @given(st.text(max_size=200))
 def test_a_file_name_never_leads_anywhere(name: str) -> None:
-    safe = safe_name(stem_of(name))
+    safe = safe_name(file_stem(name))
     assert safe
     assert not safe.startswith(".")
     assert not set(safe) & set('/\\:*?"<>|\0\n')

@@ -155,7 +155,15 @@ def test_many_equal_names_are_given_out_in_linear_time() -> None:
 
 @pytest.mark.parametrize(
     ("uri", "stem"),
-    [("package://a/b/hip.stl", "hip"), ("C:\\meshes\\hip.v2.obj", "hip.v2"), ("hip", "hip"), ("a/b/", "b"), ("", "file"), (".obj", ".obj")],
+    [
+        ("package://a/b/hip.stl", "hip"),
+        ("C:\\meshes\\hip.v2.obj", "hip.v2"),
+        ("hip", "hip"),
+        ("a/b/", "b"),
+        ("", ""),
+        (".obj", ".obj"),
+        ("a.usdz[b/hip.png]", "hip"),
+    ],
 )
 def test_an_asset_is_called_after_its_file(uri: str, stem: str) -> None:
     assert file_stem(uri) == stem

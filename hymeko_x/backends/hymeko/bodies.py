@@ -200,7 +200,7 @@ def given_names(mechanism: Mechanism, inline: Mapping[Id, Id]) -> frozenset[Id]:
     given: set[Id] = set()
     for key in inline:
         part = mechanism.graph.vertices[key]
-        if isinstance(part, parts.Mesh) and part.uri is not None and names.free("mesh", file_stem(part.uri)) != key:
+        if isinstance(part, parts.Mesh) and part.uri is not None and names.free("mesh", file_stem(part.uri) or "mesh") != key:
             given.add(key)
         names.take(*key)
     return frozenset(given)

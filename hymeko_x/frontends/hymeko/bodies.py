@@ -238,7 +238,7 @@ def _inline_mesh(build: Build, block: Block, uri: str, item: Field) -> Id:
         single = not is_list(value)
         scale = (context.number(value, "", scale_item),) * 3 if single else context.vec3(value, "", scale_item)
     given = block.take_text("mesh_id")
-    key = build.reserve("mesh", given, item) if given is not None else build.name_after_place("mesh", file_stem(uri), item)
+    key = build.reserve("mesh", given, item) if given is not None else build.name_after_place("mesh", file_stem(uri) or "mesh", item)
     build.vertices[key] = parts.Mesh(build_uri(build, uri), scale)
     return key
 

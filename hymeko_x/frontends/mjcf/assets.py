@@ -55,7 +55,7 @@ def read_mesh(element: Element, draft: Draft) -> None:
     file = element.take("file")
     uri = None if file is None else _uri(element, file, draft.settings.mesh_folder, draft)
     name = element.take("name") or None
-    stem = posixpath.basename(file_stem(uri)) if uri else ""
+    stem = file_stem(uri or "")
     if not (name or stem):
         raise refuse(codes.BAD_NAME, "<mesh> needs a name or a file", element.origin)
     key = draft.names.take("mesh", name or stem)
@@ -90,7 +90,7 @@ def read_texture(element: Element, draft: Draft) -> None:
     file = element.take("file")
     uri = None if file is None else _uri(element, file, draft.settings.texture_folder, draft)
     name = element.take("name") or None
-    stem = file_stem(uri) if uri else ""
+    stem = file_stem(uri or "")
     if not (name or stem) and element.attributes.get("type") != "skybox":
         raise refuse(codes.BAD_NAME, "<texture> needs a name or a file, unless it is a skybox", element.origin)
     key = draft.names.take("texture", name or stem or "texture")

@@ -117,7 +117,7 @@ def _rename_files(element: Element, folder: str, settings: Settings, handover: H
         if own:
             handover.said[token] = said
         if name == "file" and element.tag in _NAMED_BY_FILE:
-            element.attributes.setdefault("name", file_stem(said))
+            element.attributes.setdefault("name", file_stem(said) or element.tag)
         path = source.files.find(uri)
         if path is not None and token not in handover.assets:
             with contextlib.suppress(OSError):  # to MuJoCo it is missing, which it says where it needs it

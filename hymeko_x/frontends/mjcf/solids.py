@@ -40,7 +40,7 @@ def _is_fitted(mechanism: Mechanism, view: ShapeView) -> bool:
 def solid_mesh(mechanism: Mechanism, mujoco: Any, model: Any, key: Id) -> Mesh:
     """A mesh with its points and triangles where MuJoCo has them, in the frame that poses of shapes mean."""
     mesh = mechanism.vertex(key, Mesh)
-    names = [mesh.name, key.name, file_stem(mesh.uri) if mesh.uri else None]
+    names = [mesh.name, key.name, file_stem(mesh.uri or "")]
     found = (mujoco.mj_name2id(model, mujoco.mjtObj.mjOBJ_MESH, name) for name in names if name)
     number = next((number for number in found if number >= 0), -1)
     if number < 0:

@@ -159,9 +159,3 @@ def _turned(origin: Node, xyz: tuple[float, ...], draft: Draft) -> Pose:
 def _vector(numbers: tuple[float, ...]) -> Vec3:
     x, y, z = numbers
     return (x, y, z)
-
-
-def stem(uri: str) -> str:
-    """The name of a file without its folders and its suffix."""
-    name = uri.replace("\\", "/").rpartition("/")[2]
-    return name.rpartition(".")[0] or name

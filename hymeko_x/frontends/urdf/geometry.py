@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml import read_numbers, take_numbers
-from hymeko_x.frontends.urdf.draft import stem
+from hymeko_x.ir.mechanism import file_stem
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
 
 if TYPE_CHECKING:
@@ -117,7 +117,7 @@ def _read_mesh(node: Node, draft: Draft) -> Id:
     known = draft.meshes.get((uri, scale))
     if known is not None:
         return known
-    key = draft.names.take("mesh", stem(uri) or "mesh")
+    key = draft.names.take("mesh", file_stem(uri) or "mesh")
     draft.vertices[key] = Mesh(uri or None, scale)
     draft.origins[key] = node.origin
     draft.meshes[uri, scale] = key

@@ -13,8 +13,8 @@ from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import Defined
 from hymeko_x.formats.xml import take_numbers
-from hymeko_x.frontends.urdf.draft import Looks, stem
-from hymeko_x.ir.mechanism import Id, layer_edge
+from hymeko_x.frontends.urdf.draft import Looks
+from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
 from hymeko_x.ir.parts import Material, Texture
 
 if TYPE_CHECKING:
@@ -154,7 +154,7 @@ def _add(looks: Looks, name: str | None, draft: Draft) -> None:
         return
     texture = draft.textures.get(looks.texture)
     if texture is None:
-        texture = draft.names.take("texture", stem(looks.texture) or "texture")
+        texture = draft.names.take("texture", file_stem(looks.texture) or "texture")
         draft.textures[looks.texture] = texture
         draft.vertices[texture] = Texture(looks.texture)
     draft.edges[draft.names.take("layer", looks.id.name)] = layer_edge(texture, looks.id)
