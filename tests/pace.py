@@ -13,8 +13,7 @@ ROUNDS = 5
 
 
 def seconds(work: Callable[[], object]) -> float:
-    """Processor time without what a collector of cycles finds in a process full of other tests."""
-    gc.collect()
+    """Processor time, without a collector of cycles that would look through a process full of other tests."""
     gc.disable()
     try:
         start = time.process_time()
