@@ -66,12 +66,20 @@ class RealRobots:
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """`@pytest.mark.robots("urdf")` runs a test once for each development file of that format, as its argument ``robot`` (a path)."""
+    """`@pytest.mark.robots("urdf")` runs a test once for each development file of that format, as its argument ``robot`` (a path).
+
+    With ``every=3`` each third file has its turn in `make test`, all have it in `make test-full`.
+    """
     mark = metafunc.definition.get_closest_marker("robots")
     if mark is None:
         return
     files = [file for format in mark.args for file in catalog.development_files(format)]
-    metafunc.parametrize("robot", [pytest.param(file, id=file.id, marks=pytest.mark.corpus) for file in files], indirect=True)
+    every = mark.kwargs.get("every", 1)
+    robots = []
+    for number, file in enumerate(files):
+        later = [pytest.mark.full] if number % every else []
+        robots.append(pytest.param(file, id=file.id, marks=[pytest.mark.corpus, *later]))
+    metafunc.parametrize("robot", robots, indirect=True)
 
 
 @pytest.fixture

@@ -43,7 +43,7 @@ def test_every_real_robot_is_the_same_in_mjcf(robot: Path, tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-@pytest.mark.robots("mjcf")
+@pytest.mark.robots("mjcf", every=3)
 def test_a_real_mjcf_is_the_same_as_itself(robot: Path) -> None:
     assert hx.verify(robot, robot, samples=2, meshes=False).verdict == "same"
 
