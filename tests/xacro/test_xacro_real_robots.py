@@ -82,13 +82,13 @@ def members(text: bytes) -> list[object]:
     return [sorted(root.items()), *(of(element) for element in root.iterchildren("*"))]
 
 
-@pytest.mark.robots("xacro", every=2)
+@pytest.mark.robots("xacro")
 def test_a_real_robot_expands_as_xacro_itself_does(robot: Path, corpus_root: Path) -> None:
     library = Library(corpus_root / "corpus" / robot.relative_to(corpus_root / "corpus").parts[0])
     assert canonical(expand(disk.open_source(str(robot)), Report()).text) == canonical(library.expand(robot))
 
 
-@pytest.mark.robots("xacro", every=2)
+@pytest.mark.robots("xacro")
 def test_the_urdf_of_a_real_robot_is_its_expansion(robot: Path) -> None:
     """Element for element, as far as URDF has a meaning: the URDF backend has one order for what is in a link or joint."""
     source = disk.open_source(str(robot))
@@ -97,7 +97,7 @@ def test_the_urdf_of_a_real_robot_is_its_expansion(robot: Path) -> None:
     assert members(urdf.write(mechanism, Report()).main) == members(expand(source, Report()).text)
 
 
-@pytest.mark.robots("xacro", every=2)
+@pytest.mark.robots("xacro")
 def test_a_real_robot_converts_to_hymeko_urdf_and_mjcf(robot: Path) -> None:
     source = disk.open_source(str(robot))
     mechanism = read(source, Report())
@@ -107,7 +107,7 @@ def test_a_real_robot_converts_to_hymeko_urdf_and_mjcf(robot: Path) -> None:
     assert b"<mujoco" in pipeline.write(mechanism, formats.by_name("mjcf"), Options(), source.files, Report()).main
 
 
-@pytest.mark.robots("xacro", every=2)
+@pytest.mark.robots("xacro")
 def test_every_element_of_a_real_robot_stands_where_its_file_says(robot: Path) -> None:
     """Each link and joint is written on its line: the line begins the tag, in whichever file it is."""
     mechanism = read(disk.open_source(str(robot)), Report())

@@ -152,7 +152,7 @@ def test_the_xacro_of_a_real_robot_expands_to_its_urdf(robot: Path) -> None:
     check(load(robot.read_bytes()))
 
 
-@pytest.mark.robots("xacro", every=2)
+@pytest.mark.robots("xacro")
 def test_xacro_through_a_mechanism_and_back_is_the_expansion_of_the_source(robot: Path) -> None:
     source = disk.open_source(str(robot))
     mechanism = read(source, Report())
@@ -160,7 +160,7 @@ def test_xacro_through_a_mechanism_and_back_is_the_expansion_of_the_source(robot
     assert diff(mechanism, read(Source("again.xacro", text.encode()), Report())) == ()
 
 
-@pytest.mark.robots("xacro", every=2)
+@pytest.mark.robots("xacro")
 def test_macros_in_a_file_of_their_own_expand_to_the_same(robot: Path, tmp_path: Path) -> None:
     source = disk.open_source(str(robot))
     mechanism = read(source, Report())
