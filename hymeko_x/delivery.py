@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes, disk, pipeline
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Report
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from hymeko_x.formats import Format
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Delivery:
     """A mechanism, and how and where its output goes; ``path`` is empty where only the main file is wanted."""
 

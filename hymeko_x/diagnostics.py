@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING
 
+from hymeko_x.frozen import frozen
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
@@ -30,7 +32,7 @@ class Severity(Enum):
 _RANKS = {Severity.NOTE: 0, Severity.WARNING: 1, Severity.ERROR: 2}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Code:
     """A stable name for one kind of statement.
 
@@ -43,7 +45,7 @@ class Code:
     explanation: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Origin:
     """A place in an input: the file as the user named it, and one-based line and column (None = unknown)."""
 
@@ -55,7 +57,7 @@ class Origin:
         return ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Diagnostic:
     """One statement. ``element`` is what it is about (``joint 'elbow'``), ``hint`` what the user can do.
 

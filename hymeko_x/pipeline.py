@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
@@ -13,6 +13,7 @@ from hymeko_x.assets.stored import with_stored_meshes
 from hymeko_x.collector import uncollected
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.carrier import taken_off
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.leaves import leaves_again, leaves_between
 from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.legalize_native import is_native
@@ -57,7 +58,7 @@ class Carrier(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Place:
     """Where the output goes: its ``folder``, and whether files go beside it or are referred to (None = the format's own way)."""
 
@@ -69,7 +70,7 @@ HERE = Place()
 """The working folder."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Result:
     """What a conversion made. ``losses`` is None when the target cannot be read back, so that nothing was measured.
 

@@ -7,8 +7,10 @@ Nothing here touches a disk. The shell gives a frontend a :class:`Source` whose 
 from __future__ import annotations
 
 import posixpath
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Protocol
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -41,7 +43,7 @@ class NoFiles:
         raise FileNotFoundError(path)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Source:
     """One input: its name as the user typed it (used in messages), its bytes, and the files around it.
 
@@ -58,7 +60,7 @@ class Source:
     variants: Mapping[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Package:
     """One output: the main file's bytes and the files beside it, by relative path with forward slashes.
 
@@ -70,7 +72,7 @@ class Package:
     copies: Mapping[str, str] = field(default_factory=dict)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PackageFiles:
     """The files of a package that has not been written yet; a :class:`Files`."""
 
@@ -89,7 +91,7 @@ class PackageFiles:
         return self.behind.read(self.package.copies.get(path, path))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PlacedFiles:
     """The files of a mechanism that another file carried: what is not where it was lies where that file has it."""
 

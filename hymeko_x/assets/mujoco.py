@@ -11,6 +11,7 @@ from hymeko_x import codes
 from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
 from hymeko_x.assets.texture import UnreadableImage, png_bytes
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.additions import Additions
 from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge
@@ -43,7 +44,7 @@ _File = tuple[str, bytes]
 """A file as it was found: its path and its content."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Piece:
     """What one mesh vertex becomes: a file, the look that it brings along, and whether it is a mere surface."""
 

@@ -8,12 +8,12 @@ no output ever leads out of its folder.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import Shelf
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import ROOT
@@ -30,7 +30,7 @@ Mode = Literal["copy", "reference"]
 Packer = Callable[["Mechanism", Shelf, "Files", "Report"], "Mechanism"]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Policy:
     """What a target does with files: its own default, and how it packs in either mode."""
 

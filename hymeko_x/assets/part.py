@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.parts import Mesh
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class Table(NamedTuple):
     order: NDArray[np.intp] | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Look:
     """A surface as a mesh file describes it: its name there, its colour, and the bytes of its image with the name of its file."""
 
@@ -53,7 +54,7 @@ class Look:
     file: str = ""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Part:
     """The triangles of a mesh file that have one look (None = the file says nothing about it).
 

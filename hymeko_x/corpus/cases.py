@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes, formats
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal, refuse
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -20,7 +20,7 @@ _HEAD = 65536
 _HYMEKO_SUFFIXES = (".hymeko", ".himeko")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Case:
     """One robot file. ``folder`` holds it and everything that it may read; a path or an fsspec URL. ``path`` is relative to it."""
 

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -31,7 +32,7 @@ LICENCE_WORDS = ("licen", "copying", "copyright", "notice", "authors", "metadata
 """A file without a known suffix is unpacked if its name begins with one of these (lower case)."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class WheelPackage:
     """One published wheel that carries robots. ``only`` are path prefixes inside it; empty means everything.
 
@@ -68,7 +69,7 @@ class WheelPackage:
         return path.suffix in DATA_SUFFIXES or path.name.startswith(LICENCE_WORDS)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class DevelopmentFile:
     """A real robot that the tests read: its format, the package that carries it and its path inside that package."""
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import gzip
 import json
 import re
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,7 +27,7 @@ MOST_BYTES = 2**20
 """Longer texts hold the points of meshes, which says nothing about the language; of them only the bytes are counted."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Lengths:
     """``characters`` are those that are no white space, ``code`` those of them that stand outside comments.
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x import formats
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -14,7 +15,7 @@ READ, ENGINE, CONVERT, VERIFY = "read", "engine", "convert", "verify"
 """The steps of one file: our reader, the format's reference reader, and for each target a conversion and its verification."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Limits:
     """What one process may use: wall-clock seconds, and bytes of memory, of which MuJoCo reserves some that it never touches."""
 
@@ -22,7 +23,7 @@ class Limits:
     bytes: int = 5 * 2**30
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Plan:
     """``pairs`` are (source, target) formats; ``samples`` and ``meshes`` go to the verifier."""
 

@@ -6,8 +6,10 @@ are kept apart, so that the facts of two runs can be compared byte for byte.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,7 +20,7 @@ CRASHED, TIMED_OUT, OUT_OF_MEMORY, UNREAD = "crashed", "timed out", "out of memo
 """The answers of a step that did not; and of a conversion whose source could not be read."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Robot:
     """One file as it was found. ``engine`` says what the format's reference reader did, ``reader`` which one that was where it
     accepts the file; ``whole`` is False where other files of the format are included, so that the lengths are not those of
@@ -46,7 +48,7 @@ class Robot:
     diagnostics: Mapping[str, int] | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Leg:
     """One conversion: the lengths of the result, what its format cannot say by kind, what was said by code, and the verdict.
 
@@ -76,7 +78,7 @@ class Leg:
     failed: Mapping[str, str] | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Cost:
     """One step: its wall-clock seconds, the processor's seconds, and the peak memory of its process in MB while it lasted."""
 
@@ -87,7 +89,7 @@ class Cost:
     megabytes: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Outcome:
     """Everything about one file."""
 

@@ -5,11 +5,12 @@ Source: Hajdu & Hegyi, Appl. Mech. 2025, 6(4), 74, section 5 and its tables 4 an
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     import polars as pl
@@ -30,7 +31,7 @@ HYMEKO = "hymeko"
 _LONGEST_PLACE = 160
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Shortness:
     """Whether HyMeKo is shorter than a format, for robots that were found in ``source``.
 
@@ -133,7 +134,7 @@ def signed_rank(differences: Numbers) -> tuple[float, float]:
 # ---- pairs of formats ------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PairRow:
     """What became of the robots of one format in another one. Counted are those that the source's reference reader accepts.
 

@@ -7,13 +7,14 @@ MuJoCo makes of them, so that two ways of saying the same can be told from two w
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.formats.mjcf_classes import ANY_TURN, TURNS
 from hymeko_x.formats.xml import read_numbers
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.values import (
     NO_ROTATION,
     ZERO,
@@ -43,7 +44,7 @@ class BadAttribute(Exception):
         self.expected = expected
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Settings:
     """What <compiler> says about the meaning of numbers and file names."""
 
@@ -61,7 +62,7 @@ def _unknown(value: Any, said: Mapping[str, str], settings: Settings) -> bool:
     return False
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Group:
     """Attributes that make one value. Each is equal to itself alone.
 
@@ -84,7 +85,7 @@ Asked = tuple[Group, tuple[str, ...]]
 """A group, and those of its attributes that an element says itself."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Plan:
     """How to read all groups of an element without asking each of them: most elements say few of their attributes.
 

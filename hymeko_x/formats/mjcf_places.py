@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x.formats.mjcf_classes import ANY_TURN, TURNS
@@ -30,6 +30,7 @@ from hymeko_x.formats.mjcf_codec import (
     written_turn,
 )
 from hymeko_x.formats.xml import read_numbers
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.parts import (
     Box,
     Capsule,
@@ -71,7 +72,7 @@ GRID = 0.05
 _MARK = 0.005
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Place:
     """What a geom is and where: its geometry, its pose, and the distance of a plane's grid lines in m."""
 

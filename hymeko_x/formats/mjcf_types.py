@@ -5,12 +5,12 @@ Source: MuJoCo 4.0 itself, asked about every attribute; `tests/mjcf/test_mjcf_va
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.mjcf_schema import attributes_of
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -162,7 +162,7 @@ fullinertia diaginertia: body/inertial
 """
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Kind:
     """What a value is: ``least`` to ``most`` numbers (``whole`` or not), or one of ``words`` (``several``: some of them)."""
 

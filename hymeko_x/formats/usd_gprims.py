@@ -6,11 +6,11 @@ Shared by reader and writer, so that sizes, axis and scale leave as their author
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Plane, Role, Sphere
 from hymeko_x.ir.values import NO_ROTATION, Quat, Vec3, X, Y, quat_about
 
@@ -44,7 +44,7 @@ _AXIAL = ("Cylinder", "Capsule", "Plane")
 _WRITTEN = re.compile(r"(\w+) ([XYZ]) ([^;]+); (.+)")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Gprim:
     """A primitive as a prim says it: type, sizes and axis, and the scale (in m per unit) of the space that they are in."""
 

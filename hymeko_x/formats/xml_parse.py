@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import codecs
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Report, refuse
 from hymeko_x.formats.xml import COMMENT_NODE, INSTRUCTION_NODE, Node
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -26,7 +26,7 @@ MAX_BYTES = 256 * 1024 * 1024
 MAX_DEPTH = 2048
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Document:
     """A read file: its root, the comments and processing instructions around it, and the text that was read, in UTF-8."""
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.leaves import TURN, leaves_between, leaves_of
@@ -45,7 +46,7 @@ class Difference(NamedTuple):
         return f"{place}: {self.before} -> {self.after}"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Tolerance:
     """How far numbers may be apart: |a - b| <= absolute + relative * max(|a|, |b|); rotations by their angle in rad."""
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -22,7 +23,7 @@ def _leaf_name(tag: str, leaf: str) -> str:
     return tag if leaf in ("name", "value", "") else leaf
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Dialect:
     """What things cost in a backend's text, in characters without white space, and how things are called there.
 

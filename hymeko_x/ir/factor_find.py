@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import itertools
 from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.factor_unify import unify
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ _MOST_PARAMETERS = 40
 _NUMERIC = frozenset("-.0123456789")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Family:
     """Runs that are instances of one macro, what they have in common, and how many characters the macro saves."""
 

@@ -7,10 +7,11 @@ exact and deterministic, as :mod:`hymeko_x.ir.factor` is for what has an order a
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from heapq import nsmallest
 from itertools import combinations
 from typing import TYPE_CHECKING
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -30,7 +31,7 @@ _MOST = 32
 """Sets that are found in one group of things."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Costs:
     """In letters: what stands around a definition, around a field, and what saying its set costs a row; and what a set must save."""
 
@@ -40,7 +41,7 @@ class Costs:
     least: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Shared:
     """Fields that several rows share, the numbers of those rows, and the number of the set that it refines."""
 

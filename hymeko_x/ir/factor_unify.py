@@ -13,6 +13,7 @@ from functools import lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.forms import Hole, Signed, joined
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ Signs = tuple[bool, ...]
 _MAGNITUDE = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Varying:
     """A place that differs: the whole values, and where that is possible what they are piece by piece."""
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 from dataclasses import fields, is_dataclass
 from functools import cache
 from math import copysign
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from hymeko_x.frozen import getter
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -45,21 +46,11 @@ def _layout_of(kind: Any) -> Layout | None:
         return None
     attributes = tuple(Attribute(f.name, f.default, f.compare) for f in fields(kind))
     counting = tuple(f for f in attributes if f.compare)
-    return Layout(attributes, _getter([f.name for f in attributes]), counting, _getter([f.name for f in counting]))
+    return Layout(attributes, getter([f.name for f in attributes]), counting, getter([f.name for f in counting]))
 
 
 layout_of: Callable[[Any], Layout | None] = cache(_layout_of)
 """The fields of a dataclass; None for every other type."""
-
-
-def _getter(names: list[str]) -> Callable[[object], tuple[Any, ...]]:
-    """What gets these attributes of an object, as a tuple however many there are."""
-    if len(names) > 1:
-        return attrgetter(*names)
-    if not names:
-        return lambda part: ()
-    one = attrgetter(names[0])
-    return lambda part: (one(part),)
 
 
 def identical(a: object, b: object) -> bool:

@@ -13,7 +13,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
-from hymeko_x.ir.quick import quick
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -27,8 +27,7 @@ W = TypeVar("W")
 T = TypeVar("T")
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Arc(Generic[K, W]):
     """One end of an edge: whom it points at, in which direction, with what weight and in which role."""
 
@@ -38,8 +37,7 @@ class Arc(Generic[K, W]):
     role: str = ""
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Edge(Generic[K, E, W]):
     """A relation: what it means, and its arcs in order."""
 

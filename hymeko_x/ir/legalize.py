@@ -7,11 +7,12 @@ second application changes nothing. Backends receive the result and only print.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import ROOT
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Options:
     """What the user chose for the output.
 

@@ -11,6 +11,7 @@ from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.values import IDENTITY, Pose
@@ -78,7 +79,7 @@ RobotEdge = Edge[Id, parts.EdgePart, parts.Weight]
 RobotGraph = Hypergraph[Id, parts.VertexPart, parts.EdgePart, parts.Weight]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Extra:
     """Something that a format said about an element and that has no word in the IR, verbatim.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
-from hymeko_x.ir.quick import quick
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.values import ZERO, Pose, Tensor, Vec3, Written, X
 
 Rgba = tuple[float, float, float, float]
@@ -20,8 +20,7 @@ Parameters = tuple[tuple[str, "float | str | tuple[float, ...]"], ...]
 # ---- vertices: bodies ----------------------------------------------------------------------------------------------------
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Inertial:
     """Mass in kg, centre of mass in m in the body frame, inertia tensor in kg m^2 about it in body axes. None = unspecified.
 
@@ -34,7 +33,7 @@ class Inertial:
     written: InertialWritten | None = field(default=None, compare=False)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class InertialWritten:
     """An inertia tensor as its author gave it: in the axes of ``frame`` (a pose at the centre of mass)."""
 
@@ -42,20 +41,19 @@ class InertialWritten:
     tensor: Tensor
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Body:
     """A rigid body. ``inertial`` None means that nothing was said about its mass."""
 
     inertial: Inertial | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class World:
     """The inertial frame. Exactly one vertex, ``WORLD``, carries it; its shapes are the world's geometry."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Frame:
     """A named pose on a body (an MJCF site, an SDF frame): a :class:`Mount` says where. ``size`` in m is for display."""
 
@@ -65,7 +63,7 @@ class Frame:
 # ---- vertices: looks and assets --------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Material:
     """A surface. ``name`` is what the author called it (ids are unique, names need not be); None colours are unspecified."""
 
@@ -79,7 +77,7 @@ class Material:
     roughness: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Texture:
     """An image, by uri as the source wrote it; a :class:`Layer` puts it on a material."""
 
@@ -107,7 +105,7 @@ class Mesh:
 # ---- vertices: things on a mechanism -----------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Actuator:
     """What drives: ``kind`` (motor, position, velocity, transmission, muscle, ...) and its parameters in order."""
 
@@ -115,7 +113,7 @@ class Actuator:
     parameters: Parameters = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sensor:
     """What measures: ``kind`` (imu, force, jointpos, ...), update ``rate`` in Hz, and its parameters in order."""
 
@@ -124,7 +122,7 @@ class Sensor:
     parameters: Parameters = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Camera:
     """A camera looking along its own -z, y up. ``fovy`` is the vertical field of view in rad."""
 
@@ -133,7 +131,7 @@ class Camera:
     parameters: Parameters = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Light:
     """A light shining along its own -z. ``kind``: spot, directional, point, image."""
 
@@ -142,7 +140,7 @@ class Light:
     parameters: Parameters = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PoseSet:
     """A named configuration (keyframe, group state): a :class:`Stance` edge says the value of each joint. ``time`` in s."""
 
@@ -154,7 +152,7 @@ class PoseSet:
 # ---- vertices: lumped elements of the dynamics dialect -----------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Spring:
     """A lumped spring: ``stiffness`` in N/m or Nm/rad, ``rest`` length or angle."""
 
@@ -162,21 +160,21 @@ class Spring:
     rest: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Damper:
     """A lumped damper: ``damping`` in Ns/m or Nms/rad."""
 
     damping: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mass:
     """A lumped mass in kg, or moment of inertia in kg m^2."""
 
     mass: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Port:
     """Where effort or flow enters from outside: ``kind`` is ground, effort or flow; ``value`` its constant part."""
 
@@ -184,7 +182,7 @@ class Port:
     value: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Datum:
     """A vertex that only carries data: whatever a hypergraph says that no robot part means."""
 
@@ -194,21 +192,21 @@ class Datum:
 # ---- edges: shapes and mounts --------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Box:
     """Full edge lengths in m, centred."""
 
     size: Vec3
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sphere:
     """Radius in m, centred."""
 
     radius: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Cylinder:
     """Radius and full length in m along z, centred."""
 
@@ -216,7 +214,7 @@ class Cylinder:
     length: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Capsule:
     """Radius and length in m along z without the caps, centred."""
 
@@ -224,26 +222,26 @@ class Capsule:
     length: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ellipsoid:
     """The three half axes in m, centred."""
 
     radii: Vec3
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Plane:
     """The xy plane with normal z; half extents in m for display, 0 = infinite."""
 
     half_size: tuple[float, float] = (0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MeshShape:
     """The mesh that the shape's arc of role ``mesh`` points at."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NoShape:
     """A geometry that the source left empty or wrote in a way that nobody understands; its text is an Extra."""
 
@@ -259,8 +257,7 @@ class Role(Enum):
     BOTH = "both"
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Shape:
     """A geometry on a body. Arcs: ``+ body`` weight Pose (shape frame in the body); ``~ mesh``; ``~ material`` (roles so named).
 
@@ -277,19 +274,19 @@ class Shape:
     friction: tuple[float, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mount:
     """Where a frame, camera, light or sensor sits. Arcs: ``+ body`` weight Pose (its frame in the body), ``- thing``."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Layer:
     """A texture on a material. Arcs: ``+ texture``, ``- material``. ``use``: rgb, normal, occlusion, roughness, metallic, ..."""
 
     use: str = "rgb"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Subset:
     """Triangles of a shape's mesh that show another material than the rest of it. Arcs: ``+ shape``, ``- material``.
 
@@ -312,8 +309,7 @@ class DofKind(Enum):
     FREE = "free"
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Limits:
     """Bounds of one dof in rad or m and s, N or Nm; None = unlimited."""
 
@@ -328,8 +324,7 @@ class Limits:
 UNLIMITED = Limits()
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Safety:
     """A soft-limit controller (URDF <safety_controller>): soft bounds in rad or m, gains in 1/s and Nms/rad or Ns/m."""
 
@@ -339,7 +334,7 @@ class Safety:
     soft_upper: float = 0.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Calibration:
     """Reference positions for homing (URDF <calibration>), in rad or m."""
 
@@ -348,8 +343,7 @@ class Calibration:
     reference: float | None = None
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Dof:
     """One degree of freedom of a joint, given in the joint frame.
 
@@ -376,8 +370,7 @@ class Dof:
     written: Written | None = field(default=None, compare=False)
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Joint:
     """A connection in the tree with ordered dofs; none = fixed.
 
@@ -388,7 +381,7 @@ class Joint:
     dofs: tuple[Dof, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Coupling:
     """A joint or tendon that follows others. Arcs: ``+ follower`` weight (1,), ``- leader`` weight (c0, c1, ...).
 
@@ -398,7 +391,7 @@ class Coupling:
     active: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Loop:
     """A closure of the tree. Arcs: ``~`` two or more bodies or frames, weight Pose (the closure's frame in each).
 
@@ -411,7 +404,7 @@ class Loop:
     parameters: Parameters = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Tendon:
     """A cable or a linear combination. ``kind`` fixed: arcs ``+ joint`` weight (coefficient,).
 
@@ -430,7 +423,7 @@ class Tendon:
     parameters: Parameters = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Drive:
     """Who drives what. Arcs: ``+ actuator``, ``- joint | tendon | frame | body`` weight gear numbers."""
 
@@ -438,17 +431,17 @@ class Drive:
     parameters: Parameters = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sense:
     """Who measures what. Arcs: ``+ body | frame | joint | ...``, ``- sensor``; a reference is an arc of role ``reference``."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Stance:
     """The values of a named configuration. Arcs: ``+ pose set``, ``~ joint`` weight its coordinates in rad or m."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Contact:
     """``kind`` pair (these shapes collide) or exclude (these bodies do not). Arcs: ``~`` the two shapes or bodies."""
 
@@ -456,12 +449,12 @@ class Contact:
     parameters: Parameters = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Constitutive:
     """An n-ary relation of the dynamics dialect: ``+`` effort enters through this element, ``-`` it acts on that one."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Relation:
     """An edge of a plain hypergraph that means nothing in particular."""
 

@@ -8,11 +8,11 @@ format writes it back digit by digit; no comparison looks at it.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import lru_cache
 from typing import NamedTuple
 
-from hymeko_x.ir.quick import quick
+from hymeko_x.frozen import frozen
 
 Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
@@ -35,8 +35,7 @@ class Written(NamedTuple):
     numbers: tuple[float, ...]
 
 
-@quick
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pose:
     """A rigid transformation: position ``xyz`` in m and unit quaternion ``quat`` (w, x, y, z) of the rotation.
 

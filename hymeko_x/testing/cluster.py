@@ -9,10 +9,11 @@ import subprocess
 import sys
 import time
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +25,7 @@ _RAY = Path(sys.executable).with_name("ray")
 _PATIENCE = 60.0  # s, for the first node
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Cluster:
     """Where it answers, and the process of each node; the first one is its head."""
 

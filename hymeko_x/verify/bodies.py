@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import WORLD, Array, Body, Kind, KinematicModel
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def _spelled(model: KinematicModel, taken: Iterable[int]) -> dict[str, int]:
     return {name: i for name, i in names if counts[name] == 1}
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class _Limb:
     """An unmatched body below a matched one, maybe behind bodies that only carry dofs.
 

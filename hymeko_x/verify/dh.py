@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import itertools
 import math
-from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
@@ -24,6 +23,7 @@ import numpy as np
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.dh_lines import Frame, Line, Link, link_between, motion
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import WORLD, Array, Kind, KinematicModel
@@ -40,7 +40,7 @@ class Convention(Enum):
     HAYATI = "hayati"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Row:
     """One joint: theta in rad and d in m, to which its coordinate adds (theta of a hinge, d of a slide), and its link.
 
@@ -57,7 +57,7 @@ class Row:
     beta: float = 0.0
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Table:
     """The rows of a chain between two constants: T(q) = ``base`` * rows(q) * ``tool``, the tip's pose in the base's frame.
 

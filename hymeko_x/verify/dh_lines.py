@@ -6,10 +6,11 @@ Plain tuples and floats: a chain has a handful of axes, and one number at a time
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from hymeko_x.verify.model import Array
@@ -26,7 +27,7 @@ TOUCHING = 1e-10
 """The distance in m below which two lines meet, or coincide when they are parallel."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Line:
     """A joint's axis in its positive sense: through ``point``, along unit ``axis``. Of a slide only the direction is physical."""
 
@@ -35,7 +36,7 @@ class Line:
     sliding: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Frame:
     """A right-handed frame: origin and axes."""
 
@@ -59,7 +60,7 @@ class Frame:
         return dot(minus(point, self.o), self.z)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Link:
     """J = Rz(theta) Tz(d) along one line, then L = Tx(a) Rx(alpha) Ry(beta) to the next."""
 

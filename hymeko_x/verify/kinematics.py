@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import Array, Index, Kind, KinematicModel
 from hymeko_x.verify.spatial import rigid, rotation_about, rotation_from_quat
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _POSES_AT_ONCE = 20_000  # bounds the memory of one batch to a few MB, however many samples are asked for
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class _Slot:
     """The k-th dof of every body that has one, of one kind: which bodies, which columns, and the dofs' constants."""
 
@@ -29,7 +29,7 @@ class _Slot:
     pitches: Array
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Kinematics:
     """A model prepared for batched forward kinematics. Make it with :func:`prepare`."""
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.bodies import only_carries, pair_by_name, pair_by_structure, plain
 from hymeko_x.verify.model import WORLD, Kind, KinematicModel
 
@@ -22,7 +23,7 @@ _TURNING = (Kind.HINGE, Kind.BALL, Kind.SCREW, Kind.FREE)
 _SAME_MOTION = {Kind.SCREW: Kind.HINGE}  # a screw's angle is the coordinate of the hinge that stands for it
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Finding:
     """Something that has no counterpart: the quantity that it belongs to, and words that name it."""
 
@@ -30,7 +31,7 @@ class Finding:
     words: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Turned:
     """A body whose rotation is one quaternion on one side and three hinges on the other.
 
@@ -68,7 +69,7 @@ class Match:
         self.findings.append(Finding(quantity, words))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Path:
     """From a matched body up to the nearest matched ancestor: the bodies in between and at the end, and their dofs, from the top."""
 

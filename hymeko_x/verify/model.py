@@ -20,6 +20,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from hymeko_x.frozen import frozen
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
@@ -83,7 +85,7 @@ class Feature(Enum):
     CURVES = "couplings that are no straight line of one leader"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Dof:
     """One degree of freedom. ``axis`` is unit, in the body's frame; bounds are infinite where there are none.
 
@@ -109,7 +111,7 @@ class Dof:
     nonlinear: tuple[float, ...] = ()
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Joint:
     """The joint above a body. No dofs = fixed; ``open`` marks a root that its format leaves unattached (URDF's)."""
 
@@ -139,7 +141,7 @@ class Role(Enum):
     BOTH = "both"
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Surface:
     """The triangles of a mesh in its own frame after scaling: ``vertices`` (n, 3) in m and ``faces`` (m, 3).
 
@@ -151,7 +153,7 @@ class Surface:
     polygons: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MeshFile:
     """A mesh that is read only when it is compared: ``path`` is None when the file was not found."""
 
@@ -160,7 +162,7 @@ class MeshFile:
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Shape:
     """A geometry on a body: ``pose`` in the body frame; ``size`` in m.
 
@@ -176,7 +178,7 @@ class Shape:
     mesh: Surface | MeshFile | None = None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Body:
     """A rigid body: mass in kg, centre of mass in m and tensor about it in kg m^2, both in body axes.
 
@@ -196,7 +198,7 @@ class Body:
     shaped: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Coupling:
     """A scalar dof that follows: q = constant + sum over leaders of c1 q + c2 q^2 + ... in absolute coordinates.
 
@@ -214,7 +216,7 @@ class Coupling:
         return len(self.leaders) < 2 and not any(any(coefficients[1:]) for _, coefficients in self.leaders)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Loop:
     """A closure: frame ``pose_a`` on body a meets ``pose_b`` on body b.
 
@@ -231,7 +233,7 @@ class Loop:
     words: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Part:
     """Something that is compared word by word and number by number: an actuator or a coupling of tendons, and what it acts on."""
 

@@ -7,12 +7,12 @@ coordinates and do not change them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio as pin
 
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import WORLD, Array, Body, Dof, Index, Kind, KinematicModel
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ GRAVITY = (0.0, 0.0, -9.81)
 _VELOCITIES = {Kind.HINGE: 1, Kind.SLIDE: 1, Kind.SCREW: 1, Kind.BALL: 3, Kind.FREE: 6}
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class PinModel:
     """One tree of a model in Pinocchio.
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from hymeko_x.verify.model import Array
@@ -20,7 +21,7 @@ def point_of(numbers: Array) -> Point:
     return x, y, z
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Step:
     """One step of a path. ``on``: the dof of a joint, the body of everything else but a pulley, as indices into the model.
 
@@ -35,7 +36,7 @@ class Step:
     axis: Point | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Spring:
     """The lengths between which a tendon pulls and pushes nothing.
 
@@ -49,7 +50,7 @@ class Spring:
 RELAXED = Spring()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Tendon:
     """A cable through points and around shapes, or a weighted sum of joint coordinates.
 

@@ -8,11 +8,11 @@ Source: Hajdu and Hegyi, Appl. Mech. 2025, 6(4), 74, section 4.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.frozen import frozen
 from hymeko_x.ir import parts
 from hymeko_x.ir.legalize_inertia import principal_moments
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView
@@ -36,7 +36,7 @@ class Profile(Enum):
     DISPLAY = "display"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Declared:
     """How many links and joints the robot's author says that there are; None = not said."""
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Literal
+
+from hymeko_x.frozen import frozen
 
 Answer = Literal["same", "different", "not comparable"]
 Json = dict[str, "str | float | bool | list[str] | list[dict[str, str | float | bool | None]] | None"]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Check:
     """One quantity: its worst difference in its unit, where that is, and how much is allowed."""
 
@@ -37,7 +38,7 @@ class Check:
         }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Verdict:
     """The answer. ``engines`` are the two readers; ``reason`` says why robots are not comparable."""
 

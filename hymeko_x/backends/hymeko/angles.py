@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir import parts
 from hymeko_x.ir.values import Pose, number_text
 from hymeko_x.language.syntax import Quantity
@@ -24,7 +24,7 @@ TURNING = frozenset({parts.DofKind.HINGE, parts.DofKind.BALL, parts.DofKind.SCRE
 """The dofs whose coordinates are angles."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Angles:
     """How plain angles are written: in degrees or in radians."""
 

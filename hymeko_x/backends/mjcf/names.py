@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.legalize_joints import dof_number
 from hymeko_x.ir.parts import Mesh, Texture
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Dof
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Printed:
     """Printed names by id, for the kinds whose elements carry a name of their own; all others print their id's name."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 from math import isinf
 from types import MappingProxyType
@@ -18,6 +17,7 @@ from hymeko_x.formats.mjcf_types import EXCLUSIVE, FILLED, REQUIRED, kinds_of
 from hymeko_x.formats.xml import read_numbers
 from hymeko_x.frontends.mjcf.references import Reference, references_at, references_of
 from hymeko_x.frontends.mjcf.rules import complaint, rules_of
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import file_stem
 from hymeko_x.ir.values import number_text
 
@@ -54,7 +54,7 @@ _NAMED_APART: Mapping[str, str] = MappingProxyType(
 """Elements of which the IR has no part, and those that share their names with such: what their names must not be twice among."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Words:
     """The ``names`` of elements of which the IR has no part, by kind, with their places; ``references`` that have no arc; all ``tags``."""
 
@@ -63,7 +63,7 @@ class Words:
     tags: frozenset[str]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Place:
     """What is known of the elements of a place of the schema.
 

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.values import IDENTITY, Pose, compose
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Spot:
     """The body of an element, the <frame> around it (its number, empty for none) with its pose in the body, and the childclass.
 

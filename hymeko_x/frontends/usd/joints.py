@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
@@ -11,6 +11,7 @@ from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.dialects import with_dialect
 from hymeko_x.frontends.usd.places import turn_of
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
 from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, compose, inverse
@@ -35,7 +36,7 @@ TYPES = (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class End:
     """One side of a joint: the body (or the world) and the joint's frame in it."""
 
@@ -43,7 +44,7 @@ class End:
     pose: Pose
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ReadJoint:
     """A joint as its prim says it, not yet part of a tree: ``ends`` are those of body0 and body1.
 

@@ -5,7 +5,6 @@ An extra is the text of a prim in USD's own language, without its children; its 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Usd, UsdGeom
@@ -13,6 +12,7 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.places import matrix_of, placed
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import ROOT, Extra
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def _home(key: Id, path: str, draft: Draft) -> str:
     return noted.split()[0] if " " in noted else path
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Rest:
     """What was not read of a prim: whether its type was not, its schemas, metadata and properties, and where it stands now."""
 

@@ -11,7 +11,6 @@ import posixpath
 import re
 import tempfile
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +22,7 @@ from hymeko_x.frontends.usd.prims import read_layer
 from hymeko_x.frontends.usd.size import check_depth, check_paths, check_size
 from hymeko_x.frontends.usd.types import drop_unknown_types
 from hymeko_x.frontends.usd.unpack import lay_out
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -42,7 +42,7 @@ _UP = 8
 _SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Scene:
     """An open stage in its own units; ``world`` turns its world into metres with z up; ``folder`` is where its layers lie.
 

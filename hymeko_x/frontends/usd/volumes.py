@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, MeshShape, Sphere
 from hymeko_x.ir.values import Tensor, Vec3, apply, rotate_tensor
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.values import Pose
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Solid:
     """Mass in kg, centre of mass in m and tensor in kg m^2 about it, in the axes of the body."""
 

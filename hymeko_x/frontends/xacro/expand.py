@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 from hymeko_x import codes
 from hymeko_x.diagnostics import Diagnostic, Origin, refuse
 from hymeko_x.frontends.xacro import wording
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -37,7 +38,7 @@ MOST_BYTES = 2**30
 MOST_SOURCE = 2**28
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Limits:
     """What an expansion may use: a hundred times what a real robot needs, and some 25,000 links of macros."""
 

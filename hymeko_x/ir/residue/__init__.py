@@ -15,8 +15,10 @@ several dofs as a chain. They are not entries but a :class:`Bridge`, which is cr
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from hymeko_x.ir.leaves import Path
@@ -40,7 +42,7 @@ class Join(NamedTuple):
     twin: Id
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bridge:
     """How the image says the same in other words.
 
@@ -85,7 +87,7 @@ class Run(NamedTuple):
     elements: tuple[Id, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sides:
     """The side tables of the source where they differ: None takes an entry away.
 
@@ -101,7 +103,7 @@ class Sides:
     """Extras that only the image has, by digest."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Residue:
     """All of it. ``known`` are the digests by which renamed elements are found."""
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.dh import zero_poses
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.sampling import bounds, draw, follow
@@ -162,7 +163,7 @@ def _turn_alike(a: KinematicModel, b: KinematicModel, turned: Sequence[Turned], 
         ball.q[:, ball.column : ball.column + 4] = quat_from_rotation(np.swapaxes(at_rest, 1, 2) @ wanted)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class _Side:
     """One robot's dofs of a joint that turns every way: from the body ``top`` to the body ``below``."""
 

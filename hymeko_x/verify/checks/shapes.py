@@ -7,11 +7,12 @@ and points, because one file on one side may be several on the other.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.checks.pair import Pair, counted, worst
 from hymeko_x.verify.checks.stand_ins import stands_for
 from hymeko_x.verify.model import WORLD, Array, Feature, Index, MeshFile, Role, Shape
@@ -32,7 +33,7 @@ _INFINITE = ("plane", "hfield", "none")
 _ROLES = {Feature.COLLISIONS: ("collision", (Role.COLLISION, Role.BOTH)), Feature.VISUALS: ("visual", (Role.VISUAL, Role.BOTH))}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Result:
     """How well two lists of shapes fit: those without a counterpart, the worst distance in m, and that of meshes (relative)."""
 

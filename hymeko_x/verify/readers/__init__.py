@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import importlib
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Protocol, cast
 
 from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -61,7 +62,7 @@ class Reader(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Places:
     """Where the files are that a robot refers to: the user's own NAME=DIR, the folders in which packages
     stand, the arguments of a xacro file, and the variants of a USD file."""

@@ -7,7 +7,7 @@ Source: pinocchio ``buildModelFromXML``; yourdfpy ``URDF.load``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +15,7 @@ import pinocchio as pin
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Coupling, Dof, Feature, Joint, Kind, KinematicModel, grounded
 from hymeko_x.verify.readers.urdf_second import Mimic, Second, disagreement, load
 from hymeko_x.verify.readers.words import overheard
@@ -83,7 +84,7 @@ def _build(text: str, file: str, *, mimic: bool) -> Any:
 # ---- bodies and joints -----------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class _Link:
     """A BODY frame of Pinocchio with the frame of the joint above it and the index of its parent's BODY frame."""
 

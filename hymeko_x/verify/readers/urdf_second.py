@@ -5,12 +5,12 @@ from __future__ import annotations
 import contextlib
 import io
 import logging
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, MeshFile, Role, Shape, grounded
 from hymeko_x.verify.sampling import draw
@@ -26,7 +26,7 @@ _MOVING = ("revolute", "continuous", "prismatic")
 _SLACK = 1e-9  # m and rad; both readers work in doubles
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mimic:
     """follower = multiplier * leader + offset."""
 
@@ -36,7 +36,7 @@ class Mimic:
     offset: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Second:
     """What yourdfpy read; ``robot`` and ``shapes`` are None when it refused the file, and ``notes`` say so.
 

@@ -9,7 +9,6 @@ Source: UsdPhysics schema and parseDesc.h (OpenUSD); newton-usd-schemas for Newt
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,6 +16,7 @@ from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import WORLD, Array, Body, Feature, Joint, KinematicModel, Loop, grounded
 from hymeko_x.verify.readers.usd_joints import JointEdge, read_couplings, read_joint, read_loop
 from hymeko_x.verify.readers.usd_shapes import read_shapes
@@ -40,7 +40,7 @@ _MOST_NESTED = 32
 _JOINTS = ("FixedJoint", "RevoluteJoint", "PrismaticJoint", "SphericalJoint", "D6Joint", "DistanceJoint", "CustomJoint")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Scene:
     """A stage with its units: ``metres`` and ``kilograms`` per unit, ``upright`` the rotation that makes z point up."""
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from pxr import UsdPhysics
 
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import INF, Array, Coupling, Dof, Joint, Kind, KinematicModel, Loop, between_frames
 from hymeko_x.verify.spatial import frame_with_z, rigid, rotation_from_quat
 
@@ -30,7 +31,7 @@ _D6 = (
 )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class JointEdge:
     """One joint: bodies by path ("" is the world), the joint's frame on each, and dofs in that frame.
 

@@ -5,11 +5,12 @@ Source: MjcPhysics (MuJoCo's USD schemas), mujoco-usd-converter, Newton's import
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pxr import Sdf
 
+from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import Kind, Role
 from hymeko_x.verify.readers.usd_joints import dof_names, number_of
 from hymeko_x.verify.readers.usd_shapes import owner, shape_of
@@ -30,7 +31,7 @@ class _BadPath(Exception):
     """A path that nobody can follow; the text says why."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class _Guide:
     """What paths lead through: each joint's dof by the joint's path, and the bodies by theirs; "" is the world."""
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.mjcf_classes import merge
 from hymeko_x.formats.mjcf_codec import POSE, BadAttribute
 from hymeko_x.formats.mjcf_tree import parse_text
+from hymeko_x.frozen import frozen
 from hymeko_x.ir.values import IDENTITY, Pose, compose
 
 if TYPE_CHECKING:
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Around:
     """A <frame>: its number and attributes, its pose in the body, its childclass, and the frame around it."""
 
@@ -28,7 +29,7 @@ class Around:
     depth: int = 1
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Spot:
     """A body (or the world), the childclass in force in it, and the frames in it by number."""
 
@@ -45,7 +46,7 @@ class Spot:
         return self.childclass if around is None else around.childclass
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Op:
     """One element to print: ``kind`` is leaf, body (to be opened and filled with ``spot``) or frame (to be opened)."""
 
