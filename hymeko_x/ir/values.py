@@ -12,6 +12,8 @@ from dataclasses import field
 from functools import lru_cache
 from typing import NamedTuple
 
+from orjson import dumps
+
 from hymeko_x.frozen import frozen
 
 Vec3 = tuple[float, float, float]
@@ -291,7 +293,19 @@ def rotation_angle(a: Quat, b: Quat) -> float:
 
 def number_text(value: float) -> str:
     """The shortest decimal text that reads back to the same double: ``0.1``, ``2``, ``-1e-7``."""
-    text = repr(value) if type(value) is float else repr(float(value))
+    return _trimmed(repr(value) if type(value) is float else repr(float(value)))
+
+
+def numbers_text(values: tuple[float, ...]) -> str:
+    """Numbers separated by blanks, each as :func:`number_text` writes it."""
+    text = shortest_texts(values)
+    if "e" in text:
+        return " ".join(map(_trimmed, text.split(",")))
+    return f"{text},".replace(".0,", ",")[:-1].replace(",", " ")
+
+
+def _trimmed(text: str) -> str:
+    """What ``repr`` says of a number, without what nobody needs."""
     if text[-2:] == ".0":
         return text[:-2]
     if "e" not in text:
@@ -300,15 +314,23 @@ def number_text(value: float) -> str:
     return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
 
 
-def numbers_text(values: tuple[float, ...]) -> str:
-    """Numbers separated by blanks, each as :func:`number_text` writes it."""
+def shortest_texts(values: tuple[float, ...]) -> str:
+    """What ``repr`` says of each number, with commas between them: the fewest digits that read back to the same double.
+
+    A writer of JSON finds them in a tenth of the time; where it would not write them as Python does, Python is asked.
+    """
     try:
-        text = " ".join(map(_exact, values))
-    except TypeError:  # whole numbers among them
-        return " ".join([number_text(value) for value in values])
-    if "e" in text:
-        return " ".join([number_text(value) for value in values])
-    return f"{text} ".replace(".0 ", " ")[:-1]
+        text = dumps(values)[1:-1].decode()
+    except TypeError:  # a number that is no plain one of Python
+        return ",".join([repr(float(value)) for value in values])
+    if text.count(".") == len(values) and "e" not in text and "0.0000" not in text:
+        return text
+    return ",".join(
+        [
+            digits if "." in digits and "e" not in digits and "0.0000" not in digits else repr(float(value))
+            for digits, value in zip(text.split(","), values, strict=True)
+        ]
+    )
 
 
 def are_numbers(values: tuple[object, ...]) -> bool:
@@ -317,4 +339,3 @@ def are_numbers(values: tuple[object, ...]) -> bool:
 
 
 _FLOATS = {float}
-_exact = float.__repr__

@@ -37,6 +37,7 @@ from hymeko_x.ir.values import (
     rpy_from_quat,
     rpy_of,
     same_rotation,
+    shortest_texts,
     unit,
     unit_quat,
 )
@@ -225,3 +226,10 @@ def test_numbers_are_as_short_as_they_can_be(value: float, text: str) -> None:
 
 def test_numbers_stand_with_blanks_between_them() -> None:
     assert numbers_text((1.0, -0.5, 0.0)) == "1 -0.5 0"
+
+
+@given(st.lists(st.floats() | st.integers(-(10**20), 10**20) | st.sampled_from([-0.0, 1e-5, 9.999e-5, 1e-4, 1e15, 1e16, 5e-324, True])))
+def test_several_numbers_are_said_as_each_of_them_is(values: list[float]) -> None:
+    assert shortest_texts(tuple(values)) == ",".join([repr(float(value)) for value in values])
+    assert numbers_text(tuple(values)) == " ".join(map(number_text, values))
+    assert numbers_text(tuple(map(np.float64, values))) == " ".join(map(number_text, values))

@@ -7,9 +7,9 @@ from enum import Enum
 from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.ir.fields import attributes_of, layout_of
+from hymeko_x.ir.fields import NUMBERS, attributes_of, layout_of
 from hymeko_x.ir.leaves import TURN, turn_of
-from hymeko_x.ir.values import Pose
+from hymeko_x.ir.values import Pose, are_numbers, shortest_texts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -70,8 +70,11 @@ def guard_of(value: object, default: object = MISSING) -> str:
 
 
 _DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
+_LETTERS = _DIGITS[10:]
 _PAIRS = tuple(second + first for first in _DIGITS for second in _DIGITS)
 """The texts of the numbers below 36 * 36, lowest digit first."""
+_HASH = blake2b(digest_size=5)
+"""To be copied, which is quicker than making one."""
 
 
 def digest(*values: object) -> str:
@@ -81,9 +84,12 @@ def digest(*values: object) -> str:
 
 def digest_of_texts(texts: Iterable[str]) -> str:
     """The digest of values whose canonical texts these are."""
-    number = int.from_bytes(blake2b("\0".join(texts).encode("utf-8", "surrogatepass"), digest_size=5).digest())
-    number, letter = divmod(number, 26)
-    return chr(97 + letter) + _PAIRS[number % 1296] + _PAIRS[number // 1296 % 1296] + _PAIRS[number // 1296**2 % 1296]
+    hashed = _HASH.copy()
+    hashed.update("\0".join(texts).encode("utf-8", "surrogatepass"))
+    number, letter = divmod(int.from_bytes(hashed.digest()), 26)
+    number, first = divmod(number, 1296)
+    third, second = divmod(number, 1296)
+    return f"{_LETTERS[letter]}{_PAIRS[first]}{_PAIRS[second]}{_PAIRS[third % 1296]}"
 
 
 def canonical(value: object) -> str:
@@ -92,9 +98,11 @@ def canonical(value: object) -> str:
     if kind is float:
         return repr(value) if value else "0.0"
     if isinstance(value, tuple):
-        return f"({_joined(value)})" if len(value) <= _LONG or not isinstance(value[0], float | int) else _array(value)
+        if len(value) > _LONG and isinstance(value[0], NUMBERS):
+            return _array(value)
+        return f"({_numbers(value) if are_numbers(value) else _joined(value)})"
     if kind is Pose:
-        return f"Pose(({_joined(value.xyz)}),({_joined(value.quat)}))"  # type: ignore[attr-defined]
+        return f"Pose(({_numbers(value.xyz)}),({_numbers(value.quat)}))"  # type: ignore[attr-defined]
     layout = layout_of(kind)
     if layout is not None:
         return f"{kind.__name__}({_joined(layout.compared(value))})"
@@ -115,6 +123,12 @@ def canonical_without_name(part: object) -> str:
     assert layout is not None
     values = [None if item.name == "name" else value for item, value in zip(layout.counting, layout.compared(part), strict=True)]
     return f"{type(part).__name__}({_joined(values)})"
+
+
+def _numbers(values: tuple[float, ...]) -> str:
+    """The same for numbers and nothing else."""
+    text = shortest_texts(values)
+    return f"{text},".replace("-0.0,", "0.0,")[:-1] if "-0.0" in text else text
 
 
 def _joined(values: Iterable[object]) -> str:
