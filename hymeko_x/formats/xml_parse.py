@@ -121,7 +121,10 @@ class Builder:
             nonlocal current, depth
             line = parser.CurrentLineNumber if lines is None else next(lines)
             node = make(tag, attributes, current, file, line, parser.CurrentByteIndex)
-            current.adopt(node)
+            if current.kids:  # as adopt does
+                current.kids.append(node)
+            else:
+                current.kids = [node]
             current = node
             depth += 1
             if depth > MAX_DEPTH:

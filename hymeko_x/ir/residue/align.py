@@ -99,7 +99,7 @@ class _Pairs:
     def match_edges(self) -> None:
         """Edges of the same kind between the same elements: equal ones first, then in their order."""
         waiting: dict[object, list[Id]] = defaultdict(list)
-        for key, edge in self.source.edges.items():
+        for key, edge in self.source.edges.items() if self.missing else ():
             if key in self.missing:
                 waiting[self._ends(key, edge, {})].append(key)
         if not waiting:
@@ -157,7 +157,9 @@ def _sort(edge: RobotEdge) -> object:
 
 
 def _folds(image: Mechanism, source: Mechanism) -> Iterable[Fold]:
-    """The joints that the image says as a chain."""
+    """The joints that the image says as a chain, which has bodies in it that the source does not know."""
+    if not any(key.kind == "body" for key in image.graph.vertices.keys() - source.graph.vertices.keys()):
+        return
     for view in source.joints.values():
         chain = _chain_above(image, source, view.child)
         kinds = [dof.kind for joint in chain for dof in joint.joint.dofs]
