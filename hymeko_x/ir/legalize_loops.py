@@ -92,18 +92,21 @@ def _is_anchored(arcs: tuple[RobotArc, ...]) -> bool:
 
 def _closing_cycles(mechanism: Mechanism) -> list[JointView]:
     """Of every cycle of bodies that no root leads to, the joint above its first body."""
-    reached = set(mechanism.depth_first())
+    below, roots = mechanism.children, set(mechanism.roots)
+    reached: set[Id] = set()
     found = []
-    for body, _ in mechanism.vertices(Body):
+    for body in (*mechanism.roots, *[key for key, _ in mechanism.vertices(Body)]):
         if body in reached:
             continue
-        found.append(mechanism.parent_joint[body])
+        if body not in roots:
+            found.append(mechanism.parent_joint[body])
+        reached.add(body)
         stack = [body]
         while stack:
-            key = stack.pop()
-            if key not in reached:
-                reached.add(key)
-                stack.extend(joint.child for joint in mechanism.children.get(key, ()))
+            for joint in below.get(stack.pop(), ()):
+                if joint.child not in reached:
+                    reached.add(joint.child)
+                    stack.append(joint.child)
     return found
 
 

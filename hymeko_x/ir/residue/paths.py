@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import MISSING, is_dataclass, replace
 from enum import Enum
+from functools import lru_cache
 from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
 
@@ -125,8 +126,9 @@ def canonical_without_name(part: object) -> str:
     return f"{type(part).__name__}({_joined(values)})"
 
 
+@lru_cache(1024)
 def _numbers(values: tuple[float, ...]) -> str:
-    """The same for numbers and nothing else."""
+    """The same for numbers and nothing else, of which axes and places without a distance or a turn come again and again."""
     text = shortest_texts(values)
     return f"{text},".replace("-0.0,", "0.0,")[:-1] if "-0.0" in text else text
 
