@@ -6,7 +6,6 @@ import copy
 import pickle
 from collections.abc import Callable
 from dataclasses import FrozenInstanceError, dataclass, field, fields, replace
-from functools import partial
 from typing import Any, Generic, TypeVar
 
 import pytest
@@ -17,34 +16,24 @@ from tests.pace import assert_at_most
 T = TypeVar("T")
 
 
-def named(default: object) -> dict[str, object]:
-    return {"made for": default}
+def sample(make: Callable[[type], type], own: str) -> Any:
+    """A class with a field of every kind, made so and called so."""
+
+    class Sample(Generic[T]):
+        name: str
+        number: float = 0.5
+        table: dict[str, object] = field(default_factory=dict)
+        note: T | None = field(default=None, compare=False)
+        secret: int = field(default=1, repr=False)
+        open: bool = False
+        missing: bool = True
+
+    Sample.__qualname__ = own
+    return make(Sample)
 
 
-@frozen
-class Quick(Generic[T]):
-    """A class with a field of every kind."""
-
-    name: str
-    number: float = 0.5
-    table: dict[str, object] = field(default_factory=partial(named, 1))
-    note: T | None = field(default=None, compare=False)
-    secret: int = field(default=1, repr=False)
-    open: bool = False
-    missing: bool = True
-
-
-@dataclass(frozen=True, slots=True)
-class Usual(Generic[T]):
-    """The same as everybody makes it."""
-
-    name: str
-    number: float = 0.5
-    table: dict[str, object] = field(default_factory=partial(named, 1))
-    note: T | None = field(default=None, compare=False)
-    secret: int = field(default=1, repr=False)
-    open: bool = False
-    missing: bool = True
+Quick = sample(frozen, "Quick")
+Usual = sample(dataclass(frozen=True, slots=True), "Usual")
 
 
 @frozen

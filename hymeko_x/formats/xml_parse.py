@@ -121,10 +121,7 @@ class Builder:
             nonlocal current, depth
             line = parser.CurrentLineNumber if lines is None else next(lines)
             node = make(tag, attributes, current, file, line, parser.CurrentByteIndex)
-            if current.kids:  # as adopt does
-                current.kids.append(node)
-            else:
-                current.kids = [node]
+            current.adopt(node)
             current = node
             depth += 1
             if depth > MAX_DEPTH:

@@ -6,7 +6,7 @@ Everything that a frontend returns and a backend takes. Ids are unique per kind,
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property, partial
+from functools import cached_property
 from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
@@ -34,8 +34,6 @@ class Id(NamedTuple):
         return f"{self.kind} '{self.name}'"
 
 
-_id = partial(tuple.__new__, Id)
-"""An id of a ready tuple, in half the time."""
 WORLD = Id("world", "world")
 ROOT = Id("mechanism", "")
 """The key under which side tables keep what belongs to the mechanism as a whole."""
@@ -179,7 +177,7 @@ class Mechanism:
         for key, joint, arcs in self.edges(parts.Joint):
             above, below = _ends(arcs)
             if above is not None and below is not None:
-                found[key] = _joint_view((key, joint, above.target, below.target, pose_weight(above), pose_weight(below)))
+                found[key] = JointView(key, joint, above.target, below.target, pose_weight(above), pose_weight(below))
         return found
 
     @cached_property
@@ -314,9 +312,6 @@ class JointView(NamedTuple):
     child_pose: Pose
 
 
-_joint_view = partial(tuple.__new__, JointView)
-
-
 class ShapeView(NamedTuple):
     """A shape with what it hangs on: its pose in the body, and its mesh and material if it has them."""
 
@@ -425,7 +420,7 @@ class Names:
 
     def take(self, kind: str, name: str) -> Id:
         """An id of this kind that nobody has, as close to the name as possible."""
-        wanted = _id((kind, name))
+        wanted = Id(kind, name)
         free = self.free(kind, name) if wanted in self._taken else wanted
         self._taken.add(free)
         return free

@@ -98,8 +98,10 @@ class _Pairs:
 
     def match_edges(self) -> None:
         """Edges of the same kind between the same elements: equal ones first, then in their order."""
+        if not self.strange or not self.missing:
+            return
         waiting: dict[object, list[Id]] = defaultdict(list)
-        for key, edge in self.source.edges.items() if self.missing else ():
+        for key, edge in self.source.edges.items():
             if key in self.missing:
                 waiting[self._ends(key, edge, {})].append(key)
         if not waiting:
