@@ -293,25 +293,19 @@ def rotation_angle(a: Quat, b: Quat) -> float:
 
 def number_text(value: float) -> str:
     """The shortest decimal text that reads back to the same double: ``0.1``, ``2``, ``-1e-7``."""
-    return _trimmed(repr(value) if type(value) is float else repr(float(value)))
+    text = repr(value) if type(value) is float else repr(float(value))
+    return _trimmed(text) if "e" in text else text.removesuffix(".0")
 
 
 def numbers_text(values: tuple[float, ...]) -> str:
     """Numbers separated by blanks, each as :func:`number_text` writes it."""
-    text = shortest_texts(values)
-    if "e" in text:
-        return " ".join(map(_trimmed, text.split(",")))
-    return f"{text},".replace(".0,", ",")[:-1].replace(",", " ")
+    text = f"{shortest_texts(values)},".replace(".0,", ",")[:-1].replace(",", " ")
+    return _trimmed(text) if "e" in text else text
 
 
 def _trimmed(text: str) -> str:
-    """What ``repr`` says of a number, without what nobody needs."""
-    if text[-2:] == ".0":
-        return text[:-2]
-    if "e" not in text:
-        return text
-    mantissa, exponent = text.split("e")
-    return f"{mantissa.removesuffix('.0')}e{int(exponent)}"
+    """Numbers without what nobody needs in an exponent: ``repr`` gives it a sign, and two digits at least."""
+    return text.replace("e-0", "e-").replace("e+", "e")
 
 
 def shortest_texts(values: tuple[float, ...]) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -147,6 +148,7 @@ def _quoted(value: str) -> str:
     return quoted(_NOT_XML.sub("_", value), _ESCAPES)
 
 
+@lru_cache(4096)  # about every second one was there before: the same axes, ranges and limbs
 def numbers(*values: float) -> str:
     """Numbers separated by blanks, each the shortest that reads back to the same double; no negative zero."""
     return numbers_text(tuple([value + 0.0 for value in values]))
