@@ -203,9 +203,9 @@ def read_back(package: Package, format: Format, files: Files) -> Mechanism:
 def with_references_of(packed: Mechanism, mechanism: Mechanism) -> Mechanism:
     """The mechanism with the packed one's paths of meshes and textures: that a file has moved is no loss."""
     moved: dict[Id, VertexPart] = {}
-    for key, part in mechanism.graph.vertices.items():
+    for key, part in mechanism.assets():
         other = packed.graph.vertices.get(key)
-        if isinstance(part, Mesh | Texture) and isinstance(other, Mesh | Texture) and other.uri and part.uri != other.uri:
+        if isinstance(other, Mesh | Texture) and other.uri and part.uri != other.uri:
             moved[key] = replace(part, uri=other.uri)
     return mechanism.with_graph(mechanism.graph.replace(vertices=moved)) if moved else mechanism
 

@@ -17,7 +17,6 @@ from hymeko_x.frozen import frozen
 from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Mesh, Texture
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -44,7 +43,7 @@ def _keeping(keep: Keep) -> Packer:
 
 
 def _for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
-    if not is_native(mechanism) and not any(isinstance(part, Mesh | Texture) for part in mechanism.graph.vertices.values()):
+    if not is_native(mechanism) and not any(mechanism.assets()):
         return mechanism
     from hymeko_x.assets.mujoco import pack_for_mujoco
 

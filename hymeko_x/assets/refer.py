@@ -40,8 +40,8 @@ class Keep(Enum):
 def keep_references(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report, keep: Keep) -> Mechanism:
     """The mechanism with every uri kept or rewritten; a file that is not there keeps its uri, with a warning."""
     changed: dict[Id, Mesh | Texture] = {}
-    for key, part in mechanism.graph.vertices.items():
-        if not isinstance(part, Mesh | Texture) or part.uri is None:
+    for key, part in mechanism.assets():
+        if part.uri is None:
             continue
         uri = new_uri(part.uri, _FOLDERS[type(part)], shelf, files, keep)
         if uri is None:

@@ -7,13 +7,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.ir.rename import names_in_use, rename
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.legalize import Options
     from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.parts import Mesh, Texture
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -51,9 +51,7 @@ def name_assets_once(mechanism: Mechanism, options: Options, report: Report) -> 
     del options
     taken: set[tuple[str, str]] = set()
     changed: dict[Id, Mesh | Texture] = {}
-    for key, part in mechanism.graph.vertices.items():
-        if not isinstance(part, Mesh | Texture):
-            continue
+    for key, part in mechanism.assets():
         wanted = part.name or key.name
         name, number = wanted, 1
         while (key.kind, name) in taken:

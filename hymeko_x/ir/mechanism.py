@@ -158,6 +158,11 @@ class Mechanism:
             if isinstance(edge.data, part):
                 yield key, edge.data, edge.arcs
 
+    def assets(self) -> Iterator[tuple[Id, parts.Mesh | parts.Texture]]:
+        """What may be in files of its own: the meshes in order, then the textures."""
+        yield from self.vertices(parts.Mesh)
+        yield from self.vertices(parts.Texture)
+
     @cached_property
     def _kinds_of_vertices(self) -> frozenset[str]:
         """The kinds of parts of which there is a vertex, and "" for whatever has no kind of its own: most robots have few."""
@@ -415,8 +420,14 @@ class Names:
     """Gives out ids that are unique per kind: a name that is taken gets ``#2``, ``#3``, ... behind it."""
 
     def __init__(self, taken: Iterable[Id] = ()) -> None:
-        self._taken = set(taken)
+        self._taken: set[tuple[str, str]] = set(taken)
         self._next: dict[Id, int] = {}
+
+    def reserve(self, kind: str, name: str) -> None:
+        """Nobody gets an id of this kind and name, or the next free one if somebody has it."""
+        if (kind, name) in self._taken:
+            self.take(kind, name)
+        self._taken.add((kind, name))
 
     def take(self, kind: str, name: str) -> Id:
         """An id of this kind that nobody has, as close to the name as possible."""
