@@ -100,6 +100,7 @@ def pose_from_rpy(xyz: Vec3, rpy: Vec3) -> Pose:
     return Pose(xyz, quat_from_rpy(rpy), Written("rpy", rpy))
 
 
+@lru_cache(4096)  # the same angles come again in other limbs, and when what was written is compared with what it means
 def quat_from_rpy(rpy: Vec3) -> Quat:
     """The rotation Rz(yaw) Ry(pitch) Rx(roll) as a unit quaternion (w, x, y, z), w >= 0. Angles in rad.
 

@@ -81,7 +81,7 @@ def quat_as_written(written: Written) -> Quat:
     if kind == "dir":
         return quat_from_direction(scaled(numbers, -1.0))  # type: ignore[arg-type]
     if kind == "rpy":
-        return quat_from_rpy(numbers)  # type: ignore[arg-type]
+        return quat_from_rpy(numbers)
     return unit_quat(numbers)  # type: ignore[arg-type]
 
 

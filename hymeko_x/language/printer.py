@@ -153,19 +153,18 @@ def _lines(item: Item | Block) -> list[str]:
     while stack:
         depth, part = stack.pop()
         indent = INDENT * depth
-        if isinstance(part, Comment):
+        if isinstance(part, str):
+            lines.append(indent + part)
+        elif isinstance(part, Comment):
             lines.extend(_comment_lines(part, indent))
-            continue
-        if not isinstance(part, _OPEN) or not part.items:
+        elif not isinstance(part, _OPEN) or not part.items:
             lines.append(indent + _text(part))
-            continue
-        text = None if _is_long(part) else _in_line(part, WIDTH - len(indent))
-        if text is not None:
+        elif not _is_long(part) and (text := _in_line(part, WIDTH - len(indent))) is not None:
             lines.append(indent + text)
-            continue
-        lines.append(f"{indent}{_head(part)} {{")
-        stack.append((depth, "}"))
-        stack.extend(reversed([(depth + 1, inner) for inner in _broken(part.items, WIDTH - len(indent) - len(INDENT))]))
+        else:
+            lines.append(f"{indent}{_head(part)} {{")
+            stack.append((depth, "}"))
+            stack.extend(reversed([(depth + 1, inner) for inner in _broken(part.items, WIDTH - len(indent) - len(INDENT))]))
     return lines
 
 
@@ -203,7 +202,7 @@ def _in_line(node: Node | Block, room: int) -> str | None:
 
 def _is_long(node: Node | Block) -> bool:
     """Whether a node surely needs several lines; spares printing a whole robot to find out."""
-    return len(node.items) > WIDTH // 2 or any(isinstance(item, Comment) for item in node.items)
+    return len(node.items) > WIDTH // 2 or Comment in map(type, node.items)
 
 
 def _comment_lines(comment: Comment, indent: str) -> list[str]:

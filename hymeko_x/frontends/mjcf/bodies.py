@@ -48,7 +48,7 @@ def reserve_names(root: Element, draft: Draft) -> None:
             name = element.attributes.get("name")
             kind = kind_of(element.tag, section.tag) if name else None
             if name and kind:
-                draft.names.take(kind, name)
+                draft.names.reserve(kind, name)
             stack += element.children
 
 
@@ -129,7 +129,7 @@ def _read_content(element: Element, here: Spot, draft: Draft, joined: tuple[Id, 
     joints: list[tuple[Element, Spot]] = []
     content: list[tuple[Element, Spot]] = []
     left: list[Element] = []
-    framed = any(child.tag == "frame" for child in element.children)
+    framed = "frame" in [child.tag for child in element.children]
     for child, spot in _unframed(element, here, draft) if framed else [(child, here) for child in element.children]:
         if child.tag == "body":
             below.append((child, spot))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
@@ -138,24 +138,24 @@ def read_origin(node: Node, style: str, draft: Draft, *, turned: bool = True) ->
     origin = node.child("origin")
     if origin is None:
         return IDENTITY
-    xyz = take_numbers(origin, "xyz", 3, draft.report, instead="0 0 0 is used") or ZERO
+    xyz = _take_vector(origin, "xyz", draft)
     unturned = not turned and read_numbers(origin.attributes.get("rpy", "")) != ZERO
-    found = Pose(_vector(xyz)) if unturned else _turned(origin, xyz, draft)
+    found = Pose(xyz) if unturned else _turned(origin, xyz, draft)
     if found.xyz == ZERO and found.written is None:
         draft.style.add(style)
     return found
 
 
-def _turned(origin: Node, xyz: tuple[float, ...], draft: Draft) -> Pose:
-    rpy = take_numbers(origin, "rpy", 3, draft.report, instead="0 0 0 is used") or ZERO
+def _turned(origin: Node, xyz: Vec3, draft: Draft) -> Pose:
+    rpy = _take_vector(origin, "rpy", draft)
     if rpy == ZERO and draft.version != "1.0":
         quat = take_numbers(origin, "quat_xyzw", 4, draft.report, instead="no rotation is used")
         if quat is not None and any(quat):
             qx, qy, qz, qw = quat
-            return pose(_vector(xyz), (qw, qx, qy, qz))
-    return pose_from_rpy(_vector(xyz), _vector(rpy))
+            return pose(xyz, (qw, qx, qy, qz))
+    return pose_from_rpy(xyz, rpy)
 
 
-def _vector(numbers: tuple[float, ...]) -> Vec3:
-    x, y, z = numbers
-    return (x, y, z)
+def _take_vector(origin: Node, name: str, draft: Draft) -> Vec3:
+    numbers: Any = take_numbers(origin, name, 3, draft.report, instead="0 0 0 is used")
+    return numbers or ZERO
