@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -36,6 +37,7 @@ from hymeko_x.ir.values import (
     rotation_angle,
     rpy_from_quat,
     rpy_of,
+    said_numbers,
     same_rotation,
     shortest_texts,
     unit,
@@ -224,6 +226,16 @@ def test_numbers_are_as_short_as_they_can_be(value: float, text: str) -> None:
     assert number_text(value) == text
 
 
+def test_a_rotation_does_not_depend_on_the_signs_of_zeros() -> None:
+    """Equal angles are turned into a rotation once, and zeros of both signs are equal."""
+    angles = (0.0, math.pi, -math.pi, math.pi / 2, 5e-324, 0.3, -0.7)
+    for rpy in product(angles, repeat=3):
+        quats = {
+            repr(quat_from_rpy.__wrapped__(signed)) for signed in product(*[(angle, -angle) if angle == 0.0 else (angle,) for angle in rpy])
+        }
+        assert len(quats) == 1, rpy
+
+
 def test_numbers_stand_with_blanks_between_them() -> None:
     assert numbers_text((1.0, -0.5, 0.0)) == "1 -0.5 0"
 
@@ -233,3 +245,5 @@ def test_several_numbers_are_said_as_each_of_them_is(values: list[float]) -> Non
     assert shortest_texts(tuple(values)) == ",".join([repr(float(value)) for value in values])
     assert numbers_text(tuple(values)) == " ".join(map(number_text, values))
     assert numbers_text(tuple(map(np.float64, values))) == " ".join(map(number_text, values))
+    named = {f"n{place}": value for place, value in enumerate(values)}
+    assert said_numbers(named) == {name: number_text(value) for name, value in named.items()}

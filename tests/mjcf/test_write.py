@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 import hymeko_x as hx
 from hymeko_x.backends import mjcf
+from hymeko_x.backends.mjcf.text import numbers
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.legalize import Options, legalize
@@ -108,6 +109,11 @@ WHOLE = """<mujoco model="chain">
   </actuator>
 </mujoco>
 """
+
+
+def test_no_zero_has_a_sign_whichever_was_written_first() -> None:
+    assert numbers(-0.0, 0.5) == numbers(0.0, 0.5) == "0 0.5"
+    assert numbers(0.0, 0.25) == numbers(-0.0, 0.25) == "0 0.25"
 
 
 def test_a_small_robot_reads_as_if_written_by_hand() -> None:

@@ -10,7 +10,7 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml_print import Tag
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind, Joint
-from hymeko_x.ir.values import IDENTITY, number_text, numbers_text, plane_axes, unit
+from hymeko_x.ir.values import IDENTITY, number_text, numbers_text, plane_axes, said_numbers, unit
 
 if TYPE_CHECKING:
     from hymeko_x.backends.urdf.sheet import Sheet
@@ -95,7 +95,7 @@ def _add_limits(tag: Tag, limits: Limits, *, bounded: bool) -> None:
     for name, value in (("effort", limits.effort), ("velocity", limits.velocity)):
         said[name] = words.NO_LIMIT if value is None and required else value
     said |= {"acceleration": limits.acceleration, "jerk": limits.jerk}
-    attributes = {name: number_text(value) for name, value in said.items() if value is not None}
+    attributes = said_numbers({name: value for name, value in said.items() if value is not None})
     if attributes:
         tag.add("limit", **attributes)
 
@@ -112,7 +112,7 @@ def _add_safety(tag: Tag, safety: Safety) -> None:
 
 def _add_calibration(tag: Tag, calibration: Calibration) -> None:
     values = {"rising": calibration.rising, "falling": calibration.falling, "reference_position": calibration.reference}
-    tag.add("calibration", **{name: number_text(value) for name, value in values.items() if value is not None})
+    tag.add("calibration", **said_numbers({name: value for name, value in values.items() if value is not None}))
 
 
 def _add_mimic(tag: Tag, key: Id, sheet: Sheet) -> None:

@@ -10,7 +10,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.xml_print import Tag
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
-from hymeko_x.ir.values import Pose, number_text, numbers_text, rotate_tensor
+from hymeko_x.ir.values import Pose, number_text, numbers_text, rotate_tensor, said_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.backends.urdf.sheet import Sheet
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Tensor
 
-_TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _ORIGIN_STYLES = {"visual": words.STYLE_VISUAL_ORIGIN, "collision": words.STYLE_COLLISION_ORIGIN}
 
 
@@ -43,8 +42,8 @@ def _add_inertial(link: Tag, inertial: Inertial, sheet: Sheet) -> None:
     if inertial.mass is not None:
         tag.add("mass", value=number_text(inertial.mass))
     if tensor is not None:
-        values = dict(zip(_TENSOR, tensor, strict=True))
-        tag.add("inertia", **{name: number_text(values[name]) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")})
+        xx, yy, zz, xy, xz, yz = tensor
+        tag.add("inertia", **said_numbers({"ixx": xx, "ixy": xy, "ixz": xz, "iyy": yy, "iyz": yz, "izz": zz}))
 
 
 def _as_written(inertial: Inertial) -> tuple[Pose, Tensor | None]:
