@@ -424,10 +424,11 @@ class Names:
         self._next: dict[Id, int] = {}
 
     def reserve(self, kind: str, name: str) -> None:
-        """Nobody gets an id of this kind and name, or the next free one if somebody has it."""
+        """Give the id of this name to nobody, or the next free one where somebody has that."""
         if (kind, name) in self._taken:
             self.take(kind, name)
-        self._taken.add((kind, name))
+        else:
+            self._taken.add((kind, name))
 
     def take(self, kind: str, name: str) -> Id:
         """An id of this kind that nobody has, as close to the name as possible."""

@@ -304,8 +304,8 @@ def number_text(value: float) -> str:
 def numbers_text(values: tuple[float, ...]) -> str:
     """Numbers separated by blanks, each as :func:`number_text` writes it.
 
-    A writer of JSON finds the same digits in a tenth of the time; small numbers it says without an exponent, large ones with a sign
-    in it, and what is no number not at all.
+    A writer of JSON finds the same digits in a tenth of the time; it says small numbers without an exponent, large ones with a sign
+    in theirs, and infinite ones not at all.
     """
     if not are_numbers(values):
         return " ".join(map(number_text, values))
