@@ -359,24 +359,17 @@ def take_numbers(node: Node, attribute: str, count: int, report: Report, *, inst
     if text is None:
         return None
     numbers = read_numbers(text)
-    if numbers is None or len(numbers) != count:
-        _report_bad(node, attribute, text, count, report, instead)
-        return None
-    del node.attributes[attribute]
-    return numbers
+    if numbers is not None and len(numbers) == count:
+        del node.attributes[attribute]
+        return numbers
+    _report_bad(node, attribute, text, count, report, instead)
+    return None
 
 
 def take_number(node: Node, attribute: str, report: Report, *, instead: str) -> float | None:
     """The one number of an attribute; None when it is missing or bad. See :func:`take_numbers`."""
-    text = node.attributes.get(attribute)
-    if text is None:
-        return None
-    numbers = read_numbers(text)
-    if numbers is None or len(numbers) != 1:
-        _report_bad(node, attribute, text, 1, report, instead)
-        return None
-    del node.attributes[attribute]
-    return numbers[0]
+    numbers = take_numbers(node, attribute, 1, report, instead=instead)
+    return None if numbers is None else numbers[0]
 
 
 def _report_bad(node: Node, attribute: str, text: str, count: int, report: Report, instead: str) -> None:
