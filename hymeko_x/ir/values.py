@@ -298,23 +298,18 @@ def rotation_angle(a: Quat, b: Quat) -> float:
 def number_text(value: float) -> str:
     """The shortest decimal text that reads back to the same double: ``0.1``, ``2``, ``-1e-7``."""
     text = repr(value) if type(value) is float else repr(float(value))
-    return text.replace("e-0", "e-").replace("e+", "e") if "e" in text else text.removesuffix(".0")
+    return _trimmed(text) if "e" in text else text.removesuffix(".0")
 
 
 def numbers_text(values: tuple[float, ...]) -> str:
-    """Numbers separated by blanks, each as :func:`number_text` writes it.
+    """Numbers separated by blanks, each as :func:`number_text` writes it."""
+    text = f"{shortest_texts(values)},".replace(".0,", ",")[:-1].replace(",", " ")
+    return _trimmed(text) if "e" in text else text
 
-    A writer of JSON finds the same digits in a tenth of the time; it says small numbers without an exponent, large ones with a sign
-    in theirs, and infinite ones not at all.
-    """
-    if not are_numbers(values):
-        return " ".join(map(number_text, values))
-    text = dumps(values)[1:-1].decode()
-    if "0.0000" not in text and "+" not in text and "n" not in text:
-        return f"{text},".replace(".0,", ",")[:-1].replace(",", " ")
-    pairs = zip(text.split(","), values, strict=True)
-    said = [number_text(value) if "0.0000" in digits or "n" in digits else digits.removesuffix(".0") for digits, value in pairs]
-    return " ".join(said).replace("e+", "e")
+
+def _trimmed(text: str) -> str:
+    """Numbers without what nobody needs in an exponent: ``repr`` gives it a sign, and two digits at least."""
+    return text.replace("e-0", "e-").replace("e+", "e")
 
 
 def said_numbers(values: Mapping[str, float]) -> dict[str, str]:
