@@ -67,7 +67,7 @@ class Build:
             message = f"{key} is defined twice; the first definition is in line {first}"
             raise refuse(codes.DUPLICATE_NAME, message, self.context.origin(item), hint="give one of them another name")
         taken.append(kind)
-        self.names.take(kind, name)
+        self.names.reserve(kind, name)
         self.origins[key] = self.context.origin(item)
         return key
 
