@@ -14,7 +14,7 @@ from benchmarks.yardstick import best_of, verdict
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
 from hymeko_x.source import Source
 
 if TYPE_CHECKING:

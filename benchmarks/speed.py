@@ -22,7 +22,7 @@ from benchmarks.robots import robots
 from benchmarks.yardstick import in_turns, verdict
 from hymeko_x import formats, pipeline
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 
 if TYPE_CHECKING:

@@ -28,7 +28,7 @@ from benchmarks.yardstick import verdict
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
 from peers import CONVERTERS, Peer
 
 if TYPE_CHECKING:

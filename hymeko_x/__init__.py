@@ -18,8 +18,8 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from hymeko_x.api import convert, dump, dumps, load, loads
+    from hymeko_x.compare.diff import diff
     from hymeko_x.diagnostics import Diagnostic, Refusal, Report, Severity
-    from hymeko_x.ir.diff import diff
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.verify import verify
 
@@ -28,7 +28,7 @@ __all__ = ["Diagnostic", "Id", "Mechanism", "Refusal", "Report", "Severity", "co
 _HOMES = {
     **dict.fromkeys(("convert", "dump", "dumps", "load", "loads"), "hymeko_x.api"),
     **dict.fromkeys(("Diagnostic", "Refusal", "Report", "Severity"), "hymeko_x.diagnostics"),
-    "diff": "hymeko_x.ir.diff",
+    "diff": "hymeko_x.compare.diff",
     "verify": "hymeko_x.verify",
     **dict.fromkeys(("Id", "Mechanism"), "hymeko_x.ir.mechanism"),
 }

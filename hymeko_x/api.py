@@ -11,8 +11,8 @@ from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.delivery import Delivery
 from hymeko_x.diagnostics import Origin, Report
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from hymeko_x.formats import Format
-    from hymeko_x.ir.legalize import Options
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.pipeline import Place, Result
+    from hymeko_x.rewrite import Options
     from hymeko_x.source import Files
 
 

@@ -11,26 +11,27 @@ from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
 from hymeko_x.assets.stored import with_stored_meshes
 from hymeko_x.collector import uncollected
+from hymeko_x.compare.leaves import leaves_again, leaves_between
+from hymeko_x.compare.ledger import losses_between
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.carrier import taken_off
 from hymeko_x.frozen import frozen
-from hymeko_x.ir.leaves import leaves_again, leaves_between
-from hymeko_x.ir.legalize import Options, legalize
-from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.parts import Mesh, Texture
-from hymeko_x.ir.residue.align import aligned
-from hymeko_x.ir.residue.delta import residue_behind
-from hymeko_x.language.residue import BadResidue, parse_residue, print_residue
-from hymeko_x.ledger import losses_between
+from hymeko_x.residue.align import aligned
+from hymeko_x.residue.bridge import other_words
+from hymeko_x.residue.delta import residue_behind
+from hymeko_x.residue.text import BadResidue, parse_residue, print_residue
+from hymeko_x.rewrite import Options, legalize
+from hymeko_x.rewrite.native import is_native
 from hymeko_x.source import Package, PackageFiles, PlacedFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from hymeko_x.compare.ledger import Loss
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import VertexPart
-    from hymeko_x.ledger import Loss
     from hymeko_x.source import Files
 
 
@@ -98,7 +99,7 @@ def restored(image: Mechanism, origin: Origin, report: Report) -> Mechanism:
     image, text = taken_off(image)
     if not text:
         return image
-    from hymeko_x.ir.residue.merge import restore
+    from hymeko_x.residue.merge import restore
 
     try:
         residue = parse_residue(text)
@@ -133,7 +134,7 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
     moved = with_references_of(packed, mechanism)
     apart = leaves_between(moved, crossed)
     carry = None if options.pure else carrier_of(format)
-    losses = losses_between(moved, crossed, bridge, format, apart, is_carried=carry is not None)
+    losses = losses_between(moved, crossed, other_words(bridge), format, apart, is_carried=carry is not None)
     if carry is None:
         return Result(mechanism, package, report, losses)
     source = _standing_in(moved, packed) if options.within else mechanism

@@ -13,8 +13,8 @@ import pytest
 from hymeko_x import codes
 from hymeko_x.cli import VERBS, exits, guard, main, terminal
 from hymeko_x.cli.losses import lines
+from hymeko_x.compare.ledger import Loss
 from hymeko_x.diagnostics import Diagnostic, Origin, Severity, refuse
-from hymeko_x.ledger import Loss
 
 
 def hymeko_x(*words: str, stdin: bytes = b"", cwd: Path | None = None, **environ: str) -> subprocess.CompletedProcess[bytes]:

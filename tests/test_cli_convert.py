@@ -13,7 +13,7 @@ import pytest
 import hymeko_x as hx
 from hymeko_x import pipeline
 from hymeko_x.cli import exits, main
-from hymeko_x.ledger import Loss
+from hymeko_x.compare.ledger import Loss
 from hymeko_x.source import Package
 
 ARM = """<?xml version="1.0"?>

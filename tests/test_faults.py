@@ -17,7 +17,7 @@ import pytest
 from hymeko_x import codes, disk, formats, pipeline, staging
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Package, Source
 
 SIZE = 300_000

@@ -7,10 +7,10 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 import hymeko_x as hx
+from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.ir.diff import diff
-from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite import Options, legalize
 from hymeko_x.testing import mechanisms
 
 SOME = settings(max_examples=max(5, settings.default.max_examples // 5), deadline=None, suppress_health_check=list(HealthCheck))

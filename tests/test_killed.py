@@ -19,8 +19,8 @@ from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.delivery import Delivery
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite import Options
 from hymeko_x.source import Files, Package, PlacedFiles, Source
 
 CHANGES = ("os.rename", "os.remove", "os.rmdir", "os.mkdir", "os.chmod", "os.link", "os.symlink", "os.truncate")

@@ -10,15 +10,16 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hymeko_x import formats, pipeline
+from hymeko_x.compare.diff import Tolerance, diff
+from hymeko_x.compare.ledger import losses_between
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
-from hymeko_x.ir.diff import Tolerance, diff
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
-from hymeko_x.ir.rename import rename
-from hymeko_x.ir.residue.align import aligned
-from hymeko_x.ledger import losses_between
+from hymeko_x.ir.names import rename
+from hymeko_x.residue.align import aligned
+from hymeko_x.residue.bridge import other_words
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from hymeko_x.testing import TREES, mechanisms, urdf_mechanisms
 
@@ -122,7 +123,7 @@ def test_what_is_taken_out_of_the_result_is_in_the_ledger(format: str, mechanism
     package = pipeline.write(_without(mechanism, victim), found, Options(), NoFiles(), Report(), place)
     image = pipeline.read_back(package, found, NoFiles())
     bridge, crossed = aligned(image, mechanism)
-    losses = losses_between(mechanism, crossed, bridge, found)
+    losses = losses_between(mechanism, crossed, other_words(bridge), found)
     assert str(victim) in {loss.element for loss in losses}
 
 

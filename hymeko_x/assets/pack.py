@@ -8,15 +8,16 @@ no output ever leads out of its folder.
 from __future__ import annotations
 
 from collections.abc import Callable
+from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import Shelf
 from hymeko_x.frozen import frozen
-from hymeko_x.ir.legalize import WITHIN
-from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.rewrite import WITHIN
+from hymeko_x.rewrite.native import is_native
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,6 +39,11 @@ class Policy:
     reference: Packer
 
 
+def _packer(module: str, name: str) -> Packer:
+    found: Packer = getattr(import_module(module), name)
+    return found
+
+
 def _keeping(keep: Keep) -> Packer:
     return lambda mechanism, shelf, files, report: keep_references(mechanism, shelf, files, report, keep)
 
@@ -45,15 +51,11 @@ def _keeping(keep: Keep) -> Packer:
 def _for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     if not is_native(mechanism) and not any(mechanism.assets()):
         return mechanism
-    from hymeko_x.assets.mujoco import pack_for_mujoco
-
-    return pack_for_mujoco(mechanism, shelf, files, report)
+    return _packer("hymeko_x.backends.mjcf.files", "pack_for_mujoco")(mechanism, shelf, files, report)
 
 
 def _for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
-    from hymeko_x.assets.usd import pack_for_usd
-
-    return pack_for_usd(mechanism, shelf, files, report)
+    return _packer("hymeko_x.backends.usd.files", "pack_for_usd")(mechanism, shelf, files, report)
 
 
 _TEXT = Policy("reference", copy=_keeping(Keep.NOTHING), reference=_keeping(Keep.PACKAGES))

@@ -9,8 +9,8 @@ from hymeko_x import codes
 from hymeko_x.assets.refer import is_of_package
 from hymeko_x.ir.additions import Additions
 from hymeko_x.ir.mechanism import StoredLook, subset_edge
+from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Mesh, Role
-from hymeko_x.ir.rename import names_in_use
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 from hymeko_x.cli import exits
 from hymeko_x.cli.inputs import input_arguments, read_input
 from hymeko_x.cli.terminal import show
+from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.diff import Tolerance, diff
 
 if TYPE_CHECKING:
     import argparse
 
     from hymeko_x.cli.inputs import Input
-    from hymeko_x.ir.diff import Difference
+    from hymeko_x.compare.diff import Difference
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from hymeko_x.ledger import Loss
+    from hymeko_x.compare.ledger import Loss
 
 _FATES = ("dropped", "approximated", "carried")
 _KINDS = ("mechanism", "body", "joint", "loop", "coupling", "tendon", "actuator", "drive", "sensor", "shape", "contact", "frame")

@@ -13,7 +13,7 @@ from hymeko_x.cli.losses import lines
 from hymeko_x.cli.terminal import MOST_LINES, show
 from hymeko_x.delivery import Delivery
 from hymeko_x.diagnostics import Severity
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Package
 
 if TYPE_CHECKING:
@@ -21,9 +21,9 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from hymeko_x.cli.inputs import Input
+    from hymeko_x.compare.ledger import Loss
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
-    from hymeko_x.ledger import Loss
     from hymeko_x.pipeline import Result
 
 FAIL_ON = ("error", "loss", "warning")

@@ -14,8 +14,8 @@ from hymeko_x.cli.guard import UsageError
 from hymeko_x.cli.inputs import input_arguments, read_input
 from hymeko_x.cli.terminal import show
 from hymeko_x.cli.verify import verdict_of, verify_arguments
+from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.diff import Tolerance, diff
 
 if TYPE_CHECKING:
     import argparse

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     Task = Callable[[Case, Plan, str, str, Sequence[str]], None]
 
 _PRELOADED = (
-    "hymeko_x.assets.mesh",
+    "hymeko_x.meshes.mesh",
     "hymeko_x.corpus.work",
     "hymeko_x.frontends.mjcf.weigh",
     "hymeko_x.verify.compare",

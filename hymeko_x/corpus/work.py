@@ -22,16 +22,16 @@ from hymeko_x.corpus.limits import forget_peak, peak_megabytes, set_limits
 from hymeko_x.corpus.plan import CONVERT, ENGINE, READ
 from hymeko_x.corpus.rows import DONE, REFUSED, Cost, Leg, Robot
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.parts import Body, Joint, Shape
+from hymeko_x.rewrite import Options
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from hymeko_x.compare.ledger import Loss
     from hymeko_x.corpus.cases import Case
     from hymeko_x.corpus.plan import Plan
     from hymeko_x.ir.mechanism import Mechanism
-    from hymeko_x.ledger import Loss
     from hymeko_x.source import Source
     from hymeko_x.verify.model import KinematicModel
     from hymeko_x.verify.surfaces import Meshes

@@ -11,8 +11,8 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.xml_text import escape
 from hymeko_x.ir.mechanism import ROOT, Extra
+from hymeko_x.xml.text import escape
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.mechanism import layer_edge
 
 if TYPE_CHECKING:
-    from hymeko_x.ir.mechanism import Id, Names, RobotEdge
+    from hymeko_x.ir.mechanism import Id, RobotEdge
+    from hymeko_x.ir.names import Names
     from hymeko_x.ir.parts import Material, Texture, VertexPart
 
 

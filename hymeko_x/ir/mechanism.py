@@ -17,7 +17,7 @@ from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.values import IDENTITY, Pose
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.diagnostics import Origin
 
@@ -414,39 +414,6 @@ def _posed(target: Id, sign: int, pose: Pose) -> RobotArc:
     if pose is IDENTITY or (pose.written is None and pose.quat == IDENTITY.quat and pose.xyz == IDENTITY.xyz):
         return Arc(target, sign)
     return Arc(target, sign, pose)
-
-
-class Names:
-    """Gives out ids that are unique per kind: a name that is taken gets ``#2``, ``#3``, ... behind it."""
-
-    def __init__(self, taken: Iterable[Id] = ()) -> None:
-        self._taken: set[tuple[str, str]] = set(taken)
-        self._next: dict[Id, int] = {}
-
-    def reserve(self, kind: str, name: str) -> None:
-        """Give the id of this name to nobody, or the next free one where somebody has that."""
-        if (kind, name) in self._taken:
-            self.take(kind, name)
-        else:
-            self._taken.add((kind, name))
-
-    def take(self, kind: str, name: str) -> Id:
-        """An id of this kind that nobody has, as close to the name as possible."""
-        wanted = Id(kind, name)
-        free = self.free(kind, name) if wanted in self._taken else wanted
-        self._taken.add(free)
-        return free
-
-    def free(self, kind: str, name: str) -> Id:
-        """The id that :meth:`take` would give out."""
-        wanted = Id(kind, name)
-        if wanted not in self._taken:
-            return wanted
-        number = self._next.get(wanted, 2)
-        while Id(kind, f"{name}#{number}") in self._taken:
-            number += 1
-        self._next[wanted] = number
-        return Id(kind, f"{name}#{number}")
 
 
 def file_stem(uri: str) -> str:

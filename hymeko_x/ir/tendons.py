@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.legalize_joints import dof_number
+from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import Id, RobotEdge, numbers_weight
 from hymeko_x.ir.parts import Cylinder, DofKind, Joint, Shape, Sphere
 

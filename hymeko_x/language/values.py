@@ -15,7 +15,7 @@ from hymeko_x.ir import parts, values
 from hymeko_x.ir.fields import NUMBERS, attributes_of, identical
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import Id
-from hymeko_x.ir.residue.types import is_sound, settled
+from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.ir.values import ZERO, Written, are_numbers
 from hymeko_x.ir.written import pose_as_written
 from hymeko_x.language.syntax import Ref, is_list

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.frozen import frozen
 from hymeko_x.ir import parts
-from hymeko_x.ir.legalize_inertia import principal_moments
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView
+from hymeko_x.rewrite.inertia import principal_moments
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

@@ -14,7 +14,7 @@ import hymeko_x as hx
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
 
 
 def work(job: dict[str, Any]) -> None:

@@ -20,7 +20,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.ir.mechanism import Id, Mechanism, file_stem, layer_edge, shape_edge
 from hymeko_x.ir.parts import Material, Mesh, MeshShape, Role, Shape, Texture
 from hymeko_x.ir.values import IDENTITY
-from tests.assets.test_mesh import BOX, STL, dae
+from tests.meshes.test_mesh import BOX, STL, dae
 from tests.robots import MemoryFiles, body, chain
 
 FLAT = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n"

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from hymeko_x.ir.factor import Dialect, factor
-from hymeko_x.ir.forms import Call, Element, Factored, Hole, Item, Macro, Parameter, Piece, Signed, Text, expand
+from hymeko_x.factor import Dialect, factor
+from hymeko_x.factor.forms import Call, Element, Factored, Hole, Item, Macro, Parameter, Piece, Signed, Text, expand
 from tests.pace import assert_at_most
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hymeko_x.ir.factor_sets import Costs, Shared, common_words, share
+from hymeko_x.factor.sets import Costs, Shared, common_words, share
 
 COSTS = Costs(definition=20, field=3, use=8, least=1)
 ROWS = st.lists(st.dictionaries(st.sampled_from("abcdef"), st.sampled_from(["1", "22", "0.125 0.25", "1.0625"]), max_size=6), max_size=20)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes, formats, pipeline
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from hymeko_x.testing.mutations import mutated
 from tests.fuzz.seeds import seeds, small_seeds

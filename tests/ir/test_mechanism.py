@@ -16,7 +16,6 @@ from hymeko_x.ir.mechanism import (
     Extra,
     Id,
     Mechanism,
-    Names,
     coupling_edge,
     file_stem,
     joint_edge,
@@ -26,6 +25,7 @@ from hymeko_x.ir.mechanism import (
     pose_weight,
     shape_edge,
 )
+from hymeko_x.ir.names import Names
 from hymeko_x.ir.values import IDENTITY, Pose
 
 A, B, C, D, E = (Id("body", name) for name in "abcde")

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from hymeko_x.backends.hymeko import write
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.hymeko import read
-from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, Names
-from hymeko_x.ir.rename import rename
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
+from hymeko_x.ir.names import Names, rename
 from hymeko_x.source import Source
 from hymeko_x.testing import mechanisms
 

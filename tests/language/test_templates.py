@@ -14,8 +14,8 @@ from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, RobotArc, RobotEdge
+from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import VertexPart
-from hymeko_x.ir.rename import rename
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.printer import print_text
 from hymeko_x.source import Source

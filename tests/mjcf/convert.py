@@ -14,8 +14,8 @@ from hymeko_x.assets.pack import pack
 from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends import urdf
-from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import Source
 from tests.robots import MemoryFiles
 

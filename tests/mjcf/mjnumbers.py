@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
-from hymeko_x.formats.mjcf_schema import _ATTRIBUTES, attributes_of
-from hymeko_x.formats.mjcf_types import REQUIRED, Kind, kinds_of
+from hymeko_x.formats.mjcf.schema import _ATTRIBUTES, attributes_of
+from hymeko_x.formats.mjcf.types import REQUIRED, Kind, kinds_of
 
 UNASKED = (
     *("asset/model", "body/attach", "body/flexcomp", "body/replicate", "extension", "deformable", "asset/skin"),

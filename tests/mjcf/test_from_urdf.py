@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
 from tests.mjcf.convert import convert_text, tensor_in_body, worst_pose_error
 
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'

@@ -15,9 +15,9 @@ from hymeko_x.disk import open_source
 from hymeko_x.frontends.mjcf import weigh as weigh_module
 from hymeko_x.frontends.mjcf.lean import can_be_lean
 from hymeko_x.frontends.mjcf.weigh import weigh
-from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.parts import Body
+from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import Files, NoFiles
 
 FILES = development_files("mjcf")

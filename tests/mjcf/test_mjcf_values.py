@@ -7,8 +7,8 @@ import warnings
 import mujoco
 import pytest
 
-from hymeko_x.formats.mjcf_schema import _ATTRIBUTES
-from hymeko_x.formats.mjcf_types import REQUIRED, Kind, kinds_of
+from hymeko_x.formats.mjcf.schema import _ATTRIBUTES
+from hymeko_x.formats.mjcf.types import REQUIRED, Kind, kinds_of
 from tests.mjcf.mjnumbers import BESIDE
 
 # What an element needs so that MuJoCo gets as far as the attribute in question.

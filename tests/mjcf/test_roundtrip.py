@@ -8,10 +8,10 @@ import mujoco
 import pytest
 from mjmodels import compiled, differences, read, read_text, through_hymeko, write
 
+from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.ir.diff import diff
-from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.parts import Body
+from hymeko_x.rewrite import Options, legalize
 
 if TYPE_CHECKING:
     from pathlib import Path

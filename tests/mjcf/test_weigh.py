@@ -11,9 +11,9 @@ from mjmodels import read_text, write
 import hymeko_x as hx
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.mjcf.weigh import weigh
-from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.parts import Body, Capsule, Inertial, NoShape, Shape
+from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import NoFiles
 
 CUBE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1"

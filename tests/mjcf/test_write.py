@@ -15,7 +15,6 @@ from hymeko_x.backends import mjcf
 from hymeko_x.backends.mjcf.text import numbers
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, coupling_edge, joint_edge, layer_edge, mount_edge, shape_edge
 from hymeko_x.ir.parts import (
     Box,
@@ -55,6 +54,7 @@ from hymeko_x.ir.values import (
     scaled,
     unit,
 )
+from hymeko_x.rewrite import Options, legalize
 from tests.robots import SOLID, body, chain, hinge, joint
 
 

@@ -12,12 +12,12 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from hymeko_x import formats, pipeline
+from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
-from hymeko_x.ir.diff import Tolerance, diff
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Id, Mechanism
-from hymeko_x.ir.rename import rename
+from hymeko_x.ir.names import rename
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from hymeko_x.testing import arms
 from hymeko_x.verify import model_of

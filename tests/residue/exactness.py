@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from hymeko_x.ir.diff import diff
+from hymeko_x.compare.diff import diff
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import Mechanism
-from hymeko_x.ir.residue.order import by_kind
+from hymeko_x.residue.order import by_kind
 
 
 def unequal(a: Mechanism, b: Mechanism) -> list[str]:

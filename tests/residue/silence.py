@@ -21,8 +21,8 @@ import numpy as np
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite import Options
 from hymeko_x.source import Files, NoFiles, Source
 from tests.residue.changes import Change, changes
 from tests.residue.exactness import unequal

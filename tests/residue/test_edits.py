@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 
 import hymeko_x as hx
 from hymeko_x import codes, formats, pipeline
+from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.formats.carrier import taken_off
-from hymeko_x.ir.diff import Tolerance, diff
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
 from hymeko_x.ir.parts import Mesh, Tendon
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from tests.residue.edits import Edit, applied, applied_to_stage, mjcf_edits, urdf_edits, usd_edits, xacro_edits
 from tests.residue.exactness import unequal

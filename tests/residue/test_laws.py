@@ -13,10 +13,10 @@ from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.ir import parts, values
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Mechanism
-from hymeko_x.ir.residue.delta import residue_of
-from hymeko_x.ir.residue.merge import restore
-from hymeko_x.ir.residue.types import hints_of, settled
-from hymeko_x.language.residue import parse_residue, print_residue
+from hymeko_x.ir.types import hints_of, settled
+from hymeko_x.residue.delta import residue_of
+from hymeko_x.residue.merge import restore
+from hymeko_x.residue.text import parse_residue, print_residue
 from hymeko_x.testing import mechanisms
 from tests.residue.exactness import unequal
 

@@ -10,7 +10,7 @@ import pytest
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
 from hymeko_x.source import Files, NoFiles, Package, Source
 from tests.residue import silence
 from tests.residue.samples import MJCF, URDF

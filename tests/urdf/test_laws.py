@@ -8,14 +8,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from hymeko_x.backends.urdf import write
+from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.urdf import read
 from hymeko_x.ir import parts
-from hymeko_x.ir.diff import Tolerance, diff
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Id, Mechanism, joint_edge
 from hymeko_x.ir.values import pose
+from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import Source
 from hymeko_x.testing import mechanisms, urdf_mechanisms
 from hymeko_x.testing.values import VECTORS

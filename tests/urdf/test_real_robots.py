@@ -10,8 +10,8 @@ import pinocchio as pin
 import pytest
 from lxml import etree
 
-from hymeko_x.formats.xml import read_numbers
-from hymeko_x.ir.diff import diff
+from hymeko_x.compare.diff import diff
+from hymeko_x.xml.tree import read_numbers
 from tests.urdf.samples import dump, load, tags
 
 

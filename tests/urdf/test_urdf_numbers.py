@@ -9,8 +9,8 @@ from xml.sax.saxutils import quoteattr
 
 import pytest
 
+from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.diff import Tolerance, diff
 from tests.odd_numbers import ODD
 from tests.urdf.samples import LIMIT, TWO_LINKS, dump, joint, load, robot, visual
 

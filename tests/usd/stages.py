@@ -14,8 +14,8 @@ from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends import usd
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 
 HEADER = '#usda 1.0\n(\n    defaultPrim = "robot"\n    metersPerUnit = 1\n    kilogramsPerUnit = 1\n    upAxis = "Z"\n)\n'

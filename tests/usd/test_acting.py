@@ -13,9 +13,9 @@ from hymeko_x import formats, pipeline
 from hymeko_x.corpus import catalog
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends import mjcf
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Actuator, Contact, Drive, Light
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from tests.usd.stages import opened, read_text
 from tests.usd.test_kept import missing

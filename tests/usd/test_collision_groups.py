@@ -14,10 +14,10 @@ from hypothesis import strategies as st
 from pxr import Sdf, Usd, UsdPhysics
 
 import hymeko_x as hx
+from hymeko_x.compare.diff import diff
 from hymeko_x.corpus import catalog
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.usd import collision_groups
-from hymeko_x.ir.diff import diff
 from hymeko_x.ir.mechanism import WORLD, Mechanism
 from hymeko_x.ir.parts import Contact
 from tests.conftest import RealRobots

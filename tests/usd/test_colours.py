@@ -7,7 +7,7 @@ from pathlib import Path
 from pxr import Usd, UsdShade
 
 import hymeko_x as hx
-from tests.assets.test_mesh import dae
+from tests.meshes.test_mesh import dae
 
 URDF = """<robot name="r"><link name="a">
 <visual name="shell"><geometry><mesh filename="a.dae" scale="2 2 2"/></geometry>

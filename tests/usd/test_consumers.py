@@ -7,9 +7,9 @@ from pathlib import Path
 from pxr import Usd
 
 from hymeko_x import codes
+from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends import urdf
-from hymeko_x.ir.diff import diff
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.source import Source
 from tests.usd.stages import again, opened, written

@@ -9,8 +9,8 @@ import pytest
 from pxr import Usd
 
 import hymeko_x as hx
+from hymeko_x.compare.diff import diff
 from hymeko_x.corpus import catalog
-from hymeko_x.ir.diff import diff
 from tests.conftest import RealRobots
 from tests.usd.stages import again, opened, parsed, read_file, written
 from tests.usd.test_real_stages import differing, lost_properties

@@ -9,11 +9,11 @@ import pytest
 from pxr import Sdf, Usd
 
 from hymeko_x import formats, pipeline
+from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.diff import diff
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.parts import Body, Box, Capsule, Coupling, DofKind, Joint
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles
 from tests.usd.stages import HEADER, again, opened, parsed, read_text, written
 from tests.usd.test_read import ENDS, PLACE, body, joint, robot, the_joint

@@ -16,9 +16,9 @@ from hymeko_x import codes, formats, pipeline
 from hymeko_x.cli import main
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.frontends import usd
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Body
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Package, Source
 from tests.usd.stages import HEADER, Texts, parsed
 from tests.usd.test_usd_write import ARM, arm

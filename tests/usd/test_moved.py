@@ -9,7 +9,7 @@ import pytest
 import trimesh
 
 import hymeko_x as hx
-from tests.assets.test_mesh import dae
+from tests.meshes.test_mesh import dae
 
 URDF = """<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
 <visual><origin xyz="0 0 1" rpy="0 1 0"/><geometry><mesh filename="{visual}" scale="2 -3 1"/></geometry></visual>

@@ -15,7 +15,7 @@ from lxml import etree
 
 import hymeko_x as hx
 from hymeko_x.corpus import cache, catalog
-from hymeko_x.ir.legalize_joints import dof_number
+from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import Mechanism, RobotArc
 from hymeko_x.ir.parts import Joint, Shape, Tendon
 from hymeko_x.verify import model_of, verify

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from pxr import Usd
 
-from hymeko_x.ir.diff import diff
+from hymeko_x.compare.diff import diff
 from tests.usd.stages import again, opened, parsed, read_file, written
 
 pytestmark = pytest.mark.robots("usd")

@@ -9,8 +9,8 @@ import pytest
 from pxr import Usd, UsdGeom, UsdPhysics, UsdValidation
 
 import hymeko_x as hx
+from hymeko_x.compare.diff import diff
 from hymeko_x.corpus.catalog import development_files
-from hymeko_x.ir.diff import diff
 from hymeko_x.ir.parts import Loop, Mesh
 
 FEW = ("racecar.urdf", "quadruped.urdf", "arm.xml", "tendon.xml")

@@ -9,8 +9,8 @@ import pytest
 
 from hymeko_x import formats, pipeline
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from tests.usd.stages import HEADER
 

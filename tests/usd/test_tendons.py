@@ -14,14 +14,15 @@ from pxr import Usd, UsdGeom
 
 import hymeko_x as hx
 from hymeko_x import formats, pipeline
+from hymeko_x.compare.diff import diff
 from hymeko_x.corpus import catalog
 from hymeko_x.diagnostics import Report
-from hymeko_x.formats import mjcf_words, usd_tendons
-from hymeko_x.ir.diff import diff
+from hymeko_x.formats.mjcf import words as mjcf_words
+from hymeko_x.formats.usd import tendons as usd_tendons
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, joint_edge, mount_edge, shape_edge
 from hymeko_x.ir.parts import Body, Cylinder, Dof, DofKind, Frame, Joint, Limits, Role, Shape, Sphere, Tendon
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from tests.usd.stages import again, opened, read_text, written
 from tests.usd.test_real_stages import lost_properties

@@ -13,9 +13,9 @@ from PIL import Image
 from pxr import Usd, UsdGeom, UsdShade
 
 import hymeko_x as hx
-from hymeko_x.assets.colours import read_colours
-from hymeko_x.assets.part import Part
 from hymeko_x.ir.parts import Texture
+from hymeko_x.meshes.colours import read_colours
+from hymeko_x.meshes.part import Part
 from tests.usd.test_rules import complaints
 
 URDF = """<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>

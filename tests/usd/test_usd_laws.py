@@ -13,8 +13,8 @@ from pxr import Usd, UsdPhysics
 from hymeko_x import formats, pipeline
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
-from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import NoFiles
 from hymeko_x.testing import mechanisms
 from tests.usd.test_rules import complaints

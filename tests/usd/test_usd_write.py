@@ -13,13 +13,13 @@ from pxr import Sdf, Usd, UsdGeom, UsdPhysics
 import hymeko_x as hx
 from hymeko_x import formats, pipeline
 from hymeko_x.backends.usd.carrier import carry_in_text
+from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.formats import carrier
 from hymeko_x.frontends import urdf, usd
-from hymeko_x.ir.diff import diff
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.parts import Body, Mesh
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Package, Source
 from tests.usd.stages import Texts, again, opened, parsed, written
 

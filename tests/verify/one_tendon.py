@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, RobotArc, mount_edge, shape_edge
-from hymeko_x.ir.rename import rename
+from hymeko_x.ir.names import rename
 from hymeko_x.ir.values import Pose, X, Y, Z, add, pose, quat_about
 from hymeko_x.testing import arms
 from tests.verify.one_change import Change, Planter

@@ -164,7 +164,7 @@ def test_convert_ends_with_4_when_the_result_is_another_robot(
     arm: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A rewriting rule that forgets the couplings, as a bug of ours might."""
-    from hymeko_x.ir import rules_mjcf
+    from hymeko_x.backends.mjcf import rules as rules_mjcf
 
     def forget(mechanism: hx.Mechanism, options: object, report: object) -> hx.Mechanism:
         gone = [key for key in mechanism.graph.edges if key.kind == "coupling"]

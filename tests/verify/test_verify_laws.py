@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from hymeko_x import formats, pipeline
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles
 from hymeko_x.testing import arms
 from hymeko_x.verify import model_of

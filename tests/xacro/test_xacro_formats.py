@@ -8,10 +8,10 @@ import pytest
 
 import hymeko_x as hx
 from hymeko_x import disk
+from hymeko_x.compare.diff import diff
 from hymeko_x.corpus.catalog import DevelopmentFile, development_files, select
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.xacro import read
-from hymeko_x.ir.diff import diff
 from hymeko_x.source import Source
 from tests.xacro.test_xacro_writing import check
 

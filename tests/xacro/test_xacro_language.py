@@ -8,8 +8,8 @@ import hymeko_x as hx
 from hymeko_x import codes, formats, pipeline
 from hymeko_x.diagnostics import Origin, Refusal, Report
 from hymeko_x.frontends.xacro import read
-from hymeko_x.ir.legalize import Options
 from hymeko_x.ir.mechanism import ROOT, Id
+from hymeko_x.rewrite import Options
 from hymeko_x.source import Source
 from tests.xacro.samples import Folder, robot
 

@@ -14,14 +14,14 @@ from xacro import substitution_args
 
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.backends import urdf
+from hymeko_x.compare.diff import diff
 from hymeko_x.corpus import catalog
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.formats.xml import read_numbers
 from hymeko_x.frontends import urdf as urdf_in
 from hymeko_x.frontends.xacro import read
 from hymeko_x.frontends.xacro.expand import expand
-from hymeko_x.ir.diff import diff
-from hymeko_x.ir.legalize import Options
+from hymeko_x.rewrite import Options
+from hymeko_x.xml.tree import read_numbers
 from tests.conftest import RealRobots
 
 RENAMED = {"abb_irb140": "abb_irb140_description", "ridgeback_description": "clearpath_ridgeback_description"}

@@ -21,11 +21,11 @@ from hymeko_x import disk, formats, pipeline
 from hymeko_x.backends import urdf
 from hymeko_x.backends import xacro as backend
 from hymeko_x.cli import main
+from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.xacro import read
-from hymeko_x.ir.diff import diff
-from hymeko_x.ir.legalize import Options, legalize
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import Source
 from hymeko_x.testing import mechanisms, urdf_mechanisms
 from tests.conftest import RealRobots

@@ -19,10 +19,10 @@ from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
 from hymeko_x.backends.hymeko.templates import Instance, templates
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
-from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, Ref, Stereotype
+from hymeko_x.rewrite import WITHIN
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.attached import attached_edge, attached_key
+from hymeko_x.formats.hymeko.attached import attached_edge, attached_key
 from hymeko_x.ir.graph import Arc
 
 if TYPE_CHECKING:

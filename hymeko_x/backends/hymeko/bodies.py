@@ -9,7 +9,8 @@ from hymeko_x.backends.hymeko.parts import Context, pose_value, short_uri, word_
 from hymeko_x.formats.hymeko import SHAPE_WORDS
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
-from hymeko_x.ir.mechanism import Id, Names, file_stem
+from hymeko_x.ir.mechanism import Id, file_stem
+from hymeko_x.ir.names import Names
 from hymeko_x.ir.values import IDENTITY, ZERO
 from hymeko_x.ir.written import length_of
 from hymeko_x.language.syntax import Field, Item, Node, Value

@@ -7,7 +7,6 @@ from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, cast
 
 from hymeko_x.backends.hymeko.foreign import foreign_items
-from hymeko_x.formats.attached import TEXTURE, attached_key
 from hymeko_x.formats.hymeko import (
     ATTACHED,
     CHILD_CLASS,
@@ -20,12 +19,13 @@ from hymeko_x.formats.hymeko import (
     TARGETS,
     Word,
 )
+from hymeko_x.formats.hymeko.attached import TEXTURE, attached_key
 from hymeko_x.ir import parts
-from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
 from hymeko_x.language.markup import value_of_text
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value
+from hymeko_x.rewrite.native import is_native
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.backends.hymeko.parts import value_of
+from hymeko_x.factor.sets import candidates, common_words
 from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
-from hymeko_x.ir.factor_sets import candidates, common_words
 from hymeko_x.language.expand import standard_templates
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, Stereotype
@@ -21,7 +21,7 @@ from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, Stereot
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    from hymeko_x.ir.factor_sets import Pair, Row
+    from hymeko_x.factor.sets import Pair, Row
 
 _SHAPES = frozenset({"visual", "collision", "shape"})
 _WHOLE = frozenset({"safety", "calibration", "written"})

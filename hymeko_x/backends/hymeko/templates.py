@@ -1,6 +1,6 @@
 """Assemblies that are the same up to numbers, signs and words become instances of one template.
 
-What differs is found by anti-unification (ir/factor_unify.py), numbers and texts apart: ``left : leg(name=left) {}`` and
+What differs is found by anti-unification (factor/unify.py), numbers and texts apart: ``left : leg(name=left) {}`` and
 ``right : leg(name=right side=-1) {}`` stand for two legs of which one is the mirror image of the other.
 """
 
@@ -11,9 +11,9 @@ from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.backends.hymeko.parts import value_of
-from hymeko_x.ir.factor_dialect import words
-from hymeko_x.ir.factor_unify import unify
-from hymeko_x.ir.forms import Hole, Signed
+from hymeko_x.factor.dialect import words
+from hymeko_x.factor.forms import Hole, Signed
+from hymeko_x.factor.unify import unify
 from hymeko_x.ir.values import number_text
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Expression, Field, Node, Parameter, Ref, Stereotype
@@ -21,8 +21,8 @@ from hymeko_x.language.syntax import ArcItem, Comment, Expression, Field, Node, 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from hymeko_x.ir.factor_unify import Unified
-    from hymeko_x.ir.forms import Text
+    from hymeko_x.factor.forms import Text
+    from hymeko_x.factor.unify import Unified
     from hymeko_x.language.syntax import Item, Value
 
 _LEAST = 40

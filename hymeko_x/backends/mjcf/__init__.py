@@ -18,9 +18,9 @@ from hymeko_x.backends.mjcf.relations import write_actuators, write_contacts, wr
 from hymeko_x.backends.mjcf.tendons import write_tendons
 from hymeko_x.backends.mjcf.text import Text
 from hymeko_x.formats import carrier
-from hymeko_x.formats.xml_print import escaped
-from hymeko_x.ir.legalize_native import is_native
+from hymeko_x.rewrite.native import is_native
 from hymeko_x.source import Package
+from hymeko_x.xml.printing import escaped
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report

@@ -2,7 +2,7 @@
 
 Works on the printed attributes, when all sections are there. What most joints share goes into the nameless default, what most
 shapes for the eye share into ``visual``; sets that only some share become classes of their own, as the factoring of
-:mod:`hymeko_x.ir.factor_sets` finds them. Nobody inherits what he does not say himself, so that MuJoCo compiles the same model.
+:mod:`hymeko_x.factor.sets` finds them. Nobody inherits what he does not say himself, so that MuJoCo compiles the same model.
 """
 
 from __future__ import annotations
@@ -13,16 +13,16 @@ from operator import itemgetter
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from hymeko_x.factor.sets import Costs, common_words, share
 from hymeko_x.formats.mjcf import CLASSES, MAIN
-from hymeko_x.formats.mjcf_classes import PARTIAL
-from hymeko_x.ir.factor_sets import Costs, common_words, share
+from hymeko_x.formats.mjcf.classes import PARTIAL
 from hymeko_x.ir.parts import Role
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from hymeko_x.backends.mjcf.text import Leaf, Text
-    from hymeko_x.ir.factor_sets import Row
+    from hymeko_x.factor.sets import Row
 
 _LIKENESS = frozenset(("type", "size", "material", "rgba", "density", "friction"))
 _MOTION = frozenset(("type", "axis", "range", "ref", "springref", "stiffness", "damping", "frictionloss", "armature", "actuatorfrcrange"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.frozen import frozen
-from hymeko_x.ir.legalize_joints import dof_number
+from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.parts import Mesh, Texture
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.text import Attributes, Text, number, numbers
-from hymeko_x.formats.mjcf_codec import parameter_text
-from hymeko_x.formats.mjcf_words import TENDON_PARAMETERS
+from hymeko_x.formats.mjcf.codec import parameter_text
+from hymeko_x.formats.mjcf.words import TENDON_PARAMETERS
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Shape, Tendon
 from hymeko_x.ir.tendons import PULLEY, SIDE, SPATIAL

@@ -7,14 +7,14 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_tree import COMMENT
-from hymeko_x.formats.xml_text import quoted
+from hymeko_x.formats.mjcf.tree import COMMENT
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, numbers_text
+from hymeko_x.xml.text import quoted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.ir.values import Pose
 
 _DEEPEST = 40

@@ -18,10 +18,10 @@ from hymeko_x.backends.urdf.sheet import Sheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
 from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import COMMENT, FOLLOWING, PRECEDING
-from hymeko_x.formats.xml_print import Tag, escaped, foreign_text, put_back, ready, render
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
+from hymeko_x.xml.printing import Tag, escaped, foreign_text, put_back, ready, render
+from hymeko_x.xml.tree import COMMENT, FOLLOWING, PRECEDING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

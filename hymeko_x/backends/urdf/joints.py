@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml_print import Tag
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind, Joint
 from hymeko_x.ir.values import IDENTITY, number_text, numbers_text, plane_axes, said_numbers, unit
+from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
     from hymeko_x.backends.urdf.sheet import Sheet

@@ -8,9 +8,9 @@ from hymeko_x import codes
 from hymeko_x.backends.urdf.materials import add_shape_material
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml_print import Tag
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
 from hymeko_x.ir.values import Pose, number_text, numbers_text, rotate_tensor, said_numbers
+from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
     from hymeko_x.backends.urdf.sheet import Sheet

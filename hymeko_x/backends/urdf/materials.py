@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.xml_print import Tag
 from hymeko_x.ir.parts import Material
 from hymeko_x.ir.values import numbers_text
+from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
     from hymeko_x.backends.urdf.sheet import Sheet

@@ -7,10 +7,10 @@ import re
 from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.ir.legalize import WITHIN
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Material, Mesh, Role
 from hymeko_x.ir.values import number_text, numbers_text
+from hymeko_x.rewrite import WITHIN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

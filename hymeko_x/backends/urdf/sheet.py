@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.urdf.meshes import files_of_meshes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import Defined
-from hymeko_x.formats.xml_print import Tag, put_back
 from hymeko_x.ir.mechanism import ROOT, numbers_weight
 from hymeko_x.ir.parts import Coupling, Layer, Material, Texture
 from hymeko_x.ir.values import IDENTITY, numbers_text, rpy_of
+from hymeko_x.xml.printing import Tag, put_back
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml_print import Tag, escaped, is_name
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, Drive
 from hymeko_x.ir.values import number_text, numbers_text
+from hymeko_x.xml.printing import Tag, escaped, is_name
 
 if TYPE_CHECKING:
     from hymeko_x.backends.urdf.sheet import Sheet

@@ -23,9 +23,9 @@ from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
 from hymeko_x.backends.usd.tendons import write_tendons
 from hymeko_x.formats import usd as words
-from hymeko_x.ir.legalize import WITHIN
-from hymeko_x.ir.legalize_usd import LAYOUT, POINTS
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.rewrite import WITHIN
+from hymeko_x.rewrite.usd import LAYOUT, POINTS
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:

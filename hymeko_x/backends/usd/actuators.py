@@ -9,7 +9,7 @@ from pxr import Vt
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.relations import SERVOS, prim_of
 from hymeko_x.backends.usd.sheet import point, put
-from hymeko_x.formats import usd_actuators as table
+from hymeko_x.formats.usd import actuators as table
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, Drive
 

@@ -11,11 +11,11 @@ from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.shapes import gprim_of, skin_pose
 from hymeko_x.backends.usd.sheet import apply, put, quatf, transform
 from hymeko_x.formats import usd as words
-from hymeko_x.formats.xml import read_numbers
-from hymeko_x.ir.legalize_usd import NESTED
 from hymeko_x.ir.mechanism import ROOT, WORLD, pose_weight
 from hymeko_x.ir.parts import Body, Camera, Frame, Light, Mesh, Mount, Tendon
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle, unit_quat
+from hymeko_x.rewrite.usd import NESTED
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.prims import Prim

@@ -11,10 +11,10 @@ from pxr import Gf, Sdf
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put, quatf
 from hymeko_x.formats import usd as words
-from hymeko_x.ir.legalize_urdf import stands_for_world
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, scaled, unit_quat
+from hymeko_x.rewrite.urdf import stands_for_world
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import Sheet

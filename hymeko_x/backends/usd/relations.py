@@ -58,7 +58,7 @@ def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None
 
 def dof_of(sheet: Sheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
     """The prim of the dof that an arc means, its axis where that is a generic joint, and the dof itself (hinge or slide)."""
-    from hymeko_x.ir.legalize_joints import dof_number
+    from hymeko_x.ir.kinematics import dof_number
 
     edge = sheet.mechanism.graph.edges.get(arc.target)
     if edge is None or not isinstance(edge.data, Joint):

@@ -6,15 +6,15 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Vt
 
-from hymeko_x.assets.measures import face_normals
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.sheet import apply, point, put
 from hymeko_x.backends.usd.surfaces import places_of, surface_of
 from hymeko_x.formats import usd as words
-from hymeko_x.formats import usd_gprims as gprims
+from hymeko_x.formats.usd import gprims
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Mesh, MeshShape, Role
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_inverse
+from hymeko_x.meshes.measures import face_normals
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.prims import Prim

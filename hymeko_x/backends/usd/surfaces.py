@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hymeko_x.assets.part import FilledMesh
+from hymeko_x.meshes.part import FilledMesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from hymeko_x.assets.part import Part
     from hymeko_x.ir.parts import Mesh
+    from hymeko_x.meshes.part import Part
 
     Surface = tuple[NDArray[Any], NDArray[Any]]
     """Points (n x 3, single precision) and the corners of triangles (flat)."""

@@ -10,7 +10,7 @@ from pxr import Gf, Vt
 from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.relations import prim_of
 from hymeko_x.backends.usd.sheet import point, put
-from hymeko_x.formats import usd_tendons as table
+from hymeko_x.formats.usd import tendons as table
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Tendon
 from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, wrong_path

@@ -15,12 +15,12 @@ from hymeko_x.backends.xacro.dialect import DIALECT
 from hymeko_x.backends.xacro.elements import top_level
 from hymeko_x.backends.xacro.printing import print_file, print_macros
 from hymeko_x.backends.xacro.remarks import placed
+from hymeko_x.factor import factor
 from hymeko_x.formats import carrier
 from hymeko_x.formats.xacro import macros_file
-from hymeko_x.ir.factor import factor
-from hymeko_x.ir.legalize import WITHIN
-from hymeko_x.ir.legalize_xacro import SPLIT
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.rewrite import WITHIN
+from hymeko_x.rewrite.xacro import SPLIT
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:

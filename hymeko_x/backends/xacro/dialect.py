@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from hymeko_x.factor import Dialect
 from hymeko_x.formats.xacro import TAKEN, survives
-from hymeko_x.ir.factor import Dialect
 
 
 def can_be_default(text: str) -> bool:

@@ -5,15 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
+from hymeko_x.factor.forms import Element
 from hymeko_x.formats.xacro import PREFIX
-from hymeko_x.formats.xml_text import unescape
-from hymeko_x.ir.forms import Element
+from hymeko_x.xml.text import unescape
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from hymeko_x.formats.xml_print import Tag
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.xml.printing import Tag
 
 TEXT = "#text"
 INSTRUCTION = "#instruction"

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.xacro.elements import INSTRUCTION, TEXT
 from hymeko_x.backends.xacro.quoting import arguments_to_quote
 from hymeko_x.backends.xacro.texts import argument, default, spelled
+from hymeko_x.factor.forms import Call
 from hymeko_x.formats.xacro import NAMESPACE
-from hymeko_x.formats.xml_print import escaped
-from hymeko_x.ir.forms import Call
+from hymeko_x.xml.printing import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from hymeko_x.backends.urdf import Draft
     from hymeko_x.backends.xacro.remarks import Placed
-    from hymeko_x.ir.forms import Element, Factored, Item, Macro, Parameter
+    from hymeko_x.factor.forms import Element, Factored, Item, Macro, Parameter
 
 _INDENT = "  "
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x.factor.forms import Call, fill
 from hymeko_x.formats.xacro import survives
-from hymeko_x.ir.forms import Call, fill
 
 if TYPE_CHECKING:
-    from hymeko_x.ir.forms import Factored, Item
+    from hymeko_x.factor.forms import Factored, Item
 
 
 def arguments_to_quote(factored: Factored) -> set[tuple[int, str]]:

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.forms import Call, Element
+from hymeko_x.factor.forms import Call, Element
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from hymeko_x.backends.xacro.elements import Remarks
-    from hymeko_x.ir.forms import Factored, Item
+    from hymeko_x.factor.forms import Factored, Item
 
 Placed = dict[tuple[str, int], list[str]]
 """Comments by the item that they stand before: its macro ("" = the file itself), and its place there."""

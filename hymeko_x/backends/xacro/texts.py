@@ -7,13 +7,13 @@ import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from hymeko_x.factor.forms import Hole, Signed
 from hymeko_x.formats.xacro import survives
-from hymeko_x.ir.forms import Hole, Signed
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.ir.forms import Piece, Text
+    from hymeko_x.factor.forms import Piece, Text
 
 _BEFORE_BRACE = re.compile(r"\$+(?=[{(])")
 _LONE = re.compile(r"\$(?=\$)")

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, TypeGuard, cast
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, refuse
-from hymeko_x.formats.attached import TEXTURE, attached_edge, attached_key
 from hymeko_x.formats.hymeko import ALIASES, ATTACHED, AXES, FOREIGN, NAMED_AFTER_ID, PARTS, SETTINGS, TARGETS
+from hymeko_x.formats.hymeko.attached import TEXTURE, attached_edge, attached_key
 from hymeko_x.frontends.hymeko.block import Block, Context, is_written, read_units, read_written, read_written_block
 from hymeko_x.frontends.hymeko.bodies import build_uri, is_base_arc, read_body, read_fixed
 from hymeko_x.frontends.hymeko.build import Build

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
-from hymeko_x.formats.attached import attached_edge
 from hymeko_x.formats.hymeko import SHAPE_WORDS
+from hymeko_x.formats.hymeko.attached import attached_edge
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.build import sign_of
 from hymeko_x.ir import parts

@@ -9,7 +9,8 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
-from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Extra, Id, Mechanism, Names
+from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Extra, Id, Mechanism
+from hymeko_x.ir.names import Names
 from hymeko_x.ir.parts import EdgePart, VertexPart, Weight, World
 from hymeko_x.language.expand import standard_templates
 from hymeko_x.language.syntax import ArcItem, QuotedName, is_list

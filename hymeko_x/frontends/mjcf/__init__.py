@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import carrier
-from hymeko_x.formats.mjcf_classes import Classes
-from hymeko_x.formats.mjcf_tree import parse
-from hymeko_x.formats.mjcf_words import DELEGATED
+from hymeko_x.formats.mjcf.classes import Classes
+from hymeko_x.formats.mjcf.tree import parse
+from hymeko_x.formats.mjcf.words import DELEGATED
 from hymeko_x.frontends.mjcf.actuators import read_actuators
 from hymeko_x.frontends.mjcf.assets import read_assets
 from hymeko_x.frontends.mjcf.bodies import read_worldbody, reserve_names
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hymeko_x.diagnostics import Report
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Source
 

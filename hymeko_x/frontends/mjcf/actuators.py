@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_words import LAW, RESOLVED, TRANSMISSIONS
-from hymeko_x.formats.xml import read_numbers
+from hymeko_x.formats.mjcf.words import LAW, RESOLVED, TRANSMISSIONS
 from hymeko_x.frontends.mjcf.mounts import take_parameters
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Actuator, Drive
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
     from hymeko_x.ir.mechanism import RobotArc
 

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_places import MATERIAL, MESH
-from hymeko_x.formats.mjcf_words import joined
+from hymeko_x.formats.mjcf.places import MATERIAL, MESH
+from hymeko_x.formats.mjcf.words import joined
 from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
 from hymeko_x.ir.parts import Material, Mesh, Texture
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
 
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_codec import POSE, BadAttribute
-from hymeko_x.formats.mjcf_places import INERTIAL, seen_from
-from hymeko_x.formats.mjcf_words import kind_of
+from hymeko_x.formats.mjcf.codec import POSE, BadAttribute
+from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
+from hymeko_x.formats.mjcf.words import kind_of
 from hymeko_x.frontends.mjcf.geoms import read_geom
 from hymeko_x.frontends.mjcf.joints import read_joints
 from hymeko_x.frontends.mjcf.mounts import read_camera, read_light, read_site
@@ -20,7 +20,7 @@ from hymeko_x.ir.values import compose
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Inertial

@@ -10,23 +10,23 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.formats.mjcf_classes import ANY_TURN
-from hymeko_x.formats.mjcf_schema import CHILDREN, REMOVED, attributes_of
-from hymeko_x.formats.mjcf_tree import COMMENT
-from hymeko_x.formats.mjcf_types import EXCLUSIVE, FILLED, REQUIRED, kinds_of
-from hymeko_x.formats.xml import read_numbers
+from hymeko_x.formats.mjcf.classes import ANY_TURN
+from hymeko_x.formats.mjcf.schema import CHILDREN, REMOVED, attributes_of
+from hymeko_x.formats.mjcf.tree import COMMENT
+from hymeko_x.formats.mjcf.types import EXCLUSIVE, FILLED, REQUIRED, kinds_of
 from hymeko_x.frontends.mjcf.references import Reference, references_at, references_of
 from hymeko_x.frontends.mjcf.rules import complaint, rules_of
 from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import file_stem
 from hymeko_x.ir.values import number_text
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from hymeko_x.diagnostics import Refusal
-    from hymeko_x.formats.mjcf_tree import Element
-    from hymeko_x.formats.mjcf_types import Kind
+    from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.formats.mjcf.types import Kind
     from hymeko_x.frontends.mjcf.rules import Rule
 
 _NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|0x[\da-f.]+(?:p[+-]?\d+)?|inf(?:inity)?|nan)", re.ASCII | re.IGNORECASE)

@@ -10,7 +10,7 @@ from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Contact
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
     from hymeko_x.ir.mechanism import Id, RobotArc
 

@@ -15,13 +15,13 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_tree import parse_text, verbatim
-from hymeko_x.formats.mjcf_words import DELEGATED
+from hymeko_x.formats.mjcf.tree import parse_text, verbatim
+from hymeko_x.formats.mjcf.words import DELEGATED
 from hymeko_x.frontends.mjcf.handover import hand_over
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.handover import Handover
     from hymeko_x.source import Source
 

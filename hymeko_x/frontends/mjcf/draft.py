@@ -7,22 +7,23 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats import mjcf_words as words
-from hymeko_x.formats.mjcf_classes import merge
-from hymeko_x.formats.mjcf_codec import BadAttribute, plan_of
-from hymeko_x.formats.mjcf_tree import COMMENT, verbatim
-from hymeko_x.formats.xml import read_numbers
+from hymeko_x.formats.mjcf import words
+from hymeko_x.formats.mjcf.classes import merge
+from hymeko_x.formats.mjcf.codec import BadAttribute, plan_of
+from hymeko_x.formats.mjcf.tree import COMMENT, verbatim
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Mechanism, Names
+from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Mechanism
+from hymeko_x.ir.names import Names
 from hymeko_x.ir.parts import World
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.diagnostics import Origin, Refusal, Report
-    from hymeko_x.formats.mjcf_classes import Classes
-    from hymeko_x.formats.mjcf_codec import Group, Plan, Settings
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.classes import Classes
+    from hymeko_x.formats.mjcf.codec import Group, Plan, Settings
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.ir.mechanism import RobotEdge
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.source import Files

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_codec import BadAttribute, numbers_of
-from hymeko_x.formats.mjcf_words import shifted
+from hymeko_x.formats.mjcf.codec import BadAttribute, numbers_of
+from hymeko_x.formats.mjcf.words import shifted
 from hymeko_x.frontends.mjcf.contacts import find_end
 from hymeko_x.frontends.mjcf.mounts import take_parameters
 from hymeko_x.ir.graph import Arc, Edge
@@ -17,7 +17,7 @@ from hymeko_x.ir.tendons import moves_along_one
 from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, pose
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
     from hymeko_x.ir.mechanism import Id, RobotArc
 

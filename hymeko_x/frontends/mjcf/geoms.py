@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_places import FITTED_GEOM, GEOM, GRID, Place
-from hymeko_x.formats.mjcf_words import PLACES
+from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, Place
+from hymeko_x.formats.mjcf.words import PLACES
 from hymeko_x.frontends.mjcf.spot import Spot, placed
 from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.parts import Role, Shape
@@ -14,7 +14,7 @@ from hymeko_x.ir.values import number_text
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
 
 _SHOWN = 3

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_tree import Element, parse, verbatim
-from hymeko_x.formats.mjcf_words import joined, settings_of
+from hymeko_x.formats.mjcf.tree import Element, parse, verbatim
+from hymeko_x.formats.mjcf.words import joined, settings_of
 from hymeko_x.frontends.mjcf.include import expand_includes
 from hymeko_x.ir.mechanism import file_stem
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.formats.mjcf_codec import Settings
+    from hymeko_x.formats.mjcf.codec import Settings
     from hymeko_x.source import Source
 
 _FOLDERS = ("assetdir", "meshdir", "texturedir", "strippath")

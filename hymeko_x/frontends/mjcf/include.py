@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_tree import Element, parse
+from hymeko_x.formats.mjcf.tree import Element, parse
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report

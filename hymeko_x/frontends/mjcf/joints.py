@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_joints import JOINT
+from hymeko_x.formats.mjcf.joints import JOINT
 from hymeko_x.ir.mechanism import WORLD, Id, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Dof, DofKind, Joint, Limits
 from hymeko_x.ir.values import Z, apply, rotate
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft, Values
     from hymeko_x.frontends.mjcf.spot import Spot
     from hymeko_x.ir.values import Pose

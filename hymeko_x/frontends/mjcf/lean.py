@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.formats.mjcf_places import PLACE, Place
-from hymeko_x.formats.mjcf_tree import parse_text
-from hymeko_x.formats.mjcf_words import NAME
-from hymeko_x.ir.legalize_native import compilers, someone_says
+from hymeko_x.formats.mjcf.places import PLACE, Place
+from hymeko_x.formats.mjcf.tree import parse_text
+from hymeko_x.formats.mjcf.words import NAME
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Sphere
+from hymeko_x.rewrite.native import compilers, someone_says
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf_codec import Settings
+    from hymeko_x.formats.mjcf.codec import Settings
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
 
 _SOLIDS = (Box, Capsule, Cylinder, Ellipsoid, Sphere)

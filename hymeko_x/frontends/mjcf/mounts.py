@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_codec import parameter_value
-from hymeko_x.formats.mjcf_places import CAMERA, LIGHT, SITE
-from hymeko_x.formats.mjcf_words import PLAIN_ATTRIBUTES
+from hymeko_x.formats.mjcf.codec import parameter_value
+from hymeko_x.formats.mjcf.places import CAMERA, LIGHT, SITE
+from hymeko_x.formats.mjcf.words import PLAIN_ATTRIBUTES
 from hymeko_x.frontends.mjcf.spot import Spot, placed
 from hymeko_x.ir.mechanism import mount_edge
 from hymeko_x.ir.parts import Camera, Frame, Light
@@ -14,8 +14,8 @@ from hymeko_x.ir.parts import Camera, Frame, Light
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.formats.mjcf_codec import Group
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.codec import Group
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft, Values
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Parameters

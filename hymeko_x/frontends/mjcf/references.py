@@ -10,7 +10,7 @@ from hymeko_x.frozen import frozen
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
 
 _REFERENCES: Mapping[str, tuple[tuple[str, str], ...]] = MappingProxyType(

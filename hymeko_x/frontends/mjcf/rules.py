@@ -8,12 +8,12 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_tree import COMMENT
+from hymeko_x.formats.mjcf.tree import COMMENT
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
 
     Rule = Callable[[Element], str | None]
 

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_tree import COMMENT
-from hymeko_x.formats.mjcf_words import ASIDE, settings_of
+from hymeko_x.formats.mjcf.tree import COMMENT
+from hymeko_x.formats.mjcf.words import ASIDE, settings_of
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf_codec import Settings
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.codec import Settings
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_words import ALONE, SENSED, SENSED_TYPES
+from hymeko_x.formats.mjcf.words import ALONE, SENSED, SENSED_TYPES
 from hymeko_x.frontends.mjcf.contacts import find_end
 from hymeko_x.frontends.mjcf.mounts import take_parameters
 from hymeko_x.ir.graph import Arc, Edge
@@ -14,7 +14,7 @@ from hymeko_x.ir.parts import Camera, Sense, Sensor
 from hymeko_x.ir.tendons import moves_along_one
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
     from hymeko_x.ir.mechanism import Id, RobotArc
 

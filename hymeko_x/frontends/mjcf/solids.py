@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.formats.mjcf_words import NAME
+from hymeko_x.formats.mjcf.words import NAME
 from hymeko_x.ir.mechanism import file_stem, shape_edge
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, NoShape, Sphere
 from hymeko_x.ir.values import pose

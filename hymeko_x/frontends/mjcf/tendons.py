@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf_classes import merge
-from hymeko_x.formats.mjcf_codec import BadAttribute, numbers_of, parameter_value
-from hymeko_x.formats.mjcf_joints import TENDON
-from hymeko_x.formats.mjcf_tree import COMMENT
-from hymeko_x.formats.mjcf_words import TENDON_PARAMETERS
+from hymeko_x.formats.mjcf.classes import merge
+from hymeko_x.formats.mjcf.codec import BadAttribute, numbers_of, parameter_value
+from hymeko_x.formats.mjcf.joints import TENDON
+from hymeko_x.formats.mjcf.tree import COMMENT
+from hymeko_x.formats.mjcf.words import TENDON_PARAMETERS
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import UNLIMITED, Limits, Tendon
 from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, SPATIAL, WRAP, wrong_path
@@ -18,7 +18,7 @@ from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, SPATIAL, WRAP, wrong_path
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.draft import Draft
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Parameters

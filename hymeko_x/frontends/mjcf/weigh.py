@@ -11,14 +11,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
-from hymeko_x.formats.mjcf_tree import parse_text
-from hymeko_x.formats.mjcf_words import NAME, joined, settings_of
+from hymeko_x.formats.mjcf.tree import parse_text
+from hymeko_x.formats.mjcf.words import NAME, joined, settings_of
 from hymeko_x.frontends.mjcf.lean import can_be_lean, lean_model
 from hymeko_x.frontends.mjcf.solids import fitted_shape, solid_mesh, unsolid
-from hymeko_x.ir.legalize_native import compiler_says, compilers, someone_says
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
 from hymeko_x.ir.parts import Body, DofKind, Inertial, Joint, Mesh
 from hymeko_x.ir.values import rotate_tensor, unit_quat
+from hymeko_x.rewrite.native import compiler_says, compilers, someone_says
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report

@@ -12,21 +12,21 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import FOLLOWING, PRECEDING, Leftovers, outer_extra
-from hymeko_x.formats.xml_parse import parse
 from hymeko_x.frontends.urdf.draft import Draft
 from hymeko_x.frontends.urdf.joints import read_joints
 from hymeko_x.frontends.urdf.links import read_link
 from hymeko_x.frontends.urdf.materials import finish_materials, read_robot_material
 from hymeko_x.frontends.urdf.structure import check_structure
 from hymeko_x.frontends.urdf.transmissions import read_transmission
+from hymeko_x.xml.parse import parse
+from hymeko_x.xml.tree import FOLLOWING, PRECEDING, Leftovers, outer_extra
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.formats.xml import Node
-    from hymeko_x.formats.xml_parse import Document
     from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.source import Source
+    from hymeko_x.xml.parse import Document
+    from hymeko_x.xml.tree import Node
 
 
 def read(source: Source, report: Report) -> Mechanism:

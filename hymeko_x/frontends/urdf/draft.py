@@ -8,17 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import read_numbers, take_numbers
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import ROOT, Mechanism, Names
+from hymeko_x.ir.mechanism import ROOT, Mechanism
+from hymeko_x.ir.names import Names
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
+from hymeko_x.xml.tree import read_numbers, take_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin, Report
-    from hymeko_x.formats.xml import Leftovers, Node
     from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
     from hymeko_x.ir.parts import Rgba, VertexPart
     from hymeko_x.ir.values import Vec3
+    from hymeko_x.xml.tree import Leftovers, Node
 
 
 @dataclass(slots=True)

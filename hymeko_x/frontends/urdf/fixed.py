@@ -9,13 +9,13 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml_print import attributes_text
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Joint
+from hymeko_x.xml.printing import attributes_text
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.xml import Node
     from hymeko_x.frontends.urdf.draft import Draft
+    from hymeko_x.xml.tree import Node
 
 
 def gather_meaningless(joints: list[Node], draft: Draft) -> None:

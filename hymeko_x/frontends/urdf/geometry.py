@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import read_numbers, take_numbers
 from hymeko_x.ir.mechanism import file_stem
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
+from hymeko_x.xml.tree import read_numbers, take_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from hymeko_x.formats.xml import Node
     from hymeko_x.frontends.urdf.draft import Draft
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Geometry
     from hymeko_x.ir.values import Vec3
+    from hymeko_x.xml.tree import Node
 
 _NO_GEOMETRY = "the shape has no geometry"
 

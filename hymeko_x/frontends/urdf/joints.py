@@ -7,19 +7,19 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import read_numbers, shortened, take_number, take_numbers
 from hymeko_x.frontends.urdf.draft import read_origin, take_name
 from hymeko_x.frontends.urdf.fixed import gather_meaningless
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
 from hymeko_x.ir.values import Written, X, plane_axes, unit
+from hymeko_x.xml.tree import read_numbers, shortened, take_number, take_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.formats.urdf import JointType
-    from hymeko_x.formats.xml import Node
     from hymeko_x.frontends.urdf.draft import Draft
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.values import Vec3
+    from hymeko_x.xml.tree import Node
 
 _SINGLE = ((DofKind.HINGE,), (DofKind.SLIDE,))
 

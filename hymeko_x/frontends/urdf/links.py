@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import take_number
 from hymeko_x.frontends.urdf.draft import read_origin, take_name
 from hymeko_x.frontends.urdf.geometry import read_geometry
 from hymeko_x.frontends.urdf.materials import read_shape_material
-from hymeko_x.ir.legalize_solids import UNSAID, UNSAID_NOTATION
 from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Shape
 from hymeko_x.ir.values import rotate_tensor
+from hymeko_x.rewrite.solids import UNSAID, UNSAID_NOTATION
+from hymeko_x.xml.tree import take_number
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.xml import Node
     from hymeko_x.frontends.urdf.draft import Draft
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Role
     from hymeko_x.ir.values import Tensor
+    from hymeko_x.xml.tree import Node
 
 _ORIGIN_STYLES = {"visual": words.STYLE_VISUAL_ORIGIN, "collision": words.STYLE_COLLISION_ORIGIN}
 _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")

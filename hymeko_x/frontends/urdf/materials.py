@@ -12,17 +12,17 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import Defined
-from hymeko_x.formats.xml import take_numbers
 from hymeko_x.frontends.urdf.draft import Looks
 from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
 from hymeko_x.ir.parts import Material, Texture
+from hymeko_x.xml.tree import take_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.formats.xml import Node
     from hymeko_x.frontends.urdf.draft import Draft
     from hymeko_x.ir.parts import Rgba
+    from hymeko_x.xml.tree import Node
 
 Said = tuple["Rgba | None", "str | None"]
 

@@ -8,9 +8,9 @@ from hymeko_x import codes
 from hymeko_x.ir.parts import Body, Joint
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.xml import Node
     from hymeko_x.frontends.urdf.draft import Draft
     from hymeko_x.ir.mechanism import Id
+    from hymeko_x.xml.tree import Node
 
 
 def check_structure(root: Node, draft: Draft) -> None:

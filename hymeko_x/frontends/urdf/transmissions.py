@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.xml import read_numbers
 from hymeko_x.frontends.urdf.draft import take_name
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Actuator, Drive
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.xml import Node
     from hymeko_x.frontends.urdf.draft import Draft
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Parameters
+    from hymeko_x.xml.tree import Node
 
 _REDUCTION = "mechanicalReduction"
 

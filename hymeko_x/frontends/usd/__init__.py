@@ -13,7 +13,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import carrier
 from hymeko_x.formats import usd as words
-from hymeko_x.formats.usd_actuators import PRIM as ACTUATOR
+from hymeko_x.formats.usd.actuators import PRIM as ACTUATOR
 from hymeko_x.frontends.usd.actuators import read_actuator
 from hymeko_x.frontends.usd.bare_links import hang_bare_links, read_bare_links
 from hymeko_x.frontends.usd.bodies import BODY, read_body, read_mass

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
-from hymeko_x.formats import usd_actuators as table
+from hymeko_x.formats.usd import actuators as table
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Actuator, Drive
 

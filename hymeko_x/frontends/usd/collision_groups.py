@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.legalize_usd import APART_BY_BOTH, APART_BY_GROUPS, GROUP, GROUPED, GROUPS, pairs_print
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Contact, Role, Shape
+from hymeko_x.rewrite.usd import APART_BY_BOTH, APART_BY_GROUPS, GROUP, GROUPED, GROUPS, pairs_print
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -12,7 +12,7 @@ from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.places import Places, numbers_of
-from hymeko_x.ir.mechanism import Names
+from hymeko_x.ir.names import Names
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
-from hymeko_x.formats import usd_gprims as gprims
-from hymeko_x.formats.usd import single
+from hymeko_x.formats.usd import gprims, single
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.contacts import friction_of
 from hymeko_x.frontends.usd.materials import bound_material
@@ -120,7 +119,7 @@ def _read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | No
     """The points of a mesh prim in metres with the mesh's id. Equal meshes at equal scale share one; polygons become fans."""
     import numpy as np
 
-    from hymeko_x.assets.polygons import fans
+    from hymeko_x.meshes.polygons import fans
 
     points, counts, indices = (prim.value(name) for name in ("points", "faceVertexCounts", "faceVertexIndices"))
     if points is None or counts is None or indices is None:
@@ -162,7 +161,7 @@ def _says_normals(prim: Prim, draft: Draft) -> bool:
         return False
     import numpy as np
 
-    from hymeko_x.assets.measures import face_normals
+    from hymeko_x.meshes.measures import face_normals
 
     spec = prim.spec.attributes["normals"]
     is_plain = set(spec.ListInfoKeys()) <= _OF_NORMALS and spec.GetInfo("interpolation") == "uniform" and not prim.is_animated("normals")

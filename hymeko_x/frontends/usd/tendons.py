@@ -7,8 +7,8 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.formats import usd_tendons as table
-from hymeko_x.formats.mjcf_words import TENDON_PARAMETERS
+from hymeko_x.formats.mjcf.words import TENDON_PARAMETERS
+from hymeko_x.formats.usd import tendons as table
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import UNLIMITED, DofKind, Joint, Limits, Tendon

@@ -26,7 +26,7 @@ def read_places(prim: Prim, sizes: NDArray[Any], corners: NDArray[Any]) -> Place
         return (), ()
     import numpy as np
 
-    from hymeko_x.assets.polygons import fans
+    from hymeko_x.meshes.polygons import fans
 
     places, rows = np.asarray(said, dtype=np.float64).reshape(-1, 2), prim.value(f"{_ST}:indices")
     spread = prim.spec.attributes[_ST].GetInfo("interpolation")

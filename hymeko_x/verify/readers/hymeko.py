@@ -12,8 +12,8 @@ from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.frontends import hymeko
 from hymeko_x.frontends.mjcf.weigh import weigh
-from hymeko_x.ir.legalize_native import is_native
 from hymeko_x.ir.parts import Body
+from hymeko_x.rewrite.native import is_native
 from hymeko_x.source import Source
 from hymeko_x.verify.readers.mechanism import from_mechanism
 

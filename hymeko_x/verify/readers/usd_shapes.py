@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics
 
-from hymeko_x.formats.usd_gprims import ball
+from hymeko_x.formats.usd.gprims import ball
 from hymeko_x.verify.model import Array, Role, Shape, Surface
 from hymeko_x.verify.spatial import rigid
 

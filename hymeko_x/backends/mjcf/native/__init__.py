@@ -12,7 +12,7 @@ from hymeko_x.backends.mjcf.native.bodies import write_worldbody
 from hymeko_x.backends.mjcf.native.motors import write_actuators, write_sensors
 from hymeko_x.backends.mjcf.native.relations import write_contacts, write_equalities, write_tendons
 from hymeko_x.backends.mjcf.native.sheet import Sheet, write_aside
-from hymeko_x.formats import mjcf_words as words
+from hymeko_x.formats.mjcf import words
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 

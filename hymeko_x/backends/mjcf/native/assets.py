@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.native.sheet import section_lines
-from hymeko_x.formats.mjcf_places import MATERIAL, MESH
-from hymeko_x.formats.mjcf_words import below
+from hymeko_x.formats.mjcf.places import MATERIAL, MESH
+from hymeko_x.formats.mjcf.words import below
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Layer, Material, Mesh, Texture

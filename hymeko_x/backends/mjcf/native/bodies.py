@@ -8,8 +8,8 @@ from hymeko_x.backends.mjcf.native.geoms import geom_op
 from hymeko_x.backends.mjcf.native.joints import joint_ops
 from hymeko_x.backends.mjcf.native.mounts import mount_ops
 from hymeko_x.backends.mjcf.native.spot import Around, Op, Spot, spot_of
-from hymeko_x.formats.mjcf_codec import POSE
-from hymeko_x.formats.mjcf_places import INERTIAL, seen_from
+from hymeko_x.formats.mjcf.codec import POSE
+from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body
 from hymeko_x.ir.values import IDENTITY, compose, inverse

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.native.spot import Op, Spot
-from hymeko_x.formats.mjcf_places import FITTED_GEOM, GEOM, GRID, PLACE, Place, seen_from
+from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, seen_from
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.parts import Plane
 
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.native.sheet import Sheet
     from hymeko_x.backends.mjcf.text import Attributes
-    from hymeko_x.formats.mjcf_codec import Group
+    from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.ir.mechanism import ShapeView
 
 

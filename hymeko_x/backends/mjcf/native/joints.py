@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.native.spot import Op, Spot
-from hymeko_x.formats.mjcf_joints import ANCHOR, AXIS, JOINT
+from hymeko_x.formats.mjcf.joints import ANCHOR, AXIS, JOINT
 from hymeko_x.ir.parts import DofKind
 from hymeko_x.ir.values import IDENTITY, Written, apply, inverse, rotate
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.backends.mjcf.native.sheet import Sheet
     from hymeko_x.backends.mjcf.text import Attributes
-    from hymeko_x.formats.mjcf_codec import Group, Settings
+    from hymeko_x.formats.mjcf.codec import Group, Settings
     from hymeko_x.ir.mechanism import JointView
     from hymeko_x.ir.parts import Dof
     from hymeko_x.ir.values import Pose, Vec3

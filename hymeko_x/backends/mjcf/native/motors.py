@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.mjcf.native.parameters import parameter_attributes
 from hymeko_x.backends.mjcf.native.sheet import write_section
 from hymeko_x.formats.mjcf import TARGETS
-from hymeko_x.formats.xml import read_numbers
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, Drive, Sense, Sensor
 from hymeko_x.ir.values import numbers_text
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

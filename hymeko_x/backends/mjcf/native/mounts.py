@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x.backends.mjcf.native.parameters import parameter_attributes
 from hymeko_x.backends.mjcf.native.spot import Op, Spot
-from hymeko_x.formats.mjcf_places import CAMERA, LIGHT, SITE, seen_from
+from hymeko_x.formats.mjcf.places import CAMERA, LIGHT, SITE, seen_from
 from hymeko_x.ir.parts import Camera, Frame, Light
 
 if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.native.sheet import Sheet
     from hymeko_x.backends.mjcf.text import Attributes
-    from hymeko_x.formats.mjcf_codec import Group
+    from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Parameters
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_codec import parameter_text, parameter_value
+from hymeko_x.formats.mjcf.codec import parameter_text, parameter_value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.native.parameters import parameter_attributes
 from hymeko_x.backends.mjcf.native.sheet import write_section
-from hymeko_x.formats.mjcf_codec import numbers_of
-from hymeko_x.formats.mjcf_joints import TENDON
-from hymeko_x.formats.mjcf_words import shifted
+from hymeko_x.formats.mjcf.codec import numbers_of
+from hymeko_x.formats.mjcf.joints import TENDON
+from hymeko_x.formats.mjcf.words import shifted
 from hymeko_x.ir.mechanism import WORLD, numbers_weight, pose_weight
 from hymeko_x.ir.parts import Contact, Coupling, DofKind, Joint, Loop, Tendon
 from hymeko_x.ir.tendons import PULLEY, SIDE
@@ -183,6 +183,6 @@ def _step(sheet: Sheet, arc: RobotArc) -> tuple[str, list[tuple[str, str]]]:
 
 
 def _attributes(found: list[tuple[str, str]]) -> str:
-    from hymeko_x.formats.xml_print import escaped
+    from hymeko_x.xml.printing import escaped
 
     return "".join(f' {name}="{escaped(value)}"' for name, value in found)

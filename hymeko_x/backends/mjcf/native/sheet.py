@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Any
 from xml.parsers.expat import ExpatError
 
 from hymeko_x.backends.mjcf.text import Text
-from hymeko_x.formats import mjcf_words as words
-from hymeko_x.formats.mjcf_classes import Classes, merge
-from hymeko_x.formats.mjcf_codec import BadAttribute, plan_of
-from hymeko_x.formats.mjcf_places import same_value
-from hymeko_x.formats.mjcf_tree import parse_text
+from hymeko_x.formats.mjcf import words
+from hymeko_x.formats.mjcf.classes import Classes, merge
+from hymeko_x.formats.mjcf.codec import BadAttribute, plan_of
+from hymeko_x.formats.mjcf.places import same_value
+from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.ir.mechanism import ROOT, file_stem
 from hymeko_x.ir.parts import Joint, Mesh, Shape, Texture
 
@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.backends.mjcf.text import Attributes
-    from hymeko_x.formats.mjcf_codec import Group, Plan, Settings
-    from hymeko_x.formats.mjcf_tree import Element
+    from hymeko_x.formats.mjcf.codec import Group, Plan, Settings
+    from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotArc
 
 _NO_NOTES: Mapping[str, str] = {}

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import field
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.mjcf_classes import merge
-from hymeko_x.formats.mjcf_codec import POSE, BadAttribute
-from hymeko_x.formats.mjcf_tree import parse_text
+from hymeko_x.formats.mjcf.classes import merge
+from hymeko_x.formats.mjcf.codec import POSE, BadAttribute
+from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.frozen import frozen
 from hymeko_x.ir.values import IDENTITY, Pose, compose
 

@@ -1,0 +1,405 @@
+"""Meshes and textures as MuJoCo takes them: binary STL, OBJ or MSH, one mesh per look, with a volume; PNG images."""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
+from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
+from hymeko_x.frozen import frozen
+from hymeko_x.ir.additions import Additions
+from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge
+from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
+from hymeko_x.meshes.texture import UnreadableImage, png_bytes
+from hymeko_x.rewrite.native import is_native
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from hymeko_x.diagnostics import Code, Report
+    from hymeko_x.ir.mechanism import Mechanism, ShapeView
+    from hymeko_x.meshes.part import Look, Part
+    from hymeko_x.source import Files
+
+_MESHES = "meshes"
+_TEXTURES = "textures"
+_LEAST_VOLUME = 1e-13
+"""m^3; MuJoCo refuses solid meshes below 1e-15, which it computes in single precision."""
+_FLAT = 1e-7
+"""A mesh is flat when its least extent is this part of its largest one; a hull needs a volume."""
+_THICKNESS = 1e-4
+"""The part of its largest extent that a flat collision mesh gets as its thickness."""
+_FEWEST_POINTS = 4
+_GROUP = re.compile(rb"^[og][ \t].*$", re.MULTILINE)
+_FACE = re.compile(rb"^f[ \t]", re.MULTILINE)
+_SHELL = Extra(NAME, "@inertia", "shell")
+
+
+_File = tuple[str, bytes]
+"""A file as it was found: its path and its content."""
+
+
+@frozen
+class _Piece:
+    """What one mesh vertex becomes: a file, the look that it brings along, and whether it is a mere surface."""
+
+    mesh: Id
+    look: Id | None
+
+
+@dataclass(slots=True, kw_only=True)
+class _Packing(Additions):
+    """One run: what it reads from, and what it adds to the mechanism."""
+
+    mechanism: Mechanism
+    shelf: Shelf
+    files: Files
+    report: Report
+    gone: list[Id] = field(default_factory=list)
+    surfaces: set[Id] = field(default_factory=set)
+    looks: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
+    textured: frozenset[Id | None] = frozenset()
+
+
+def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
+    """The mechanism with meshes and textures that MuJoCo reads; shapes whose mesh cannot be read are left out."""
+    if is_native(mechanism):
+        from hymeko_x.backends.mjcf.native.files import pack_native
+
+        return pack_native(mechanism, shelf, files, report)
+    run = _Packing(names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
+    run.textured = frozenset(arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0)
+    _pack_textures(run)
+    _pack_meshes(run)
+    graph = mechanism.graph.replace(vertices=run.vertices, edges=run.edges, without=run.gone)
+    extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), _SHELL) for key in run.surfaces}}
+    return replace(mechanism, graph=graph, extras=extras)
+
+
+# ---- textures ----------------------------------------------------------------------------------------------------------------
+
+
+def _pack_textures(run: _Packing) -> None:
+    """PNG is copied, other images are converted; a texture that is not there is left out, and its material keeps its colour."""
+    lost = {key for key, texture in run.mechanism.vertices(Texture) if not _pack_texture(run, key, texture)}
+    run.gone += lost
+    run.gone += [key for key, _, arcs in run.mechanism.edges(Layer) if any(arc.target in lost for arc in arcs)]
+
+
+def _pack_texture(run: _Packing, key: Id, texture: Texture) -> bool:
+    found = read_file(run.files, texture.uri or "")
+    if found is None:
+        _warn(run, key, codes.ASSET_NOT_FOUND, f"'{texture.uri}' was not found; the texture is left out", texture.uri)
+        return False
+    path, data = found
+    try:
+        png = png_bytes(data)
+    except UnreadableImage as error:
+        _warn(run, key, codes.ASSET_UNREADABLE, f"'{texture.uri}' cannot be read: {error}; the texture is left out")
+        return False
+    stem, same = file_stem(texture.uri or ""), png is data
+    uri = run.shelf.copy(_TEXTURES, stem, ".png", path, data) if same else run.shelf.place(_TEXTURES, stem, ".png", png)
+    run.vertices[key] = replace(texture, uri=uri)
+    return True
+
+
+# ---- meshes --------------------------------------------------------------------------------------------------------------------
+
+
+def _pack_meshes(run: _Packing) -> None:
+    """Every mesh once for the eye and once for contact, as far as the two differ."""
+    users = run.mechanism.shapes_by_mesh()
+    for key, mesh in run.mechanism.vertices(Mesh):
+        if mesh.uri is not None:
+            _pack_mesh(run, key, mesh, users.get(key, []))
+        elif mesh.vertices:
+            _pack_inline(run, key, mesh, users.get(key, []))
+        else:
+            _leave_out(run, key, users.get(key, []), codes.ASSET_NOT_FOUND, "it names no file")
+
+
+def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
+    """Data that stands in the mechanism itself stays there, unless MuJoCo would refuse it."""
+    from hymeko_x.meshes.mesh import inline_part
+    from hymeko_x.meshes.part import Unreadable
+
+    solid = any(view.shape.role is not Role.VISUAL for view in users)
+    try:
+        part = inline_part(mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces)
+        _check_surface(part)
+        has_places = part.uv is not None and any(view.material in run.textured for view in users)
+        reason = "has texture coordinates, which need a file" if has_places else _refusal(part, ".obj", b"", solid=solid)
+        if reason is None:
+            _add_mesh(run, key, replace(mesh, texcoords=(), texfaces=()), part)
+            return
+        _say_converted(run, key, reason)
+        bare = replace(mesh, vertices=(), faces=(), texcoords=(), texfaces=())
+        _write_mesh(run, key, bare, part if has_places else replace(part, uv=None), key.name, solid=solid)
+    except Unreadable as error:
+        _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"its data cannot be used: {error}")
+
+
+def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
+    from hymeko_x.meshes.mesh import read_parts
+    from hymeko_x.meshes.part import Unreadable
+
+    found = read_file(run.files, mesh.uri or "")
+    if found is None:
+        _leave_out(run, key, users, codes.ASSET_NOT_FOUND, f"'{mesh.uri}' was not found")
+        return
+    if not all(mesh.scale):
+        _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"'{mesh.uri}' is scaled to nothing")
+        return
+    path, data = found
+    if suffix_of(path) == ".msh":
+        run.vertices[key] = replace(mesh, uri=run.shelf.copy(_MESHES, file_stem(path), ".msh", path, data))
+        return
+    seen = [view for view in users if view.shape.role is Role.VISUAL]
+    felt = [view for view in users if view.shape.role is not Role.VISUAL]
+    try:
+        parts = read_parts(data, suffix_of(path), _fetcher(run.files, path, mesh.uri or ""))
+        hull = _pack_hull(run, key, mesh, parts, found) if felt else None
+        pieces = _pack_looks(run, key, mesh, parts, found, hull) if seen or not users else []
+    except Unreadable as error:
+        _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"'{mesh.uri}' cannot be read: {error}")
+        return
+    for view in felt:
+        _use(run, view, hull, view.material)
+    for view in seen:
+        _show(run, view, pieces)
+    if key not in run.vertices:
+        run.gone.append(key)
+
+
+def _use(run: _Packing, view: ShapeView, mesh: Id | None, material: Id | None) -> None:
+    if (mesh, material) != (view.mesh, view.material):
+        run.edges[view.id] = shape_edge(view.shape, view.body, view.pose, mesh, material)
+
+
+def _show(run: _Packing, view: ShapeView, pieces: list[_Piece]) -> None:
+    """A visual becomes one per look; the looks of the file count where it has some, as in RViz, else the shape's own."""
+    for number, piece in enumerate(pieces):
+        shape = view.shape if piece.look is None else replace(view.shape, rgba=None)
+        edge = shape_edge(
+            shape if number == 0 else replace(shape, name=None), view.body, view.pose, piece.mesh, piece.look or view.material
+        )
+        key = view.id if number == 0 else run.names.take("shape", view.id.name)
+        if edge != run.mechanism.graph.edges.get(key):
+            run.edges[key] = edge
+
+
+# ---- one file --------------------------------------------------------------------------------------------------------------------
+
+
+def _pack_looks(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], file: _File, hull: Id | None) -> list[_Piece]:
+    """The meshes that show a file, one per look. The file itself where MuJoCo reads it and it has one look.
+
+    Raises: Unreadable.
+    """
+    if len(parts) > 1:
+        _say_converted(run, key, f"has {len(parts)} looks; each one becomes a mesh of its own")
+        return [_own_mesh(run, mesh, part) for part in _with_surface(run, key, parts)]
+    part = parts[0]
+    look = _material(run, part.look, mesh)
+    if hull == key and not _is_altered(part):
+        return [_Piece(key, look)]
+    target = key if hull is None else run.names.take("mesh", f"{key.name}_visual")
+    _store(run, target, key, mesh, part, file, solid=False)
+    return [_Piece(target, look)]
+
+
+def _own_mesh(run: _Packing, mesh: Mesh, part: Part) -> _Piece:
+    """A part of a file as a mesh of its own."""
+    name = f"{file_stem(mesh.uri or '')}_{part.look.name}" if part.look and part.look.name else file_stem(mesh.uri or "")
+    key = run.names.take("mesh", name)
+    _write_mesh(run, key, mesh, part, name, solid=False)
+    return _Piece(key, _material(run, part.look, mesh))
+
+
+def _pack_hull(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], file: _File) -> Id:
+    """The mesh for contact: all of the file, with a volume.
+
+    Raises: Unreadable.
+    """
+    from hymeko_x.meshes.mesh import merged
+
+    _store(run, key, key, mesh, merged(parts), file, solid=True)
+    return key
+
+
+def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Part, file: _File, *, solid: bool) -> None:
+    """The file as it is where MuJoCo takes it, else converted; the report says why."""
+    _check_surface(part)
+    path, data = file
+    suffix = suffix_of(path)
+    reason = _refusal(part, suffix, data, solid=solid)
+    if reason is None:
+        uri = run.shelf.copy(_MESHES, file_stem(mesh.uri or path), suffix, path, data)
+        _add_mesh(run, target, replace(mesh, uri=uri), part)
+        return
+    _say_converted(run, key, reason)
+    _write_mesh(run, target, mesh, part, file_stem(mesh.uri or path), solid=solid, stl=suffix == ".stl")
+
+
+def _check_surface(part: Part) -> None:
+    """Raises: Unreadable for a mesh that has no surface at all, which nothing can repair."""
+    from hymeko_x.meshes.part import Unreadable
+
+    if _is_line(part):
+        raise Unreadable("all of its points lie on a line")
+
+
+def _with_surface(run: _Packing, key: Id, parts: tuple[Part, ...]) -> list[Part]:
+    """The parts that there is something to see of.
+
+    Raises: Unreadable when there are none.
+    """
+    from hymeko_x.meshes.part import Unreadable
+
+    seen: list[Part] = []
+    lines: list[str] = []
+    for part in parts:
+        if _is_line(part):
+            lines.append(f"'{part.look.name if part.look else ''}'")
+        else:
+            seen.append(part)
+    if not seen:
+        raise Unreadable("all of its looks lie on lines")
+    if lines:
+        _say_converted(run, key, f"shows {', '.join(lines)} on a line, where nothing is seen; that is left out")
+    return seen
+
+
+def _refusal(part: Part, suffix: str, data: bytes, *, solid: bool) -> str | None:
+    """Why MuJoCo would not take the file as it is, or None when it would."""
+    from hymeko_x.meshes.stl import stl_is_exact
+
+    if suffix not in (".stl", ".obj"):
+        return f"is a {suffix[1:].upper()} file, which MuJoCo does not read"
+    if solid and _is_flat(part):
+        return f"is flat, and a hull needs a volume: it gets a thickness of {_THICKNESS:g} of its size"
+    if len(part.points) < _FEWEST_POINTS:
+        return f"has {len(part.points)} points, and MuJoCo needs {_FEWEST_POINTS}: one of them is said again"
+    if suffix == ".obj" and (objects := _objects_in(data)) > 1:
+        return f"has {objects} objects, and MuJoCo keeps the first of them"
+    if suffix == ".stl" and not stl_is_exact(data):
+        return "is STL as text or with a wrong length; MuJoCo reads only exact binary STL"
+    if suffix == ".stl" and len(part.faces) > MOST_STL_FACES:
+        return f"has {len(part.faces)} triangles, and MuJoCo reads STL only up to {MOST_STL_FACES}"
+    return None
+
+
+def _objects_in(obj: bytes) -> int:
+    """How many objects or groups of an OBJ file have faces."""
+    return sum(_FACE.search(group) is not None for group in _GROUP.split(obj))
+
+
+def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part, stem: str, *, solid: bool, stl: bool = False) -> None:
+    """A converted file: STL stays STL where that is enough, all else becomes OBJ, which may say a point twice."""
+    import numpy as np
+
+    from hymeko_x.meshes.measures import thickened
+    from hymeko_x.meshes.obj import obj_bytes
+    from hymeko_x.meshes.stl import stl_bytes
+
+    is_short = len(part.points) < _FEWEST_POINTS
+    if is_short and not solid and len(part.faces):
+        part = replace(part, points=np.resize(part.points, (_FEWEST_POINTS, 3)))
+    elif is_short or (solid and _is_flat(part)):
+        part = thickened(part, _THICKNESS)
+    if stl and not is_short and len(part.faces) <= MOST_STL_FACES:
+        uri = run.shelf.place(_MESHES, stem, ".stl", stl_bytes(part))
+    else:
+        uri = run.shelf.place(_MESHES, stem, ".obj", obj_bytes(part))
+    _add_mesh(run, key, replace(mesh, uri=uri), part)
+
+
+def _add_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part) -> None:
+    run.vertices[key] = mesh
+    if _is_sheet(part, mesh):
+        run.surfaces.add(key)
+
+
+# ---- geometry --------------------------------------------------------------------------------------------------------------------
+
+
+def _is_flat(part: Part) -> bool:
+    from hymeko_x.meshes.measures import extents
+
+    low, _, high = extents(part)
+    return low <= _FLAT * high
+
+
+def _is_line(part: Part) -> bool:
+    from hymeko_x.meshes.measures import extents
+
+    _, middle, high = extents(part)
+    return middle <= _FLAT * high
+
+
+def _is_sheet(part: Part, mesh: Mesh) -> bool:
+    """Whether MuJoCo would find no volume, so that the mesh has to be declared a surface."""
+    from hymeko_x.meshes.measures import volume_of_sheets
+
+    x, y, z = mesh.scale
+    return volume_of_sheets(part) * abs(x * y * z) < _LEAST_VOLUME
+
+
+def _is_altered(part: Part) -> bool:
+    """Whether the mesh for contact is not also the one to show."""
+    return _is_flat(part) or len(part.points) < _FEWEST_POINTS
+
+
+# ---- looks ----------------------------------------------------------------------------------------------------------------------
+
+
+def _material(run: _Packing, look: Look | None, mesh: Mesh) -> Id | None:
+    """The material of a file's look; equal looks share one."""
+    if look is None or (look.rgba is None and look.image is None):
+        return None
+    known = run.looks.get((look.rgba, look.image))
+    if known is not None:
+        return known
+    key = run.looks[look.rgba, look.image] = run.add_material(Material(look.name or file_stem(mesh.uri or ""), look.rgba))
+    if look.image is not None:
+        run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", look.image)), key)
+    return key
+
+
+def _fetcher(files: Files, path: str, uri: str) -> Callable[[str], bytes]:
+    """Finds what a mesh file refers to: first beside the file as it was found, then beside it as it was written."""
+
+    def fetch(name: str) -> bytes:
+        for place in (path, uri):
+            found = read_file(files, posixpath.join(posixpath.dirname(place.replace("\\", "/")), name.replace("\\", "/")))
+            if found is not None:
+                return found[1]
+        raise FileNotFoundError(name)
+
+    return fetch
+
+
+# ---- words -----------------------------------------------------------------------------------------------------------------------
+
+
+def _say_converted(run: _Packing, key: Id, words: str) -> None:
+    run.report.note(codes.ASSET_CONVERTED, f"{key} {words}", run.mechanism.origin(key), element=str(key))
+
+
+def _leave_out(run: _Packing, key: Id, users: list[ShapeView], code: Code, words: str) -> None:
+    """The mesh and every shape of it; the warning names them."""
+    kinds = ", ".join(f"{view.shape.role.value} '{view.shape.name or view.id.name}' of {view.body}" for view in users)
+    uri = run.mechanism.vertex(key, Mesh).uri
+    _warn(run, key, code, f"{words}; left out: {kinds or 'nothing that is shown'}", uri)
+    run.gone += [key, *(view.id for view in users)]
+
+
+def _warn(run: _Packing, key: Id, code: Code, words: str, uri: str | None = None) -> None:
+    package = re.match(r"(?:package|model):/*([^/]+)", uri or "", re.IGNORECASE)
+    hint = f"--package {package[1]}=DIR tells where the package is" if package and code is codes.ASSET_NOT_FOUND else ""
+    run.report.warn(code, f"{key}: {words}", run.mechanism.origin(key), element=str(key), hint=hint)

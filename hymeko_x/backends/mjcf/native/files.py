@@ -1,0 +1,97 @@
+"""The files of a mechanism that came from MJCF, for MJCF again: they stay what and, where possible, where they are."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from hymeko_x.assets.refer import Keep, keep_references, new_uri
+from hymeko_x.formats.mjcf.tree import parse_text
+from hymeko_x.formats.mjcf.words import NAME, below, joined, settings_of
+from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
+from hymeko_x.ir.parts import Mesh, Texture
+from hymeko_x.xml.printing import escaped
+from hymeko_x.xml.text import unescape
+
+if TYPE_CHECKING:
+    from hymeko_x.assets.shelf import Shelf
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.formats.mjcf.codec import Settings
+    from hymeko_x.source import Files
+
+_FILE = re.compile(r'(?<=\s)(file\w*)="([^"]*)"')
+_FOLDERS = re.compile(r'\s(?:meshdir|texturedir|assetdir|strippath)="[^"]*"')
+_KEPT = ("asset", "deformable")
+
+
+def pack_native(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
+    """The mechanism with every file copied below the output, or referred to from there.
+
+    The folders that <compiler> names stay as long as no file has to move; else every path is said in full.
+    """
+    settings = _settings(mechanism)
+    packed = keep_references(mechanism, shelf, files, report, Keep.PACKAGES_AND_PATHS)
+    moved: dict[tuple[str, str], str] = {}
+    for key, extra in _with_files(mechanism):
+        for _, file in _FILE.findall(_text(extra)):
+            folder = _folder(key, settings)
+            uri = joined(folder, unescape(file), settings)
+            moved[folder, file] = new_uri(uri, "assets", shelf, files, Keep.PACKAGES_AND_PATHS) or uri
+    same = all(joined(folder, unescape(file), settings) == uri for (folder, file), uri in moved.items())
+    if same and packed.graph == mechanism.graph and _all_below(packed, settings):
+        return packed
+    return replace(packed, extras=_in_full(packed, moved, settings))
+
+
+def _settings(mechanism: Mechanism) -> Settings:
+    compilers = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.format == NAME and extra.text.startswith("<compiler")]
+    return settings_of([parse_text(text).attributes for text in compilers])
+
+
+def _with_files(mechanism: Mechanism) -> list[tuple[Id, Extra]]:
+    """What goes along as it is and may name files: sections of the whole, and the sides of a texture."""
+    found = [(ROOT, extra) for extra in mechanism.extras.get(ROOT, ()) if _names_files(extra)]
+    for key, _ in mechanism.vertices(Texture):
+        found += [(key, extra) for extra in mechanism.extras.get(key, ()) if extra.path.startswith("@file")]
+    return found
+
+
+def _names_files(extra: Extra) -> bool:
+    return extra.format == NAME and (extra.path in _KEPT or extra.text.startswith("<deformable"))
+
+
+def _text(extra: Extra) -> str:
+    return f' {extra.path[1:]}="{escaped(extra.text)}"' if extra.path.startswith("@") else extra.text
+
+
+def _folder(key: Id, settings: Settings) -> str:
+    return settings.texture_folder if key.kind == "texture" else settings.mesh_folder
+
+
+def _all_below(mechanism: Mechanism, settings: Settings) -> bool:
+    """Whether every mesh and texture is in the folder that <compiler> names."""
+    meshes = (below(settings.mesh_folder, mesh.uri) for _, mesh in mechanism.vertices(Mesh) if mesh.uri)
+    textures = (below(settings.texture_folder, texture.uri) for _, texture in mechanism.vertices(Texture) if texture.uri)
+    return all(uri is not None for uri in (*meshes, *textures))
+
+
+def _in_full(mechanism: Mechanism, moved: dict[tuple[str, str], str], settings: Settings) -> dict[Id, tuple[Extra, ...]]:
+    """The extras without the folders of <compiler>, and with the whole paths of files."""
+    extras = dict(mechanism.extras)
+    for key in {ROOT, *(key for key, _ in _with_files(mechanism))}:
+        folder = _folder(key, settings)
+        extras[key] = tuple(_full(extra, folder, moved) for extra in extras.get(key, ()))
+    return extras
+
+
+def _full(extra: Extra, folder: str, moved: dict[tuple[str, str], str]) -> Extra:
+    if extra.format != NAME:
+        return extra
+    if extra.text.startswith("<compiler"):
+        return replace(extra, text=_FOLDERS.sub("", extra.text))
+    if extra.path.startswith("@file"):
+        return replace(extra, text=moved.get((folder, escaped(extra.text)), extra.text))
+    if not _names_files(extra):
+        return extra
+    return replace(extra, text=_FILE.sub(lambda found: f'{found[1]}="{escaped(moved.get((folder, found[2]), found[2]))}"', extra.text))

@@ -1,0 +1,175 @@
+"""Meshes for USD, which holds their points itself: files are read, and keep their uri beside their points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.assets.refer import Keep, keep_references
+from hymeko_x.assets.shelf import read_file, suffix_of
+from hymeko_x.ir.additions import Additions
+from hymeko_x.ir.mechanism import file_stem, shape_edge, subset_edge
+from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
+from hymeko_x.meshes.part import FilledMesh
+from hymeko_x.rewrite.native import is_native
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from hymeko_x.assets.shelf import Shelf
+    from hymeko_x.diagnostics import Code, Report
+    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
+    from hymeko_x.ir.parts import Rgba
+    from hymeko_x.meshes.part import Look, Painted
+    from hymeko_x.source import Files
+
+
+@dataclass(slots=True, kw_only=True)
+class _Packing(Additions):
+    """One run: what it reads from, and what it adds to the mechanism. ``known`` are the files that were read, by uri."""
+
+    mechanism: Mechanism
+    shelf: Shelf
+    files: Files
+    report: Report
+    known: dict[tuple[str, bool], Painted] = field(default_factory=dict)
+    materials: dict[tuple[Rgba | None, bytes | None], Id | None] = field(default_factory=dict)
+
+
+def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
+    """The mechanism with the points of every mesh that can be read, in the axes and at the unit scale of its file.
+
+    What a file shows in several colours or images becomes a subset for each of them; MuJoCo ignores those of files, and so do we in
+    what came from there.
+    """
+    run = _Packing(names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
+    users, are_coloured = mechanism.shapes_by_mesh(), not is_native(mechanism)
+    textured = {arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0}
+    for key, mesh in mechanism.vertices(Mesh):
+        if mesh.uri is None or mesh.vertices:
+            continue
+        is_mapped = any(view.material in textured for view in users.get(key, []))
+        painted = run.known.get((mesh.uri, is_mapped)) or _read(run, key, mesh, are_coloured=are_coloured, is_mapped=is_mapped)
+        if painted is not None:
+            run.known[mesh.uri, is_mapped] = painted
+            _pack(run, key, mesh, painted, users.get(key, []))
+    packed = _with_textures(mechanism, shelf, files, report)
+    return packed.with_graph(packed.graph.replace(vertices=run.vertices, edges=run.edges)) if run.vertices else packed
+
+
+def _pack(run: _Packing, key: Id, mesh: Mesh, painted: Painted, views: list[ShapeView]) -> None:
+    """The mesh, and for the eye the colours of the file, which count where it has some, as in RViz."""
+    from hymeko_x.meshes.part import Part
+
+    part, looks = painted
+    seen = [view for view in views if view.shape.role is Role.VISUAL]
+    is_shown = any(view.shape.role is not Role.COLLISION for view in views)
+    run.vertices[key] = FilledMesh(mesh.uri, mesh.scale, mesh.name, part=part if is_shown else Part(part.points, part.faces))
+    shown = [(look, _material(run, key, look), rows) for look, rows in looks] if seen else []
+    for view in seen:
+        if len(shown) == 1 and len(shown[0][2]) == len(part.faces):
+            _show_all(run, view, shown[0][1])
+        elif view.id not in run.mechanism.subsets:
+            _show_parts(run, view, shown)
+
+
+def _show_all(run: _Packing, view: ShapeView, material: Id | None) -> None:
+    if material is not None:
+        run.edges[view.id] = shape_edge(replace(view.shape, rgba=None), view.body, view.pose, view.mesh, material)
+
+
+def _show_parts(run: _Packing, view: ShapeView, shown: list[tuple[Look, Id | None, NDArray[np.intp]]]) -> None:
+    """Subsets of the shape: what the file says nothing about looks as the shape does."""
+    for look, material, rows in shown:
+        if material is not None and len(rows):
+            run.edges[run.names.take("subset", look.name or material.name)] = subset_edge(tuple(rows.tolist()), view.id, material)
+
+
+def _material(run: _Packing, mesh: Id, look: Look) -> Id | None:
+    """The material of a look; equal colours and equal images share one."""
+    if look.rgba is None and look.image is None:
+        return None
+    if (look.rgba, look.image) not in run.materials:
+        run.materials[look.rgba, look.image] = _own_material(run, mesh, look)
+    return run.materials[look.rgba, look.image]
+
+
+def _own_material(run: _Packing, mesh: Id, look: Look) -> Id | None:
+    """The material of a look, with its image beside the output; None where the image cannot be read."""
+    uri = None if look.image is None else _placed_image(run, mesh, look, look.image)
+    if look.image is not None and uri is None:
+        return None
+    return run.add_material(Material(look.name, look.rgba), None if uri is None else Texture(uri))
+
+
+def _placed_image(run: _Packing, mesh: Id, look: Look, image: bytes) -> str | None:
+    from hymeko_x.meshes.texture import UnreadableImage, shown_image
+
+    try:
+        data, suffix = shown_image(image)
+    except UnreadableImage as error:
+        _warn(run, mesh, codes.ASSET_UNREADABLE, f"its image '{look.file or look.name}' cannot be read: {error}")
+        return None
+    return run.shelf.place("textures", file_stem(look.file) or look.name or mesh.name, suffix, data)
+
+
+def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: bool) -> Painted | None:
+    """The triangles of a file; what it says of its looks does not count unless ``are_coloured``.
+
+    ``is_mapped``: a shape of the mesh shows an image that it does not have from the file.
+    """
+    from hymeko_x.meshes.colours import read_colours, read_mapped
+    from hymeko_x.meshes.mesh import read_whole
+    from hymeko_x.meshes.part import Painted, Unreadable
+
+    found = read_file(run.files, mesh.uri or "")
+    if found is None:
+        _warn(run, key, codes.ASSET_NOT_FOUND, f"'{mesh.uri}' was not found; its shapes are places without geometry")
+        return None
+    path, data = found
+    fetch = _fetcher(run.files, mesh.uri or "")
+
+    def miss(image: str) -> None:
+        _warn(run, key, codes.ASSET_NOT_FOUND, f"its image '{image}' was not found; it is shown without")
+
+    try:
+        painted = read_colours(data, suffix_of(path), fetch, miss=miss) if are_coloured else None
+        if painted is not None and (painted.looks or not is_mapped):
+            return painted
+        return Painted((read_mapped if is_mapped else read_whole)(data, suffix_of(path), fetch))
+    except Unreadable as error:
+        _warn(run, key, codes.ASSET_UNREADABLE, f"'{mesh.uri}' cannot be read: {error}")
+        return None
+
+
+def _warn(run: _Packing, key: Id, code: Code, words: str) -> None:
+    run.report.warn(code, f"{key}: {words}", run.mechanism.origin(key), element=str(key))
+
+
+def _fetcher(files: Files, uri: str) -> Callable[[str], bytes]:
+    folder = uri.replace("\\", "/").rpartition("/")[0]
+
+    def fetch(name: str) -> bytes:
+        found = read_file(files, f"{folder}/{name}" if folder else name)
+        if found is None:
+            raise FileNotFoundError(name)
+        return found[1]
+
+    return fetch
+
+
+def _with_textures(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
+    """Textures beside the stage, by relative paths; meshes keep theirs, which are only remembered."""
+    textures = {key: part for key, part in mechanism.graph.vertices.items() if isinstance(part, Texture)}
+    if not textures:
+        return mechanism
+    meshes = [key for key, _ in mechanism.vertices(Mesh)]
+    bare = mechanism.with_graph(mechanism.graph.replace(without=meshes))
+    moved = keep_references(bare, shelf, files, report, Keep.NOTHING)
+    new = {key: moved.graph.vertices[key] for key in textures}
+    return mechanism.with_graph(mechanism.graph.replace(vertices=new))

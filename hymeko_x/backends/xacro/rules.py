@@ -1,0 +1,13 @@
+"""What makes a mechanism legal in xacro, which says what URDF says."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends.urdf.rules import RULES as URDF
+from hymeko_x.rewrite.xacro import choose_files
+
+if TYPE_CHECKING:
+    from hymeko_x.rewrite import Rule
+
+RULES: tuple[Rule, ...] = (*URDF, choose_files)

@@ -1,0 +1,121 @@
+"""The ledger: in what the result of a conversion, as its own format reads it, is not the mechanism that it was made from."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from hymeko_x import formats
+from hymeko_x.compare.diff import Difference, Tolerance, diff
+from hymeko_x.compare.relevance import relevant
+from hymeko_x.formats.usd import POSE
+from hymeko_x.ir.mechanism import ROOT, file_stem
+from hymeko_x.ir.parts import Mesh, Texture
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from hymeko_x.compare.leaves import Leaves
+    from hymeko_x.diagnostics import Origin
+    from hymeko_x.formats import Format
+    from hymeko_x.ir.mechanism import Id, Mechanism
+
+TOLERANCE = Tolerance(absolute=1e-12, relative=1e-12)
+"""Numbers that differ by less are not a loss: turning degrees into radians and back moves the last digit."""
+
+LONGEST_VALUE = 120
+"""How many letters of a value a person is shown; the report has all of them."""
+
+
+class Loss(NamedTuple):
+    """One line of the ledger: what is not the same in the result."""
+
+    element: str
+    field: str
+    before: str | None
+    after: str | None
+    fate: Literal["carried", "approximated", "dropped"]
+    origin: Origin | None = None
+
+    def __str__(self) -> str:
+        place = f"{self.origin}: " if self.origin else ""
+        what = f"{self.element} {self.field}".rstrip()
+        return f"{place}loss: {what} {self.fate}: {self.change}"
+
+    @property
+    def change(self) -> str:
+        """Before and after in one short line."""
+        return f"{_shown(self.before)} -> {_shown(self.after)}"
+
+    def as_json(self) -> dict[str, str | int | None]:
+        """The keys of the `--report` contract."""
+        return {
+            "element": self.element,
+            "field": self.field,
+            "before": self.before,
+            "after": self.after,
+            "fate": self.fate,
+            "file": self.origin.file if self.origin else None,
+            "line": self.origin.line if self.origin else None,
+        }
+
+
+def _shown(value: str | None) -> str:
+    """A value in one short line."""
+    if value is None:
+        return "nothing"
+    line = " ".join(value.split())
+    return f"{line[:LONGEST_VALUE]}..." if len(line) > LONGEST_VALUE else line or "''"
+
+
+def losses_between(
+    mechanism: Mechanism,
+    crossed: Mechanism,
+    renamed: Iterable[Difference],
+    format: Format,
+    apart: Mapping[Id, Leaves] | None = None,
+    *,
+    is_carried: bool = False,
+) -> tuple[Loss, ...]:
+    """Everything in which what was written and read back differs from the mechanism; what it only says in other words, once.
+
+    ``crossed`` is what was read back, behind the bridge that leads to the mechanism; ``renamed`` is what only that bridge
+    changed; ``apart`` is in what their elements differ, if that is known; ``is_carried`` whether the file will carry what got lost.
+    """
+    kept = relevant(diff(mechanism, crossed, TOLERANCE, apart), mechanism, crossed, TOLERANCE)
+    renamed = (difference for difference in renamed if not _is_number(difference, mechanism))
+    found = (*renamed, *kept, *_unsaid_notes(mechanism, crossed))
+    return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_dress(difference, mechanism, format)])
+
+
+def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
+    """Whether an element without a name of its own is only called otherwise: a shape's is a field, a mesh may be called after its file."""
+    key = difference.element
+    if difference.field != "name":
+        return False
+    part = mechanism.graph.vertices.get(key)
+    of_file = isinstance(part, Mesh | Texture) and part.name is None and part.uri and key.name.partition("#")[0] == file_stem(part.uri)
+    return key.kind == "shape" or bool(of_file) or mechanism.notation(key, "unnamed") is not None
+
+
+def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:
+    """What only a notation holds, and yet says more than how something was written: where a stage shows its bodies at first."""
+    for key, table in mechanism.notations.items():
+        if POSE in table and image.notation(key, POSE) != table[POSE]:
+            yield Difference(key, "pose on the stage", table[POSE], image.notation(key, POSE))
+
+
+def _is_dress(difference: Difference, mechanism: Mechanism, format: Format) -> bool:
+    """Whether the format only wears its own clothes: settings that every file of it has, and more words for an element that is new."""
+    if difference.element != ROOT:
+        return difference.before is None and difference.field != "" and difference.element not in mechanism.graph
+    if format == formats.XACRO and difference.field == "urdf @xmlns:xacro":
+        return True  # each xacro file declares its own prefix, and no expansion does
+    own = "usd" if format.name.startswith("usd") else format.name  # the extras of each kind of USD are USD text
+    return difference.before is None and difference.field.startswith(f"{own} ")
+
+
+def _loss(difference: Difference, mechanism: Mechanism, is_carried: bool) -> Loss:
+    gone: Literal["approximated", "dropped"] = "dropped" if difference.after is None else "approximated"
+    element = "mechanism" if difference.element == ROOT else str(difference.element)
+    origin = mechanism.origin(difference.element)
+    return Loss(element, difference.field, difference.before, difference.after, "carried" if is_carried else gone, origin)

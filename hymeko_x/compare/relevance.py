@@ -1,0 +1,128 @@
+"""Which differences between two mechanisms are ones of the robot: no one misses what nobody uses, or what is only said in other words."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
+from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Shape
+from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
+from hymeko_x.rewrite.native import compiler_says
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from hymeko_x.compare.diff import Difference, Tolerance
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+    from hymeko_x.ir.parts import Dof
+    from hymeko_x.ir.values import Pose, Vec3
+
+_AXIS = re.compile(r"dofs\[(\d+)\]\.axis")
+_FRAMES = re.compile(r"\[[01]\]\.weight.*|dofs\[\d+\]\.(axis|anchor)")
+_TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
+_NO_AXES = (X, Z)
+"""What URDF and MJCF have where no axis is said."""
+_WEIGHTS = ("mass", "density")
+_POINTS = ("vertices", "faces", "texcoords", "texfaces")
+_NO_NAME = "none"
+"""How a difference shows that there is no name; a name is shown in quotes."""
+
+
+def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
+    """The differences from ``before`` to ``after`` without those that are none of the robot.
+
+    A ball and a free joint have no axis, and what stands for none is not the same everywhere; nobody asks what a shape weighs that says
+    nothing of it, if it is one of the world or of a body whose mass and tensor are said; a joint moves alike whatever frames it is
+    described in. What an author said is not left out, whether or not somebody uses it.
+    """
+    alike: dict[Id, bool] = {}
+    weighed = not compiler_says(before, ("inertiafromgeom",))
+    for difference in found:
+        key = difference.element
+        if _is_told_otherwise(difference, before, after):
+            continue
+        if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _weighs_nothing(before, key, difference.field):
+            continue
+        if key.kind == "joint" and _FRAMES.fullmatch(difference.field):
+            if key not in alike:
+                alike[key] = _move_alike(before.graph.edges[key], after.graph.edges[key], tolerance)
+            if alike[key] and not _is_idle_axis(before, difference):
+                continue
+        yield difference
+
+
+def _is_told_otherwise(difference: Difference, before: Mechanism, after: Mechanism) -> bool:
+    """A name where there was none; a world, of which what stands there tells; the points of a mesh, which are those of its file."""
+    key, field = difference.element, difference.field
+    if key == WORLD:
+        return not field
+    if field == "name":
+        return difference.before == _NO_NAME
+    return key.kind == "mesh" and field in _POINTS and _came_as_file(before.graph.vertices.get(key), after.graph.vertices.get(key))
+
+
+def _came_as_file(before: object, after: object) -> bool:
+    """Whether a mesh that was a file is held by the file that was written, which the mesh's uri tells."""
+    return isinstance(before, Mesh) and before.uri is not None and not before.vertices and isinstance(after, Mesh) and after.uri is None
+
+
+def _weighs_nothing(mechanism: Mechanism, shape: Id, field: str) -> bool:
+    """Whether a shape says nothing of this weight, and its body needs none: neither the body's mass nor its tensor is left open."""
+    edge = mechanism.graph.edges.get(shape)
+    if edge is None or not isinstance(edge.data, Shape) or getattr(edge.data, field) is not None:
+        return False
+    owner = next((arc.target for arc in edge.arcs if arc.sign > 0), WORLD)
+    body = mechanism.graph.vertices.get(owner)
+    inertial = body.inertial if isinstance(body, Body) else None
+    return owner == WORLD or (inertial is not None and inertial.mass is not None and inertial.tensor is not None)
+
+
+def _is_idle_axis(mechanism: Mechanism, difference: Difference) -> bool:
+    """Whether an author said an axis of a joint that turns about all."""
+    match, edge = _AXIS.fullmatch(difference.field), mechanism.graph.edges[difference.element]
+    if match is None or not isinstance(edge.data, Joint):
+        return False
+    dof = edge.data.dofs[int(match[1])]
+    return dof.kind in _TURNING_FREELY and dof.axis not in _NO_AXES
+
+
+def _move_alike(a: RobotEdge, b: RobotEdge, tolerance: Tolerance) -> bool:
+    """Whether two joints between the same bodies move these alike, and are where they are at rest.
+
+    P M C^-1 = (P C^-1) (C M C^-1), in which C M C^-1 turns about C's image of the axis, through C's image of the anchor.
+    """
+    first, second = a.data, b.data
+    if not (isinstance(first, Joint) and isinstance(second, Joint)) or len(a.arcs) != 2 or len(b.arcs) != 2:
+        return False
+    if [(arc.target, arc.sign, arc.role) for arc in a.arcs] != [(arc.target, arc.sign, arc.role) for arc in b.arcs]:
+        return False
+    if [dof.kind for dof in first.dofs] != [dof.kind for dof in second.dofs]:
+        return False
+    (above, below), (other_above, other_below) = (tuple(pose_weight(arc) for arc in edge.arcs) for edge in (a, b))
+    return _same(compose(above, inverse(below)), compose(other_above, inverse(other_below)), tolerance) and all(
+        _dofs_alike(dof, below, other, other_below, tolerance) for dof, other in zip(first.dofs, second.dofs, strict=True)
+    )
+
+
+def _same(a: Pose, b: Pose, tolerance: Tolerance) -> bool:
+    return _near(a.xyz, b.xyz, tolerance) and rotation_angle(a.quat, b.quat) <= tolerance.absolute + tolerance.relative
+
+
+def _near(a: Vec3, b: Vec3, tolerance: Tolerance) -> bool:
+    """Whether two points are one, up to what is lost when numbers as large as theirs are turned and added."""
+    size = max(map(abs, (*a, *b)))
+    return all(abs(x - y) <= tolerance.absolute + tolerance.relative * size for x, y in zip(a, b, strict=True))
+
+
+def _dofs_alike(dof: Dof, below: Pose, other: Dof, other_below: Pose, tolerance: Tolerance) -> bool:
+    """The same for two dofs of a kind in frames ``below``: a slide is anchored nowhere, a hinge on its line."""
+    if dof.kind is DofKind.FREE:
+        return True
+    anchor, other_anchor = apply(below, dof.anchor), apply(other_below, other.anchor)
+    if dof.kind is DofKind.BALL:
+        return _near(anchor, other_anchor, tolerance)
+    axis, other_axis = rotate(below.quat, dof.axis), rotate(other_below.quat, other.axis)
+    if dof.kind is DofKind.SLIDE or not _near(axis, other_axis, tolerance):
+        return _near(axis, other_axis, tolerance)
+    return _near(cross(axis, anchor), cross(axis, other_anchor), tolerance)

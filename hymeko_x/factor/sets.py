@@ -1,0 +1,135 @@
+"""Factoring of what has no order: sets of (name, text) that several things share, such as the attributes of joints.
+
+Serves formats in which an element may take fields from a class or a stereotype, and classes refine classes. Format-free,
+exact and deterministic, as :mod:`hymeko_x.factor` is for what has an order and holes.
+"""
+
+from __future__ import annotations
+
+import re
+from heapq import nsmallest
+from itertools import combinations
+from typing import TYPE_CHECKING
+
+from hymeko_x.frozen import frozen
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+Pair = tuple[str, str]
+"""The name and the text of a field."""
+Row = list[Pair]
+"""The fields of one thing."""
+Members = frozenset[int]
+"""The numbers of the rows that have something."""
+
+_NOBODY: Members = frozenset()
+_SEEDS = 24
+_LEAST = 12
+"""Letters that a set must save before anybody thinks about it."""
+_MOST = 32
+"""Sets that are found in one group of things."""
+
+
+@frozen
+class Costs:
+    """In letters: what stands around a definition, around a field, and what saying its set costs a row; and what a set must save."""
+
+    definition: int
+    field: int
+    use: int
+    least: int
+
+
+@frozen
+class Shared:
+    """Fields that several rows share, the numbers of those rows, and the number of the set that it refines."""
+
+    pairs: frozenset[Pair]
+    members: tuple[int, ...]
+    refines: int | None
+
+
+def share(rows: Sequence[Row], costs: Costs) -> list[Shared]:
+    """Sets that shorten the rows, each behind the one that it refines. A row is in one set, and in those that this one refines."""
+    left = [list(row) for row in rows]
+    found: list[Shared] = []
+    queue: list[tuple[list[int], int | None]] = [(list(range(len(rows))), None)]
+    for numbers, parent in queue:
+        while len(numbers) > 1 and len(found) < _MOST:
+            best = _best([left[number] for number in numbers], costs, use=costs.use if parent is None else 0)
+            if best is None:
+                break
+            pairs, places = best
+            members = [numbers[place] for place in places]
+            for number in members:
+                left[number] = [pair for pair in left[number] if pair not in pairs]
+            queue.append((members, len(found)))
+            found.append(Shared(pairs, tuple(members), parent))
+            gone = set(members)
+            numbers = [number for number in numbers if number not in gone]
+    return found
+
+
+def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], list[int]] | None:
+    """The set that saves most, and the places of the rows that have all of it."""
+    best, most = None, costs.least - 1
+    for pairs, members in _ranked(rows):
+        fields = sum([len(name) + len(text) + costs.field for name, text in pairs])
+        saved = (len(members) - 1) * fields - len(members) * use - costs.definition
+        if saved > most:
+            best, most = (pairs, members), saved
+    return None if best is None else (best[0], sorted(best[1]))
+
+
+def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:
+    """Sets of fields that rows share, by about how much they save, the best first. Near linear in the number of fields."""
+    return [shared for shared, _ in _ranked(rows)]
+
+
+def _ranked(rows: Sequence[Row]) -> list[tuple[frozenset[Pair], Members]]:
+    """The same with the rows that have all of a set."""
+    owners = _owners(rows)
+
+    def common(members: Members) -> frozenset[Pair]:
+        """All that these rows share: some of the fields of any one of them, so that nothing else is looked at."""
+        return frozenset(pair for pair in rows[min(members)] if members <= owners.get(pair, _NOBODY))
+
+    sharing: dict[Members, list[Pair]] = {}
+    for pair, members in owners.items():
+        sharing.setdefault(members, []).append(pair)
+    ranked = list(sharing)
+    if len(sharing) > 8 * _SEEDS:
+        ranked = nsmallest(8 * _SEEDS, sharing, key=lambda members: (-_worth(members, sharing[members]), sorted(sharing[members])))
+    closed = {members: common(members) for members in ranked}
+    ranks = {members: (-_worth(members, shared), sorted(shared)) for members, shared in closed.items()}
+    for first, second in combinations(sorted(ranks, key=ranks.__getitem__)[:_SEEDS], 2):
+        both = first & second
+        if len(both) > 1 and both not in closed:
+            shared = closed[both] = common(both)
+            ranks[both] = -_worth(both, shared), sorted(shared)
+    worthy = sorted([members for members, (cost, _) in ranks.items() if -cost >= _LEAST], key=ranks.__getitem__)
+    return [(closed[members], members) for members in worthy[:_SEEDS]]
+
+
+def _owners(rows: Sequence[Row]) -> dict[Pair, Members]:
+    """For every field that occurs more than once the rows that have it."""
+    found: dict[Pair, list[int]] = {}
+    for number, row in enumerate(rows):
+        for pair in row:
+            found.setdefault(pair, []).append(number)
+    return {pair: frozenset(members) for pair, members in found.items() if len(members) > 1}
+
+
+def _worth(members: Members, shared: Iterable[Pair]) -> int:
+    """About how many letters a set saves."""
+    cost = sum([len(text) for _, text in shared])
+    return (len(members) - 1) * cost - 10
+
+
+def common_words(names: Sequence[str]) -> str:
+    """The words that all names share, in the order of the first: ``hip_joint`` of ``left_hip_joint`` and ``right_hip_joint``."""
+    split = [[word for word in re.split(r"[\W_\d]+", name) if word] for name in names]
+    shared = set(split[0]).intersection(*split[1:])
+    kept = [word for word in dict.fromkeys(split[0]) if word in shared]
+    return "_".join(kept) if any(len(word) > 2 for word in kept) else ""

@@ -1,0 +1,376 @@
+"""What the attributes of MJCF geoms, sites, cameras, lights, inertials and assets mean, and how they are said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x.formats.mjcf.classes import ANY_TURN, TURNS
+from hymeko_x.formats.mjcf.codec import (
+    POSE,
+    POSE_NAMES,
+    SITE_POSE,
+    BadAttribute,
+    Group,
+    Settings,
+    degrees_text,
+    numbers_of,
+    plain,
+    radians,
+    read_pose,
+    real,
+    reals,
+    repeats_pose,
+    seen_numbers,
+    seen_pose,
+    text,
+    vector_of,
+    write_pose,
+    write_turn,
+    written_turn,
+)
+from hymeko_x.frozen import frozen
+from hymeko_x.ir.parts import (
+    Box,
+    Capsule,
+    Cylinder,
+    Ellipsoid,
+    Inertial,
+    InertialWritten,
+    MeshShape,
+    NoShape,
+    Plane,
+    Sphere,
+)
+from hymeko_x.ir.values import (
+    IDENTITY,
+    NO_ROTATION,
+    ZERO,
+    Pose,
+    Written,
+    apply,
+    compose,
+    inverse,
+    number_text,
+    numbers_text,
+    rotate,
+    rotate_tensor,
+)
+from hymeko_x.ir.written import length_of, pose_as_written
+from hymeko_x.xml.tree import read_numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.parts import Geometry
+
+# ---- geoms -------------------------------------------------------------------------------------------------------------------
+
+_SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3, "plane": 3}
+_ALONG = ("capsule", "cylinder", "box", "ellipsoid")
+GRID = 0.05
+_MARK = 0.005
+
+
+@frozen
+class Place:
+    """What a geom is and where: its geometry, its pose, and the distance of a plane's grid lines in m."""
+
+    geometry: Geometry
+    pose: Pose
+    grid: float | None = None
+
+
+def _check_ends(said: Mapping[str, str], word: str) -> None:
+    """Both ends say what lies along them and where, so that a position beside them is refused, as MuJoCo does."""
+    if "fromto" not in said:
+        return
+    if word not in _ALONG:
+        raise BadAttribute("fromto", "a capsule, cylinder, box or ellipsoid")
+    if any(read_numbers(said.get("pos", "")) or ()):
+        raise BadAttribute("pos", "nothing beside fromto")
+
+
+def _read_place(said: Mapping[str, str], settings: Settings) -> Place:
+    pose = read_pose(said, settings)
+    word = said.get("type", "sphere")
+    _check_ends(said, word)
+    if word == "hfield" and not said.get("hfield"):
+        raise BadAttribute("hfield", "the name of a height field")
+    if word == "mesh" and "mesh" in said:
+        return Place(MeshShape(), pose)
+    if word not in _SIZES or "mesh" in said:
+        return Place(NoShape(), pose)
+    size = list(numbers_of(said, "size", 1, 3) or ())
+    length = None if pose.written is None or pose.written.kind != "fromto" else length_of(pose.written)
+    if length is not None:
+        size = _sizes_along(word, size, length / 2.0)
+    if len(size) < _SIZES[word]:
+        raise BadAttribute("size", f"{_SIZES[word]} number{'s' if _SIZES[word] > 1 else ''} for a {word}")
+    if any(number <= 0.0 for number in (size[2:3] if word == "plane" else size[: _SIZES[word]])):
+        raise BadAttribute("size", "a distance of grid lines that is more than 0" if word == "plane" else "lengths that are more than 0")
+    return Place(_geometry(word, size, length), pose, size[2] if word == "plane" else None)
+
+
+def _sizes_along(word: str, size: list[float], half: float) -> list[float]:
+    """The sizes of a geom between two points: boxes and ellipsoids are square across, whatever else is written."""
+    return [*size[:1], half] if word in ("capsule", "cylinder") or not size else [size[0], size[0], half]
+
+
+def _geometry(word: str, size: list[float], length: float | None) -> Geometry:
+    match word:
+        case "sphere":
+            return Sphere(size[0])
+        case "capsule":
+            return Capsule(size[0], size[1] * 2.0 if length is None else length)
+        case "cylinder":
+            return Cylinder(size[0], size[1] * 2.0 if length is None else length)
+        case "box":
+            return Box((size[0] * 2.0, size[1] * 2.0, size[2] * 2.0))
+        case "ellipsoid":
+            return Ellipsoid((size[0], size[1], size[2]))
+        case _:
+            return Plane((size[0], size[1]))
+
+
+def _write_place(value: Place, settings: Settings) -> dict[str, str]:
+    word, size = _word_and_size(value)
+    said = {"type": word} if word else {}
+    pose = value.pose
+    if pose.written is not None and pose.written.kind == "fromto":
+        along = {"capsule": 1, "cylinder": 1, "box": 2, "ellipsoid": 2}.get(word or "")
+        if along is not None and size[along] == length_of(pose.written) / 2.0 and size[0] == size[along - 1]:
+            size = size[:along]
+        else:
+            pose = Pose(pose.xyz, pose.quat)
+    if size:
+        said["size"] = numbers_text(size)
+    return said | write_pose(pose, settings)
+
+
+def _word_and_size(value: Place) -> tuple[str | None, tuple[float, ...]]:
+    match value.geometry:
+        case Sphere(radius):
+            return "sphere", (radius,)
+        case Capsule(radius, length):
+            return "capsule", (radius, length / 2.0)
+        case Cylinder(radius, length):
+            return "cylinder", (radius, length / 2.0)
+        case Box((x, y, z)):
+            return "box", (x / 2.0, y / 2.0, z / 2.0)
+        case Ellipsoid(radii):
+            return "ellipsoid", radii
+        case Plane((x, y)):
+            return "plane", (x, y, GRID if value.grid is None else value.grid)
+        case MeshShape():
+            return "mesh", ()
+        case _:
+            return None, ()
+
+
+def _seen_place(said: Mapping[str, str], settings: Settings) -> Any:
+    word = said.get("type", "sphere")
+    size = [*(read_numbers(said.get("size", "")) or ()), 0.0, 0.0, 0.0][:3]
+    if "fromto" in said:
+        size[1:] = (size[0], 0.0) if word in ("box", "ellipsoid") else (0.0, size[2])
+    return word, size, seen_pose(said, settings)
+
+
+def _repeats_place(value: Place, said: Mapping[str, str], settings: Settings) -> bool:
+    word, size = _word_and_size(value)
+    return (
+        bool(size) and said.get("type") == word and read_numbers(said.get("size", "")) == size and repeats_pose(value.pose, said, settings)
+    )
+
+
+PLACE = Group(
+    "place", ("type", "size", "fromto", *POSE_NAMES), _read_place, _write_place, _seen_place, ("mesh", "hfield"), repeats=_repeats_place
+)
+
+GEOM = (PLACE, text("mesh"), text("material"), reals("rgba", 4, 4), real("mass"), real("density"), reals("friction", 1, 3))
+
+FITTED_GEOM = tuple(group for group in GEOM if group.key != "mesh")
+"""A primitive that MuJoCo fits to a mesh: the mesh's name says what to fit, and stays as it is."""
+
+
+def _read_site_size(said: Mapping[str, str], settings: Settings) -> tuple[float, ...]:
+    word = said.get("type", "sphere")
+    if (word not in _SIZES and word != "mesh") or word == "plane":
+        raise BadAttribute("type", "one of sphere, capsule, ellipsoid, cylinder, box, mesh")
+    _check_ends(said, word)
+    found = numbers_of(said, "size", 1, 3) or ()
+    needed = 1 if "fromto" in said else _SIZES.get(word, 0)
+    if any(number <= 0.0 for number in (*found, *[_MARK] * 3)[:needed]):
+        raise BadAttribute("size", "lengths that are more than 0")
+    return found
+
+
+SITE = (SITE_POSE, replace(reals("size", 1, 3), read=_read_site_size, needs=("type", "fromto")))
+
+
+def seen_from(group: Group, frame: Pose) -> Group:
+    """A group of a pose, for an element that stands in a <frame>: its value is seen from the body."""
+
+    def read(said: Mapping[str, str], settings: Settings) -> Any:
+        return _moved(frame, group.read(said, settings))
+
+    def write(value: Any, settings: Settings) -> dict[str, str]:
+        return group.write(_moved(inverse(frame), value), settings)
+
+    return replace(group, read=read, write=write)
+
+
+def _moved(frame: Pose, value: Any) -> Any:
+    """A value with a pose, seen from where the frame is."""
+    if isinstance(value, Place):
+        return replace(value, pose=compose(frame, value.pose))
+    if isinstance(value, Inertial):
+        tensor = None if value.tensor is None else rotate_tensor(frame.quat, value.tensor)
+        return Inertial(value.mass, apply(frame, value.com), tensor)
+    return compose(frame, value)
+
+
+def same_value(a: Any, b: Any) -> bool:
+    """Whether two values are equal, and written alike where it is remembered."""
+    if a != b:
+        return False
+    if isinstance(a, Pose):
+        return bool(a.written == b.written)
+    if isinstance(a, Place):
+        return bool(a.pose.written == b.pose.written)
+    if isinstance(a, Inertial):
+        return a.written == b.written and (a.written is None or a.written.frame.written == b.written.frame.written)
+    return True
+
+
+# ---- things with parameters ---------------------------------------------------------------------------------------------------
+
+
+def _degrees(name: str) -> Group:
+    """An angle that is always in degrees."""
+
+    def read(said: Mapping[str, str], settings: Settings) -> float | None:
+        found = numbers_of(said, name, 1, 1)
+        return None if found is None else radians(found[0])
+
+    def write(value: float | None, settings: Settings) -> dict[str, str]:
+        return {} if value is None else {name: degrees_text(value)}
+
+    return Group(name, (name,), read, write, seen_numbers(name, None))
+
+
+CAMERA = (POSE, _degrees("fovy"), reals("resolution", 2, 2))
+
+
+def _read_shine(said: Mapping[str, str], settings: Settings) -> Pose:
+    xyz = vector_of(said, "pos", ZERO)
+    raw = vector_of(said, "dir", (0.0, 0.0, -1.0))
+    try:
+        return pose_as_written(xyz, Written("dir", raw)) if "dir" in said else Pose(xyz)
+    except ZeroDivisionError as error:
+        raise BadAttribute("dir", "a direction") from error
+
+
+def _write_shine(value: Pose, settings: Settings) -> dict[str, str]:
+
+    said = {} if value.xyz == ZERO else {"pos": numbers_text(value.xyz)}
+    if value.written is not None and value.written.kind == "dir":
+        said["dir"] = numbers_text(value.written.numbers)
+    elif value.quat != NO_ROTATION:
+        said["dir"] = numbers_text(rotate(value.quat, (0.0, 0.0, -1.0)))
+    return said
+
+
+SHINE = Group("pose", ("pos", "dir"), _read_shine, _write_shine, lambda said, settings: plain(said, ("pos", "dir")))
+
+
+def _read_light_kind(said: Mapping[str, str], settings: Settings) -> str:
+    return said.get("type") or ("directional" if said.get("directional") == "true" else "spot")
+
+
+LIGHT_KIND = Group(
+    "kind",
+    ("type", "directional"),
+    _read_light_kind,
+    lambda value, settings: {"type": value},
+    lambda said, settings: _read_light_kind(said, settings),
+)
+LIGHT = (SHINE, LIGHT_KIND, reals("diffuse", 3, 3))
+
+# ---- inertials -----------------------------------------------------------------------------------------------------------------
+
+
+def _read_inertial(said: Mapping[str, str], settings: Settings) -> Inertial:
+    if "pos" not in said or "mass" not in said:
+        raise BadAttribute("mass" if "pos" in said else "pos", "a value: <inertial> needs pos and mass")
+    mass = numbers_of(said, "mass", 1, 1) or (0.0,)
+    com = vector_of(said, "pos", ZERO)
+    full = numbers_of(said, "fullinertia", 6, 6)
+    diagonal = numbers_of(said, "diaginertia", 3, 3)
+    turn = written_turn(said, settings)
+    if full is not None:
+        if turn is not None or diagonal is not None:
+            raise BadAttribute("fullinertia", "no orientation and no diaginertia beside it")
+        return Inertial(mass[0], com, full)  # type: ignore[arg-type]
+    if diagonal is None:
+        return Inertial(mass[0], com)
+    tensor = (*diagonal, 0.0, 0.0, 0.0)
+    if turn is None:
+        return Inertial(mass[0], com, tensor)  # type: ignore[arg-type]
+    frame = read_pose({name: said[name] for name in TURNS if name in said}, settings)
+    if frame == IDENTITY and frame.written is None:
+        return Inertial(mass[0], com, tensor)  # type: ignore[arg-type]
+    return Inertial(mass[0], com, rotate_tensor(frame.quat, tensor), InertialWritten(frame, tensor))  # type: ignore[arg-type]
+
+
+def _write_inertial(value: Inertial, settings: Settings) -> dict[str, str]:
+    said = {"pos": numbers_text(value.com), "mass": number_text(value.mass or 0.0)}
+    if value.tensor is None:
+        return said
+    if value.written is not None and value.tensor == rotate_tensor(value.written.frame.quat, value.written.tensor):
+        turn = write_turn(value.written.frame.quat, value.written.frame.written, settings)
+        return {**said, **turn, "diaginertia": numbers_text(value.written.tensor[:3])}
+    if not any(value.tensor[3:]):
+        return {**said, "diaginertia": numbers_text(value.tensor[:3])}
+    return {**said, "fullinertia": numbers_text(value.tensor)}
+
+
+def _repeats_inertial(value: Inertial, said: Mapping[str, str], settings: Settings) -> bool:
+    """Without axes of its own, a tensor is written as it was read where it is said in six numbers because three would not do."""
+    return value.written is None and ANY_TURN.isdisjoint(said) and ("fullinertia" in said) == any((value.tensor or ())[3:])
+
+
+_INERTIAL_NAMES = ("pos", "mass", "diaginertia", "fullinertia", *TURNS)
+INERTIAL = Group(
+    "inertial",
+    _INERTIAL_NAMES,
+    _read_inertial,
+    _write_inertial,
+    lambda said, settings: (plain(said, ("mass", "diaginertia", "fullinertia")), seen_pose(said, settings)),
+    repeats=_repeats_inertial,
+)
+
+MATERIAL = (
+    reals("rgba", 4, 4),
+    real("specular"),
+    real("shininess"),
+    real("reflectance"),
+    real("emission"),
+    real("metallic"),
+    real("roughness"),
+    text("texture"),
+)
+
+SCALE = Group(
+    "scale",
+    ("scale",),
+    lambda said, settings: vector_of(said, "scale", (1.0, 1.0, 1.0)),
+    lambda value, settings: {"scale": numbers_text(value)},
+    lambda said, settings: read_numbers(said.get("scale", "1 1 1")),
+)
+
+MESH = (
+    SCALE,
+    reals("vertex", 0, 10**9),
+    reals("face", 0, 10**9),
+)

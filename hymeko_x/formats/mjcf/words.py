@@ -1,0 +1,195 @@
+"""The sections and names of MJCF, and what <compiler> says: for reader and writer."""
+
+from __future__ import annotations
+
+from math import comb
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.mjcf import NAME as NAME
+from hymeko_x.formats.mjcf.codec import Settings
+from hymeko_x.ir.parts import Role
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+
+VERSION = "4.0"
+"""The version of MuJoCo whose MJCF is read; a mechanism that came from MJCF has it as its notation ``mjcf``."""
+
+ASIDE = (
+    "compiler",
+    "option",
+    "size",
+    "visual",
+    "statistic",
+    "default",
+    "extension",
+    "custom",
+    "deformable",
+    "keyframe",
+)
+"""The sections that go along as they are."""
+
+SECTIONS = (
+    "compiler",
+    "option",
+    "size",
+    "visual",
+    "statistic",
+    "extension",
+    "default",
+    "custom",
+    "asset",
+    "worldbody",
+    "deformable",
+    "contact",
+    "equality",
+    "tendon",
+    "actuator",
+    "sensor",
+    "keyframe",
+)
+"""All sections in the usual order."""
+
+KINDS: Mapping[str, str] = MappingProxyType(
+    {
+        "body": "body",
+        "joint": "joint",
+        "freejoint": "joint",
+        "site": "frame",
+        "camera": "camera",
+        "light": "light",
+        "material": "material",
+        "exclude": "contact",
+        "pair": "contact",
+        "connect": "loop",
+        "weld": "loop",
+        "spatial": "tendon",
+        "fixed": "tendon",
+    }
+)
+"""The kind of id that the name of an element is, for elements whose ids are their names."""
+
+
+DELEGATED = frozenset(("replicate", "attach", "flexcomp"))
+"""Elements that only MuJoCo can expand."""
+
+
+def kind_of(tag: str, section: str) -> str | None:
+    """The kind of id that the name of an element in this section is."""
+    if section in ("actuator", "sensor"):
+        return section
+    return "coupling" if section == "equality" and tag == "joint" else KINDS.get(tag)
+
+
+NAMESPACES: Mapping[str, str] = MappingProxyType({"frame": "site", "loop": "equality", "coupling": "equality"})
+"""What MJCF calls the kind of an id, where that is another word; names are unique among elements of one kind."""
+
+
+def settings_of(compilers: Iterable[Mapping[str, str]]) -> Settings:
+    """The meaning of numbers and file names from the attributes of all <compiler> elements; a later one wins."""
+    said: dict[str, str] = {}
+    for attributes in compilers:
+        said.update(attributes)
+    assets = said.get("assetdir", "")
+    return Settings(
+        degree=said.get("angle", "degree") != "radian",
+        eulerseq=said.get("eulerseq", "xyz"),
+        autolimits=said.get("autolimits", "true") != "false",
+        inertia_from_geoms=said.get("inertiafromgeom", "auto") == "true",
+        mesh_folder=said.get("meshdir", assets),
+        texture_folder=said.get("texturedir", assets),
+        strip_path=said.get("strippath", "false") == "true",
+    )
+
+
+def joined(folder: str, file: str, settings: Settings) -> str:
+    """The uri of an asset's file: below the folder that <compiler> names, unless it is absolute."""
+    file = file.replace("\\", "/")
+    if settings.strip_path:
+        file = file.rpartition("/")[2]
+    if not folder or file.startswith("/"):
+        return file
+    return f"{folder.rstrip('/')}/{file}"
+
+
+def below(folder: str, uri: str) -> str | None:
+    """The uri seen from that folder, or None when it is not in it."""
+    if not folder:
+        return uri
+    start = f"{folder.rstrip('/')}/"
+    return uri.removeprefix(start) if uri.startswith(start) else None
+
+
+PLACES: Mapping[Role, str] = MappingProxyType({Role.VISUAL: "visual", Role.COLLISION: "collision", Role.BOTH: "shape"})
+"""What shapes are called after, behind the name of their body."""
+
+PLAIN_ATTRIBUTES = frozenset({"user"})
+"""Attributes that are never parameters of a part."""
+
+COEFFICIENTS = 5
+"""How many coefficients the polynomial of a joint equality has."""
+
+
+def shifted(coefficients: tuple[float, ...], by: float) -> list[float]:
+    """The coefficients of p(x + by), padded with zeros to a quartic.
+
+    Raises: OverflowError where numbers leave the range of doubles.
+    """
+    padded = [*coefficients[:COEFFICIENTS], *[0.0] * (COEFFICIENTS - len(coefficients))]
+    if by == 0.0:
+        return padded
+    return [sum(padded[n] * comb(n, k) * by ** (n - k) for n in range(k, COEFFICIENTS) if padded[n]) for k in range(COEFFICIENTS)]
+
+
+TRANSMISSIONS = ("joint", "jointinparent", "tendon", "site", "body", "cranksite", "slidersite", "refsite")
+"""The attributes of an actuator that say what it acts on; all but the first five stand beside another one."""
+
+RESOLVED = ("kp", "kv", "ctrlrange", "forcerange")
+"""Parameters of an actuator that are typed even where its class gives them."""
+
+LAW = (
+    *("dyntype", "gaintype", "biastype", "dynprm", "gainprm", "biasprm", "ctrllimited", "forcelimited", "actlimited"),
+    *("actrange", "lengthrange", "actdim", "cranklength", "inheritrange", "dampratio", "timeconst", "tausmooth"),
+    *("range", "force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"),
+)
+"""What else says how an actuator drives; typed as well, behind what the actuator says itself."""
+
+TENDON_PARAMETERS = (
+    "springlength",
+    "margin",
+    "solreflimit",
+    "solimplimit",
+    "solreffriction",
+    "solimpfriction",
+    "actuatorfrclimited",
+    "actuatorfrcrange",
+    "group",
+)
+"""Parameters of a tendon, typed even where its class gives them."""
+
+SENSED: Mapping[str, str] = MappingProxyType(
+    {
+        "site": "site",
+        "joint": "joint",
+        "tendon": "tendon",
+        "actuator": "actuator",
+        "body": "body",
+        "geom": "geom",
+        "camera": "camera",
+        "body1": "body",
+        "body2": "body",
+        "geom1": "geom",
+        "geom2": "geom",
+        "subtree1": "body",
+        "subtree2": "body",
+    }
+)
+"""The attributes of a sensor that refer to something, and to what kind; ``objname`` and ``refname`` go by their types."""
+
+SENSED_TYPES: Mapping[str, str] = MappingProxyType({"body": "body", "xbody": "body", "geom": "geom", "site": "site", "camera": "camera"})
+"""What ``objtype`` and ``reftype`` mean."""
+
+ALONE = frozenset({"site", "joint", "tendon", "actuator", "body", "geom", "camera"})
+"""Sensed things whose arc needs no role: the kind of the target says the attribute."""

@@ -1,0 +1,93 @@
+"""Names of elements: giving out free ones, and a mechanism with some of its elements under other ids."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import chain
+from typing import TYPE_CHECKING, TypeVar
+
+from hymeko_x.ir.graph import Arc, Edge, Hypergraph
+from hymeko_x.ir.mechanism import Id
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from hymeko_x.ir.mechanism import Extra, Mechanism
+
+T = TypeVar("T")
+
+
+class Names:
+    """Gives out ids that are unique per kind: a name that is taken gets ``#2``, ``#3``, ... behind it."""
+
+    def __init__(self, taken: Iterable[Id] = ()) -> None:
+        self._taken: set[tuple[str, str]] = set(taken)
+        self._next: dict[Id, int] = {}
+
+    def reserve(self, kind: str, name: str) -> None:
+        """Give the id of this name to nobody, or the next free one where somebody has that."""
+        if (kind, name) in self._taken:
+            self.take(kind, name)
+        else:
+            self._taken.add((kind, name))
+
+    def take(self, kind: str, name: str) -> Id:
+        """An id of this kind that nobody has, as close to the name as possible."""
+        wanted = Id(kind, name)
+        free = self.free(kind, name) if wanted in self._taken else wanted
+        self._taken.add(free)
+        return free
+
+    def free(self, kind: str, name: str) -> Id:
+        """The id that :meth:`take` would give out."""
+        wanted = Id(kind, name)
+        if wanted not in self._taken:
+            return wanted
+        number = self._next.get(wanted, 2)
+        while Id(kind, f"{name}#{number}") in self._taken:
+            number += 1
+        self._next[wanted] = number
+        return Id(kind, f"{name}#{number}")
+
+
+def rename(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
+    """The mechanism with every key of ``names`` replaced by its value, wherever it occurs.
+
+    Where the new id is there already (a body that turns out to be the world), the element of that id stays and
+    takes over the arcs and extras of the old one.
+    """
+    if not names:
+        return mechanism
+    graph = mechanism.graph
+    taken = set(graph.vertices) | set(graph.edges)
+    merged = {old for old, new in names.items() if new in taken and new not in names}
+    vertices = {names.get(key, key): data for key, data in graph.vertices.items() if key not in merged}
+    edges = {}
+    for key, edge in graph.edges.items():
+        if not names.keys().isdisjoint([arc.target for arc in edge.arcs]):
+            edge = Edge(edge.data, tuple([Arc(names.get(arc.target, arc.target), arc.sign, arc.weight, arc.role) for arc in edge.arcs]))
+        edges[names.get(key, key)] = edge
+    extras: dict[Id, tuple[Extra, ...]] = {}
+    for key, found in mechanism.extras.items():
+        new = names.get(key, key)
+        extras[new] = extras.get(new, ()) + found
+    return replace(
+        mechanism,
+        graph=Hypergraph(vertices, edges),
+        extras=extras,
+        origins=_rekeyed(mechanism.origins, names),
+        notations=_rekeyed(mechanism.notations, names),
+        stereotypes=_rekeyed(mechanism.stereotypes, names),
+        layout=tuple(names.get(key, key) for key in mechanism.layout),
+    )
+
+
+def _rekeyed(table: Mapping[Id, T], names: Mapping[Id, Id]) -> dict[Id, T]:
+    """A side table under the new keys; what the new key had already wins."""
+    moved = {names[key]: value for key, value in table.items() if key in names}
+    return {**moved, **{key: value for key, value in table.items() if key not in names}}
+
+
+def names_in_use(mechanism: Mechanism) -> Names:
+    """A giver of new ids that knows every id of the mechanism."""
+    return Names(chain(mechanism.graph.vertices, mechanism.graph.edges))

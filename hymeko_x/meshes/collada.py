@@ -1,0 +1,337 @@
+"""The triangles of plain COLLADA files, straight into arrays, and the colours that they are shown in.
+
+Normals, and texture coordinates in a file without images, are not even turned into numbers, and of materials only their
+colour or image counts. Whatever is not plain (skins, instances of nodes, other primitives than triangles and polygons, other
+transformations than the usual ones, damage of any kind) is left to the loader that knows all of COLLADA.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+from urllib.parse import unquote
+
+import numpy as np
+from lxml import etree
+
+from hymeko_x.meshes.numerals import columns_in, numbers_in
+from hymeko_x.meshes.part import Finish, Table
+from hymeko_x.meshes.polygons import fans, used_rows
+
+if TYPE_CHECKING:
+    from lxml.etree import _Element as Element
+    from numpy.typing import NDArray
+
+    from hymeko_x.ir.parts import Rgba
+
+_DEEPEST = 1000
+_NEAR_ONE = 1e-5
+_COMPONENTS = 3
+_PASSED_OVER = frozenset({"extra", "lines", "linestrips"})
+_NOT_SHOWN = frozenset({"extra", "asset", "instance_camera", "instance_light"})
+_INDEX = np.int32  # as in the file format's own reader
+_SINGLE = np.float32
+
+
+class NotPlain(Exception):
+    """The file has something that this reader leaves to others."""
+
+
+def collada_tables(data: bytes) -> list[Table] | None:
+    """The points in m and the triangles of all that the scene of a COLLADA file shows; None where the file is not plain.
+
+    Nodes move what is below them and the file's unit counts; its up axis does not. Numbers are read in single precision.
+    Source: COLLADA 1.4.1, sections 5 and 6 (core elements, geometry).
+    """
+    try:
+        return _File(_root(data)).tables()
+    except (NotPlain, ValueError, OverflowError):  # what is not a number, and numbers that are too large
+        return None
+
+
+def _root(data: bytes) -> Element:
+    try:
+        return etree.fromstring(data, etree.XMLParser(huge_tree=True, resolve_entities=False, remove_comments=True, remove_pis=True))
+    except etree.XMLSyntaxError as error:
+        raise NotPlain from error
+
+
+@dataclass(slots=True)
+class _File:
+    """One file while it is read: its libraries by id, and the numbers of each geometry, which are read once."""
+
+    root: Element
+    geometries: dict[str | None, list[Element]] = field(init=False)
+    materials: dict[str | None, list[Element]] = field(init=False)
+    effects: dict[str | None, list[Element]] = field(init=False)
+    images: dict[str | None, list[Element]] = field(init=False)
+    known: dict[str, list[Table]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.geometries = _by_id(self.root, "{*}library_geometries/{*}geometry")
+        self.materials = _by_id(self.root, "{*}library_materials/{*}material")
+        self.effects = _by_id(self.root, "{*}library_effects/{*}effect")
+        self.images = _by_id(self.root, "{*}library_images/{*}image")
+
+    def tables(self) -> list[Table]:
+        metres = self._metres()
+        found = []
+        for shown, matrix in _shown(self._scene()):
+            given = _given_materials(shown)
+            tables = self._geometry(_reference(shown.get("url")))
+            found += [self._coloured(_placed(table, matrix, metres), given) for table in tables]
+        return found
+
+    def _coloured(self, table: Table, given: dict[str | None, Element]) -> Table:
+        """With the material that an instance of a geometry gives to the name that a primitive has for it."""
+        if table.material not in given:
+            return table._replace(material="", uv=None, corners=None)
+        name = _reference(given[table.material].get("target"))
+        finish = self._finish(name)
+        if table.uv is None or not finish.image:
+            return table._replace(material=name, finish=finish._replace(image=""), uv=None, corners=None)
+        return table._replace(material=name, finish=finish)
+
+    def _finish(self, name: str) -> Finish:
+        """The diffuse colour or image of a material."""
+        effect = self.materials[name][-1].find("{*}instance_effect") if name in self.materials else None
+        wanted = "" if effect is None else _reference(effect.get("url"))
+        if wanted not in self.effects:
+            return Finish()
+        profile = self.effects[wanted][0].find("{*}profile_COMMON")
+        diffuse = None if profile is None else profile.find("{*}technique/*/{*}diffuse")
+        if profile is None or diffuse is None:
+            return Finish()
+        colour, texture = diffuse.find("{*}color"), diffuse.find("{*}texture")
+        rgba = None if colour is None else _rgba(_numbers(colour, np.float64).tolist())
+        return Finish(rgba, "" if texture is None else self._image(profile, texture.get("texture", "")))
+
+    def _image(self, profile: Element, name: str) -> str:
+        """The file that a sampler, or a careless exporter at once, means; empty where there is none."""
+        parameters = {item.get("sid"): item for item in profile.iterfind("{*}newparam")}
+        for path in ("{*}sampler2D/{*}source", "{*}surface/{*}init_from"):
+            found = parameters[name].find(path) if name in parameters else None
+            name = name if found is None else (found.text or "").strip()
+        said = self.images[name][0].find("{*}init_from") if name in self.images else None
+        return "" if said is None else unquote((said.text or "").strip().removeprefix("file://"))
+
+    def _metres(self) -> float:
+        unit = self.root.find("{*}asset/{*}unit")
+        metres = 1.0 if unit is None else float(unit.get("meter", "1"))
+        return 1.0 if abs(metres - 1.0) <= _NEAR_ONE else metres
+
+    def _scene(self) -> Element:
+        shown = self.root.find("{*}scene/{*}instance_visual_scene")
+        wanted = _reference(shown.get("url") if shown is not None else None)
+        return _only([scene for scene in self.root.iterfind("{*}library_visual_scenes/{*}visual_scene") if scene.get("id") == wanted])
+
+    def _geometry(self, name: str) -> list[Table]:
+        if name not in self.known:
+            mesh = _only(_only(self.geometries.get(name, [])).findall("{*}mesh"))
+            self.known[name] = _mesh_tables(mesh, has_images=bool(self.images))
+        return self.known[name]
+
+
+def _by_id(root: Element, path: str) -> dict[str | None, list[Element]]:
+    """The elements of a library by id, which damaged files give twice."""
+    found: dict[str | None, list[Element]] = {}
+    for item in root.iterfind(path):
+        found.setdefault(item.get("id"), []).append(item)
+    return found
+
+
+def _given_materials(shown: Element) -> dict[str | None, Element]:
+    """What an instance of a geometry gives to each name of a material, the first one where there are several."""
+    found: dict[str | None, Element] = {}
+    for item in shown.iterfind("{*}bind_material/{*}technique_common/{*}instance_material"):
+        found.setdefault(item.get("symbol"), item)
+    return found
+
+
+# ---- scene -------------------------------------------------------------------------------------------------------------------
+
+
+def _shown(scene: Element) -> list[tuple[Element, NDArray[np.float64]]]:
+    """Every instance of a geometry in a scene, in its order, with where it is."""
+    found: list[tuple[Element, NDArray[np.float64]]] = []
+    waiting = [(node, np.eye(4), 0) for node in reversed(scene.findall("{*}node"))]
+    while waiting:
+        element, matrix, depth = waiting.pop()
+        if _tag(element) == "instance_geometry":
+            found.append((element, matrix))
+            continue
+        if depth > _DEEPEST:
+            raise NotPlain
+        moved, below = _moved(element, matrix)
+        waiting += [(child, moved, depth + 1) for child in reversed(below)]
+    return found
+
+
+def _moved(node: Element, matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], list[Element]]:
+    """Where the content of a node is, and its content."""
+    own = np.eye(4, dtype=_SINGLE)
+    below = []
+    for child in node:
+        tag = _tag(child)
+        if tag in ("node", "instance_geometry"):
+            below.append(child)
+        elif tag in _MOVES:
+            own = own @ _MOVES[tag](_numbers(child, _SINGLE))
+        elif tag not in _NOT_SHOWN:
+            raise NotPlain
+    return matrix @ own, below
+
+
+def _matrix(said: NDArray[Any]) -> NDArray[Any]:
+    return said.reshape(4, 4)
+
+
+def _translation(said: NDArray[Any]) -> NDArray[Any]:
+    matrix = np.eye(4, dtype=_SINGLE)
+    matrix[:3, 3] = said.reshape(3)
+    return matrix
+
+
+def _scaling(said: NDArray[Any]) -> NDArray[Any]:
+    return np.diag([*said.reshape(3), 1.0]).astype(_SINGLE)
+
+
+def _rotation(said: NDArray[Any]) -> NDArray[Any]:
+    """A turn by an angle in degrees about an axis, a unit vector."""
+    x, y, z, angle = said.reshape(4).astype(np.float64).tolist()
+    if abs(math.hypot(x, y, z) - 1.0) > _NEAR_ONE:
+        raise NotPlain
+    matrix = np.eye(4, dtype=_SINGLE)
+    if angle == 0.0:
+        return matrix
+    axis, turn = np.array([x, y, z]), math.radians(angle)
+    across = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    matrix[:3, :3] = math.cos(turn) * np.eye(3) + math.sin(turn) * across + (1.0 - math.cos(turn)) * np.outer(axis, axis)
+    return matrix
+
+
+_MOVES = {"matrix": _matrix, "translate": _translation, "scale": _scaling, "rotate": _rotation}
+
+
+def _placed(table: Table, matrix: NDArray[np.float64], metres: float) -> Table:
+    """The triangles where a node puts them, in m; a mirror turns them around, so that they still look outwards."""
+    points, faces, corners = table.points, table.faces, table.corners
+    if not np.array_equal(matrix, np.eye(4)):
+        points = points @ matrix[:3, :3].T + matrix[:3, 3]
+    if np.linalg.det(matrix[:3, :3]) < 0.0:
+        faces, corners = faces[:, ::-1], None if corners is None else corners[:, ::-1]
+    return table._replace(points=points * metres, faces=faces, corners=corners)
+
+
+# ---- geometry ----------------------------------------------------------------------------------------------------------------
+
+
+def _mesh_tables(mesh: Element, *, has_images: bool) -> list[Table]:
+    """One table for each primitive; with texture coordinates only where there are images."""
+    sources = {f"#{child.get('id')}": child for child in mesh if _tag(child) in ("source", "vertices")}
+    known: dict[str, NDArray[np.float64]] = {}
+    found = []
+    for child in mesh:
+        tag = _tag(child)
+        if tag in ("triangles", "polylist"):
+            name, (index, places) = _input(child, "VERTEX"), _index(child)
+            if name not in known:
+                known[name] = _points(sources.get(name), sources)
+            faces = _triangles(child, index, known[name])
+            table = Table(*used_rows(known[name], faces), child.get("material", ""))
+            map_name = _map_name(child) if has_images and places is not None else ""
+            if places is not None and map_name in sources:
+                if map_name not in known:
+                    known[map_name] = _floats(sources[map_name], (2, 3))[:, :2]
+                table = table._replace(uv=known[map_name], corners=_triangles(child, places, known[map_name]))
+            found.append(table)
+        elif tag not in ("source", "vertices") and tag not in _PASSED_OVER:
+            raise NotPlain
+    return found
+
+
+def _triangles(primitive: Element, index: NDArray[Any], table: NDArray[Any]) -> NDArray[Any]:
+    """The triangles of a primitive as rows of a table, of which ``index`` has one for each of its corners."""
+    is_cut = _tag(primitive) == "triangles"
+    faces = index.reshape(-1, 3) if is_cut else fans(_numbers(_only(primitive.findall("{*}vcount")), _INDEX), index)
+    if faces.size and (faces.min() < 0 or faces.max() >= len(table)):
+        raise NotPlain
+    return faces
+
+
+def _index(primitive: Element) -> tuple[NDArray[Any], NDArray[Any] | None]:
+    """For each corner of a primitive the row of its point, and of its place in an image if it has one.
+
+    The rows of its normals and the rest stand between them.
+    """
+    inputs = [(int(item.get("offset", "")), item.get("semantic")) for item in primitive.iterfind("{*}input")]
+    places = [offset for offset, semantic in inputs if semantic == "VERTEX"]
+    if len(places) != 1 or min(offset for offset, _ in inputs) < 0:
+        raise NotPlain
+    places += [offset for offset, semantic in inputs if semantic == "TEXCOORD"][:1]
+    width = max(offset for offset, _ in inputs) + 1
+    lists = [columns_in(item.text or "", width, places).astype(_INDEX) for item in primitive.iterfind("{*}p")]
+    rows = np.concatenate(lists) if lists else np.zeros((0, len(places)), dtype=_INDEX)
+    return rows[:, 0], rows[:, 1] if len(places) > 1 else None
+
+
+def _map_name(primitive: Element) -> str:
+    """The source of the first texture coordinates of a primitive."""
+    found = [item.get("source", "") for item in primitive.iterfind("{*}input") if item.get("semantic") == "TEXCOORD"]
+    return found[0] if found else ""
+
+
+def _points(vertices: Element | None, sources: dict[str, Element]) -> NDArray[np.float64]:
+    source = sources.get(_input(vertices, "POSITION")) if vertices is not None else None
+    if source is None:
+        raise NotPlain
+    return _floats(source, (_COMPONENTS,))
+
+
+def _floats(source: Element, widths: tuple[int, ...]) -> NDArray[np.float64]:
+    """The rows of a source, which have one of these widths."""
+    accessor = _only(source.findall("{*}technique_common/{*}accessor"))
+    width = int(accessor.get("stride", "1"))
+    if width not in widths or accessor.get("offset", "0") != "0" or len(accessor.findall("{*}param")) != width:
+        raise NotPlain
+    rows = _numbers(_only(source.findall("{*}float_array")), _SINGLE)
+    if not np.isfinite(rows).all():
+        raise NotPlain
+    return rows.reshape(-1, width).astype(np.float64)
+
+
+def _input(element: Element, semantic: str) -> str:
+    return str(_only([item for item in element.iterfind("{*}input") if item.get("semantic") == semantic]).get("source", ""))
+
+
+def _numbers(element: Element, kind: Any) -> NDArray[Any]:
+    """The numbers of an element. Raises: ValueError where there is anything else."""
+    return numbers_in(element.text or "", kind)
+
+
+def _rgba(said: list[float]) -> Rgba | None:
+    if len(said) not in (3, 4) or not all(0.0 <= value <= 1.0 for value in said):
+        return None
+    r, g, b, a = (*said, 1.0)[:4]
+    return (r, g, b, a)
+
+
+# ---- elements ----------------------------------------------------------------------------------------------------------------
+
+
+def _tag(element: Element) -> str:
+    name: str = element.tag
+    return name.rpartition("}")[2]
+
+
+def _reference(url: str | None) -> str:
+    if url is None or not url.startswith("#"):
+        raise NotPlain
+    return url[1:]
+
+
+def _only(found: list[Element]) -> Element:
+    if len(found) != 1:
+        raise NotPlain
+    return found[0]

@@ -1,0 +1,125 @@
+"""What a target could not say, so that it can be brought back: the difference between a robot and its native image.
+
+The *native image* of a mechanism in a format is what the format's own frontend reads from what its backend wrote.
+:func:`residue_of` is the difference between the two, and :func:`restore` adds it to the image again, edited or not:
+
+    restore(image, residue_of(source, image)) == source
+    restore(edited image, residue) == source with the edit
+
+Every entry is bound to an element and to a digest of what the image said there (``guard``); it is applied only where the
+image still says that. So what an editor changed wins, what he deleted stays deleted, and what he added is kept.
+
+Some differences are only another description of the same thing: another name, another frame on a body, a joint of
+several dofs as a chain. They are not entries but a :class:`Bridge`, which is crossed first, with all edits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import field
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.frozen import frozen
+
+if TYPE_CHECKING:
+    from hymeko_x.compare.leaves import Path
+    from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
+    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.ir.values import Pose
+
+
+class Fold(NamedTuple):
+    """A joint that the image says as a chain of joints with bodies between them that carry nothing."""
+
+    joint: Id
+    chain: tuple[Id, ...]
+    between: tuple[Id, ...]
+
+
+class Join(NamedTuple):
+    """A shape that is seen and touched, which the image says twice."""
+
+    shape: Id
+    twin: Id
+
+
+@frozen
+class Bridge:
+    """How the image says the same in other words.
+
+    ``names``: source id by the image's. ``folds`` and ``joins``: what the image takes apart. ``frames``: pose of the source's
+    body frame in the image's, where they differ. Coordinates of dofs are the same in both, as every writer sees to.
+    """
+
+    names: tuple[tuple[Id, Id], ...] = ()
+    folds: tuple[Fold, ...] = ()
+    joins: tuple[Join, ...] = ()
+    frames: tuple[tuple[Id, Pose], ...] = ()
+
+
+class Change(NamedTuple):
+    """A field that the image says otherwise, or not at all (then ``guard`` is empty)."""
+
+    element: Id
+    path: Path
+    value: object
+    guard: str
+
+
+class Addition(NamedTuple):
+    """An element that the image does not have."""
+
+    element: Id
+    part: VertexPart | RobotEdge
+
+
+class Removal(NamedTuple):
+    """An element that only the image has; ``guard`` is its whole digest, and ``group`` what it belongs to if it is a shape."""
+
+    element: Id
+    guard: str
+    group: str = ""
+
+
+class Run(NamedTuple):
+    """Elements that stand behind another one (None = at the head), in the source's order."""
+
+    after: Id | None
+    elements: tuple[Id, ...]
+
+
+@frozen
+class Sides:
+    """The side tables of the source where they differ: None takes an entry away.
+
+    ``forgotten`` are keys of notations that only the image uses; ``is_plain`` says that only the image has stereotypes.
+    """
+
+    notations: tuple[tuple[Id, str, str | None], ...] = ()
+    forgotten: tuple[str, ...] = ()
+    stereotypes: tuple[tuple[Id, tuple[str, ...]], ...] = ()
+    is_plain: bool = False
+    extras: tuple[tuple[Id, Extra], ...] = ()
+    strangers: tuple[tuple[Id, str], ...] = ()
+    """Extras that only the image has, by digest."""
+
+
+@frozen
+class Residue:
+    """All of it. ``known`` are the digests by which renamed elements are found."""
+
+    bridge: Bridge = field(default_factory=Bridge)
+    changes: tuple[Change, ...] = ()
+    additions: tuple[Addition, ...] = ()
+    removals: tuple[Removal, ...] = ()
+    sides: Sides = field(default_factory=Sides)
+    order: tuple[Run, ...] = ()
+    layout: tuple[Id, ...] | None = None
+    """The source's layout, where it is another one; ``unplaced`` are elements that only the image has a place for."""
+    unplaced: tuple[Id, ...] = ()
+    known: tuple[tuple[Id, str], ...] = ()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the image says everything."""
+        said = (self.changes, self.additions, self.removals, self.order)
+        return not any(said) and self.layout is None and self.bridge == Bridge() and self.sides == Sides()

@@ -1,0 +1,194 @@
+"""Crossing a bridge: the image in the source's words, frames and joints, with all that an editor did to it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from hymeko_x.compare.diff import Difference
+from hymeko_x.ir.mechanism import WORLD, joint_edge, pose_weight
+from hymeko_x.ir.names import rename
+from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
+from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate, rotate_tensor
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc, RobotEdge
+    from hymeko_x.ir.parts import Inertial, VertexPart
+    from hymeko_x.ir.values import Pose
+    from hymeko_x.residue import Bridge, Fold, Join
+
+
+def cross(image: Mechanism, bridge: Bridge) -> Mechanism:
+    """The same robot as the source describes it; what an editor has taken apart stays as it is."""
+    mechanism = _with_world(rename(image, _free_names(image, bridge)))
+    mechanism = fold_chains(mechanism, bridge.folds)
+    mechanism = join_twins(mechanism, bridge.joins)
+    return move_frames(mechanism, dict(bridge.frames))
+
+
+def _free_names(image: Mechanism, bridge: Bridge) -> dict[Id, Id]:
+    """The source's name of each of the image's elements, where no other element has come to be called so; a world may be there."""
+    names = {old: new for old, new in bridge.names if old != new and old in image.graph}
+    given: dict[Id, Id] = {}
+    for old, new in names.items():
+        given.setdefault(new, old)
+    names = {old: new for old, new in names.items() if given[new] == old or new == WORLD}
+    while taken := [old for old, new in names.items() if new != WORLD and new not in names and new in image.graph]:
+        for old in taken:
+            del names[old]
+    return names
+
+
+def _with_world(mechanism: Mechanism) -> Mechanism:
+    """A body that was renamed to the world is the world from now on."""
+    if not isinstance(mechanism.graph.vertices.get(WORLD), Body):
+        return mechanism
+    return mechanism.with_graph(mechanism.graph.replace(vertices={WORLD: World()}))
+
+
+def other_words(bridge: Bridge) -> Iterator[Difference]:
+    """What the image says in other words, as differences: names, chains, shapes said twice, frames and coordinates."""
+    for old, new in bridge.names:
+        if old.name != new.name:
+            yield Difference(new, "name", repr(new.name), repr(old.name))
+    for fold in bridge.folds:
+        yield Difference(fold.joint, "chain", fold.joint.name, " ".join(key.name for key in fold.chain))
+    for shape, twin in bridge.joins:
+        yield Difference(shape, "role", "both", f"visual, and collision as '{twin.name}'")
+    for body, pose in bridge.frames:
+        yield Difference(body, "frame", "its own", f"{numbers_text(pose.xyz)}, {numbers_text(pose.quat)} from there")
+
+
+# ---- chains of joints ------------------------------------------------------------------------------------------------------
+
+
+def fold_chains(mechanism: Mechanism, folds: Iterable[Fold]) -> Mechanism:
+    """Chains of joints as one joint of several dofs, where the bodies between them carry nothing."""
+    edges: dict[Id, RobotEdge] = {}
+    gone: set[Id] = set()
+    for fold in folds:
+        views = [mechanism.joints.get(key) for key in fold.chain]
+        chain = [view for view in views if view is not None]
+        if len(chain) < len(views) or not _is_bare_chain(mechanism, fold, chain):
+            continue
+        gone.update((*fold.chain, *fold.between))
+        edges[fold.joint] = folded(chain)
+    if not edges:
+        return mechanism
+    kept = {key: edge for key, edge in mechanism.graph.edges.items() if key not in gone}
+    vertices = {key: part for key, part in mechanism.graph.vertices.items() if key not in gone}
+    graph = replace(mechanism.graph, vertices=vertices, edges={**kept, **edges})
+    layout = tuple(key for key in mechanism.layout if key not in gone)
+    return replace(mechanism, graph=graph, layout=layout)
+
+
+def _is_bare_chain(mechanism: Mechanism, fold: Fold, chain: list[JointView]) -> bool:
+    """Whether the joints follow each other and nothing else hangs on the bodies between them."""
+    inner = [view.child for view in chain[:-1]]
+    if inner != list(fold.between) or any(below.parent != above.child for above, below in pairwise(chain)):
+        return False
+    own = set(fold.chain)
+    hanging = (found.edge for body in inner for found in mechanism.graph.incidence.get(body, ()))
+    return own.issuperset(hanging) and all(_has_no_weight(mechanism.vertex(body, Body)) for body in inner)
+
+
+def _has_no_weight(body: Body) -> bool:
+    """Whether a body is only there to part two joints: what a format demands for a massless one is next to nothing."""
+    return body.inertial is None or (body.inertial.mass or 0.0) < 1e-6
+
+
+def folded(chain: list[JointView]) -> RobotEdge:
+    """The edge of one joint with the dofs of all, in the frame of the first."""
+    dofs: list[Dof] = []
+    here: Pose = IDENTITY  # the frame of the current joint in that of the first, at the reference configuration
+    for number, view in enumerate(chain):
+        dofs += [_seen_from(dof, here) for dof in view.joint.dofs]
+        if number + 1 < len(chain):
+            here = compose(here, compose(inverse(view.child_pose), chain[number + 1].parent_pose))
+    return joint_edge(
+        Joint(tuple(dofs)), chain[0].parent, chain[-1].child, chain[0].parent_pose, compose(chain[-1].child_pose, inverse(here))
+    )
+
+
+def _seen_from(dof: Dof, frame: Pose) -> Dof:
+    if frame == IDENTITY:
+        return dof
+    return replace(dof, axis=rotate(frame.quat, dof.axis), anchor=apply(frame, dof.anchor), written=None)
+
+
+# ---- shapes said twice -----------------------------------------------------------------------------------------------------
+
+
+def join_twins(mechanism: Mechanism, joins: Iterable[Join]) -> Mechanism:
+    """Shapes that are seen and touched alike, as one."""
+    edges: dict[Id, RobotEdge] = {}
+    gone: list[Id] = []
+    for shape, twin in joins:
+        seen, touched = mechanism.graph.edges.get(shape), mechanism.graph.edges.get(twin)
+        if seen is None or touched is None or not are_twins(seen, touched):
+            continue
+        edges[shape] = replace(seen, data=replace(_shape(seen), role=Role.BOTH))
+        gone.append(twin)
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=gone)) if edges else mechanism
+
+
+def are_twins(seen: RobotEdge, touched: RobotEdge) -> bool:
+    """Whether a visual and a collision shape are the same geometry in the same place."""
+    a, b = seen.data, touched.data
+    if not isinstance(a, Shape) or not isinstance(b, Shape) or (a.role, b.role) != (Role.VISUAL, Role.COLLISION):
+        return False
+    return a.geometry == b.geometry and _geometric(seen) == _geometric(touched)
+
+
+def _geometric(edge: RobotEdge) -> list[RobotArc]:
+    return [arc for arc in edge.arcs if arc.role != "material"]
+
+
+def _shape(edge: RobotEdge) -> Shape:
+    assert isinstance(edge.data, Shape)
+    return edge.data
+
+
+# ---- frames of bodies ------------------------------------------------------------------------------------------------------
+
+
+def move_frames(mechanism: Mechanism, frames: Mapping[Id, Pose]) -> Mechanism:
+    """The mechanism with other body frames: each pose says where the new frame is in the old one. Nothing moves."""
+    if not frames:
+        return mechanism
+    back = {key: inverse(pose) for key, pose in frames.items() if key in mechanism.graph.vertices}
+    vertices: dict[Id, VertexPart] = {}
+    for key, turn in back.items():
+        body = mechanism.graph.vertices[key]
+        if isinstance(body, Body) and body.inertial is not None:
+            vertices[key] = replace(body, inertial=_inertial_seen_from(body.inertial, turn))
+    edges = {
+        key: _edge_seen_from(edge, back) for key, edge in mechanism.graph.edges.items() if any(arc.target in back for arc in edge.arcs)
+    }
+    return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
+
+
+def _inertial_seen_from(inertial: Inertial, back: Pose) -> Inertial:
+    tensor = None if inertial.tensor is None else rotate_tensor(back.quat, inertial.tensor)
+    return replace(inertial, com=apply(back, inertial.com), tensor=tensor, written=None)
+
+
+def _edge_seen_from(edge: RobotEdge, back: Mapping[Id, Pose]) -> RobotEdge:
+    """An edge whose arcs' poses are given in the frames of the bodies that they point at."""
+    arcs = tuple(
+        replace(arc, weight=_placed(compose(back[arc.target], pose_weight(arc)))) if arc.target in back and _is_placed(arc) else arc
+        for arc in edge.arcs
+    )
+    return replace(edge, arcs=arcs)
+
+
+def _is_placed(arc: RobotArc) -> bool:
+    """Whether the arc's weight is a pose (or nothing, which is the identity)."""
+    return not isinstance(arc.weight, tuple)
+
+
+def _placed(pose: Pose) -> Pose | None:
+    return None if pose == IDENTITY else pose

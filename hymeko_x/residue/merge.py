@@ -1,0 +1,332 @@
+"""Adding a residue to an image that may have been edited."""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from dataclasses import dataclass, field, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING, TypeVar
+
+from hymeko_x import codes
+from hymeko_x.compare.leaves import TURN
+from hymeko_x.ir.graph import Edge, Hypergraph
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Texture
+from hymeko_x.ir.types import is_sound, settled
+from hymeko_x.residue.bridge import cross
+from hymeko_x.residue.follow import renamed_since, with_new_names, with_old_names
+from hymeko_x.residue.order import by_kind, laid_out, moved
+from hymeko_x.residue.paths import default_at, digest, get, guard_of, put
+from hymeko_x.residue.prints import print_of, print_of_extra, shape_group, weight_print
+from hymeko_x.residue.stored import stored_meshes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from hymeko_x.compare.leaves import Path
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotEdge
+    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.residue import Change, Removal, Residue
+
+P = TypeVar("P")
+
+_ROUNDING = 1e-9
+"""Numbers closer than this say the same: only their last digits are restored."""
+
+
+_HOLDS: Mapping[type, int] = MappingProxyType({Mount: -1, Sense: -1, Drive: 1})
+"""The sign of the arc to the thing that an edge places."""
+
+
+def restore(image: Mechanism, residue: Residue, report: Report) -> Mechanism:
+    """The source, with what was done to its image since. What no longer applies is reported."""
+    names = renamed_since(image, residue)
+    for new, old in names.items():
+        report.note(codes.RESIDUE_FOLLOWED, f"{old} is called '{new.name}' now", element=str(new))
+    crossed = cross(with_old_names(image, names), residue.bridge)
+    return with_new_names(_Merge(crossed, residue, report).result(), names)
+
+
+@dataclass(slots=True)
+class _Merge:
+    """The result so far, and what is said about it."""
+
+    image: Mechanism
+    residue: Residue
+    report: Report
+    vertices: dict[Id, VertexPart] = field(init=False)
+    edges: dict[Id, RobotEdge] = field(init=False)
+
+    def result(self) -> Mechanism:
+        """All steps, in their order."""
+        self.vertices, self.edges = dict(self.image.graph.vertices), dict(self.image.graph.edges)
+        name = self._change_fields()
+        kept, withheld = self._edited_shapes()
+        self._add(withheld)
+        removed = self._remove(kept)
+        self._let_nothing_dangle(removed)
+        merged = replace(self.image, name=name, graph=self._ordered(), places={**self.image.places, **dict(self._places())})
+        stored = stored_meshes(merged, self.image)
+        return _with_sides(replace(merged, stored=stored) if stored else merged, self.residue, self.image)
+
+    # ---- fields ------------------------------------------------------------------------------------------------------------
+
+    def _change_fields(self) -> str:
+        """Put in what the image says otherwise; return the mechanism's name."""
+        name = self.image.name
+        grouped: dict[Id, list[Change]] = defaultdict(list)
+        for change in self.residue.changes:
+            grouped[change.element].append(change)
+        for key, changes in grouped.items():
+            if key == ROOT:
+                name = str(changes[0].value) if changes[0].guard == digest(name) else name
+            elif key in self.vertices:
+                self.vertices[key] = self._changed(key, self.vertices[key], changes)
+            elif key in self.edges:
+                self.edges[key] = self._changed(key, self.edges[key], changes)
+            else:
+                self._say(key, "is gone; what was carried for it stays away")
+        return name
+
+    def _changed(self, key: Id, part: P, changes: list[Change]) -> P:
+        edited = [change for change in changes if not self._still_holds(key, part, change)]
+        if edited:
+            self._say(key, f"was edited: {', '.join(dict.fromkeys(_path_text(change.path) for change in edited))} stays as it is now")
+        barred = _barred(part, changes, edited) if edited else set()
+        changed = _with_changes(part, [change for change in changes if change.path not in barred])
+        if changed is not None:
+            return changed
+        self._say(key, "stays as it is: what was carried for it is damaged")
+        return part
+
+    def _still_holds(self, key: Id, part: object, change: Change) -> bool:
+        if change.path[0] == "inertial" and change.value is None and isinstance(part, Body):
+            return change.guard == weight_print(self.image, key)
+        try:
+            value = get(part, change.path)
+        except LookupError:
+            return False
+        if change.path[-1] == TURN:
+            value = value[0]  # type: ignore[index]
+        return change.guard == guard_of(value, default_at(part, change.path)) or change.guard == digest(value)
+
+    # ---- elements ----------------------------------------------------------------------------------------------------------
+
+    def _edited_shapes(self) -> tuple[set[Id], set[Id]]:
+        """Shapes that stand for others which the image cannot say: those to keep since one of them was edited, and those to withhold.
+
+        Shapes of one name on one body belong together.
+        """
+        stand_ins: dict[object, list[Removal]] = defaultdict(list)
+        for removal in self.residue.removals:
+            if removal.element.kind == "shape":
+                stand_ins[removal.group].append(removal)
+        edited = {group for group, members in stand_ins.items() if not all(map(self._is_untouched, members))}
+        if not edited:
+            return set(), set()
+        kept = {removal.element for group in edited for removal in stand_ins[group]}
+        withheld = {key for key, part in self.residue.additions if isinstance(part, Edge) and shape_group(part) in edited}
+        for key in withheld:
+            self._say(key, "is not restored, because what stands for it was edited")
+        return kept, withheld
+
+    def _is_untouched(self, removal: Removal) -> bool:
+        return removal.element in self.image.graph and print_of(self.image, removal.element) == removal.guard
+
+    def _add(self, withheld: set[Id]) -> None:
+        """Put in what the image does not have; what it is on must be there."""
+        waiting: list[tuple[Id, RobotEdge]] = []
+        for key, part in self.residue.additions:
+            if key in withheld:
+                continue
+            if key in self.vertices or key in self.edges:
+                self._say(key, "is there already; what was carried under this name stays away")
+            elif isinstance(part, Edge):
+                waiting.append((key, part))
+            else:
+                self.vertices[key] = part
+        self.edges |= waiting
+
+    def _remove(self, kept: set[Id]) -> dict[Id, VertexPart | RobotEdge]:
+        """Take away what only the image has, unless it was edited."""
+        gone: dict[Id, VertexPart | RobotEdge] = {}
+        for removal in self.residue.removals:
+            key = removal.element
+            if key in kept or key in gone or key not in self.image.graph:
+                continue
+            if not self._is_untouched(removal):
+                self._say(key, "was edited, and stays")
+                continue
+            gone[key] = self.vertices.pop(key) if key in self.vertices else self.edges.pop(key)
+        return gone
+
+    def _let_nothing_dangle(self, removed: dict[Id, VertexPart | RobotEdge]) -> None:
+        """Keep what something new is on, and drop what was on something that is gone."""
+        added = {key for key, _ in self.residue.additions}
+        users: dict[Id, list[Id]] = defaultdict(list)
+        for key, edge in self.edges.items():
+            for arc in edge.arcs:
+                users[arc.target].append(key)
+        queue = [target for target in users if target not in self.vertices and target not in self.edges]
+        while queue:
+            target = queue.pop()
+            if target in self.vertices or target in self.edges:
+                continue
+            if target in removed and any(key not in added and key in self.edges for key in users[target]):
+                queue += self._put_back(target, removed[target], users)
+                continue
+            for key in users[target]:
+                if key in self.edges:
+                    edge = self.edges.pop(key)
+                    self._say(key, f"is not restored, because {target} is gone")
+                    queue += [key, *self._drop_things(edge, added)]
+
+    def _drop_things(self, edge: RobotEdge, added: set[Id]) -> list[Id]:
+        """Take away what was carried only to be held by an edge that is not restored: a frame's mount, an actuator's drive."""
+        sign = _HOLDS.get(type(edge.data))
+        things = [arc.target for arc in edge.arcs if arc.sign == sign and arc.target in added and arc.target in self.vertices]
+        for thing in things:
+            del self.vertices[thing]
+        return things
+
+    def _put_back(self, key: Id, part: VertexPart | RobotEdge, users: dict[Id, list[Id]]) -> list[Id]:
+        if not isinstance(part, Edge):
+            self.vertices[key] = part
+            return []
+        self.edges[key] = part
+        for arc in part.arcs:
+            users[arc.target].append(key)
+        return [arc.target for arc in part.arcs]
+
+    def _places(self) -> Iterator[tuple[str, str]]:
+        """How the image calls the files that the source calls otherwise."""
+        for key, part in self.vertices.items():
+            before = self.image.graph.vertices.get(key)
+            if (
+                isinstance(part, Mesh | Texture)
+                and isinstance(before, Mesh | Texture)
+                and part.uri
+                and before.uri
+                and part.uri != before.uri
+            ):
+                yield part.uri, self.image.places.get(before.uri, before.uri)
+
+    def _ordered(self) -> Hypergraph:  # type: ignore[type-arg]
+        if not self.residue.order:
+            return Hypergraph(self.vertices, self.edges)
+        runs: dict[str, list] = defaultdict(list)  # type: ignore[type-arg]
+        for run in self.residue.order:
+            runs[run.elements[0].kind].append(run)
+        return Hypergraph(_sorted(self.vertices, runs), _sorted(self.edges, runs))
+
+    def _say(self, key: Id, what: str) -> None:
+        self.report.note(codes.RESIDUE_SUPERSEDED, f"{key} {what}", element=str(key))
+
+
+def _sorted(table: dict[Id, P], runs: Mapping[str, list]) -> dict[Id, P]:  # type: ignore[type-arg]
+    return {key: table[key] for kind, keys in by_kind(table).items() for key in moved(keys, runs.get(kind, ()))}
+
+
+def _with_changes(part: P, changes: list[Change]) -> P | None:
+    """The part with all changes; None where they are of no part that there is, as in a damaged residue."""
+    try:
+        for change in changes:
+            owner = type(get(part, change.path[:-1]))
+            part = put(part, change.path, settled(owner, change.path[-1], change.value))
+    except LookupError:
+        return None
+    return part if is_sound(part) else None
+
+
+# ---- fields that hold together ---------------------------------------------------------------------------------------------
+
+
+def _barred(part: object, changes: Iterable[Change], edited: list[Change]) -> set[Path]:
+    """The entries that do not apply: the edited ones, and those that only make sense together with them."""
+    barred = {change.path for change in edited}
+    groups = {_group(path) for path in barred} - {""}
+    for change in changes:
+        group = _group(change.path)
+        if change.path in barred or not groups or not group or not _bind(group, groups, change):
+            continue
+        if not _is_rounding(part, change):
+            barred.add(change.path)
+    return barred
+
+
+def _bind(group: str, edited: set[str], change: Change) -> bool:
+    """Whether an entry of a group falls with an edit. A geometry stands for itself, but a plane's place is not a box's."""
+    if group == "geometry":
+        return "place" in edited and isinstance(change.value, Plane)
+    return group in edited or (group == "place" and "geometry" in edited)
+
+
+def _group(path: Path) -> str:
+    """Which fields are given in one frame: the motion of a joint; the geometry and the place of a shape."""
+    match path:
+        case ("arcs", *_):
+            return "place"
+        case ("data", "dofs", int(), "axis" | "anchor" | "pitch" | "kind" | "ref", *_) | ("data", "dofs"):
+            return "place"
+        case ("data", "geometry", *_):
+            return "geometry"
+    return ""
+
+
+def _is_rounding(part: object, change: Change) -> bool:
+    before, after = get(part, change.path), change.value
+    if change.path[-1] == TURN:
+        before, after = before[0], after[0]  # type: ignore[index]
+    flat = list(_numbers(before)), list(_numbers(after))
+    return len(flat[0]) == len(flat[1]) > 0 and all(abs(a - b) <= _ROUNDING for a, b in zip(*flat, strict=True))
+
+
+def _numbers(value: object) -> Iterator[float]:
+    if isinstance(value, tuple):
+        for item in value:
+            yield from _numbers(item)
+    elif isinstance(value, float | int) and not isinstance(value, bool):
+        yield float(value)
+
+
+def _path_text(path: Path) -> str:
+    return ".".join(str(step) for step in path if step not in ("data", "arcs", "weight", TURN))
+
+
+# ---- side tables -------------------------------------------------------------------------------------------------------------
+
+
+def _with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mechanism:
+    sides = residue.sides
+    there = {ROOT, *mechanism.graph.vertices, *mechanism.graph.edges}
+    notations = {key: {name: text for name, text in table.items() if name not in sides.forgotten} for key, table in image.notations.items()}
+    for key, name, text in sides.notations:
+        if text is None:
+            notations.get(key, {}).pop(name, None)
+        elif key in there:
+            notations.setdefault(key, {})[name] = text
+    stereotypes = {} if sides.is_plain else {**image.stereotypes, **dict(sides.stereotypes)}
+    layout = image.layout if residue.layout is None else laid_out(image.layout, residue.layout, set(residue.unplaced))
+    return replace(
+        mechanism,
+        notations={key: table for key, table in notations.items() if table and key in there},
+        stereotypes={key: names for key, names in stereotypes.items() if names and key in there},
+        extras=_extras(residue, image, there),
+        layout=tuple(key for key in layout if key in there),
+    )
+
+
+def _extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict[Id, tuple[Extra, ...]]:
+    strangers = Counter(residue.sides.strangers)
+    extras: dict[Id, list[Extra]] = {}
+    for key, found in image.extras.items():
+        for extra in found:
+            mark = (key, print_of_extra(extra))
+            if strangers[mark]:
+                strangers[mark] -= 1
+            else:
+                extras.setdefault(key, []).append(extra)
+    for key, extra in residue.sides.extras:
+        extras.setdefault(key, []).append(extra)
+    return {key: tuple(found) for key, found in extras.items() if key in there}

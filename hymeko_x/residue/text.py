@@ -1,0 +1,381 @@
+"""A residue as HyMeKo text, and back: what a file of another format carries of the robot that it cannot say itself.
+
+Elements that differ in the same way stand together (``of [a b c]``). ``field <mark> value`` says that the file's own text means
+a value with this digest; without a mark the file says nothing there.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any, TypeVar, get_args
+
+from hymeko_x.compare.leaves import TURN
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id
+from hymeko_x.ir.parts import EdgePart, Weight
+from hymeko_x.ir.types import fits, is_sound
+from hymeko_x.ir.values import Pose
+from hymeko_x.language.printer import Block, print_block, print_field, print_item, print_name
+from hymeko_x.language.syntax import ArcItem, Field, Node, Ref
+from hymeko_x.language.values import decoded, decoded_turn, encoded, encoded_turn, name_ref, said
+from hymeko_x.residue import Addition, Bridge, Change, Fold, Join, Removal, Residue, Run, Sides
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from hymeko_x.compare.leaves import Path
+    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.language.syntax import Document, Item, Value
+
+VERSION = 1.0
+_EDGES = frozenset(kind for part, kind in KINDS.items() if part in get_args(EdgePart))
+_SIGNS = {1: "+", -1: "-", 0: "~"}
+_SIGN_OF = {text: sign for sign, text in _SIGNS.items()}
+_CLASSES = {kind: part for part, kind in KINDS.items()}
+
+_NO_GROUP = "alone"
+
+T = TypeVar("T")
+
+
+class BadResidue(Exception):
+    """A text that is no residue, or one of a newer version."""
+
+
+def print_residue(residue: Residue) -> str:
+    """The text of a residue."""
+    sections: tuple[tuple[str, Iterable[str | Block]], ...] = (
+        ("names", _names(residue.bridge.names)),
+        ("folds", map(_fold, residue.bridge.folds)),
+        ("joins", [print_field(join.shape.name, name_ref(join.twin.name)) for join in residue.bridge.joins]),
+        ("frames", [print_field(key.name, (*pose.xyz, *pose.quat)) for key, pose in residue.bridge.frames]),
+        ("changes", _grouped((change.element, _change(change)) for change in residue.changes)),
+        ("additions", map(_addition, residue.additions)),
+        ("removals", _removals(residue.removals)),
+        *_side_sections(residue.sides),
+        ("order", map(_moved, residue.order)),
+        ("known", _marks(residue.known)),
+    )
+    items: list[str | Block] = [print_field("version", VERSION)]
+    items += ["plain"] if residue.sides.is_plain else []
+    items += [Block(name, found) for name, content in sections if (found := tuple(content))]
+    if residue.layout is not None:
+        items += [_id_list("layout", residue.layout), _id_list("unplaced", residue.unplaced)]
+    return print_block(Block("carried : residue", tuple(items)))
+
+
+def parse_residue(text: str) -> Residue:
+    """The residue in a text.
+
+    Raises: BadResidue; Refusal when the text is not even HyMeKo.
+    """
+    from hymeko_x.language.parser import parse
+
+    document = parse(text, "<residue>")
+    try:
+        return _residue(document)
+    except (ValueError, LookupError, TypeError, AttributeError, AssertionError, ArithmeticError) as error:
+        raise BadResidue(f"{type(error).__name__}: {error}") from error
+
+
+def _residue(document: Document) -> Residue:
+    (root,) = (item for item in document.items if isinstance(item, Node))
+    fields = {item.name: item.value for item in root.items if isinstance(item, Field)}
+    sections: dict[str, tuple[Item, ...]] = {item.name: item.items for item in root.items if isinstance(item, Node)}
+    if fields["version"] != VERSION:
+        raise BadResidue(f"version {fields['version']}, and this program reads version {VERSION:g}")
+    read = _Sections(sections)
+    residue = Residue(
+        read.bridge(),
+        tuple(Change(key, _path(key, item.name), _changed(item), item.type) for key, item in read.grouped("changes")),
+        tuple(_added(item) for item in read.nodes("additions")),
+        tuple(read.removals()),
+        read.sides("plain" in fields),
+        tuple(_run(item) for item in read.fields("order")),
+        tuple(decoded(fields["layout"])) if "layout" in fields else None,
+        tuple(decoded(fields.get("unplaced", ()))),
+        tuple(read.marks("known")),
+    )
+    _check(residue)
+    return residue
+
+
+def _check(residue: Residue) -> None:
+    """Whether the side tables hold what they may hold; parts are checked as they are read.
+
+    Raises: TypeError.
+    """
+    sides = residue.sides
+    for name, value, hint in (
+        ("notations", sides.notations, tuple[tuple[Id, str, str | None], ...]),
+        ("stereotypes", sides.stereotypes, tuple[tuple[Id, tuple[str, ...]], ...]),
+        ("extras", sides.extras, tuple[tuple[Id, Extra], ...]),
+        ("layout", (*(residue.layout or ()), *residue.unplaced), tuple[Id, ...]),
+    ):
+        if not fits(value, hint):
+            raise TypeError(f"{name} holds something else")
+
+
+class _Sections:
+    """The parts of a residue's text, each by its name."""
+
+    def __init__(self, sections: Mapping[str, tuple[Item, ...]]) -> None:
+        self._sections = sections
+
+    def fields(self, name: str) -> Iterator[Field]:
+        for item in self._sections.get(name, ()):
+            if not isinstance(item, Field):
+                raise TypeError(f"{name} holds something else")
+            yield item
+
+    def nodes(self, name: str) -> Iterator[Node]:
+        for item in self._sections.get(name, ()):
+            if not isinstance(item, Node):
+                raise TypeError(f"{name} holds something else")
+            yield item
+
+    def grouped(self, name: str) -> Iterator[tuple[Id, Field]]:
+        """Each field of each element of each group."""
+        for node in self.nodes(name):
+            names, *rest = node.items
+            assert isinstance(names, Field)
+            for element in _refs(names.value):
+                for item in rest:
+                    if not isinstance(item, Field):
+                        raise TypeError(f"{name} holds something else")
+                    yield Id(str(node.name), element), item
+
+    def marks(self, name: str) -> Iterator[tuple[Id, str]]:
+        for item in self.fields(name):
+            names = _refs(item.value)
+            yield from ((Id(str(item.name), key), mark) for key, mark in zip(names[::2], names[1::2], strict=True))
+
+    def removals(self) -> Iterator[Removal]:
+        for item in self.fields("removals"):
+            names = _refs(item.value)
+            for key, mark, group in zip(names[::3], names[1::3], names[2::3], strict=True):
+                yield Removal(Id(str(item.name), key), mark, "" if group == _NO_GROUP else group)
+
+    def bridge(self) -> Bridge:
+        names = [_renamed(item.name, old, new) for item in self.fields("names") for old, new in _pairs(_refs(item.value))]
+        frames = [(Id("body", item.name), _pose(decoded(item.value))) for item in self.fields("frames")]
+        joins = [Join(Id("shape", item.name), Id("shape", _refs((item.value,))[0])) for item in self.fields("joins")]
+        return Bridge(tuple(names), tuple(map(_folded, self.nodes("folds"))), tuple(joins), tuple(frames))
+
+    def sides(self, is_plain: bool) -> Sides:
+        return Sides(
+            tuple((key, item.name, decoded(item.value)) for key, item in self.grouped("notations")),
+            tuple(item.name for item in self.fields("forgotten")),
+            tuple((key, decoded(item.value)) for key, item in self.grouped("stereotypes")),
+            is_plain,
+            tuple((key, _read_extra(item)) for key, item in self.grouped("extras")),
+            tuple((key, mark) for key, item in self.grouped("strangers") for mark in _refs(item.value)),
+        )
+
+
+# ---- groups --------------------------------------------------------------------------------------------------------------
+
+
+def _grouped(entries: Iterable[tuple[Id, str]]) -> Iterator[Block]:
+    """The fields of each element; elements of one kind with the same fields share them."""
+    fields: dict[Id, list[str]] = defaultdict(list)
+    for key, item in entries:
+        fields[key].append(item)
+    groups: dict[tuple[str, ...], list[str]] = defaultdict(list)
+    for key, found in fields.items():
+        groups[key.kind, *found].append(key.name)
+    for (kind, *alike), names in groups.items():
+        yield Block(print_name(kind), (_list("of", names), *alike))
+
+
+def _marks(entries: Iterable[tuple[Id, str]]) -> list[str]:
+    kinds: dict[str, list[str]] = defaultdict(list)
+    for key, mark in entries:
+        kinds[key.kind] += [key.name, mark]
+    return [_list(kind, names) for kind, names in kinds.items()]
+
+
+def _removals(removals: Iterable[Removal]) -> list[str]:
+    kinds: dict[str, list[str]] = defaultdict(list)
+    for key, guard, group in removals:
+        kinds[key.kind] += [key.name, guard, group or _NO_GROUP]
+    return [_list(kind, names) for kind, names in kinds.items()]
+
+
+def _refs(value: object) -> list[str]:
+    if not isinstance(value, tuple):
+        raise ValueError(f"{value!r} is no list of names")
+    names: list[str] = []
+    for item in value:
+        if not isinstance(item, Ref) or len(item.path) != 1:
+            raise ValueError(f"{item!r} is no name")
+        names.append(str(item.path[0]))
+    return names
+
+
+def _pairs(items: list[T]) -> Iterator[tuple[T, T]]:
+    return zip(items[::2], items[1::2], strict=True)
+
+
+# ---- the bridge ------------------------------------------------------------------------------------------------------------
+
+
+def _names(names: Iterable[tuple[Id, Id]]) -> list[str]:
+    kinds: dict[str, list[str]] = defaultdict(list)
+    for old, new in names:
+        kinds[new.kind] += [old.name, new.name]
+    return [_list(kind, pairs) for kind, pairs in kinds.items()]
+
+
+def _renamed(kind: str, old: str, new: str) -> tuple[Id, Id]:
+    """What was renamed is of the same kind, but for a body that stands for the world."""
+    if kind == WORLD.kind and new != WORLD.name:
+        raise ValueError(f"there is no other world '{new}'")
+    return Id("body" if kind == WORLD.kind else kind, old), Id(kind, new)
+
+
+def _fold(fold: Fold) -> Block:
+    chain, between = ([key.name for key in keys] for keys in (fold.chain, fold.between))
+    return Block(print_name(fold.joint.name), (_list("chain", chain), _list("between", between)))
+
+
+def _folded(node: Node) -> Fold:
+    found = {item.name: _refs(item.value) for item in node.items if isinstance(item, Field)}
+    return Fold(
+        Id("joint", node.name), tuple(Id("joint", name) for name in found["chain"]), tuple(Id("body", name) for name in found["between"])
+    )
+
+
+def _pose(numbers: tuple[float, ...]) -> Pose:
+    x, y, z, *quat = numbers
+    a, b, c, d = quat
+    found = Pose((x, y, z), (a, b, c, d))
+    if not is_sound(found):
+        raise ValueError(f"{numbers!r} is no pose")
+    return found
+
+
+# ---- fields --------------------------------------------------------------------------------------------------------------
+
+
+def _list(name: str, names: Iterable[str]) -> str:
+    """A field with a list of names."""
+    return f"{print_name(name)} [{' '.join(map(print_name, names))}]"
+
+
+def _id_list(name: str, ids: Iterable[Id]) -> str:
+    """A field with a list of elements, by kind and name."""
+    return f"{name} [{' '.join([f'{print_name(kind)}.{print_name(own)}' for kind, own in ids])}]"
+
+
+def _change(change: Change) -> str:
+    turned = change.path[-1] == TURN
+    value = encoded_turn(change.value) if turned else encoded(change.value)  # type: ignore[arg-type]
+    return print_field(_path_text(change.path), value, change.guard)
+
+
+@lru_cache(1024)
+def _path_text(path: Path) -> str:
+    """A path as it is printed, of which there are few in all robots."""
+    return ".".join(map(str, path[1:] if path[0] == "data" else path))
+
+
+def _changed(item: Field) -> object:
+    return decoded_turn(item.value) if item.name.endswith(f".{TURN}") else decoded(item.value)
+
+
+def _path(key: Id, text: str) -> Path:
+    path: Path = tuple(int(step) if step.isdecimal() else step for step in text.split("."))
+    return path if key.kind not in _EDGES or path[0] == "arcs" else ("data", *path)
+
+
+# ---- elements --------------------------------------------------------------------------------------------------------------
+
+
+def _addition(addition: Addition) -> Block:
+    """An element as a node: its part's fields, and an edge's arcs behind them."""
+    key, part = addition
+    data = part.data if isinstance(part, Edge) else part
+    items = [print_field(name, value) for name, value in said(data)]
+    if isinstance(part, Edge):
+        items += map(_arc_text, part.arcs)
+    return Block(f"{print_name(key.name)} : {print_name(key.kind)}", tuple(items))
+
+
+def _arc_text(arc: RobotArc) -> str:
+    weight = None if arc.weight is None else encoded(arc.weight)
+    assert weight is None or isinstance(weight, tuple)
+    return print_item(ArcItem(Ref(arc.target, _SIGNS[arc.sign]), arc.role, weight))
+
+
+def _added(node: Node) -> Addition:
+    key = Id(str(node.stereotypes[0].ref.path[0]), str(node.name))
+    words: list[Value] = [name_ref(_CLASSES[key.kind].__name__)]
+    for item in node.items:
+        if isinstance(item, Field):
+            assert item.value is not None
+            words += [name_ref(item.name), item.value]
+    data: Any = decoded(tuple(words))
+    if key.kind not in _EDGES:
+        return Addition(key, _vertex(data))
+    arcs = tuple(_arc(item) for item in node.items if isinstance(item, ArcItem))
+    edge: RobotEdge = Edge(_edge_part(data), arcs)
+    if not is_sound(edge):
+        raise ValueError(f"no {key.kind}: {node.name}")
+    return Addition(key, edge)
+
+
+def _vertex(data: VertexPart) -> VertexPart:
+    return data
+
+
+def _edge_part(data: EdgePart) -> EdgePart:
+    return data
+
+
+def _arc(item: ArcItem) -> RobotArc:
+    kind, name = map(str, item.ref.path)
+    sign = _SIGN_OF.get(item.ref.direction)
+    if sign is None:
+        raise ValueError(f"no direction of an arc: {item.ref.direction}")
+    weight: Weight | None = None if item.weight is None else decoded(item.weight)
+    return Arc(Id(kind, name), sign, weight, str(item.role))
+
+
+def _moved(run: Run) -> str:
+    after = "0" if run.after is None else print_name(run.after.name)
+    return f"{print_name(run.elements[0].kind)} [{after} {' '.join([print_name(key.name) for key in run.elements])}]"
+
+
+def _run(item: Field) -> Run:
+    assert isinstance(item.value, tuple)
+    after, *names = item.value
+    if not names:
+        raise ValueError(f"an order of no {item.name}")
+    first = None if isinstance(after, float) else Id(item.name, _refs((after,))[0])
+    return Run(first, tuple(Id(item.name, name) for name in _refs(tuple(names))))
+
+
+# ---- side tables -------------------------------------------------------------------------------------------------------------
+
+
+def _side_sections(sides: Sides) -> tuple[tuple[str, Iterable[str | Block]], ...]:
+    return (
+        ("notations", _grouped((key, print_field(name, encoded(text))) for key, name, text in sides.notations)),
+        ("forgotten", map(print_name, sides.forgotten)),
+        ("stereotypes", _grouped((key, print_field("classes", encoded(names))) for key, names in sides.stereotypes)),
+        ("extras", _grouped((key, _extra(extra)) for key, extra in sides.extras)),
+        ("strangers", _grouped((key, _list("gone", (mark,))) for key, mark in sides.strangers)),
+    )
+
+
+def _extra(extra: Extra) -> str:
+    said = (extra.path, extra.text)
+    return print_field(extra.format, (*said, float(extra.index)) if extra.index else said)
+
+
+def _read_extra(item: Field) -> Extra:
+    path, text, *index = decoded(item.value)
+    return Extra(str(item.name), path, text, int(index[0]) if index else 0)

@@ -1,0 +1,66 @@
+"""Names that an XML attribute cannot hold, or that a target would read as no name at all."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.ir.names import names_in_use, rename
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.parts import Mesh, Texture
+    from hymeko_x.rewrite import Options
+
+_NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+
+
+def usable_name(name: str) -> str:
+    """The name with ``_`` for characters that XML forbids."""
+    return _NOT_XML.sub("_", name)
+
+
+def make_names_usable(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """Empty names become the kind of the element (of the mechanism: robot), characters that XML forbids become ``_``."""
+    del options
+    if not mechanism.name:
+        mechanism = replace(mechanism, name="robot")
+        report.note(codes.RENAMED, "the robot has no name; it is written as 'robot'")
+    keys = (*mechanism.graph.vertices, *mechanism.graph.edges)
+    said = [key.name for key in keys]
+    if all(said) and not _NOT_XML.search("".join(said)):
+        return mechanism
+    unusable = [key for key in keys if not key.name or _NOT_XML.search(key.name)]
+    names = names_in_use(mechanism)
+    renamed: dict[Id, Id] = {}
+    for key in unusable:
+        new = names.take(key.kind, usable_name(key.name) or key.kind)
+        renamed[key] = new
+        found = "is empty" if not key.name else f"{key.name!r} has characters that XML cannot hold"
+        report.warn(
+            codes.RENAMED, f"the name of a {key.kind} {found}; it is written as '{new.name}'", mechanism.origin(key), element=str(new)
+        )
+    return rename(mechanism, renamed)
+
+
+def name_assets_once(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """Meshes and textures are written under the name that their author gave them, or else their id's, each name once per kind."""
+    del options
+    taken: set[tuple[str, str]] = set()
+    changed: dict[Id, Mesh | Texture] = {}
+    for key, part in mechanism.assets():
+        wanted = part.name or key.name
+        name, number = wanted, 1
+        while (key.kind, name) in taken:
+            number += 1
+            name = f"{wanted}#{number}"
+        taken.add((key.kind, name))
+        if name != wanted:
+            changed[key] = replace(part, name=name)
+            report.note(
+                codes.RENAMED, f"another {key.kind} is called '{wanted}' already; this one is written as '{name}'", mechanism.origin(key)
+            )
+    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism

@@ -1,0 +1,150 @@
+"""Shapes that an engine can compile: a geometry each, positive sizes, planes only where nothing moves, names used once."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, assert_never
+
+from hymeko_x import codes
+from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Geometry, MeshShape, NoShape, Plane, Shape, Sphere
+from hymeko_x.rewrite.native import is_shape_of_mujoco
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
+    from hymeko_x.rewrite import Options
+
+THINNEST = 1e-6
+"""The length in m that stands for a length of zero."""
+_NO_LENGTH = 1e-12
+
+
+def drop_empty_shapes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """A shape without a geometry, or of a mesh that is not there, is left out; what came from MJCF has geometries of its own."""
+    del options
+    gone = []
+    for view in mechanism.every_shape():
+        lost = isinstance(view.shape.geometry, MeshShape) and view.mesh not in mechanism.graph.vertices
+        if not lost and (not isinstance(view.shape.geometry, NoShape) or is_shape_of_mujoco(mechanism, view.id)):
+            continue
+        gone.append(view.id)
+        what = "has no mesh" if lost else "has no geometry that the target knows"
+        report.note(codes.NOT_SAID, f"{view.id} {what}; it is left out", mechanism.origin(view.id), element=str(view.id))
+    return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+
+
+def make_sizes_positive(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """Lengths of zero become very small ones, negative lengths lose their sign."""
+    del options
+    changed: dict[Id, RobotEdge] = {}
+    for key, shape, arcs in mechanism.edges(Shape):
+        geometry = _sized(shape.geometry)
+        if geometry == shape.geometry:
+            continue
+        changed[key] = replace(mechanism.graph.edges[key], data=replace(shape, geometry=geometry), arcs=arcs)
+        report.warn(
+            codes.REWRITTEN,
+            f"{key} has the size {_words(shape.geometry)}; {_words(geometry)} is written",
+            mechanism.origin(key),
+            element=str(key),
+        )
+    return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism
+
+
+def keep_planes_static(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """A plane on a body that can move becomes a thin box; an infinite one is left out."""
+    del options
+    if not any(isinstance(shape.geometry, Plane) for _, shape, _ in mechanism.edges(Shape)):
+        return mechanism
+    static = _static_bodies(mechanism)
+    changed: dict[Id, RobotEdge] = {}
+    gone: list[Id] = []
+    for key, shape, arcs in mechanism.edges(Shape):
+        if not isinstance(shape.geometry, Plane) or arcs[0].target in static:
+            continue
+        if not all(shape.geometry.half_size):
+            gone.append(key)
+            report.warn(
+                codes.NOT_SAID, f"{key} is an infinite plane on a body that moves; it is left out", mechanism.origin(key), element=str(key)
+            )
+            continue
+        x, y = shape.geometry.half_size
+        changed[key] = replace(mechanism.graph.edges[key], data=replace(shape, geometry=Box((2.0 * x, 2.0 * y, THINNEST))))
+        report.note(
+            codes.REWRITTEN, f"{key} is a plane on a body that moves; it is written as a thin box", mechanism.origin(key), element=str(key)
+        )
+    return mechanism.with_graph(mechanism.graph.replace(edges=changed, without=gone)) if changed or gone else mechanism
+
+
+def name_shapes_once(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """The first shape of a name keeps it, later ones are written without a name."""
+    del options
+    seen: set[str] = set()
+    changed: dict[Id, RobotEdge] = {}
+    for key, shape, _ in mechanism.edges(Shape):
+        if shape.name is None:
+            continue
+        if shape.name and shape.name not in seen:
+            seen.add(shape.name)
+            continue
+        changed[key] = replace(mechanism.graph.edges[key], data=replace(shape, name=None))
+        if shape.name:
+            report.note(
+                codes.RENAMED,
+                f"another shape is called '{shape.name}' already; this one is written without a name",
+                mechanism.origin(key),
+                element=str(key),
+            )
+    return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism
+
+
+# ---- parts of the rules ----------------------------------------------------------------------------------------------------
+
+
+def _sized(geometry: Geometry) -> Geometry:
+    match geometry:
+        case Box():
+            x, y, z = geometry.size
+            return Box((_length(x), _length(y), _length(z)))
+        case Sphere():
+            return Sphere(_length(geometry.radius))
+        case Cylinder():
+            return Cylinder(_length(geometry.radius), _length(geometry.length))
+        case Capsule():
+            return Capsule(_length(geometry.radius), _length(geometry.length))
+        case Ellipsoid():
+            x, y, z = geometry.radii
+            return Ellipsoid((_length(x), _length(y), _length(z)))
+        case Plane() | MeshShape() | NoShape():
+            return geometry
+        case _:
+            assert_never(geometry)
+
+
+def _length(value: float) -> float:
+    return abs(value) if abs(value) >= _NO_LENGTH else THINNEST
+
+
+def _words(geometry: Geometry) -> str:
+    match geometry:
+        case Box():
+            return "[{!r} {!r} {!r}]".format(*geometry.size)
+        case Ellipsoid():
+            return "[{!r} {!r} {!r}]".format(*geometry.radii)
+        case Cylinder() | Capsule():
+            return f"radius {geometry.radius!r}, length {geometry.length!r}"
+        case Sphere():
+            return f"radius {geometry.radius!r}"
+        case _:
+            return "none"
+
+
+def _static_bodies(mechanism: Mechanism) -> set[Id]:
+    """The world and the bodies with no dof between them and the world (or their open base)."""
+    static = {WORLD}
+    for body in mechanism.depth_first():
+        joint = mechanism.parent_joint.get(body)
+        if joint is None or (not joint.joint.dofs and joint.parent in static):
+            static.add(body)
+    return static

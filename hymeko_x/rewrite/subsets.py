@@ -1,0 +1,155 @@
+"""Meshes that show several materials, for formats in which a shape shows one, or a file has its materials itself."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x import codes
+from hymeko_x.ir.mechanism import shape_edge
+from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.parts import Material, Mesh, MeshShape, Role, Shape
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from numpy.typing import NDArray
+
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge, ShapeView, SubsetView
+    from hymeko_x.ir.names import Names
+    from hymeko_x.rewrite import Options
+
+    _Table = tuple[NDArray[Any], NDArray[Any]]
+    """The corners of triangles (n x 3), and the table that they are rows of."""
+
+
+def split_subsets(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """What of a mesh shows a material of its own becomes a shape and a mesh for the eye; what collides stays whole."""
+    del options
+    if not mechanism.subsets:
+        return mechanism
+    split = _Splitting(mechanism, names_in_use(mechanism))
+    views = {view.id: view for view in mechanism.every_shape()}
+    users = Counter(view.mesh for view in views.values())
+    gone = [subset.id for subsets in mechanism.subsets.values() for subset in subsets]
+    for key, subsets in mechanism.subsets.items():
+        view = views.get(key)
+        pieces = [] if view is None or view.shape.role is Role.COLLISION else list(_pieces(mechanism, view, subsets))
+        if view is None or view.mesh is None or not pieces:
+            said = f"{key} shows other materials on triangles that are not there to be seen; they are left out"
+            report.note(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
+            continue
+        split.show(view, view.mesh, pieces)
+        users[view.mesh] -= view.shape.role is Role.VISUAL
+        gone += [] if users[view.mesh] else [view.mesh]
+        said = f"{key} shows {len(pieces)} materials; a visual of its own is written for each"
+        report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
+    return mechanism.with_graph(mechanism.graph.replace(vertices=split.meshes, edges=split.edges, without=gone))
+
+
+_Piece = tuple["Id | None", tuple[int, ...]]
+"""Some triangles of a mesh, and the material that they show; None for that of the shape."""
+
+
+def _pieces(mechanism: Mechanism, view: ShapeView, subsets: tuple[SubsetView, ...]) -> Iterator[_Piece]:
+    """The triangles of a mesh by material, first what shows that of the shape; nothing where the mesh does not hold them itself."""
+    mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
+    if not isinstance(mesh, Mesh) or not isinstance(view.shape.geometry, MeshShape):
+        return
+    count = len(mesh.faces) // 3 if mesh.uri is None and _are_rows(mesh.faces, mesh.vertices, 3) else 0
+    rest = dict.fromkeys(range(count))
+    known = [subset for subset in subsets if isinstance(mechanism.graph.vertices.get(subset.material), Material)]
+    taken = [(subset.material, tuple([face for face in subset.faces if rest.pop(face, count) is None])) for subset in known]
+    if any(faces for _, faces in taken):
+        yield from ((material, faces) for material, faces in ((None, tuple(rest)), *taken) if faces)
+
+
+def _are_rows(rows: tuple[int, ...], table: tuple[float, ...], width: int) -> bool:
+    """Whether the corners of triangles are rows of a table."""
+    is_whole = len(rows) % 3 == 0 and len(table) % width == 0
+    return is_whole and bool(rows) and min(rows) >= 0 and max(rows) < len(table) // width
+
+
+@dataclass(slots=True)
+class _Splitting:
+    """The shapes and meshes of the pieces; equal pieces of a mesh share one."""
+
+    mechanism: Mechanism
+    names: Names
+    meshes: dict[Id, Mesh] = field(default_factory=dict)
+    edges: dict[Id, RobotEdge] = field(default_factory=dict)
+    known: dict[tuple[Id, tuple[int, ...]], Id] = field(default_factory=dict)
+    tables: dict[Id, list[_Table]] = field(default_factory=dict)
+
+    def show(self, view: ShapeView, mesh: Id, pieces: list[_Piece]) -> None:
+        """A shape for each piece. The first one is the shape itself, unless that collides and stays whole."""
+        if view.shape.role is Role.BOTH:
+            whole = replace(view.shape, role=Role.COLLISION)
+            self.edges[view.id] = shape_edge(whole, view.body, view.pose, mesh, view.material)
+        for material, faces in pieces:
+            is_first = view.id not in self.edges
+            name, rgba = view.shape.name if is_first else None, view.shape.rgba if material is None else None
+            key = view.id if is_first else self.names.take("shape", f"{view.body.name}/visual")
+            part = self._part(mesh, material, faces)
+            shape = Shape(view.shape.geometry, Role.VISUAL, name, rgba)
+            self.edges[key] = shape_edge(shape, view.body, view.pose, part, material or view.material)
+
+    def _part(self, mesh: Id, material: Id | None, faces: tuple[int, ...]) -> Id:
+        if (mesh, faces) not in self.known:
+            key = self.names.take("mesh", f"{mesh.name}_{material.name if material is not None else 'rest'}")
+            self.known[mesh, faces] = key
+            self.meshes[key] = self._cut(mesh, faces)
+        return self.known[mesh, faces]
+
+    def _cut(self, key: Id, faces: tuple[int, ...]) -> Mesh:
+        """Some triangles of a mesh, with the points and places that they are of."""
+        mesh = self.mechanism.vertex(key, Mesh)
+        if key not in self.tables:
+            self.tables[key] = _tables(mesh)
+        points, *places = [_of(rows, table, faces) for rows, table in self.tables[key]]
+        texcoords, texfaces = places[0] if places else ((), ())
+        return Mesh(None, mesh.scale, None, *points, texcoords, texfaces)
+
+
+def _tables(mesh: Mesh) -> list[_Table]:
+    """The points of a mesh, and its places in an image where it has sound ones."""
+    import numpy as np
+
+    found = [(np.asarray(mesh.faces).reshape(-1, 3), np.asarray(mesh.vertices).reshape(-1, 3))]
+    rows = mesh.texfaces or mesh.faces
+    if len(rows) == len(mesh.faces) and _are_rows(rows, mesh.texcoords, 2):
+        found.append((np.asarray(rows).reshape(-1, 3), np.asarray(mesh.texcoords).reshape(-1, 2)))
+    return found
+
+
+def _of(rows: NDArray[Any], table: NDArray[Any], faces: tuple[int, ...]) -> tuple[tuple[float, ...], tuple[int, ...]]:
+    """The part of a table that the corners of some triangles are of, and its rows at these corners."""
+    import numpy as np
+
+    used, index = np.unique(rows[list(faces)], return_inverse=True)
+    return tuple(table[used].ravel().tolist()), tuple(index.ravel().tolist())
+
+
+def part_meshes_by_looks(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """A mesh that two shapes show in different materials becomes a mesh for each, since the file of a mesh has its materials."""
+    del options, report
+    if not mechanism.subsets:
+        return mechanism
+    names = names_in_use(mechanism)
+    looks: dict[Id, dict[object, Id]] = {}
+    meshes: dict[Id, Mesh] = {}
+    edges: dict[Id, RobotEdge] = {}
+    for view in mechanism.every_shape():
+        mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
+        if view.mesh is None or not isinstance(mesh, Mesh) or mesh.uri is not None or view.shape.role is not Role.VISUAL:
+            continue
+        own = tuple((subset.faces, subset.material) for subset in mechanism.subsets.get(view.id, ()))
+        known = looks.setdefault(view.mesh, {})
+        if own not in known:
+            known[own] = names.take("mesh", view.mesh.name) if known else view.mesh
+        if known[own] != view.mesh:
+            meshes[known[own]] = mesh
+            edges[view.id] = shape_edge(view.shape, view.body, view.pose, known[own], view.material)
+    return mechanism.with_graph(mechanism.graph.replace(vertices=meshes, edges=edges)) if edges else mechanism
