@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.assets.refer import is_of_package
-from hymeko_x.ir.additions import Additions
+from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import StoredLook, subset_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Mesh, Role
@@ -23,7 +23,7 @@ _KEEP_PACKAGES = ("urdf", "xacro")
 
 
 @dataclass(slots=True)
-class _Standing(Additions):
+class _Standing(Builder):
     """What stands in for files; equal looks share a material."""
 
     known: dict[tuple[Material, Texture | None], Id] = field(default_factory=dict)
@@ -40,7 +40,7 @@ def with_stored_meshes(mechanism: Mechanism, target: str, files: Files, report: 
     """The mechanism with the points and looks that are stored of every mesh whose file is missing. HyMeKo text keeps the reference."""
     if not mechanism.stored or target == "hymeko":
         return mechanism
-    standing = _Standing(names_in_use(mechanism))
+    standing = _Standing(names=names_in_use(mechanism))
     found: dict[Id, StoredMesh] = {}
     for key, mesh in mechanism.vertices(Mesh):
         stored = mechanism.stored.get(mesh.uri or "")
@@ -54,4 +54,4 @@ def with_stored_meshes(mechanism: Mechanism, target: str, files: Files, report: 
         if view.mesh in found and view.shape.role is Role.VISUAL and view.id not in mechanism.subsets:
             for look in found[view.mesh].looks:
                 standing.show(view.id, look)
-    return mechanism.with_graph(mechanism.graph.replace(vertices=standing.vertices, edges=standing.edges)) if found else mechanism
+    return standing.added_to(mechanism) if found else mechanism

@@ -11,7 +11,7 @@ from hymeko_x import codes
 from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
 from hymeko_x.frozen import frozen
-from hymeko_x.ir.additions import Additions
+from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
@@ -53,7 +53,7 @@ class _Piece:
 
 
 @dataclass(slots=True, kw_only=True)
-class _Packing(Additions):
+class _Packing(Builder):
     """One run: what it reads from, and what it adds to the mechanism."""
 
     mechanism: Mechanism
@@ -72,13 +72,12 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
         from hymeko_x.backends.mjcf.native.files import pack_native
 
         return pack_native(mechanism, shelf, files, report)
-    run = _Packing(names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
+    run = _Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
     run.textured = frozenset(arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0)
     _pack_textures(run)
     _pack_meshes(run)
-    graph = mechanism.graph.replace(vertices=run.vertices, edges=run.edges, without=run.gone)
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), _SHELL) for key in run.surfaces}}
-    return replace(mechanism, graph=graph, extras=extras)
+    return replace(run.added_to(mechanism, run.gone), extras=extras)
 
 
 # ---- textures ----------------------------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import read_file, suffix_of
-from hymeko_x.ir.additions import Additions
+from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import file_stem, shape_edge, subset_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True, kw_only=True)
-class _Packing(Additions):
+class _Packing(Builder):
     """One run: what it reads from, and what it adds to the mechanism. ``known`` are the files that were read, by uri."""
 
     mechanism: Mechanism
@@ -47,7 +47,7 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
     What a file shows in several colours or images becomes a subset for each of them; MuJoCo ignores those of files, and so do we in
     what came from there.
     """
-    run = _Packing(names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
+    run = _Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
     users, are_coloured = mechanism.shapes_by_mesh(), not is_native(mechanism)
     textured = {arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0}
     for key, mesh in mechanism.vertices(Mesh):
@@ -59,7 +59,7 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
             run.known[mesh.uri, is_mapped] = painted
             _pack(run, key, mesh, painted, users.get(key, []))
     packed = _with_textures(mechanism, shelf, files, report)
-    return packed.with_graph(packed.graph.replace(vertices=run.vertices, edges=run.edges)) if run.vertices else packed
+    return run.added_to(packed) if run.vertices else packed
 
 
 def _pack(run: _Packing, key: Id, mesh: Mesh, painted: Painted, views: list[ShapeView]) -> None:

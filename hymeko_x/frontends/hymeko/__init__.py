@@ -80,7 +80,7 @@ def build(expanded: Expanded, file: str, report: Report) -> Mechanism:
         _read_element(build, key, element)
     if expanded.root and expanded.root != expanded.name:
         build.notations.setdefault(ROOT, {})["hymeko.root"] = expanded.root
-    return build.mechanism(expanded.name)
+    return build.build(expanded.name)
 
 
 # ---- settings and statements of the root -------------------------------------------------------------------------------------
@@ -137,7 +137,7 @@ def _read_block(build: Build, node: Node, place: int) -> int:
 
 
 def _keep(build: Build, extra: Extra) -> None:
-    build.extras[ROOT] = (*build.extras.get(ROOT, ()), extra)
+    build.add_extras(ROOT, extra)
 
 
 def _loose_extra(build: Build, item: ArcItem | Comment, place: int, *, is_robot: bool) -> Extra:

@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
-from hymeko_x.ir.graph import Arc, Edge, Hypergraph
-from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Extra, Id, Mechanism
-from hymeko_x.ir.names import Names
-from hymeko_x.ir.parts import EdgePart, VertexPart, Weight, World
+from hymeko_x.ir.builder import Builder
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
+from hymeko_x.ir.parts import EdgePart, Weight, World
 from hymeko_x.language.expand import standard_templates
 from hymeko_x.language.syntax import ArcItem, QuotedName, is_list
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Origin
     from hymeko_x.frontends.hymeko.block import Block, Context
-    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+    from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.values import Vec3
     from hymeko_x.language.expand import Element, Scope
     from hymeko_x.language.syntax import Item, Ref
@@ -29,19 +28,11 @@ _SIGNS = {"+": 1, "<-": 1, "-": -1, "->": -1, "~": 0, "<>": 0}
 
 
 @dataclass(slots=True)
-class Build:
-    """Vertices, edges and side tables so far, and which names exist of which kind."""
+class Build(Builder):
+    """The elements of a text so far, and which names exist of which kind."""
 
     context: Context
-    vertices: dict[Id, VertexPart] = field(default_factory=dict)
-    edges: dict[Id, RobotEdge] = field(default_factory=dict)
-    extras: dict[Id, tuple[Extra, ...]] = field(default_factory=dict)
-    origins: dict[Id, Origin] = field(default_factory=dict)
-    notations: dict[Id, dict[str, str]] = field(default_factory=dict)
-    stereotypes: dict[Id, tuple[str, ...]] = field(default_factory=dict)
-    layout: list[Id] = field(default_factory=list)
     files: str = ""
-    names: Names = field(default_factory=Names)
     kinds: dict[str, list[str]] = field(default_factory=dict)
     directions: dict[str, Vec3] = field(default_factory=dict)
 
@@ -74,9 +65,8 @@ class Build:
 
     def name_after_place(self, kind: str, name: str, item: Item) -> Id:
         """An id for something that its author left unnamed: after its place, with a number when that is taken."""
-        key = self.names.take(kind, name)
+        key = self.fresh(kind, name, self.context.origin(item))
         self.kinds.setdefault(key.name, []).append(kind)
-        self.origins[key] = self.context.origin(item)
         return key
 
     def add_edge(self, key: Id, data: EdgePart, arcs: tuple[RobotArc, ...]) -> None:
@@ -85,8 +75,7 @@ class Build:
 
     def keep(self, key: Id, block: Block) -> None:
         """Keep the block's extras and notations beside its element."""
-        if block.extras:
-            self.extras[key] = (*self.extras.get(key, ()), *block.extras)
+        self.add_extras(key, *block.extras)
         if block.classes:
             self.stereotypes[key] = block.classes
         written = {**({"unnamed": "yes"} if block.unnamed else {}), **block.written}
@@ -148,20 +137,6 @@ class Build:
         if len(flat) != len(item.weight):
             raise self.context.refuse(item, f"the weight of the arc to '{item.ref.dotted}' is a list of numbers")
         return self.context.numbers(item.weight, "", item)
-
-    # ---- finishing ---------------------------------------------------------------------------------------------------------
-
-    def mechanism(self, name: str) -> Mechanism:
-        """All of it."""
-        return Mechanism(
-            name=name,
-            graph=Hypergraph(self.vertices, self.edges),
-            extras=self.extras,
-            origins=self.origins,
-            notations=self.notations,
-            stereotypes=self.stereotypes,
-            layout=tuple(self.layout),
-        )
 
 
 def sign_of(item: ArcItem) -> int:

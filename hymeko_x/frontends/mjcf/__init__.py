@@ -26,7 +26,8 @@ from hymeko_x.frontends.mjcf.references import check_references
 from hymeko_x.frontends.mjcf.sections import keep_sections, read_settings
 from hymeko_x.frontends.mjcf.sensors import read_sensors
 from hymeko_x.frontends.mjcf.tendons import read_tendons
-from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.mechanism import WORLD, Id
+from hymeko_x.ir.parts import World
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,6 +55,7 @@ def read(source: Source, report: Report) -> Mechanism:
         words = check_words(root)
     _warn_of_ignored(root, report)
     draft = Draft(report, read_settings(root), Classes(root_sections(root, "default")), source.name, source.files)
+    draft.vertices[WORLD] = World()
     name = _read_name(root, source, draft)
     draft.named |= {name: Id(*name) for name in words.names if name[0] in ("hfield", "flex")}
     keep_sections(root, draft)
@@ -67,7 +69,7 @@ def read(source: Source, report: Report) -> Mechanism:
     read_sensors(root.take_children("sensor"), draft)
     check_references(words.references, draft)
     draft.keep_rest(root)
-    return carrier.with_residue(draft.mechanism(name), carried)
+    return carrier.with_residue(draft.finish(name), carried)
 
 
 def _take_carried(root: Element) -> Iterator[str]:

@@ -11,43 +11,32 @@ from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import merge
 from hymeko_x.formats.mjcf.codec import BadAttribute, plan_of
 from hymeko_x.formats.mjcf.tree import COMMENT, verbatim
-from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Mechanism
-from hymeko_x.ir.names import Names
-from hymeko_x.ir.parts import World
+from hymeko_x.ir.builder import Builder
+from hymeko_x.ir.mechanism import ROOT, Extra, Id
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.diagnostics import Origin, Refusal, Report
+    from hymeko_x.diagnostics import Refusal, Report
     from hymeko_x.formats.mjcf.classes import Classes
     from hymeko_x.formats.mjcf.codec import Group, Plan, Settings
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.ir.mechanism import RobotEdge
-    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files
 
 Values = dict[str, Any]
 
 
 @dataclass(slots=True)
-class Draft:
-    """Vertices, edges and side tables so far. ``named``: elements by MJCF's own kinds and names."""
+class Draft(Builder):
+    """An MJCF model so far. ``named``: elements by MJCF's own kinds and names."""
 
     report: Report
     settings: Settings
     classes: Classes
     file: str
     files: Files
-    names: Names = field(default_factory=Names)
-    vertices: dict[Id, VertexPart] = field(default_factory=lambda: {WORLD: World()})
-    edges: dict[Id, RobotEdge] = field(default_factory=dict)
-    extras: dict[Id, list[Extra]] = field(default_factory=dict)
-    origins: dict[Id, Origin] = field(default_factory=dict)
-    notations: dict[Id, dict[str, str]] = field(default_factory=dict)
-    stereotypes: dict[Id, tuple[str, ...]] = field(default_factory=dict)
-    layout: list[Id] = field(default_factory=list)
     named: dict[tuple[str, str], Id] = field(default_factory=dict)
     roles: dict[Id, dict[str, str]] = field(default_factory=dict)
     place: int = 0
@@ -170,10 +159,6 @@ class Draft:
 
     # ---- side tables -----------------------------------------------------------------------------------------------------
 
-    def note(self, key: Id, name: str, text: str) -> None:
-        """Keep how the author wrote something."""
-        self.notations.setdefault(key, {})[name] = text
-
     def note_root(self, name: str, text: str) -> None:
         """Keep how the author wrote something about the whole."""
         self.note(ROOT, name, text)
@@ -197,8 +182,7 @@ class Draft:
 
     def keep_at_root(self, element: Element, path: str = "") -> None:
         """An element that has no word in the IR, as it is."""
-        extra = _extra(element, path, self.place)
-        self.extras.setdefault(ROOT, []).append(extra)
+        self.add_extras(ROOT, _extra(element, path, self.place))
         self.place += not path
 
     def keep_rest(self, root: Element) -> None:
@@ -208,12 +192,10 @@ class Draft:
         root.children = []
         self.keep(root, ROOT)
 
-    def mechanism(self, name: str) -> Mechanism:
+    def finish(self, name: str) -> Mechanism:
         """The finished mechanism."""
         self.note_root(words.NAME, words.VERSION)
-        extras = {key: tuple(found) for key, found in self.extras.items() if found}
-        graph = Hypergraph(self.vertices, self.edges)
-        return Mechanism(name, graph, extras, self.origins, self.notations, self.stereotypes, tuple(self.layout))
+        return self.build(name)
 
 
 def _say_the_same(a: str | None, b: str | None) -> bool:

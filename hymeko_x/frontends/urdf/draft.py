@@ -8,16 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import ROOT, Mechanism
-from hymeko_x.ir.names import Names
+from hymeko_x.ir.builder import Builder
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
 from hymeko_x.xml.tree import read_numbers, take_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin, Report
-    from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
-    from hymeko_x.ir.parts import Rgba, VertexPart
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.ir.parts import Rgba
     from hymeko_x.ir.values import Vec3
     from hymeko_x.xml.tree import Leftovers, Node
 
@@ -41,16 +40,11 @@ class Looks:
 
 
 @dataclass(slots=True)
-class Draft:
-    """Vertices, edges and side tables so far; ``links`` and ``joints`` by the names in the file, first one wins."""
+class Draft(Builder):
+    """A URDF robot so far; ``links`` and ``joints`` by the names in the file, first one wins."""
 
     report: Report
     leftovers: Leftovers
-    names: Names = field(default_factory=Names)
-    vertices: dict[Id, VertexPart] = field(default_factory=dict)
-    edges: dict[Id, RobotEdge] = field(default_factory=dict)
-    origins: dict[Id, Origin] = field(default_factory=dict)
-    notations: dict[Id, dict[str, str]] = field(default_factory=dict)
     links: dict[str, Id] = field(default_factory=dict)
     joints: dict[str, Id] = field(default_factory=dict)
     meshes: dict[tuple[str, tuple[float, ...]], Id] = field(default_factory=dict)
@@ -64,14 +58,8 @@ class Draft:
 
     def own(self, node: Node, kind: str, name: str) -> Id:
         """A fresh id for a node, which owns from now on what nobody takes out of it."""
-        key = self.names.take(kind, name)
-        node.owner = key
-        self.origins[key] = node.origin
+        node.owner = key = self.fresh(kind, name, node.origin)
         return key
-
-    def note(self, key: Id, name: str, text: str) -> None:
-        """Keep how the author wrote something."""
-        self.notations.setdefault(key, {})[name] = text
 
     def choose(self, key: Id, choice: str, value: str) -> None:
         """Keep which of several ways of writing the author took, where most elements do it alike."""
@@ -101,16 +89,16 @@ class Draft:
                     )
         node.let_go()
 
-    def mechanism(self, name: str, around: list[Extra]) -> Mechanism:
+    def finish(self, name: str, around: list[Extra]) -> Mechanism:
         """The finished mechanism; ``around`` is what stood before and after the root element."""
         self._settle_choices()
         if self.style:
             self.note(ROOT, words.STYLE, " ".join(sorted(self.style)))
-        extras = self.leftovers.finish()
-        if around:
-            extras[ROOT] = (*extras.get(ROOT, ()), *around)
-        graph = Hypergraph(self.vertices, self.edges)
-        return Mechanism(name, graph, extras, self.origins, self.notations, {}, self.leftovers.layout)
+        for key, extras in self.leftovers.finish().items():
+            self.add_extras(key, *extras)
+        self.add_extras(ROOT, *around)
+        self.layout.extend(self.leftovers.layout)
+        return self.build(name)
 
 
 def take_name(node: Node, kind: str, known: dict[str, Id], draft: Draft) -> Id:

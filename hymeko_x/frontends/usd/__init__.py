@@ -6,6 +6,7 @@ what becomes what.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
@@ -31,7 +32,6 @@ from hymeko_x.frontends.usd.shapes import Read, is_shape, read_shape
 from hymeko_x.frontends.usd.stage import Scene, open_scene
 from hymeko_x.frontends.usd.structure import build_trees, note_poses
 from hymeko_x.frontends.usd.tendons import read_tendons
-from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism
 from hymeko_x.ir.parts import Texture
 
@@ -160,10 +160,7 @@ def _finished(scene: Scene, draft: Draft) -> Mechanism:
         draft.note(ROOT, words.ROOT_PRIM, str(root.GetPath()))
     if not draft.bodies:
         draft.report.error(codes.MISSING_PART, "the stage has no rigid bodies; the result has no bodies", Origin(draft.source.name))
-    graph = Hypergraph(draft.vertices, draft.edges)
-    extras = {key: tuple(found) for key, found in draft.extras.items()}
-    packed = dict(_packed_images(draft))
-    return Mechanism(name, graph, extras, draft.origins, draft.notations, draft.stereotypes, tuple(draft.layout), packed)
+    return replace(draft.build(name), places=dict(_packed_images(draft)))
 
 
 def _packed_images(draft: Draft) -> Iterator[tuple[str, str]]:

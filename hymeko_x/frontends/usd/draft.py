@@ -12,14 +12,13 @@ from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
 from hymeko_x.frontends.usd.places import Places, numbers_of
-from hymeko_x.ir.names import Names
+from hymeko_x.ir.builder import Builder
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.stage import Scene
-    from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
-    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.ir.mechanism import Id
     from hymeko_x.source import Source
 
 _SINGLE = frozenset(("float", "float2", "float3", "float4", "point3f", "vector3f", "normal3f", "color3f", "color4f", "quatf", "half"))
@@ -37,8 +36,8 @@ ORIGINAL_NAME = "cyberwave:name"
 
 
 @dataclass(slots=True)
-class Draft:
-    """Vertices, edges and side tables so far.
+class Draft(Builder):
+    """A robot of a stage so far.
 
     ``bodies`` and ``elements`` lead from a prim's path to its body and to all elements that were read from it; ``taken`` holds,
     by prim path, the names of properties that are typed now, with ``apiSchemas`` entries as ``@Name`` and the type as ``@type``.
@@ -48,19 +47,11 @@ class Draft:
     report: Report
     scene: Scene
     places: Places = field(init=False)
-    names: Names = field(default_factory=Names)
-    vertices: dict[Id, VertexPart] = field(default_factory=dict)
-    edges: dict[Id, RobotEdge] = field(default_factory=dict)
-    origins: dict[Id, Origin] = field(default_factory=dict)
-    notations: dict[Id, dict[str, str]] = field(default_factory=dict)
-    extras: dict[Id, list[Extra]] = field(default_factory=dict)
     bodies: dict[str, Id] = field(default_factory=dict)
     elements: dict[str, list[Id]] = field(default_factory=dict)
     taken: dict[str, set[str]] = field(default_factory=dict)
     meshes: dict[str, Id] = field(default_factory=dict)
     materials: dict[str, Id] = field(default_factory=dict)
-    stereotypes: dict[Id, tuple[str, ...]] = field(default_factory=dict)
-    layout: list[Id] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.places = Places(self.scene)
@@ -76,10 +67,9 @@ class Draft:
 
     def own(self, prim: Prim, kind: str, fallback: str | None = None) -> Id:
         """A fresh id for the element that a prim stands for, after the name that it carries."""
-        key = self.names.take(kind, self._name(prim, fallback))
+        key = self.fresh(kind, self._name(prim, fallback), self.origin)
         path = prim.path
         self.elements.setdefault(path, []).append(key)
-        self.origins[key] = self.origin
         if fallback is None:
             self.note(key, words.PATH, path)
         return key
@@ -97,10 +87,6 @@ class Draft:
         """The name that a part keeps by itself, whatever its id is: what people call the prim."""
         self.take(prim, "displayName")
         return prim.display_name or prim.name
-
-    def note(self, key: Id, name: str, text: str) -> None:
-        """Keep how the author wrote something."""
-        self.notations.setdefault(key, {})[name] = text
 
     def take(self, prim: Prim, *names: str) -> None:
         """These properties, ``@Api`` schemas or the ``@type`` of a prim are typed now."""

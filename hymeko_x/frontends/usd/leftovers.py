@@ -79,7 +79,7 @@ def _gather_prim(prim: Prim, owner: tuple[Id, str], folded: set[str], scratch: A
         relative = str(Sdf.Path(prim.path).MakeRelativePath(Sdf.Path(owner[1]))) if prim.path != owner[1] else ""
         is_over = is_typed or "@type" in draft.taken.get(prim.path, ())
         text = _text_of(prim, rest, scratch, is_over=is_over).replace(draft.scene.folder + "/", "")
-        draft.extras.setdefault(owner[0], []).append(Extra(words.FORMAT, relative, text))
+        draft.add_extras(owner[0], Extra(words.FORMAT, relative, text))
 
 
 def _rest_of(prim: Prim, element: Id | None, moved: Any | None, draft: Draft) -> _Rest:
@@ -133,7 +133,7 @@ def _gather_stage(layer: Any, draft: Draft) -> None:
         if name not in _STAGE_KNOWN and not (name == "customLayerData" and not layer.customLayerData):
             header.pseudoRoot.SetInfo(name, layer.pseudoRoot.GetInfo(name))
     if header.pseudoRoot.ListInfoKeys():
-        draft.extras.setdefault(ROOT, []).append(Extra(words.FORMAT, STAGE, header.ExportToString().strip()))
+        draft.add_extras(ROOT, Extra(words.FORMAT, STAGE, header.ExportToString().strip()))
 
 
 # ---- places of prims that are not typed ------------------------------------------------------------------------------------------
