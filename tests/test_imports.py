@@ -20,7 +20,7 @@ LAYERS = (
     ("rewrite", "compare", "language", "factor"),
     ("residue", "assets"),
     ("frontends", "backends"),
-    ("pipeline", "disk", "verify", "corpus"),
+    ("pipeline", "disk", "verify", "validation", "corpus"),
     ("delivery",),
     ("api",),
     ("cli", "testing"),

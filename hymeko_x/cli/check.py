@@ -32,7 +32,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(chosen: argparse.Namespace) -> int:
     """Print what is wrong; exit 3 when it is bad enough."""
-    from hymeko_x.verify.validate import Declared, Profile, validate
+    from hymeko_x.validation import Declared, Profile, validate
 
     report = Report()
     given = read_input(chosen.input, chosen, report)

@@ -33,8 +33,8 @@ if TYPE_CHECKING:
     from hymeko_x.corpus.plan import Plan
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Source
+    from hymeko_x.verify.meshes import Meshes
     from hymeko_x.verify.model import KinematicModel
-    from hymeko_x.verify.surfaces import Meshes
     from hymeko_x.verify.verdict import Verdict
 
 NOTES = "steps.jsonl"
@@ -143,7 +143,7 @@ def _counted(robot: Robot, mechanism: Mechanism, report: Report) -> Robot:
 def _ask_engine(desk: Desk) -> dict[str, str]:
     """The reference reader's model goes to the desk; what it answered is returned."""
     from hymeko_x.verify import model_of
-    from hymeko_x.verify.surfaces import Meshes
+    from hymeko_x.verify.meshes import Meshes
 
     desk.meshes = Meshes(read=desk.plan.meshes)
     try:

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.verify.meshes import Meshes
     from hymeko_x.verify.model import KinematicModel
-    from hymeko_x.verify.surfaces import Meshes
     from hymeko_x.verify.verdict import Verdict
 
     Packages = Mapping[str, str | PathLike[str]]

@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hymeko_x.verify.checks.actuators import check_parts
 from hymeko_x.verify.checks.chains import check_chains
 from hymeko_x.verify.checks.dofs import check_dofs
 from hymeko_x.verify.checks.dynamics import check_dynamics, disagreement
 from hymeko_x.verify.checks.inertia import check_inertia
 from hymeko_x.verify.checks.motion import check_motion
 from hymeko_x.verify.checks.pair import Pair, counted, pair_up
-from hymeko_x.verify.checks.parts import check_parts
 from hymeko_x.verify.checks.shapes import check_shapes
 from hymeko_x.verify.checks.tendons import check_tendons
-from hymeko_x.verify.match import BASE, BODIES, JOINTS, match
-from hymeko_x.verify.surfaces import Meshes
+from hymeko_x.verify.matching import BASE, BODIES, JOINTS, match
+from hymeko_x.verify.meshes import Meshes
 from hymeko_x.verify.verdict import Check, Verdict
 
 if TYPE_CHECKING:

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from hymeko_x.verify import dh
+from hymeko_x.verify.checks.chains import signature
 from hymeko_x.verify.dh import Convention
-from hymeko_x.verify.dh_lines import Frame, Line, Link
-from hymeko_x.verify.dh_signature import signature
+from hymeko_x.verify.dh.lines import Frame, Line, Link
 from hymeko_x.verify.model import Array, Body, Dof, Joint, Kind, KinematicModel, grounded
-from hymeko_x.verify.pin import build
+from hymeko_x.verify.pinocchio import build
 from hymeko_x.verify.spatial import random_quats, rigid, rotation_about, rotation_from_quat
 
 FAMILIES = ("skew", "parallel", "anti-parallel", "intersecting", "coincident", "nearly parallel", "nearly anti-parallel", "right angle")

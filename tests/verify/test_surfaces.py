@@ -10,9 +10,9 @@ from pxr import Usd, UsdGeom
 
 import hymeko_x as hx
 from hymeko_x import verify
-from hymeko_x.verify import surfaces
+from hymeko_x.verify import meshes as surfaces
+from hymeko_x.verify.meshes import Meshes
 from hymeko_x.verify.model import MeshFile, Surface
-from hymeko_x.verify.surfaces import Meshes
 
 TETRAHEDRON = """solid t
 facet normal 0 0 0

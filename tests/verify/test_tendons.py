@@ -12,7 +12,7 @@ from pxr import Sdf, Usd
 import hymeko_x as hx
 from hymeko_x.corpus import catalog
 from hymeko_x.verify import model_of, verify
-from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, Spring, Step, Tendon
+from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, Spring, Step, Tendon
 from tests.usd.stages import HEADER
 
 Write = Callable[[str, str], Path]

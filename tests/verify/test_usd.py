@@ -12,7 +12,7 @@ from pxr import Gf, Sdf, Usd, UsdPhysics
 
 from hymeko_x.verify import model_of, verify
 from hymeko_x.verify.model import KinematicModel
-from hymeko_x.verify.readers.usd import unit_axes
+from hymeko_x.verify.readers.usd.scene import unit_axes
 from tests.usd.stages import HEADER
 from tests.verify.robots import ARM_MJCF, ARM_URDF, RIG_MJCF
 from tests.verify.usd_writer import usd_of

@@ -105,7 +105,7 @@ def test_a_missing_engine_is_named_with_its_package(written: Write, monkeypatch:
     file = written("mjcf", ARM_MJCF)
     monkeypatch.setitem(sys.modules, "mujoco", None)
     monkeypatch.delitem(sys.modules, "hymeko_x.verify.readers.mjcf", raising=False)
-    monkeypatch.delitem(sys.modules, "hymeko_x.verify.readers.mjcf_constraints", raising=False)
+    monkeypatch.delitem(sys.modules, "hymeko_x.verify.readers.mjcf.constraints", raising=False)
     with pytest.raises(Refusal) as caught:
         hx.verify(file, file)
     assert caught.value.diagnostic.code == codes.ENGINE_MISSING

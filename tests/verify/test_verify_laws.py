@@ -18,8 +18,8 @@ from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles
 from hymeko_x.testing import arms
 from hymeko_x.verify import model_of
-from hymeko_x.verify.bodies import plain
 from hymeko_x.verify.compare import compare
+from hymeko_x.verify.matching.bodies import plain
 from hymeko_x.verify.model import Feature, KinematicModel
 from hymeko_x.verify.verdict import Verdict
 from tests.verify.one_change import PLANTERS, Change

@@ -11,9 +11,8 @@ import yourdfpy
 import hymeko_x as hx
 from hymeko_x.corpus.catalog import development_files
 from hymeko_x.verify import model_of
-from hymeko_x.verify.kinematics import prepare
+from hymeko_x.verify.kinematics import draw, prepare
 from hymeko_x.verify.model import KinematicModel
-from hymeko_x.verify.sampling import draw
 
 URDFS = development_files("urdf")
 FEW = [

@@ -11,7 +11,7 @@ from hymeko_x.verify.checks.inertia import repaired_bodies
 from hymeko_x.verify.checks.pair import MASS_MATRIX, Pair, worst
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import WORLD, Kind, KinematicModel
-from hymeko_x.verify.pin import PinModel, build
+from hymeko_x.verify.pinocchio import PinModel, build
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

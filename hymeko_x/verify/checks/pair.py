@@ -10,16 +10,15 @@ import numpy as np
 
 from hymeko_x.frozen import frozen
 from hymeko_x.verify.dh import zero_poses
-from hymeko_x.verify.kinematics import prepare
-from hymeko_x.verify.sampling import bounds, draw, follow
+from hymeko_x.verify.kinematics import bounds, draw, follow, prepare
+from hymeko_x.verify.meshes import Meshes
 from hymeko_x.verify.spatial import quat_from_rotation
-from hymeko_x.verify.surfaces import Meshes
 from hymeko_x.verify.verdict import Check
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from hymeko_x.verify.match import Match, Turned
+    from hymeko_x.verify.matching import Match, Turned
     from hymeko_x.verify.model import Array, Feature, KinematicModel
 
 POSITION, ROTATION = 1e-9, 1e-9

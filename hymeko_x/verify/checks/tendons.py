@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hymeko_x.verify.bodies import plain
 from hymeko_x.verify.checks.pair import Pair, counted, worst
-from hymeko_x.verify.model import Feature, KinematicModel
-from hymeko_x.verify.tendons import JOINT, PULLEY, SIDE, Step, Tendon
+from hymeko_x.verify.matching.bodies import plain
+from hymeko_x.verify.model import JOINT, PULLEY, SIDE, Feature, KinematicModel, Step, Tendon
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from hymeko_x.verify.tendons import Spring
+    from hymeko_x.verify.model import Spring
     from hymeko_x.verify.verdict import Check
 
 _POINT, _NUMBER = 1e-9, 1e-9

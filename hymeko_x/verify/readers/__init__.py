@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib
+import os
+import sys
+import tempfile
 from dataclasses import field
 from typing import TYPE_CHECKING, Protocol, cast
 
@@ -12,7 +16,7 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Iterator, Mapping
     from pathlib import Path
 
     from hymeko_x.source import Files
@@ -132,3 +136,25 @@ def _root_element(path: Path) -> str:
             text = text.partition("-->")[2]
         elif not text.startswith(("?", "!")):
             return text.replace(">", " ").replace("/", " ").split()[0] if text.split() else ""
+
+
+@contextlib.contextmanager
+def overheard() -> Iterator[Callable[[], str]]:
+    """Catches what native code writes to standard output and standard error; yields a function that tells what was said.
+
+    Python's own streams are flushed before and after, so that nothing else is lost.
+    """
+    with tempfile.TemporaryFile() as file, contextlib.ExitStack() as stack:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        for descriptor in (1, 2):
+            kept = os.dup(descriptor)
+            stack.callback(os.close, kept)
+            stack.callback(os.dup2, kept, descriptor)
+            os.dup2(file.fileno(), descriptor)
+
+        def said() -> str:
+            file.seek(0)
+            return " ".join(file.read().decode("utf-8", "replace").split())
+
+        yield said

@@ -10,10 +10,18 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 
 from hymeko_x.ir import parts
+from hymeko_x.ir import tendons as words
 from hymeko_x.ir.mechanism import WORLD as WORLD_ID
 from hymeko_x.ir.mechanism import Id, JointView, Mechanism, ShapeView, numbers_weight, pose_weight
 from hymeko_x.verify.model import (
+    CYLINDER,
     INF,
+    JOINT,
+    PULLEY,
+    RELAXED,
+    SIDE,
+    SITE,
+    SPHERE,
     WORLD,
     Array,
     Body,
@@ -27,11 +35,14 @@ from hymeko_x.verify.model import (
     MeshFile,
     Role,
     Shape,
+    Spring,
+    Step,
     Surface,
+    Tendon,
     between_frames,
     grounded,
+    point_of,
 )
-from hymeko_x.verify.readers.mechanism_tendons import read_tendons
 from hymeko_x.verify.spatial import frame_with_z, pose
 
 if TYPE_CHECKING:
@@ -39,8 +50,11 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.values import Pose
-    from hymeko_x.verify.tendons import Tendon
 
+    Placed = tuple[int, Array]
+    Said = float | str | tuple[float, ...] | None
+
+_FORCE, _FORCED, _SPRING = "actuatorfrcrange", "actuatorfrclimited", "springlength"
 SAYS = frozenset(Feature) - {Feature.ACTUATORS, Feature.TIED_TENDONS}
 
 
@@ -257,3 +271,74 @@ def _mesh(mechanism: Mechanism, view: ShapeView) -> Surface | MeshFile | None:
         points = np.array(mesh.vertices).reshape(-1, 3) * np.array(mesh.scale)
         return Surface(points, np.array(mesh.faces, dtype=np.intp).reshape(-1, 3))
     return MeshFile(mesh.uri or mesh.name or "", None, mesh.scale)
+
+
+# ---- tendons ---------------------------------------------------------------------------------------------------------
+
+
+def read_tendons(
+    mechanism: Mechanism, dofs: Mapping[tuple[Id, str], int], sites: Mapping[Id, Placed], shapes: Mapping[Id, Placed]
+) -> Iterator[Tendon]:
+    """Every tendon whose steps are there. ``sites`` and ``shapes`` say on which body each of them is, and where on it."""
+    for key, tendon, arcs in mechanism.edges(parts.Tendon):
+        steps = [_step(mechanism, arc, dofs, sites, shapes) for arc in arcs]
+        path = tuple(step for step in steps if step is not None)
+        if len(path) == len(steps):
+            yield _tendon(key.name, tendon, path)
+
+
+def _tendon(name: str, tendon: parts.Tendon, path: tuple[Step, ...]) -> Tendon:
+    said = dict(tendon.parameters)
+    lower, upper = tendon.limits.lower, tendon.limits.upper
+    bound = lower is not None or upper is not None
+    return Tendon(
+        name,
+        path,
+        (tendon.stiffness, tendon.damping, tendon.friction, tendon.armature),
+        (float("-inf") if lower is None else lower, float("inf") if upper is None else upper) if bound else None,
+        _force(said.get(_FORCE), said.get(_FORCED, "auto")),
+        _spring(said.get(_SPRING)) if tendon.stiffness else RELAXED,
+    )
+
+
+def _force(said: Said, limited: Said) -> tuple[float, float] | None:
+    if not isinstance(said, tuple) or len(said) != 2 or limited == "false":
+        return None
+    return said[0], said[1]
+
+
+def _spring(said: Said) -> Spring:
+    """One length, or two; -1 and nothing are the length at rest."""
+    numbers = said if isinstance(said, tuple) else (said,) if isinstance(said, float) else ()
+    if not numbers or numbers[0] == -1.0:
+        return RELAXED
+    return Spring((numbers[0], numbers[-1]), at_rest=False)
+
+
+def _step(
+    mechanism: Mechanism,
+    arc: RobotArc,
+    dofs: Mapping[tuple[Id, str], int],
+    sites: Mapping[Id, Placed],
+    shapes: Mapping[Id, Placed],
+) -> Step | None:
+    """What an arc is in a path; None where it leads to nothing."""
+    if arc.role == words.PULLEY:
+        return Step(PULLEY, number=numbers_weight(arc)[0])
+    if arc.target in sites:
+        body, pose = sites[arc.target]
+        return Step(SIDE if arc.role == words.SIDE else SITE, body, point=point_of(pose[:3, 3]))
+    if arc.target in shapes:
+        return _shape(mechanism.graph.edges[arc.target].data, *shapes[arc.target])
+    dof = dofs.get((arc.target, arc.role))
+    return None if dof is None else Step(JOINT, dof, numbers_weight(arc)[0])
+
+
+def _shape(data: parts.EdgePart, body: int, pose: Array) -> Step | None:
+    match data:
+        case parts.Shape(parts.Sphere(radius)):
+            return Step(SPHERE, body, radius, point_of(pose[:3, 3]))
+        case parts.Shape(parts.Cylinder(radius, _)):
+            return Step(CYLINDER, body, radius, point_of(pose[:3, 3]), point_of(pose[:3, 2]))
+        case _:
+            return None

@@ -16,7 +16,7 @@ from pydrake.multibody.plant import MultibodyPlant
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.verify.model import WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Loop, between_frames, grounded
-from hymeko_x.verify.readers.words import overheard
+from hymeko_x.verify.readers import overheard
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -24,7 +24,7 @@ import numpy as np
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.frozen import frozen
-from hymeko_x.verify.dh_lines import Frame, Line, Link, link_between, motion
+from hymeko_x.verify.dh.lines import Frame, Line, Link, link_between, motion
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import WORLD, Array, Kind, KinematicModel
 
@@ -247,8 +247,8 @@ def _joint_motions(row: Row, values: Array) -> Array:
 
 def error_against_pinocchio(model: KinematicModel, found: Table, samples: int = 100, seed: int = 0) -> float:
     """The largest entry in which the table's pose of the tip differs from Pinocchio's at random configurations."""
-    from hymeko_x.verify.pin import build
-    from hymeko_x.verify.sampling import draw
+    from hymeko_x.verify.kinematics import draw
+    from hymeko_x.verify.pinocchio import build
 
     start, tip = found.ends
     root = tip

@@ -12,17 +12,17 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
+from pxr import Gf, Sdf, Tf, Usd, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.frozen import frozen
-from hymeko_x.verify.model import WORLD, Array, Body, Feature, Joint, KinematicModel, Loop, grounded
-from hymeko_x.verify.readers.usd_joints import JointEdge, read_couplings, read_joint, read_loop
-from hymeko_x.verify.readers.usd_shapes import read_shapes
-from hymeko_x.verify.readers.usd_tendons import limits_are_automatic, read_tendons, tendon_paths
-from hymeko_x.verify.readers.words import overheard
-from hymeko_x.verify.spatial import inverse, rigid, rotation_from_quat
+from hymeko_x.verify.model import WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Loop, grounded
+from hymeko_x.verify.readers import overheard
+from hymeko_x.verify.readers.usd.joints import JointEdge, read_couplings, read_joint, read_loop
+from hymeko_x.verify.readers.usd.scene import Scene, value_of
+from hymeko_x.verify.readers.usd.shapes import read_shapes
+from hymeko_x.verify.readers.usd.tendons import limits_are_automatic, read_tendons, tendon_paths
+from hymeko_x.verify.spatial import rotation_from_quat
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -40,22 +40,6 @@ _MOST_NESTED = 32
 _JOINTS = ("FixedJoint", "RevoluteJoint", "PrismaticJoint", "SphericalJoint", "D6Joint", "DistanceJoint", "CustomJoint")
 
 
-@frozen(eq=False)
-class Scene:
-    """A stage with its units: ``metres`` and ``kilograms`` per unit, ``upright`` the rotation that makes z point up."""
-
-    stage: Any
-    metres: float
-    kilograms: float
-    upright: Array
-
-    def pose(self, prim: Any) -> Array:
-        """The pose of a prim in the world at rest, in m, z up, without its scale."""
-        matrix = np.array(UsdGeom.XformCache().GetLocalToWorldTransform(prim), dtype=float).T
-        turn = unit_axes(matrix[:3, :3])
-        return rigid(self.upright @ turn, self.upright @ matrix[:3, 3] * self.metres)
-
-
 def read(path: Path, places: Places) -> KinematicModel:
     """The robot that UsdPhysics sees. Raises: Refusal HX302 in USD's words."""
     with overheard() as said:
@@ -68,8 +52,7 @@ def read(path: Path, places: Places) -> KinematicModel:
             if not _choose(stage, places.variants, path):
                 break
         found = UsdPhysics.UsdPhysicsLoadStageFromPrimRange(stage, [Sdf.Path.absoluteRootPath])
-    scene = Scene(stage, UsdGeom.GetStageMetersPerUnit(stage), UsdPhysics.GetStageKilogramsPerUnit(stage), _upright(stage))
-    return _model(scene, path.stem, found)
+    return _model(Scene.of(stage), path.stem, found)
 
 
 def _choose(stage: Any, variants: Mapping[str, str], path: Path) -> bool:
@@ -89,13 +72,6 @@ def _choose(stage: Any, variants: Mapping[str, str], path: Path) -> bool:
 
 def _sets_of(prim: Any, variants: Mapping[str, str]) -> list[str]:
     return [name for name in prim.GetVariantSets().GetNames() if name in variants]
-
-
-def _upright(stage: Any) -> Array:
-    """Y-up stages are turned about x, as every converter does."""
-    if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z:
-        return np.eye(3)
-    return np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
@@ -248,8 +224,6 @@ def _body(
 
 def _root_joint(scene: Scene, prim: Any, kinematic: bool) -> Joint:
     """A body that no joint holds falls freely, unless it is kinematic."""
-    from hymeko_x.verify.model import Dof, Kind
-
     place = scene.pose(prim)
     return Joint(None, place) if kinematic else Joint(None, place, (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),))
 
@@ -278,36 +252,8 @@ def _inertia(scene: Scene, prim: Any, has_shapes: bool) -> tuple[bool, float, Ar
 
 def _newton_tensor(prim: Any) -> Array:
     """The tensor by NewtonMassAPI, for what no principal moments can say, like moments of zero; without one nothing."""
-    attribute = prim.GetAttribute("newton:inertia")
-    said = attribute.Get() if attribute else None
-    if said is None or len(said) != 6:
+    numbers = value_of(prim, "newton:inertia")
+    if numbers is None or len(numbers) != 6:
         return np.zeros((3, 3))
-    xx, yy, zz, xy, xz, yz = map(float, said)
+    xx, yy, zz, xy, xz, yz = map(float, numbers)
     return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-
-
-def unit_axes(matrix: Array) -> Array:
-    """The directions of the axes of a 3x3 matrix; those that a scale of zero has flattened complete the others to a right-handed frame."""
-    lengths = np.linalg.norm(matrix, axis=0)
-    if lengths.all():
-        return np.asarray(matrix / lengths)
-    left, _, right = np.linalg.svd(matrix)
-    left[:, 2] *= np.sign(np.linalg.det(left @ right))
-    return np.asarray(left @ right)
-
-
-def relative(scene: Scene, body: str, prim: Any) -> tuple[Array, Array]:
-    """A prim in the frame of a body ("" is the world): its pose in m, and the 3x3 matrix of scale that comes before it."""
-    cache = UsdGeom.XformCache()
-    world = np.array(cache.GetLocalToWorldTransform(prim), dtype=float).T
-    world[:3] = np.block([[scene.upright @ world[:3, :3], scene.upright @ world[:3, 3:]]])
-    base = np.eye(4) if not body else rigid(*_unscaled(scene, body))
-    base[:3, 3] /= scene.metres
-    inside = inverse(base) @ world
-    turn = unit_axes(inside[:3, :3])
-    return rigid(turn, inside[:3, 3] * scene.metres), turn.T @ inside[:3, :3] * scene.metres
-
-
-def _unscaled(scene: Scene, body: str) -> tuple[Array, Array]:
-    place = scene.pose(scene.stage.GetPrimAtPath(body))
-    return place[:3, :3], place[:3, 3]

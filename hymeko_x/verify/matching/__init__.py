@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from hymeko_x.frozen import frozen
-from hymeko_x.verify.bodies import only_carries, pair_by_name, pair_by_structure, plain
+from hymeko_x.verify.matching.bodies import only_carries, pair_by_name, pair_by_structure, plain
 from hymeko_x.verify.model import WORLD, Kind, KinematicModel
 
 if TYPE_CHECKING:

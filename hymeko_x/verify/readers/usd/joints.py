@@ -11,12 +11,13 @@ from pxr import UsdPhysics
 
 from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import INF, Array, Coupling, Dof, Joint, Kind, KinematicModel, Loop, between_frames
+from hymeko_x.verify.readers.usd.scene import number_of, targets_of, value_of
 from hymeko_x.verify.spatial import frame_with_z, rigid, rotation_from_quat
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.verify.readers.usd import Scene
+    from hymeko_x.verify.readers.usd.scene import Scene
 
 _AXES = {UsdPhysics.Axis.X: 0, UsdPhysics.Axis.Y: 1, UsdPhysics.Axis.Z: 2}
 _DOF = UsdPhysics.JointDOF
@@ -199,7 +200,7 @@ def _coupling(scene: Scene, path: str, paths: Mapping[str, JointEdge], dofs: Map
     if follower is None:
         return None
     leader = _leader(prim, "newton:mimicJoint", paths, dofs) or _leader(prim, "mjc:target", paths, dofs)
-    if leader is None or not _enabled(prim):
+    if leader is None or value_of(prim, "newton:mimicEnabled") is False:
         return None
     others = [_first(prim, ("newton:mimicCoef1", "mjc:coef1"), 1.0), *(number_of(prim, f"mjc:coef{k}", 0.0) for k in (2, 3, 4))]
     while len(others) > 1 and others[-1] == 0.0:
@@ -220,20 +221,5 @@ def _first(prim: Any, names: tuple[str, ...], default: float) -> float:
 
 
 def _leader(prim: Any, name: str, paths: Mapping[str, JointEdge], dofs: Mapping[str, int]) -> tuple[str, int] | None:
-    relationship = prim.GetRelationship(name)
-    targets = [str(target) for target in relationship.GetForwardedTargets()] if relationship else []
-    known = [target for target in targets if target in paths and paths[target].name in dofs]
+    known = [target for target in targets_of(prim, name) if target in paths and paths[target].name in dofs]
     return (known[0], dofs[paths[known[0]].name]) if known else None
-
-
-def _enabled(prim: Any) -> bool:
-    attribute = prim.GetAttribute("newton:mimicEnabled")
-    value = attribute.Get() if attribute else None
-    return value is not False
-
-
-def number_of(prim: Any, name: str, default: float) -> float:
-    """The number that an attribute holds."""
-    attribute = prim.GetAttribute(name)
-    value = attribute.Get() if attribute else None
-    return float(value) if isinstance(value, int | float) else default

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any
 from pxr import Sdf
 
 from hymeko_x.frozen import frozen
-from hymeko_x.verify.model import Kind, Role
-from hymeko_x.verify.readers.usd_joints import dof_names, number_of
-from hymeko_x.verify.readers.usd_shapes import owner, shape_of
-from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Spring, Step, Tendon, point_of
+from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Kind, Role, Spring, Step, Tendon, point_of
+from hymeko_x.verify.readers.usd.joints import dof_names
+from hymeko_x.verify.readers.usd.scene import number_of, owner, targets_of, value_of
+from hymeko_x.verify.readers.usd.shapes import shape_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from hymeko_x.verify.model import KinematicModel
-    from hymeko_x.verify.readers.usd import Scene
-    from hymeko_x.verify.readers.usd_joints import JointEdge
+    from hymeko_x.verify.readers.usd.joints import JointEdge
+    from hymeko_x.verify.readers.usd.scene import Scene
 
 _TYPE, _SITE_API = "MjcTendon", "MjcSiteAPI"
 _ROUND = {"sphere": SPHERE, "cylinder": CYLINDER}
@@ -75,14 +75,14 @@ def read_tendons(
 
 def limits_are_automatic(prims: Sequence[Any]) -> bool:
     """Whether a range alone is a limit, as everywhere unless a scene says otherwise."""
-    return not any(_value(prim, "mjc:compiler:autoLimits") is False for prim in prims)
+    return not any(value_of(prim, "mjc:compiler:autoLimits") is False for prim in prims)
 
 
 def _tendon(guide: _Guide, prim: Any, name: str, *, automatic: bool) -> Tendon:
     """One tendon in SI units. Raises: _BadPath."""
     metres, kilograms = guide.scene.metres, guide.scene.kilograms
     newtons = metres * kilograms
-    fixed = _value(prim, "mjc:type") == "fixed"
+    fixed = value_of(prim, "mjc:type") == "fixed"
     stiffness = number_of(prim, "mjc:stiffness", 0.0) * kilograms
     return Tendon(
         name,
@@ -101,7 +101,7 @@ def _tendon(guide: _Guide, prim: Any, name: str, *, automatic: bool) -> Tendon:
 
 def _bounds(prim: Any, name: str, limited: str, unit: float, *, automatic: bool) -> tuple[float, float] | None:
     low, high = (number_of(prim, f"{name}:{end}", 0.0) for end in ("min", "max"))
-    word = _value(prim, limited) or "auto"
+    word = value_of(prim, limited) or "auto"
     holds = word == "true" or (word == "auto" and automatic and low < high)
     return (low * unit, high * unit) if holds else None
 
@@ -152,7 +152,7 @@ def _cable(guide: _Guide, prim: Any) -> Iterator[Step]:
 
 def _sides(prim: Any, count: int) -> list[str]:
     """For each step the site beside it, or ""."""
-    found = [str(path) for path in _relation(prim, "mjc:sideSites")]
+    found = targets_of(prim, "mjc:sideSites")
     order = _integers(prim, "mjc:sideSites:indices") or [-1] * count
     if len(order) != count or any(index >= len(found) for index in order):
         raise _BadPath(f"has {count} steps, {len(found)} sites beside them, and {len(order)} indices of these")
@@ -160,7 +160,7 @@ def _sides(prim: Any, count: int) -> list[str]:
 
 
 def _targets(prim: Any, name: str, indices: str) -> list[str]:
-    found = [str(path) for path in _relation(prim, name)]
+    found = targets_of(prim, name)
     order = _integers(prim, indices) or range(len(found))
     if any(not 0 <= index < len(found) for index in order):
         raise _BadPath(f"has {len(found)} targets and other indices")
@@ -183,20 +183,13 @@ def _knot(guide: _Guide, path: str) -> Step:
 
 
 def _site(guide: _Guide, prim: Any, kind: str) -> Step:
-    from hymeko_x.verify.readers.usd import relative
-
     if not prim:
         raise _BadPath("has a site beside it that is not there")
     on = owner(prim, guide.bodies)
-    return Step(kind, guide.bodies[on], point=point_of(relative(guide.scene, on, prim)[0][:3, 3]))
+    return Step(kind, guide.bodies[on], point=point_of(guide.scene.relative(on, prim)[0][:3, 3]))
 
 
 # ---- values ----------------------------------------------------------------------------------------------------------
-
-
-def _value(prim: Any, name: str) -> Any:
-    attribute = prim.GetAttribute(name)
-    return attribute.Get() if attribute else None
 
 
 def _numbers(prim: Any, name: str) -> list[float]:
@@ -208,8 +201,3 @@ def _numbers(prim: Any, name: str) -> list[float]:
 def _integers(prim: Any, name: str) -> list[int]:
     attribute = prim.GetAttribute(name)
     return list(attribute.Get() or ()) if attribute and attribute.GetTypeName() == Sdf.ValueTypeNames.IntArray else []
-
-
-def _relation(prim: Any, name: str) -> list[Any]:
-    relationship = prim.GetRelationship(name)
-    return list(relationship.GetForwardedTargets()) if relationship else []

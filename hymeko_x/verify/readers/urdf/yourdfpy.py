@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from hymeko_x.frozen import frozen
-from hymeko_x.verify.kinematics import prepare
+from hymeko_x.verify.kinematics import draw, prepare
 from hymeko_x.verify.model import WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, MeshFile, Role, Shape, grounded
-from hymeko_x.verify.sampling import draw
 from hymeko_x.verify.spatial import angle_between
 
 if TYPE_CHECKING:

@@ -9,12 +9,13 @@ from pxr import Usd, UsdGeom, UsdPhysics
 
 from hymeko_x.formats.usd.gprims import ball
 from hymeko_x.verify.model import Array, Role, Shape, Surface
+from hymeko_x.verify.readers.usd.scene import owner
 from hymeko_x.verify.spatial import rigid
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Mapping
+    from collections.abc import Mapping
 
-    from hymeko_x.verify.readers.usd import Scene
+    from hymeko_x.verify.readers.usd.scene import Scene
 
 _ALONG = {
     "X": np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]),
@@ -54,21 +55,9 @@ def _role(prim: Any, collides: bool) -> Role | None:
     return Role.VISUAL if drawn else None
 
 
-def owner(prim: Any, bodies: Container[str]) -> str:
-    """The nearest body above a prim, or ""."""
-    path = prim.GetPath()
-    while not path.IsAbsoluteRootPath():
-        if str(path) in bodies:
-            return str(path)
-        path = path.GetParentPath()
-    return ""
-
-
 def shape_of(scene: Scene, prim: Any, body: str, role: Role) -> Shape | None:
     """A primitive in the body's frame; a mesh as triangles in it."""
-    from hymeko_x.verify.readers.usd import relative
-
-    pose, scale = relative(scene, body, prim)
+    pose, scale = scene.relative(body, prim)
     name = prim.GetDisplayName() or prim.GetName()
     size = np.abs(np.diag(scale))
     if prim.IsA(UsdGeom.Mesh):

@@ -17,8 +17,8 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Coupling, Dof, Feature, Joint, Kind, KinematicModel, grounded
-from hymeko_x.verify.readers.urdf_second import Mimic, Second, disagreement, load
-from hymeko_x.verify.readers.words import overheard
+from hymeko_x.verify.readers import overheard
+from hymeko_x.verify.readers.urdf.yourdfpy import Mimic, Second, disagreement, load
 from hymeko_x.verify.spatial import inverse
 
 if TYPE_CHECKING:

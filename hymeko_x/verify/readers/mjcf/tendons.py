@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 import mujoco
 import numpy as np
 
+from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Spring, Step, Tendon, point_of
 from hymeko_x.verify.spatial import rotation_from_quat
-from hymeko_x.verify.tendons import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Spring, Step, Tendon, point_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -15,12 +15,11 @@ import numpy as np
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.verify.kinematics import prepare
+from hymeko_x.verify.kinematics import draw, prepare
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Role, Shape, Surface, grounded
-from hymeko_x.verify.readers.mjcf_constraints import read_actuators, read_couplings, read_loops, read_tied_tendons
-from hymeko_x.verify.readers.mjcf_tendons import read_tendons
-from hymeko_x.verify.readers.words import overheard
-from hymeko_x.verify.sampling import draw
+from hymeko_x.verify.readers import overheard
+from hymeko_x.verify.readers.mjcf.constraints import read_actuators, read_couplings, read_loops, read_tied_tendons
+from hymeko_x.verify.readers.mjcf.tendons import read_tendons
 from hymeko_x.verify.spatial import angle_between, pose, quat_from_rotation, rigid, rotation_from_quat
 
 if TYPE_CHECKING:
