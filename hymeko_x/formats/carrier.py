@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.mechanism import ROOT, Extra
-from hymeko_x.xml.text import escape
+from hymeko_x.xml.text import escaped_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -55,13 +55,13 @@ def taken_off(mechanism: Mechanism) -> tuple[Mechanism, str]:
 
 def xml_elements(text: str, *, readable: bool = True) -> str:
     """The elements that carry a residue in URDF; ``readable`` allows CDATA, which xacro would not unescape."""
-    texts = [_readable(part) if readable else escape(part) for part in parts(text)]
+    texts = [_readable(part) if readable else escaped_lines(part) for part in parts(text)]
     return "".join(f'  <{XML_TAG} xmlns:hymeko="{XML_NAMESPACE}">{part}</{XML_TAG}>\n' for part in texts)
 
 
 def _readable(part: str) -> str:
     """Text as it stands where XML allows it, so that a person can read it."""
-    return escape(part) if "]]>" in part else f"<![CDATA[\n{part}]]>"
+    return escaped_lines(part) if "]]>" in part else f"<![CDATA[\n{part}]]>"
 
 
 def inserted(data: bytes, markup: str) -> bytes:

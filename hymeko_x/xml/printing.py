@@ -10,34 +10,34 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, refuse
+from hymeko_x.xml.text import NAME, attributes_text, comment_markup, escaped
 from hymeko_x.xml.tree import COMMENT, FOLLOWING, PRECEDING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.ir.mechanism import Extra, Id
 
-_INDENT = "  "
-_NAME = r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?"
-_STEP = re.compile(rf"{_NAME}(?:\[[1-9]\d*\])?|@{_NAME}|text\(\)")
-_SPACE = re.compile(r"xmlns(?::[^\W\d][\w.-]*)?")
-_UNSAYABLE = re.compile(r"[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
-_SPECIAL = re.compile(r'[&<>"\x00-\x1f\ud800-\udfff\ufffe\uffff]')
-_SPECIAL_BUT_QUOTE = re.compile(r"[&<>\x00-\x1f\ud800-\udfff\ufffe\uffff]")
-_ESCAPES = (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"), ('"', "&quot;"), ("\n", "&#10;"), ("\r", "&#13;"), ("\t", "&#9;"))
-_IMPOSSIBLE = re.compile(r"[\x00-\x1f\ud800-\udfff\ufffe\uffff]")
+_INDENTS = tuple("  " * depth for depth in range(41))
+"""Elements in more than 40 others are not indented further, so that the text stays linear in their number."""
+_STEP = re.compile(rf"{NAME}(?:\[[1-9]\d*\])?|@{NAME}|text\(\)")
+_NAMESPACE = re.compile(r"xmlns(?::[^\W\d][\w.-]*)?")
 
 
 class Tag:
-    """An XML element to be: name, attributes in order, and children that are tags or ready text; whose it is, if known."""
+    """An XML element to be printed: name, attributes in order, and children that are tags or ready text.
 
-    __slots__ = ("attributes", "children", "name", "owner")
+    ``owner`` is the element of the mechanism that it is written for, if known; ``has_end`` asks for an end tag even without children.
+    """
+
+    __slots__ = ("attributes", "children", "has_end", "name", "owner")
 
     def __init__(self, name: str, attributes: dict[str, str], children: Iterable[Tag | str] = ()) -> None:
         self.name = name
         self.attributes = attributes
         self.children = [*children]
         self.owner: Id | None = None
+        self.has_end = False
 
     def add(self, name: str, /, **attributes: str) -> Tag:
         """A new child with these attributes."""
@@ -87,7 +87,7 @@ def foreign_text(extra: Extra, declared: Mapping[str, str]) -> str:
 
     if extra.path in (PRECEDING, FOLLOWING) and not extra.text.startswith("<?"):
         raise _not_xml(extra, "outside the root there are only comments and instructions")
-    spaces = attributes_text({name: uri for name, uri in declared.items() if _SPACE.fullmatch(name)})
+    spaces = attributes_text({name: uri for name, uri in declared.items() if _NAMESPACE.fullmatch(name)})
     parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
     try:
         found = list(etree.fromstring(f"<x{spaces}>{extra.text}</x>".encode(), parser))
@@ -96,13 +96,6 @@ def foreign_text(extra: Extra, declared: Mapping[str, str]) -> str:
     if len(found) != 1 or not extra.text.startswith("<") or (found[0].tail or "").strip():
         raise _not_xml(extra, "it is not one element")
     return without_declared(extra.text, declared)
-
-
-def comment_markup(text: str) -> str:
-    """A comment of whatever format as an XML comment, in which ``--`` is not allowed."""
-    while "--" in text:
-        text = text.replace("--", "- -")
-    return f"<!-- {_UNSAYABLE.sub(chr(0xFFFD), text)} -->"
 
 
 def _not_xml(extra: Extra, why: str) -> Refusal:
@@ -130,56 +123,35 @@ def without_declared(text: str, declared: Mapping[str, str]) -> str:
 
 
 def render(tag: Tag, depth: int = 0) -> list[str]:
-    """The lines of a tag, two blanks per level. Foreign text keeps its own inner indentation."""
+    """The lines of a tag, two blanks per level. Foreign text keeps its own inner indentation; an empty text is an empty line."""
     lines: list[str] = []
-    _render(tag, _INDENT * depth, lines)
-    return lines
+    around: list[tuple[Iterator[Tag | str], str]] = []
+    row: Iterator[Tag | str] = iter((tag,))
+    indent = _INDENTS[min(depth, 40)]
+    while True:
+        for child in row:
+            if isinstance(child, str):
+                lines.append(indent + child if child else "")
+                continue
+            name, children = child.name, child.children
+            start = f"{indent}<{name}{attributes_text(child.attributes)}"
+            if not children and not child.has_end:
+                lines.append(start + "/>")
+            elif len(children) == 1 and isinstance(children[0], str) and not children[0].startswith("<"):
+                lines.append(f"{start}>{children[0]}</{name}>")
+            else:
+                lines.append(start + ">")
+                around.append((row, f"{indent}</{name}>"))
+                row, indent = iter(children), _INDENTS[min(depth + len(around), 40)]
+                break
+        else:
+            if not around:
+                return lines
+            row, end = around.pop()
+            lines.append(end)
+            indent = _INDENTS[min(depth + len(around), 40)]
 
 
 def ready(tag: Tag, depth: int) -> str:
     """A tag as ready text for another tag at this depth: its lines, of which the first one is not indented."""
-    return "\n".join(render(tag, depth))[len(_INDENT) * depth :]
-
-
-def _render(tag: Tag, indent: str, lines: list[str]) -> None:
-    name, children = tag.name, tag.children
-    start = f"{indent}<{name}{attributes_text(tag.attributes)}"
-    if not children:
-        lines.append(start + "/>")
-        return
-    first = children[0]
-    if len(children) == 1 and isinstance(first, str) and not first.startswith("<"):
-        lines.append(f"{start}>{first}</{name}>")
-        return
-    lines.append(start + ">")
-    inner = indent + _INDENT
-    for child in children:
-        if isinstance(child, str):
-            lines.append(inner + child)
-        elif child.children:
-            _render(child, inner, lines)
-        else:
-            lines.append(f"{inner}<{child.name}{attributes_text(child.attributes)}/>")
-    lines.append(f"{indent}</{name}>")
-
-
-def attributes_text(attributes: dict[str, str]) -> str:
-    """Attributes as they stand in a start tag, each with a blank before it."""
-    text = "".join([f' {name}="{value}"' for name, value in attributes.items()])
-    if _SPECIAL_BUT_QUOTE.search(text) is None and text.count('"') == 2 * len(attributes):
-        return text
-    return "".join([f' {name}="{escaped(value)}"' for name, value in attributes.items()])
-
-
-def is_name(text: str) -> bool:
-    """Whether a text can be the name of an element."""
-    return re.fullmatch(_NAME, text) is not None
-
-
-def escaped(text: str) -> str:
-    """A text for an attribute or an element; every character that XML can hold reads back as it was, others are U+FFFD."""
-    if _SPECIAL.search(text) is None:
-        return text
-    for character, entity in _ESCAPES:
-        text = text.replace(character, entity)
-    return text if text.isprintable() else _IMPOSSIBLE.sub("\ufffd", text)
+    return "\n".join(render(tag, depth))[2 * depth :]

@@ -1,31 +1,65 @@
-"""Text in XML and out of it. The standard library's own module for this loads half of its network code."""
+"""Text in XML and out of it: the one escaper. The standard library's own module for this loads half of its network code."""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+NAME = r"[^\W\d][\w.-]*(?::[^\W\d][\w.-]*)?"
+"""The pattern of the name of an element or an attribute, with or without a prefix."""
 
-def escape(text: str) -> str:
-    """A text as the content of an element."""
-    return text.replace("&", "&amp;").replace(">", "&gt;").replace("<", "&lt;")
+_MARKUP = (("&", "&amp;"), ("<", "&lt;"), (">", "&gt;"))
+_QUOTED = (('"', "&quot;"), ("\n", "&#10;"), ("\r", "&#13;"), ("\t", "&#9;"))
+_SPECIAL = re.compile(r'[&<>"\x00-\x1f\ud800-\udfff\ufffe\uffff]')
+_SPECIAL_IN_TAG = re.compile(r"[&<>\x00-\x1f\ud800-\udfff\ufffe\uffff]")
+_IMPOSSIBLE = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+_IMPOSSIBLE_IN_COMMENT = re.compile(r"[\x00-\x08\x0b-\x1f\ud800-\udfff\ufffe\uffff]")
 
 
-def quoted(text: str, entities: Mapping[str, str]) -> str:
-    """A text as the value of an attribute, in the quotes that it needs; ``entities`` are more characters to escape."""
-    text = escape(text)
-    for character, entity in entities.items():
+def escaped(text: str) -> str:
+    """A text for an attribute or an element; every character that XML can represent reads back as it was, others are U+FFFD."""
+    if _SPECIAL.search(text) is None:
+        return text
+    for character, entity in (*_MARKUP, *_QUOTED):
         text = text.replace(character, entity)
-    if '"' not in text:
-        return f'"{text}"'
-    return f"'{text}'" if "'" not in text else '"' + text.replace('"', "&quot;") + '"'
+    return _IMPOSSIBLE.sub("\ufffd", text)
 
 
-def unescape(text: str, entities: Mapping[str, str] | None = None) -> str:
-    """The text that :func:`escape` was given; ``entities`` are more of them, with what they stand for."""
-    text = text.replace("&lt;", "<").replace("&gt;", ">")
-    for entity, character in (entities or {}).items():
+def escaped_lines(text: str) -> str:
+    """A long text for an element: only markup is escaped, so that its lines and quotes remain readable."""
+    for character, entity in _MARKUP:
+        text = text.replace(character, entity)
+    return text
+
+
+def unescaped(text: str) -> str:
+    """The text that :func:`escaped` or :func:`escaped_lines` was given."""
+    if "&" not in text:
+        return text
+    for character, entity in reversed((*_MARKUP, *_QUOTED)):
         text = text.replace(entity, character)
-    return text.replace("&amp;", "&")
+    return text
+
+
+def attributes_text(attributes: Mapping[str, str | None]) -> str:
+    """Attributes as they stand in a start tag, each with a blank before it; None is not written."""
+    parts = [f' {name}="{value}"' for name, value in attributes.items() if value is not None]
+    text = "".join(parts)
+    if _SPECIAL_IN_TAG.search(text) is None and text.count('"') == 2 * len(parts):
+        return text
+    return "".join([f' {name}="{escaped(value)}"' for name, value in attributes.items() if value is not None])
+
+
+def comment_markup(text: str) -> str:
+    """A comment of whatever format as an XML comment, in which ``--`` is not allowed."""
+    while "--" in text:
+        text = text.replace("--", "- -")
+    return f"<!-- {_IMPOSSIBLE_IN_COMMENT.sub(chr(0xFFFD), text)} -->"
+
+
+def is_name(text: str) -> bool:
+    """Whether a text can be the name of an element."""
+    return re.fullmatch(NAME, text) is not None

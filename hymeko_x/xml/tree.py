@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.ir.mechanism import ROOT, Extra
+from hymeko_x.xml.text import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator
@@ -323,12 +324,8 @@ def _with_declarations(text: str, node: Node) -> str:
         return text
     name_end = re.match(r"<[^\s/>]+", text)
     assert name_end is not None
-    declarations = "".join(f' {name}="{_quoted(uri)}"' for name, uri in added.items())
+    declarations = "".join(f' {name}="{escaped(uri)}"' for name, uri in added.items())
     return text[: name_end.end()] + declarations + text[name_end.end() :]
-
-
-def _quoted(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;").replace('"', "&quot;")
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------

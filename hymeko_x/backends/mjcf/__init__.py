@@ -20,7 +20,7 @@ from hymeko_x.backends.mjcf.text import Text
 from hymeko_x.formats import carrier
 from hymeko_x.rewrite.native import is_native
 from hymeko_x.source import Package
-from hymeko_x.xml.printing import escaped
+from hymeko_x.xml.text import escaped
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -38,7 +38,7 @@ def write(mechanism: Mechanism, report: Report) -> Package:
     text = Text()
     text.open("mujoco", {"model": mechanism.name or None})
     text.leaf("compiler", {"angle": "radian", "autolimits": "true"})
-    place, defaults = text.place, Text("mujoco")
+    place, defaults = text.place, Text()
     for section in (write_assets, write_worldbody, write_contacts, write_equalities, write_tendons, write_actuators):
         section(text, mechanism, names)
     write_defaults(defaults, text.leaves)

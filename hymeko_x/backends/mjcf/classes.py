@@ -71,7 +71,7 @@ def shared_attributes(leaves: Iterable[Leaf]) -> Defaults:
     """The classes of these elements, which from now on say of themselves only what their class does not."""
     groups: dict[tuple[str, str | None], list[Leaf]] = {}
     for leaf in leaves:
-        groups.setdefault((leaf.tag, leaf.attributes.get("class")), []).append(leaf)
+        groups.setdefault((leaf.name, leaf.attributes.get("class")), []).append(leaf)
     defaults = Defaults()
     acting = sum(tag not in ("geom", "joint") for tag, _ in groups)
     for (tag, own_class), group in groups.items():
@@ -86,7 +86,7 @@ def shared_attributes(leaves: Iterable[Leaf]) -> Defaults:
 
 def _row(leaf: Leaf) -> Row:
     """What a class may say of an element."""
-    allowed = _SHARED[leaf.tag]
+    allowed = _SHARED[leaf.name]
     return [(name, text) for name, text in leaf.attributes.items() if name in allowed]
 
 
@@ -136,7 +136,7 @@ def _say_for_some(tag: str, own_class: str | None, group: list[Leaf], defaults: 
 
 def _reasons(leaf: Leaf) -> Row:
     """What an element may share a class for. The size of a shape means something with its type only."""
-    if leaf.tag != "geom":
+    if leaf.name != "geom":
         return _row(leaf)
     row = [(name, text) for name, text in _row(leaf) if name not in _ASIDE]
     return [(name, f"{leaf.attributes.get('type')} {text}" if name == "size" else text) for name, text in row]
@@ -166,7 +166,7 @@ _ROLES: Mapping[str, Mapping[str, str]] = MappingProxyType(
 def write_defaults(text: Text, leaves: Iterable[Leaf]) -> None:
     """<default> with the classes of these elements. Geoms weigh nothing: bodies say what they weigh."""
     leaves = list(leaves)
-    roles = {leaf.attributes.get("class") for leaf in leaves if leaf.tag == "geom"}
+    roles = {leaf.attributes.get("class") for leaf in leaves if leaf.name == "geom"}
     said = {(MAIN, "geom"): dict(_WEIGHTLESS)} if roles else {}
     said |= {(role, "geom"): dict(attributes) for role, attributes in _ROLES.items() if role in roles}
     inside: dict[str, list[str]] = {MAIN: [role for role in _ROLES if role in roles]}

@@ -8,7 +8,8 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, Drive
 from hymeko_x.ir.values import number_text, numbers_text
-from hymeko_x.xml.printing import Tag, escaped, is_name
+from hymeko_x.xml.printing import Tag
+from hymeko_x.xml.text import escaped, is_name
 
 if TYPE_CHECKING:
     from hymeko_x.backends.urdf.sheet import Sheet

@@ -7,7 +7,7 @@ from xml.parsers import expat
 
 from hymeko_x.factor.forms import Element
 from hymeko_x.formats.xacro import PREFIX
-from hymeko_x.xml.text import unescape
+from hymeko_x.xml.text import unescaped
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -70,7 +70,7 @@ def _form(tag: Tag, hint: str) -> Element:
 def _parsed(text: str) -> list[Element]:
     """Ready text as forms: an element with what is in it, words, or nothing for a comment."""
     if not text.startswith("<"):
-        return _words(unescape(text, {"&quot;": '"', "&#10;": "\n", "&#13;": "\r", "&#9;": "\t"}))
+        return _words(unescaped(text))
     return _Reader(text).root.kids
 
 

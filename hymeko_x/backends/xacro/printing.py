@@ -9,7 +9,7 @@ from hymeko_x.backends.xacro.quoting import arguments_to_quote
 from hymeko_x.backends.xacro.texts import argument, default, spelled
 from hymeko_x.factor.forms import Call
 from hymeko_x.formats.xacro import NAMESPACE
-from hymeko_x.xml.printing import escaped
+from hymeko_x.xml.text import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -12,7 +12,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.xml.parse import MAX_BYTES, has_words
 from hymeko_x.xml.parse import parse as parse_leniently
-from hymeko_x.xml.printing import escaped
+from hymeko_x.xml.text import attributes_text, escaped
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -147,7 +147,7 @@ def verbatim(element: Element) -> str:
         elif item.tag == COMMENT:
             pieces.append(f"<!--{item.words}-->")
         else:
-            start = item.tag + "".join([f' {name}="{escaped(value)}"' for name, value in item.attributes.items()])
+            start = item.tag + attributes_text(item.attributes)
             if item.children or item.words:
                 pieces.append(f"<{start}>{escaped(item.words.strip())}")
                 stack.append(f"</{item.tag}>")

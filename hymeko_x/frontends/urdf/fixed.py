@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.formats import urdf as words
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Joint
-from hymeko_x.xml.printing import attributes_text
+from hymeko_x.xml.text import attributes_text
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.urdf.draft import Draft

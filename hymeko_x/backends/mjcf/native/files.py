@@ -11,8 +11,7 @@ from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import NAME, below, joined, settings_of
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
 from hymeko_x.ir.parts import Mesh, Texture
-from hymeko_x.xml.printing import escaped
-from hymeko_x.xml.text import unescape
+from hymeko_x.xml.text import escaped, unescaped
 
 if TYPE_CHECKING:
     from hymeko_x.assets.shelf import Shelf
@@ -36,9 +35,9 @@ def pack_native(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report
     for key, extra in _with_files(mechanism):
         for _, file in _FILE.findall(_text(extra)):
             folder = _folder(key, settings)
-            uri = joined(folder, unescape(file), settings)
+            uri = joined(folder, unescaped(file), settings)
             moved[folder, file] = new_uri(uri, "assets", shelf, files, Keep.PACKAGES_AND_PATHS) or uri
-    same = all(joined(folder, unescape(file), settings) == uri for (folder, file), uri in moved.items())
+    same = all(joined(folder, unescaped(file), settings) == uri for (folder, file), uri in moved.items())
     if same and packed.graph == mechanism.graph and _all_below(packed, settings):
         return packed
     return replace(packed, extras=_in_full(packed, moved, settings))

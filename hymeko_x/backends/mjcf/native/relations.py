@@ -183,6 +183,6 @@ def _step(sheet: Sheet, arc: RobotArc) -> tuple[str, list[tuple[str, str]]]:
 
 
 def _attributes(found: list[tuple[str, str]]) -> str:
-    from hymeko_x.xml.printing import escaped
+    from hymeko_x.xml.text import attributes_text
 
-    return "".join(f' {name}="{escaped(value)}"' for name, value in found)
+    return attributes_text(dict(found))
