@@ -159,9 +159,9 @@ def _written(
     """The package, and the mechanism as it was printed."""
     backend = writer(format)
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
-    mechanism = _explicit(with_stored_meshes(mechanism, format.name, files, report), format, files, report)
+    mechanism = _explicit(with_stored_meshes(mechanism, format, files, report), format, files, report)
     legal = legalize(mechanism, format.name, options, report)
-    packed, new, copies = pack(legal, format.name, files, place.assets, report, out_dir=place.folder)
+    packed, new, copies = pack(legal, format, files, place.assets, report, out_dir=place.folder)
     package = backend(packed, report)
     enclose = _offered(format, "enclose")
     if enclose is not None and (new or copies):
@@ -177,16 +177,17 @@ def _contents(copies: Mapping[str, str], files: Files) -> Iterator[tuple[str, by
 
 
 def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
-    """What came from MJCF, with what MuJoCo computes from shapes, for formats in which it has to be said."""
-    if format in (formats.MJCF, formats.HYMEKO) or not is_native(mechanism):
+    """The mechanism with what only the engine of the format that it came from computes, where that goes to another format."""
+    native = formats.native_format(mechanism)
+    if native is None or native.completes is None or native is format or format.is_exact:
         return mechanism
-    from hymeko_x.frontends.mjcf.weigh import weigh
 
     def printed() -> tuple[Mechanism, bytes]:
-        native = legalize(mechanism, formats.MJCF.name, Options(), Report())
-        return native, writer(formats.MJCF)(native, Report()).main
+        legal = legalize(mechanism, native.name, Options(), Report())
+        return legal, writer(native)(legal, Report()).main
 
-    return weigh(mechanism, printed, files, report)
+    completed: Mechanism = formats.loaded(native.completes)(mechanism, printed, files, report)
+    return completed
 
 
 def read_back(package: Package, format: Format, files: Files) -> Mechanism:
@@ -223,7 +224,7 @@ def reader(format: Format) -> Reader:
     """
     if format.frontend is None:
         readable = ", ".join(row.name for row in formats.FORMATS if row.frontend)
-        raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be read, only written", hint=f"readable: {readable}")
+        raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be read", hint=f"readable: {readable}")
     found: Reader = import_module(format.frontend).read
     return found
 
@@ -235,7 +236,7 @@ def writer(format: Format) -> Writer:
     """
     if format.backend is None:
         writable = ", ".join(row.name for row in formats.FORMATS if row.backend)
-        raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be written, only read", hint=f"writable: {writable}")
+        raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be written", hint=f"writable: {writable}")
     found: Writer = import_module(format.backend).write
     return found
 

@@ -7,7 +7,7 @@ import re
 from dataclasses import replace
 from enum import Enum
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from hymeko_x import codes
 from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.diagnostics import Report
+    from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.source import Files
 
@@ -35,6 +36,13 @@ class Keep(Enum):
     """``package://`` and ``model://``, which mean the same from everywhere."""
     PACKAGES_AND_PATHS = "packages and paths"
     """Those, and relative paths below the source: their files are copied to the same place below the output."""
+
+    @staticmethod
+    def of(format: Format, mode: Literal["copy", "reference"]) -> Keep:
+        """Which references stay in files of this format."""
+        if mode == "reference":
+            return Keep.PACKAGES
+        return Keep.PACKAGES_AND_PATHS if format.keeps_package_uris else Keep.NOTHING
 
 
 def keep_references(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report, keep: Keep) -> Mechanism:

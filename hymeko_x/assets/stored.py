@@ -14,12 +14,10 @@ from hymeko_x.ir.parts import Mesh, Role
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
+    from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism, StoredMesh
     from hymeko_x.ir.parts import Material, Texture
     from hymeko_x.source import Files
-
-_KEEP_PACKAGES = ("urdf", "xacro")
-"""Where ``package://`` is written as it is: who reads the file finds packages in ways of his own."""
 
 
 @dataclass(slots=True)
@@ -36,15 +34,15 @@ class _Standing(Builder):
         self.edges[self.names.take("subset", material.name)] = subset_edge(look.faces, shape, material)
 
 
-def with_stored_meshes(mechanism: Mechanism, target: str, files: Files, report: Report) -> Mechanism:
-    """The mechanism with the points and looks that are stored of every mesh whose file is missing. HyMeKo text keeps the reference."""
-    if not mechanism.stored or target == "hymeko":
+def with_stored_meshes(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
+    """The mechanism with the points and looks that are stored of every mesh whose file is missing. An exact format keeps the reference."""
+    if not mechanism.stored or format.is_exact:
         return mechanism
     standing = _Standing(names=names_in_use(mechanism))
     found: dict[Id, StoredMesh] = {}
     for key, mesh in mechanism.vertices(Mesh):
         stored = mechanism.stored.get(mesh.uri or "")
-        if stored is None or (target in _KEEP_PACKAGES and is_of_package(mesh.uri or "")) or files.find(mesh.uri or "") is not None:
+        if stored is None or (format.keeps_package_uris and is_of_package(mesh.uri or "")) or files.find(mesh.uri or "") is not None:
             continue
         found[key] = stored
         standing.vertices[key] = replace(stored.mesh, scale=mesh.scale, name=mesh.name)

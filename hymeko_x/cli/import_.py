@@ -25,4 +25,4 @@ def run(chosen: argparse.Namespace) -> int:
     """Read the file and print it as HyMeKo, which says everything: losses are measured only for whoever asks for them."""
     report = Report()
     given = read_input(chosen.input, chosen, report)
-    return deliver(given, Output(formats.HYMEKO, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))
+    return deliver(given, Output(formats.OWN, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))

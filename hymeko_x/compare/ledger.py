@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from hymeko_x import formats
 from hymeko_x.compare.diff import Difference, Tolerance, diff
 from hymeko_x.compare.relevance import relevant
-from hymeko_x.formats.usd import POSE
 from hymeko_x.ir.mechanism import ROOT, file_stem
 from hymeko_x.ir.parts import Mesh, Texture
 
@@ -84,7 +83,7 @@ def losses_between(
     kept = relevant(diff(mechanism, crossed, TOLERANCE, apart), mechanism, crossed, TOLERANCE)
     renamed = (difference for difference in renamed if not _is_number(difference, mechanism))
     found = (*renamed, *kept, *_unsaid_notes(mechanism, crossed))
-    return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_dress(difference, mechanism, format)])
+    return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_boilerplate(difference, mechanism, format)])
 
 
 def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
@@ -98,20 +97,21 @@ def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
 
 
 def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:
-    """What only a notation holds, and yet says more than how something was written: where a stage shows its bodies at first."""
-    for key, table in mechanism.notations.items():
-        if POSE in table and image.notation(key, POSE) != table[POSE]:
-            yield Difference(key, "pose on the stage", table[POSE], image.notation(key, POSE))
+    """What only a notation holds, and yet is more than how something was written: where a stage shows its bodies at first."""
+    stated = [(field, name) for format in formats.families() for field, name in format.stated_notations.items()]
+    for key, table in mechanism.notations.items() if stated else ():
+        for field, name in stated:
+            if name in table and image.notation(key, name) != table[name]:
+                yield Difference(key, field, table[name], image.notation(key, name))
 
 
-def _is_dress(difference: Difference, mechanism: Mechanism, format: Format) -> bool:
-    """Whether the format only wears its own clothes: settings that every file of it has, and more words for an element that is new."""
+def _is_boilerplate(difference: Difference, mechanism: Mechanism, format: Format) -> bool:
+    """Whether only every file of the format has it: settings of the whole, and more about an element that is new."""
     if difference.element != ROOT:
         return difference.before is None and difference.field != "" and difference.element not in mechanism.graph
-    if format == formats.XACRO and difference.field == "urdf @xmlns:xacro":
-        return True  # each xacro file declares its own prefix, and no expansion does
-    own = "usd" if format.name.startswith("usd") else format.name  # the extras of each kind of USD are USD text
-    return difference.before is None and difference.field.startswith(f"{own} ")
+    if difference.field in format.boilerplate:
+        return True
+    return difference.before is None and difference.field.startswith(f"{format.family} ")
 
 
 def _loss(difference: Difference, mechanism: Mechanism, is_carried: bool) -> Loss:

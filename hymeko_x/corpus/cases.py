@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 
 OWN = "hymeko_x"
 _HEAD = 65536
-_HYMEKO_SUFFIXES = (".hymeko", ".himeko")
 
 
 @frozen
@@ -65,7 +64,7 @@ def own_robots() -> tuple[Case, ...]:
     """The HyMeKo robots of this project, in a checkout; none in an installation without them."""
     folder = Path(__file__).parents[2] / "corpus"
     paths = sorted(path for name in ("robots", "listings") for path in (folder / name).glob("*.hymeko"))
-    return tuple(Case(OWN, str(folder), path.relative_to(folder).as_posix(), formats.HYMEKO.name) for path in paths)
+    return tuple(Case(OWN, str(folder), path.relative_to(folder).as_posix(), formats.OWN.name) for path in paths)
 
 
 def from_folder(place: str) -> tuple[Case, ...]:
@@ -125,4 +124,4 @@ def _format_of(name: str, head: bytes) -> Format | None:
         format = formats.of_input(name, head)
     except Refusal:
         return None
-    return None if format is formats.HYMEKO and not name.lower().endswith(_HYMEKO_SUFFIXES) else format
+    return None if format is formats.OWN and not name.lower().endswith(formats.OWN.suffixes) else format

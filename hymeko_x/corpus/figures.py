@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hymeko_x import formats
 from hymeko_x.corpus.statistics import HYMEKO, lengths_of, pair_rows
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.corpus.statistics import Numbers, PairRow
     from hymeko_x.corpus.tables import Tables
+    from hymeko_x.formats import Format
 
 _SETTINGS: Any = {
     "backend": "Agg",
@@ -27,8 +29,6 @@ _SETTINGS: Any = {
     "axes.grid": True,
     "grid.alpha": 0.3,
 }
-_COLOURS = {"urdf": "#1f77b4", "mjcf": "#d62728", "xacro": "#9467bd", "usd": "#2ca02c", HYMEKO: "#ff7f0e"}
-_OTHER = "#7f7f7f"
 
 
 def figures(tables: Tables) -> Iterator[tuple[str, bytes]]:
@@ -62,7 +62,13 @@ def _figure(width: float, height: float) -> Figure:
 
 
 def _formats(frame: pl.DataFrame) -> list[str]:
-    return [name for name in (HYMEKO, "urdf", "xacro", "mjcf", "usd") if name in frame.columns and frame[name].drop_nulls().len() > 1]
+    names = (format.name for format in formats.families())
+    return [name for name in names if name in frame.columns and frame[name].drop_nulls().len() > 1]
+
+
+def _others() -> list[Format]:
+    """The formats that HyMeKo is compared with."""
+    return [format for format in formats.families() if format is not formats.OWN]
 
 
 def _histograms(frame: pl.DataFrame) -> Figure:
@@ -72,7 +78,7 @@ def _histograms(frame: pl.DataFrame) -> Figure:
     axes = np.atleast_1d(figure.subplots(max(1, len(names)), 1, sharex=True))
     for axis, name in zip(axes, names, strict=False):
         values = np.log10(frame[name].drop_nulls().to_numpy())
-        axis.hist(values, bins=np.linspace(2.0, 6.0, 61), density=True, alpha=0.4, color=_COLOURS.get(name, _OTHER))
+        axis.hist(values, bins=np.linspace(2.0, 6.0, 61), density=True, alpha=0.4, color=formats.by_name(name).colour)
         _density(axis, values, name)
         axis.set_ylabel(name)
         axis.axvline(float(np.median(values)), color="black", linewidth=0.8, linestyle="--")
@@ -88,14 +94,14 @@ def _density(axis: object, values: Numbers, name: str) -> None:
     if len(np.unique(values)) < 3:
         return
     places = np.linspace(2.0, 6.0, 400)
-    axis.plot(places, gaussian_kde(values)(places), color=_COLOURS.get(name, _OTHER))
+    axis.plot(places, gaussian_kde(values)(places), color=formats.by_name(name).colour)
 
 
 def _ratios(frame: pl.DataFrame) -> Figure:
     """HyMeKo's length over the own format's, per robot: as it was found and as it is printed."""
     import polars as pl
 
-    sources = [name for name in ("urdf", "xacro", "mjcf", "usd") if name in set(frame["format"])]
+    sources = [format.name for format in _others() if format.name in set(frame["format"])]
     figure = _figure(8.0, 3.2)
     axis = figure.subplots()
     boxes, labels = [], []
@@ -120,13 +126,13 @@ def _scatter(frame: pl.DataFrame) -> Figure:
 
     figure = _figure(5.6, 5.2)
     axis = figure.subplots()
-    for source in ("urdf", "xacro", "mjcf", "usd"):
-        column = "urdf" if source == "xacro" and "xacro" not in frame.columns else source
-        own = frame.filter(pl.col("format") == source)
+    for format in _others():
+        column = format.expands_to if format.expands_to and format.name not in frame.columns else format.name
+        own = frame.filter(pl.col("format") == format.name)
         both = own.drop_nulls([HYMEKO, column]) if column in own.columns else own.head(0)
         if len(both):
-            label = f"{source} ({len(both)})"
-            axis.scatter(both[column].to_numpy(), both[HYMEKO].to_numpy(), s=9, alpha=0.6, color=_COLOURS[source], label=label)
+            label = f"{format.name} ({len(both)})"
+            axis.scatter(both[column].to_numpy(), both[HYMEKO].to_numpy(), s=9, alpha=0.6, color=format.colour, label=label)
     ends = np.array([2e2, 1e6])
     axis.plot(ends, ends, color="black", linewidth=0.8)
     axis.plot(ends, ends / 2, color="black", linewidth=0.8, linestyle=":")

@@ -57,15 +57,14 @@ class Plan:
 def pairs_of(words: str) -> tuple[tuple[str, str], ...]:
     """The pairs named by ``urdf:mjcf,mjcf:usd`` or by ``all``, from the table of formats.
 
-    ``all`` is every format that can be read times every format that can be written; of formats with one reader (the
-    containers of USD) the first stands for the others.
+    ``all`` is every format that can be read times every format that can be written; the containers of one format
+    are one.
 
     Raises: Refusal HX003 when a format is not known; ValueError when the words are no pairs.
     """
     if words == "all":
-        first = {format.frontend: format for format in reversed(formats.FORMATS)}
-        stand = [format for format in formats.FORMATS if first.get(format.frontend) is format]
-        return tuple((a.name, b.name) for a in stand if a.frontend for b in stand if b.backend)
+        rows = formats.families()
+        return tuple((a.name, b.name) for a in rows if a.frontend for b in rows if b.backend)
     found = []
     for word in words.split(","):
         source, colon, target = word.partition(":")

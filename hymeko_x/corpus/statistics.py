@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from hymeko_x import formats
 from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ PRINTED = "as printed"
 SEED = 74
 DRAWS = 10_000
 _BLOCK = 2_000_000
-HYMEKO = "hymeko"
+HYMEKO = formats.OWN.name
 _LONGEST_PLACE = 160
 
 

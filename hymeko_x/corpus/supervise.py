@@ -30,13 +30,8 @@ if TYPE_CHECKING:
 _PRELOADED = (
     "hymeko_x.meshes.mesh",
     "hymeko_x.corpus.work",
-    "hymeko_x.frontends.mjcf.weigh",
     "hymeko_x.verify.compare",
-    "hymeko_x.verify.readers.hymeko",
     "hymeko_x.verify.readers.mechanism",
-    "hymeko_x.verify.readers.mjcf",
-    "hymeko_x.verify.readers.urdf",
-    "hymeko_x.verify.readers.usd",
     "networkx",
     "scipy.sparse",
     "scipy.spatial",
@@ -101,8 +96,9 @@ def _context() -> multiprocessing.context.BaseContext:
 
 def preloaded() -> tuple[str, ...]:
     """The modules that are loaded once, in the server that the processes are forked from."""
-    ours = (module for format in formats.FORMATS for module in (format.frontend, format.backend) if module)
-    return (*dict.fromkeys(ours), *_PRELOADED)
+    rows = [row for row in formats.FORMATS if row.frontend]
+    ours = [name for row in rows for name in (row.frontend, row.backend, row.reference, row.completes) if name]
+    return (*dict.fromkeys(name.partition(":")[0] for name in ours), *_PRELOADED)
 
 
 def supervise(case: Case, plan: Plan, folder: str, processes: Processes, task: Task = work) -> Outcome:

@@ -40,12 +40,6 @@ if TYPE_CHECKING:
 NOTES = "steps.jsonl"
 """The file in the scratch folder that the steps are written to."""
 
-_INCLUDES = {
-    "mjcf": re.compile(rb"<include\b"),
-    "xacro": re.compile(rb"<xacro:include\b"),
-    "usd": re.compile(rb"@[^@\n]+\.usd[acz]?@"),
-    "hymeko": re.compile(rb"^\s*(?:@?import|#include)\b|^\s*\w+\s*:\s*import\b", re.MULTILINE),
-}
 _PACKAGE = re.compile(rb"(?:package|model)://([^/\"'\s]+)")
 _INDEX = re.compile(r"\[[^\]]*\]")
 
@@ -123,11 +117,11 @@ def _read(case: Case, folder: Path, said: dict[str, Any]) -> tuple[Source, Mecha
 
 
 def _as_found(robot: Robot, source: Source) -> Robot:
-    includes = _INCLUDES.get(robot.format)
+    includes = formats.by_name(robot.format).includes
     return replace(
         robot,
         sha256=hashlib.sha256(source.data).hexdigest(),
-        whole=includes is None or not includes.search(source.data),
+        whole=includes is None or not re.search(includes, source.data),
         **asdict(lengths(source.data, robot.format)),
     )
 
@@ -135,7 +129,7 @@ def _as_found(robot: Robot, source: Source) -> Robot:
 def _counted(robot: Robot, mechanism: Mechanism, report: Report) -> Robot:
     joints = [part for part in mechanism.graph.edges.values() if isinstance(part.data, Joint)]
     bodies = sum(isinstance(part, Body) for part in mechanism.graph.vertices.values())
-    shapes = sum(isinstance(part, Shape) for part in mechanism.graph.vertices.values())
+    shapes = sum(isinstance(edge.data, Shape) for edge in mechanism.graph.edges.values())
     dofs = sum(len(joint.data.dofs) for joint in joints if isinstance(joint.data, Joint))
     return replace(robot, bodies=bodies, joints=len(joints), dofs=dofs, shapes=shapes, diagnostics=_by_code(report))
 
@@ -208,8 +202,7 @@ def _verdict(desk: Desk, model: KinematicModel, output: Path) -> Verdict:
 
 
 def _output(desk: Desk, target: str) -> Path:
-    suffixes = formats.by_name(target).suffixes
-    return desk.scratch / target / f"robot{'.xml' if '.xml' in suffixes else suffixes[0]}"  # MuJoCo takes no other
+    return desk.scratch / target / f"robot{formats.by_name(target).suffixes[0]}"
 
 
 # ---- words -----------------------------------------------------------------------------------------------------------

@@ -1,54 +1,233 @@
-"""The table of formats, and how a file's format is recognised. Readers and writers are named, and loaded only when used."""
+"""The table of formats: one row holds everything particular to a format that anything outside its own rooms asks for.
+
+Modules and functions are named, as ``module`` or ``module:function``, and loaded when they are used. Adding a format means its words,
+its reader, its writer, and one row here.
+"""
 
 from __future__ import annotations
 
 import re
+from dataclasses import field, replace
+from importlib import import_module
 from os.path import splitext
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.frozen import frozen
+from hymeko_x.ir.mechanism import ROOT
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.mechanism import Mechanism
+
+_XML_TOKENS = "hymeko_x.corpus.lengths:xml_tokens"
 
 
 @frozen
 class Format:
-    """One format: its word on the command line, title, file suffixes, and the modules that read and write it (None = not at all).
-
-    ``roots`` are the XML root elements, and ``magic`` the first bytes, by which its content is recognised;
-    ``has_arguments`` whether the user can set values in it (xacro), ``has_variants`` whether it leaves choices open (USD).
-    """
+    """One format. Only name, title and suffixes are needed; without ``frontend`` it cannot be read, without ``backend`` not written."""
 
     name: str
+    """Its name on the command line, and of the extras and notations that it alone understands."""
     title: str
     suffixes: tuple[str, ...]
-    frontend: str | None
-    backend: str | None
+    """The suffixes of its files, first the one that is written."""
+
+    # ---- how it is recognised, read and written
+    frontend: str | None = None
+    """The module with ``read(source, report)``."""
+    backend: str | None = None
+    """The module with ``write(mechanism, report)``."""
+    rules: str | None = None
+    """The module with the rewriting rules in order: ``RULES``, and ``NATIVE`` for what came from this format."""
     roots: tuple[str, ...] = ()
+    """The XML root elements of its files."""
     magic: tuple[bytes, ...] = ()
+    """The first bytes of its files."""
+    is_exact: bool = False
+    """Whether it represents every mechanism exactly, so that it carries no residue and keeps what only another format understands."""
+    container_of: str = ""
+    """The name of the format of which it is another container, with the same reader and the same extras (usdc, usdz)."""
+    expands_to: str = ""
+    """The name of the format that its files expand to (xacro)."""
     has_arguments: bool = False
+    """Whether the user can set values in it (xacro)."""
     has_variants: bool = False
+    """Whether its files leave choices open (USD)."""
+    completes: str | None = None
+    """The function ``(mechanism, printed, files, report) -> mechanism`` that adds what only this format's engine computes, for a
+    mechanism that came from this format and goes to another one; ``printed()`` gives it as this format has it."""
+
+    # ---- its files
+    assets: Literal["copy", "reference"] = "copy"
+    """Whether meshes and images are put beside the output when the user does not choose."""
+    pack: str | None = None
+    """The function ``(mechanism, shelf, files, report) -> mechanism`` that names its files; None: it refers to any file by its uri."""
+    keeps_package_uris: bool = False
+    """Whether ``package://NAME`` is written as it is: programs that read the format find packages in their own ways."""
+
+    # ---- what the ledger and HyMeKo text ask
+    stated_notations: Mapping[str, str] = field(default_factory=dict)
+    """Notations that hold more than how a value was written, by the name of the field as which the ledger lists them."""
+    inherited: str | None = None
+    """The function ``text -> text`` that leaves out of an extra what the elements have in fields of their own (classes of MJCF)."""
+    boilerplate: frozenset[str] = frozenset()
+    """Fields of the whole that every file of the format has, and no other."""
+    has_compact_extras: bool = False
+    """Whether no white space stands between the tags of its extras."""
+
+    # ---- what the verifier asks
+    reference: str | None = None
+    """The module with ``read(path, places)`` that loads a file with the engine whose reading is authoritative."""
+    engines: Mapping[str, str] = field(default_factory=dict)
+    """The libraries that the reference reader imports, with the package that installs each."""
+    names_are_identifiers: bool = False
+    """Whether a name may hold letters, digits and underscores only, so that others are spelled differently (USD)."""
+    has_single_dof_joints: bool = False
+    """Whether a joint of several dofs becomes a chain of joints (URDF)."""
+    requires_mass: bool = False
+    """Whether its engine refuses moving bodies without mass (MJCF)."""
+    missing_shapes: frozenset[str] = frozenset()
+    """The kinds of shapes that it cannot represent."""
+
+    # ---- what the statistics of the corpus ask
+    tokens: str = _XML_TOKENS
+    """The function ``text -> list of tokens`` that counts its length."""
+    includes: bytes | None = None
+    """The pattern by which a file refers to others of its format, so that its length is not that of the robot."""
+    holds_points: bool = False
+    """Whether its text holds the points of meshes, so that its length says nothing about the language."""
+    claimed_reduction: float | None = None
+    """By how many percent HyMeKo is shorter, as the paper reports it."""
+    colour: str = "#7f7f7f"
+    """Its colour in figures."""
+
+    @property
+    def family(self) -> str:
+        """The name that extras of this format bear: its own, or that of the format of which it is another container."""
+        return self.container_of or self.name
 
 
-HYMEKO = Format("hymeko", "HyMeKo hypergraph text", (".hymeko", ".himeko"), "hymeko_x.frontends.hymeko", "hymeko_x.backends.hymeko")
-URDF = Format("urdf", "Unified Robot Description Format (ROS)", (".urdf",), "hymeko_x.frontends.urdf", "hymeko_x.backends.urdf", ("robot",))
-XACRO = Format("xacro", "XML macros for URDF (ROS)", (".xacro",), "hymeko_x.frontends.xacro", "hymeko_x.backends.xacro", has_arguments=True)
-MJCF = Format("mjcf", "MuJoCo XML", (".mjcf", ".xml"), "hymeko_x.frontends.mjcf", "hymeko_x.backends.mjcf", ("mujoco", "mujocoinclude"))
-_USD_MAGIC = (b"#usda", b"PXR-USDC")
-_READS_USD = "hymeko_x.frontends.usd"
+HYMEKO = Format(
+    "hymeko",
+    "HyMeKo hypergraph text",
+    (".hymeko", ".himeko"),
+    "hymeko_x.frontends.hymeko",
+    "hymeko_x.backends.hymeko",
+    is_exact=True,
+    assets="reference",
+    reference="hymeko_x.verify.readers.hymeko",
+    tokens="hymeko_x.formats.hymeko.tokens:tokens",
+    includes=rb"(?m)^\s*(?:@?import|#include)\b|^\s*\w+\s*:\s*import\b",
+    colour="#ff7f0e",
+)
+URDF = Format(
+    "urdf",
+    "Unified Robot Description Format (ROS)",
+    (".urdf",),
+    "hymeko_x.frontends.urdf",
+    "hymeko_x.backends.urdf",
+    "hymeko_x.backends.urdf.rules",
+    roots=("robot",),
+    keeps_package_uris=True,
+    reference="hymeko_x.verify.readers.urdf",
+    engines=MappingProxyType({"pinocchio": "pin", "yourdfpy": "yourdfpy", "pydrake": "drake"}),
+    has_single_dof_joints=True,
+    missing_shapes=frozenset({"plane", "hfield", "ellipsoid"}),
+    claimed_reduction=50.0,
+    colour="#1f77b4",
+)
+XACRO = Format(
+    "xacro",
+    "XML macros for URDF (ROS)",
+    (".xacro",),
+    "hymeko_x.frontends.xacro",
+    "hymeko_x.backends.xacro",
+    "hymeko_x.backends.xacro.rules",
+    expands_to="urdf",
+    has_arguments=True,
+    keeps_package_uris=True,
+    boilerplate=frozenset({"urdf @xmlns:xacro"}),  # each file declares its own prefix, and no expansion does
+    reference="hymeko_x.verify.readers.xacro",
+    engines=MappingProxyType({**URDF.engines, "xacro": "xacro"}),
+    has_single_dof_joints=True,
+    missing_shapes=URDF.missing_shapes,
+    includes=rb"<xacro:include\b",
+    colour="#9467bd",
+)
+MJCF = Format(
+    "mjcf",
+    "MuJoCo XML",
+    (".xml", ".mjcf"),
+    "hymeko_x.frontends.mjcf",
+    "hymeko_x.backends.mjcf",
+    "hymeko_x.backends.mjcf.rules",
+    roots=("mujoco", "mujocoinclude"),
+    completes="hymeko_x.frontends.mjcf.weigh:weigh",
+    pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
+    inherited="hymeko_x.formats.mjcf.classes:without_inherited",
+    has_compact_extras=True,
+    reference="hymeko_x.verify.readers.mjcf",
+    engines=MappingProxyType({"mujoco": "mujoco"}),
+    requires_mass=True,
+    includes=rb"<include\b",
+    claimed_reduction=20.0,
+    colour="#d62728",
+)
 USD = Format(
     "usd",
     "Universal Scene Description, text",
     (".usda", ".usd"),
-    _READS_USD,
+    "hymeko_x.frontends.usd",
     "hymeko_x.backends.usd",
-    magic=_USD_MAGIC,
+    "hymeko_x.backends.usd.rules",
+    magic=(b"#usda", b"PXR-USDC"),
     has_variants=True,
+    pack="hymeko_x.backends.usd.files:pack_for_usd",
+    reference="hymeko_x.verify.readers.usd",
+    engines=MappingProxyType({"pxr": "usd-core"}),
+    stated_notations=MappingProxyType({"pose on the stage": "usd.pose"}),
+    names_are_identifiers=True,
+    tokens="hymeko_x.formats.usd.tokens:tokens",
+    includes=rb"@[^@\n]+\.usd[acz]?@",
+    holds_points=True,
+    colour="#2ca02c",
 )
-USDC = Format("usdc", "Universal Scene Description, binary", (".usdc",), _READS_USD, "hymeko_x.backends.usd.crate", has_variants=True)
-USDZ = Format("usdz", "Universal Scene Description, package", (".usdz",), _READS_USD, "hymeko_x.backends.usd.bundle", has_variants=True)
+USDC = replace(
+    USD,
+    name="usdc",
+    title="Universal Scene Description, binary",
+    suffixes=(".usdc",),
+    backend="hymeko_x.backends.usd.crate",
+    magic=(),
+    container_of="usd",
+)
+USDZ = replace(
+    USD,
+    name="usdz",
+    title="Universal Scene Description, package",
+    suffixes=(".usdz",),
+    backend="hymeko_x.backends.usd.bundle",
+    magic=(),
+    container_of="usd",
+)
+SDF = Format(
+    "sdf",
+    "Simulation Description Format (Gazebo)",
+    (".sdf", ".world"),
+    roots=("sdf",),
+    reference="hymeko_x.verify.readers.sdf",
+    engines=MappingProxyType({"pydrake": "drake"}),
+)
 
-FORMATS = (HYMEKO, URDF, XACRO, MJCF, USD, USDC, USDZ)
-"""Every format that can be read or written. Where two claim a suffix, the content decides, and then the first one."""
+FORMATS: tuple[Format, ...] = (HYMEKO, URDF, XACRO, MJCF, USD, USDC, USDZ, SDF)
+"""Every format that can be read, written or verified. Where two claim a suffix, the content decides, and then the first one."""
+
+OWN = HYMEKO
+"""The project's own language: what text without suffix and root element is, and what `import` writes."""
 
 
 def by_name(name: str) -> Format:
@@ -62,17 +241,35 @@ def by_name(name: str) -> Format:
     raise refuse(codes.UNKNOWN_FORMAT, f"there is no format '{name}'", hint=f"known: {', '.join(format.name for format in FORMATS)}")
 
 
+def families() -> tuple[Format, ...]:
+    """The formats without those that are another container of one of them."""
+    return tuple(format for format in FORMATS if not format.container_of)
+
+
+def native_format(mechanism: Mechanism) -> Format | None:
+    """The format whose engine gives a mechanism more than its parts hold, if it came from there; see :attr:`Format.completes`."""
+    own = mechanism.notations.get(ROOT, {})
+    return next((format for format in FORMATS if format.completes and format.name in own), None)
+
+
+def loaded(name: str) -> Any:
+    """The module, or the function of a module, that a row names as ``module`` or ``module:function``."""
+    module, _, function = name.partition(":")
+    found = import_module(module)
+    return getattr(found, function) if function else found
+
+
 def of_output(path: str, name: str | None = None) -> Format:
     """The format of a file to be written: the named one, or that of its suffix.
 
-    Of the kinds of one format the suffix chooses, since readers go by it: ``usd`` in a ``.usdc`` is binary. A ``.usd`` may be any.
+    Of the containers of one format the suffix chooses, since readers go by it: ``usd`` in a ``.usdc`` is binary. A ``.usd`` may be any.
 
     Raises: Refusal HX003.
     """
     owner = next((format for format in FORMATS if path.lower().endswith(format.suffixes)), None)
     if name is not None:
         named = by_name(name)
-        is_kin = owner is not None and owner.frontend == named.frontend and not path.lower().endswith(".usd")
+        is_kin = owner is not None and owner.family == named.family and not path.lower().endswith(".usd")
         return owner if owner is not None and is_kin else named
     if owner is not None:
         return owner
@@ -91,9 +288,9 @@ def of_input(name: str, data: bytes) -> Format:
     if len(owners) == 1 and suffix != ".xml":
         return owners[0]
     root = xml_root(data)
-    found = [format for format in FORMATS if root in format.roots or (format.magic and data.startswith(format.magic))]
-    if found:
-        return found[0]
+    found = of_root(root) or next((format for format in FORMATS if format.magic and data.startswith(format.magic)), None)
+    if found is not None:
+        return found
     if root is not None:
         raise refuse(codes.UNKNOWN_FORMAT, f"the root element <{root}> belongs to no format", Origin(name), hint=_root_hint())
     if owners:
@@ -101,7 +298,12 @@ def of_input(name: str, data: bytes) -> Format:
     if suffix not in ("", ".txt") or b"\0" in data[:4096]:
         message = f"neither suffix nor content of '{name}' belongs to a format"
         raise refuse(codes.UNKNOWN_FORMAT, message, Origin(name), hint=_suffix_hint("--from"))
-    return HYMEKO
+    return OWN
+
+
+def of_root(root: str | None) -> Format | None:
+    """The format whose XML files have this root element, or None."""
+    return next((format for format in FORMATS if root in format.roots), None)
 
 
 _BEFORE_ROOT = re.compile(rb"\s+|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>\[]*(?:\[.*?\]\s*)?>", re.DOTALL)
@@ -120,7 +322,8 @@ def xml_root(data: bytes) -> str | None:
 
 
 def _suffix_hint(option: str) -> str:
-    return f"name it with {option}; known suffixes: {', '.join(suffix for format in FORMATS for suffix in format.suffixes)}"
+    usable = (format for format in FORMATS if (format.frontend if option == "--from" else format.backend))
+    return f"name it with {option}; known suffixes: {', '.join(suffix for format in usable for suffix in format.suffixes)}"
 
 
 def _root_hint() -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from hymeko_x import formats
 from hymeko_x.language.markup import Spacing
 
 PLACE = "place"
@@ -17,13 +18,12 @@ SECTION = re.compile(r"(?!preceding\b|following\b)\w+")
 SECTION_COMMENT = re.compile(rf"\[({SECTION.pattern})\] (.+)", re.DOTALL)
 """A comment between the elements that stood in a section of its format: ``// [asset] meshes``."""
 
-_COMPACT = frozenset({"mjcf"})
 _NESTED = Spacing("    ", "  ")
 _OUTER = Spacing("  ", "  ")
 
 
-def usual_spacing(form: str, *, at_root: bool) -> Spacing | None:
+def usual_spacing(format: str, *, at_root: bool) -> Spacing | None:
     """The white space between the tags of a format's children that needs no word: of the whole, or of an element."""
-    if form in _COMPACT:
+    if any(row.name == format and row.has_compact_extras for row in formats.FORMATS):
         return None
     return _OUTER if at_root else _NESTED

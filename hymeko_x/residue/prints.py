@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
+from hymeko_x import formats
 from hymeko_x.ir.parts import Body, Joint, Shape
 from hymeko_x.residue.paths import canonical, canonical_without_name, digest, digest_of_texts
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotEdge
-
-_IN_ELEMENTS = re.compile(
-    r"\s(?:type|size|material|rgba|density|friction|axis|range|ref|springref|stiffness|damping|frictionloss|armature|actuatorfrcrange|"
-    r'ctrlrange|forcerange|gear|kp|kv|dampratio)="[^"]*"'
-)
-"""What a default class of MJCF says for its elements, each of which has it in a field of its own when it is read."""
-
 
 _SIGNS = {1: "1.0", -1: "-1.0", 0: "0.0"}
 
@@ -83,9 +76,10 @@ class Prints:
 
 
 def print_of_extra(extra: Extra) -> str:
-    """The digest of an extra; of default classes only of what no element has in a field, where an edit would be seen."""
-    is_classes = extra.format == "mjcf" and not extra.path and extra.text.startswith("<default")
-    return digest(extra.format, extra.path, _IN_ELEMENTS.sub("", extra.text) if is_classes else extra.text)
+    """The digest of an extra, without what elements inherit from it and have in a field, where an edit would be seen."""
+    inherited = next((row.inherited for row in formats.FORMATS if row.name == extra.format), None)
+    text = extra.text if extra.path or inherited is None else formats.loaded(inherited)(extra.text)
+    return digest(extra.format, extra.path, text)
 
 
 def shape_group(edge: RobotEdge) -> str:

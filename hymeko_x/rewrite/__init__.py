@@ -6,15 +6,13 @@ second application changes nothing. Backends receive the result and only print.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
-from importlib import import_module
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
 
+from hymeko_x import formats
 from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.rewrite.native import is_native
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -49,22 +47,13 @@ WITHIN = "files.within"
 
 Rule = Callable[["Mechanism", Options, "Report"], "Mechanism"]
 
-_RULES: Mapping[str, str] = MappingProxyType(
-    {
-        **dict.fromkeys(("usd", "usdc", "usdz"), "usd"),
-        "mjcf": "mjcf",
-        "urdf": "urdf",
-        "xacro": "xacro",
-    }
-)
-"""Where the rules of a target are, in order: ``RULES`` of ``hymeko_x.ir.rules_NAME``. Others take every mechanism as it is."""
-
 
 def rules_of(target: str, *, native: bool = False) -> tuple[Rule, ...]:
-    """The rules of a target, loaded now; ``native`` for what came from MJCF and goes there again."""
-    if target not in _RULES:
+    """The rules of a target, loaded now; ``native`` for what came from MJCF and goes there again. None = it takes every mechanism."""
+    rules = formats.by_name(target).rules
+    if rules is None:
         return ()
-    module = import_module(f"hymeko_x.backends.{_RULES[target]}.rules")
+    module = formats.loaded(rules)
     found: tuple[Rule, ...] = module.NATIVE if native else module.RULES
     return found
 
@@ -74,7 +63,7 @@ def legalize(mechanism: Mechanism, target: str, options: Options, report: Report
 
     What came from MJCF, directly, through HyMeKo text or carried by another file, is legal there but for what was edited since.
     """
-    native = target == "mjcf" and is_native(mechanism)
+    native = formats.by_name(target) is formats.native_format(mechanism)
     for rule in rules_of(target, native=native):
         mechanism = rule(mechanism, options, report)
     if options.within:

@@ -9,7 +9,7 @@ import pytest
 from hymeko_x import formats
 from hymeko_x.corpus import catalog, engines
 from hymeko_x.corpus.cases import from_folder, own_robots
-from hymeko_x.corpus.lengths import lengths, tokens_of
+from hymeko_x.corpus.lengths import lengths
 from hymeko_x.corpus.plan import Plan, pairs_of
 from hymeko_x.corpus.rows import Leg, Outcome, Robot
 from hymeko_x.corpus.statistics import interval, signed_rank
@@ -92,7 +92,7 @@ def test_all_pairs_are_those_of_the_table_of_formats() -> None:
     ],
 )
 def test_tokens_are_those_of_the_formats_own_lexer(format: str, text: str, tokens: list[str]) -> None:
-    assert tokens_of(text, format) == tokens
+    assert formats.loaded(formats.by_name(format).tokens)(text) == tokens
     found = lengths(text.encode(), format)
     assert (found.tokens, found.code) == (len(tokens), sum(len("".join(token.split())) for token in tokens))
     assert found.characters == len("".join(text.split()))

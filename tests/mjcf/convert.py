@@ -10,6 +10,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
+from hymeko_x import formats
 from hymeko_x.assets.pack import pack
 from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Report
@@ -44,7 +45,7 @@ def convert(source: Source, options: Options = FIXED) -> Converted:
     report = Report()
     mechanism = urdf.read(source, report)
     legal = legalize(mechanism, "mjcf", options, report)
-    packed, files, copies = pack(legal, "mjcf", source.files, None, report)
+    packed, files, copies = pack(legal, formats.MJCF, source.files, None, report)
     assets = files | {name: source.files.read(path) for name, path in copies.items()}
     return Converted(mechanism, legal, mjcf.write(packed, report).main.decode(), assets, report)
 

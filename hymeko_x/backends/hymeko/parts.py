@@ -10,6 +10,7 @@ from hymeko_x.backends.hymeko.foreign import foreign_items
 from hymeko_x.formats.hymeko import (
     ATTACHED,
     CHILD_CLASS,
+    FOREIGN,
     LIMIT_WORDS,
     NAMED_AFTER_ID,
     PARTS,
@@ -37,9 +38,8 @@ _WORD = re.compile(r"[^\W\d]\w*")
 _NO_WORDS = frozenset({"inf", "nan", "rel", "seq", "concurrent", "use", "import", "as"})
 _ALL_KINDS = tuple(KINDS.values())
 _DIRECTIONS = {1: "+", 0: "~", -1: "-"}
-_FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro"})
 _FLAGS = frozenset({"unnamed", "kind", "moves", "scope"})
-_SETTINGS = _FOREIGN | _FLAGS | {"hymeko", "extra", "class", CHILD_CLASS, "written"}
+_SETTINGS = FOREIGN | _FLAGS | {"extra", "class", CHILD_CLASS, "written"}
 _SPANS = frozenset({"limit", "limits", "range"}) | {word.word for word in LIMIT_WORDS}
 
 

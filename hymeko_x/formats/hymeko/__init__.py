@@ -5,6 +5,7 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
+from hymeko_x import formats
 from hymeko_x.ir import parts
 from hymeko_x.ir.values import X
 
@@ -270,7 +271,7 @@ TARGETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 )
 """The kinds that a reference in an edge may mean, the likeliest first; empty = any kind."""
 
-FOREIGN = frozenset({"urdf", "mjcf", "usd", "sdf", "srdf", "xacro", "hymeko"})
+FOREIGN = frozenset({*(format.family for format in formats.FORMATS), "srdf"})
 """Fields of these names hold what a format said verbatim."""
 
 SETTINGS = FOREIGN | {"extra", "written", "files", "scope"}

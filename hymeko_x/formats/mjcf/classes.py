@@ -6,6 +6,7 @@ a nested class begins with what its parent has. Source: MuJoCo XML reference, de
 
 from __future__ import annotations
 
+import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -160,3 +161,15 @@ def merge(base: Mapping[str, str], own: Mapping[str, str]) -> Mapping[str, str]:
 def _completed(own: str, base: str) -> str:
     first, rest = own.split(), base.split()
     return own if len(first) >= len(rest) else " ".join([*first, *rest[len(first) :]])
+
+
+_IN_ELEMENTS = re.compile(
+    r"\s(?:type|size|material|rgba|density|friction|axis|range|ref|springref|stiffness|damping|frictionloss|armature|actuatorfrcrange|"
+    r'ctrlrange|forcerange|gear|kp|kv|dampratio)="[^"]*"'
+)
+"""Attributes in a default class that each of its elements has in a field of its own when it is read."""
+
+
+def without_inherited(text: str) -> str:
+    """An element of the file; of default classes only what no element has in a field."""
+    return _IN_ELEMENTS.sub("", text) if text.startswith("<default") else text
