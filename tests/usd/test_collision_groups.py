@@ -17,7 +17,7 @@ import hymeko_x as hx
 from hymeko_x.compare.diff import diff
 from hymeko_x.corpus import catalog
 from hymeko_x.diagnostics import Report
-from hymeko_x.frontends.usd import collision_groups
+from hymeko_x.frontends.usd import contacts
 from hymeko_x.ir.mechanism import WORLD, Mechanism
 from hymeko_x.ir.parts import Contact
 from tests.conftest import RealRobots
@@ -171,8 +171,7 @@ def test_groups_of_thousands_of_bodies_are_kept_and_said(tmp_path: Path) -> None
     mechanism = read_text(stage(group("g", " ".join(names), "g"), bodies=" ".join(names), more=""), report)
     assert apart(mechanism) == set()
     assert [item.message for item in report] == [
-        f"collision groups with more than {collision_groups.MOST_PAIRS} pairs of bodies are kept as written; "
-        "other formats do not hear of them"
+        f"collision groups with more than {contacts.MOST_PAIRS} pairs of bodies are kept as written; other formats do not hear of them"
     ]
     assert groups_of(opened(written(mechanism), tmp_path)) == {"/r/g": ["/r/g"]}
 

@@ -12,7 +12,7 @@ from pxr import Sdf, Usd, UsdGeom, UsdPhysics
 
 import hymeko_x as hx
 from hymeko_x import formats, pipeline
-from hymeko_x.backends.usd.carrier import carry_in_text
+from hymeko_x.backends.usd.layers import carry_in_text
 from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.formats import carrier

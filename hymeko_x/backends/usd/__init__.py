@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Kind, Sdf, UsdGeom
 
-from hymeko_x.backends.usd.actuators import write_actuators
-from hymeko_x.backends.usd.bodies import write_bodies, write_mounts
-from hymeko_x.backends.usd.carrier import carry_in_text as carry_residue
+from hymeko_x.backends.usd.actuators import write_actuators, write_drives
+from hymeko_x.backends.usd.bodies import write_bodies
 from hymeko_x.backends.usd.contacts import write_contacts, write_frictions
+from hymeko_x.backends.usd.couplings import write_mimics
 from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
+from hymeko_x.backends.usd.layers import carry_in_text as carry_residue
 from hymeko_x.backends.usd.layers import encoded, set_points_aside, split
 from hymeko_x.backends.usd.materials import write_materials
-from hymeko_x.backends.usd.prims import author
-from hymeko_x.backends.usd.relations import write_drives, write_mimics
+from hymeko_x.backends.usd.mounts import write_mounts
 from hymeko_x.backends.usd.shapes import write_shapes
-from hymeko_x.backends.usd.sheet import Sheet, apply, valid_name
+from hymeko_x.backends.usd.sheet import Sheet, apply, author, valid_name
 from hymeko_x.backends.usd.tendons import write_tendons
 from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd import LAYOUT, POINTS
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.rewrite import WITHIN
-from hymeko_x.rewrite.usd import LAYOUT, POINTS
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:

@@ -1,23 +1,67 @@
-"""Actuators that UsdPhysics' drives cannot say, as MjcActuator prims."""
+"""Actuators: servos and motors as drives of UsdPhysics, all others as MjcActuator prims."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 from pxr import Vt
 
-from hymeko_x.backends.usd.prims import T
-from hymeko_x.backends.usd.relations import SERVOS, prim_of
-from hymeko_x.backends.usd.sheet import point, put
+from hymeko_x.backends.usd.sheet import T, apply, dof_of, point, prim_of, put
+from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import actuators as table
 from hymeko_x.ir.mechanism import numbers_weight
-from hymeko_x.ir.parts import Actuator, Drive
+from hymeko_x.ir.parts import Actuator, DofKind, Drive
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.prims import Prim
-    from hymeko_x.backends.usd.sheet import Sheet
-    from hymeko_x.ir.mechanism import RobotArc
-    from hymeko_x.ir.parts import Parameters
+    from hymeko_x.backends.usd.sheet import Prim, Sheet
+    from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.ir.parts import Dof, Parameters
+
+
+# ---- drives of UsdPhysics ----------------------------------------------------------------------------------------------------------
+
+SERVOS = ("position", "velocity")
+"""The kinds of actuators that are drives on a joint."""
+
+
+def write_drives(sheet: Sheet) -> None:
+    """Each servo or motor on one dof as a DriveAPI of its joint; gains per degree, force limits from its force range."""
+    driven_prims: set[Any] = set()
+    for key, _, arcs in sheet.mechanism.edges(Drive):
+        source = next((arc.target for arc in arcs if arc.sign > 0), None)
+        driven = next((arc for arc in arcs if arc.sign < 0), None)
+        actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
+        found = dof_of(sheet, driven) if driven is not None else None
+        if found is None or source is None or not isinstance(actuator, Actuator) or not _is_drive(sheet, source, actuator):
+            continue
+        spec, axis, dof = found
+        _write_drive(spec, axis or ("angular" if dof.kind is DofKind.HINGE else "linear"), actuator, dof)
+        if spec.path not in driven_prims:
+            driven_prims.add(spec.path)
+            sheet.homes |= {source: spec.path, key: spec.path}
+
+
+def _is_drive(sheet: Sheet, key: Id, actuator: Actuator) -> bool:
+    """Whether a drive says it: servos, and motors that were drives before."""
+    noted = sheet.mechanism.notation(key, words.TYPE)
+    return actuator.kind in SERVOS or (actuator.kind == "motor" and noted in words.DRIVES)
+
+
+def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None:
+    unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else 1.0
+    said = dict(actuator.parameters)
+    apply(spec, f"PhysicsDriveAPI:{instance}")
+    for name, parameter in (("stiffness", "kp"), ("damping", "kv")):
+        value = said.get(parameter)
+        if isinstance(value, int | float):
+            put(spec, f"drive:{instance}:physics:{name}", T.Float, value * unit)
+    most = said.get("forcerange")
+    if isinstance(most, tuple) and len(most) == 2:
+        put(spec, f"drive:{instance}:physics:maxForce", T.Float, max(map(abs, most)))
+
+
+# ---- MjcActuator -------------------------------------------------------------------------------------------------------------------
 
 
 def write_actuators(sheet: Sheet) -> None:

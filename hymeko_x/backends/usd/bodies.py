@@ -1,4 +1,4 @@
-"""Bodies with their poses in the world and mass properties, and the frames and cameras on them."""
+"""Bodies with their poses in the world and their mass properties."""
 
 from __future__ import annotations
 
@@ -7,26 +7,22 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Vt
 
-from hymeko_x.backends.usd.prims import T
 from hymeko_x.backends.usd.shapes import gprim_of, skin_pose
-from hymeko_x.backends.usd.sheet import apply, put, quatf, transform
+from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
 from hymeko_x.formats import usd as words
-from hymeko_x.ir.mechanism import ROOT, WORLD, pose_weight
-from hymeko_x.ir.parts import Body, Camera, Frame, Light, Mesh, Mount, Tendon
+from hymeko_x.formats.usd import NESTED
+from hymeko_x.ir.mechanism import ROOT, WORLD
+from hymeko_x.ir.parts import Body, Mesh
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle, unit_quat
-from hymeko_x.rewrite.usd import NESTED
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.prims import Prim
     from hymeko_x.backends.usd.sheet import Sheet
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Quat, Tensor, Vec3
 
 _NEAR = 1e-9
-_SITE_SIZE = 0.005
-"""The radius in m of a site of which MJCF says none."""
 
 
 def write_bodies(sheet: Sheet) -> None:
@@ -161,61 +157,3 @@ def _eigen(tensor: Tensor) -> tuple[Vec3, Quat]:
     x, y, z = turn.GetImaginary()
     a, b, c = moments.tolist()
     return (a, b, c), (turn.GetReal(), x, y, z)
-
-
-# ---- what is mounted on bodies -----------------------------------------------------------------------------------------------
-
-
-def write_mounts(sheet: Sheet) -> None:
-    """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras and lights; each carries where it is mounted.
-
-    A site of a cable is a small ball that nobody sees, as MuJoCo's converter writes sites: Newton leads cables through shapes alone.
-    """
-    knots = {arc.target for _, _, arcs in sheet.mechanism.edges(Tendon) for arc in arcs if arc.target.kind == "frame"}
-    for key, _, arcs in sheet.mechanism.edges(Mount):
-        body = next((arc for arc in arcs if arc.sign > 0), None)
-        thing = next((arc for arc in arcs if arc.sign < 0), None)
-        part = sheet.mechanism.graph.vertices.get(thing.target) if thing else None
-        if body is None or thing is None or not isinstance(part, Frame | Camera | Light) or thing.target in sheet.homes:
-            continue
-        home = sheet.root if body.target == WORLD else sheet.homes.get(body.target)
-        if home is None:
-            continue
-        spec = sheet.place(thing.target, home, _type_of(part), below=body.target != WORLD)
-        sheet.homes[key] = spec.path
-        sheet.move(spec, pose_weight(body), on=body.target)
-        _write_thing(spec, part)
-        if isinstance(part, Frame) and thing.target in knots and sheet.mechanism.notation(thing.target, words.PATH) is None:
-            _write_ball(spec, part.size[0] if part.size and part.size[0] > 0.0 else _SITE_SIZE)
-
-
-def _write_ball(spec: Prim, radius: float) -> None:
-    """The shape of a site, of this radius in m."""
-    spec.kind = "Sphere"
-    put(spec, "radius", T.Double, radius)
-    put(spec, "purpose", T.Token, "guide")
-    put(spec, "extent", T.Float3Array, Vt.Vec3fArray([Gf.Vec3f(-radius), Gf.Vec3f(radius)]))
-
-
-def _type_of(part: Frame | Camera | Light) -> str:
-    match part:
-        case Frame():
-            return "Xform"
-        case Camera():
-            return "Camera"
-        case Light(kind):
-            return next((name for name, meant in words.LIGHTS.items() if meant == kind), "SphereLight")
-
-
-def _write_thing(spec: Any, part: Frame | Camera | Light) -> None:
-    """What a frame, a camera or a light says beside where it is."""
-    if isinstance(part, Frame):
-        apply(spec, *words.SITES)
-    elif isinstance(part, Light):
-        if part.kind == "spot":
-            apply(spec, words.CONE)
-        if part.diffuse is not None:
-            put(spec, "inputs:color", T.Color3f, Gf.Vec3f(*part.diffuse))
-    elif part.fovy is not None and 0.0 < part.fovy < math.pi:
-        put(spec, "verticalAperture", T.Float, words.APERTURE)
-        put(spec, "focalLength", T.Float, words.APERTURE / 2.0 / math.tan(part.fovy / 2.0))

@@ -1,13 +1,18 @@
-"""USD out as a zip package that holds the stage as a crate file, or as several, and its images."""
+"""USD as a zip package that holds the stage as a crate file, or as several, and its images."""
 
 from __future__ import annotations
 
+import os
+import tempfile
+import time
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.usd.archive import unzipped, zipped
-from hymeko_x.backends.usd.carrier import carry_in_zip as carry_residue
+from pxr import Sdf
+
 from hymeko_x.backends.usd.crate import write as write_crate
+from hymeko_x.backends.usd.layers import with_residue
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -15,8 +20,6 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
-
-__all__ = ["carry_residue", "enclose", "write"]
 
 _MAIN = "stage.usdc"
 
@@ -30,3 +33,37 @@ def write(mechanism: Mechanism, report: Report) -> Package:
 def enclose(package: Package, files: Mapping[str, bytes]) -> Package:
     """The package with the files in it that would lie beside it."""
     return replace(package, main=zipped(unzipped(package.main) | dict(files)))
+
+
+def carry_residue(package: Package, text: str) -> Package:
+    """The package with a residue in the first layer of its zip file; everything else in it stays."""
+    files = unzipped(package.main)
+    first = next(iter(files))
+    return replace(package, main=zipped(files | {first: with_residue(files[first], text)}))
+
+
+_BEGINNING = (1980, 1, 1, 0, 0, 0, 0, 0, -1)
+"""The date of every file, in whatever time zone, so that the same files make the same archive; a zip file knows none before it."""
+
+
+def zipped(files: Mapping[str, bytes]) -> bytes:
+    """Files as an archive in their order; they pass through a temporary folder, since USD writes archives of files on a disk only."""
+    date = time.mktime(_BEGINNING)
+    with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
+        outer = Path(folder) / "stage.usdz"
+        with Sdf.ZipFileWriter.CreateNew(str(outer)) as archive:
+            for number, (name, data) in enumerate(files.items()):
+                inner = Path(folder) / f"{number}{Path(name).suffix}"
+                inner.write_bytes(data)
+                os.utime(inner, (date, date))
+                archive.AddFile(str(inner), name)
+        return outer.read_bytes()
+
+
+def unzipped(data: bytes) -> dict[str, bytes]:
+    """The files in an archive, in their order."""
+    with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
+        path = Path(folder) / "stage.usdz"
+        path.write_bytes(data)
+        archive = Sdf.ZipFile.Open(str(path))
+        return {name: archive.GetFile(name) for name in archive.GetFileNames()}

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.backends.usd.prims import T
-from hymeko_x.backends.usd.sheet import apply, point, put
+from hymeko_x.backends.usd.sheet import T, apply, point, put
 from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd.contacts import APART_BY_GROUPS, GROUPED
 from hymeko_x.ir.parts import Contact, Role
-from hymeko_x.rewrite.usd import APART_BY_GROUPS, GROUPED
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import Sheet

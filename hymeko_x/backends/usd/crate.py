@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.usd import write_layers
-from hymeko_x.backends.usd.carrier import carry_in_crate as carry_residue
+from hymeko_x.backends.usd.layers import carry_in_crate as carry_residue
 from hymeko_x.backends.usd.layers import encoded
 from hymeko_x.source import Package
 

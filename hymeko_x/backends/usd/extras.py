@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from pxr import Sdf, Tf
 
 from hymeko_x import codes
-from hymeko_x.backends.usd.prims import set_schemas
+from hymeko_x.backends.usd.sheet import set_schemas
 from hymeko_x.formats.usd import FORMAT
 from hymeko_x.ir.mechanism import ROOT, Extra
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf
 
-from hymeko_x.backends.usd.prims import T
-from hymeko_x.backends.usd.sheet import apply, point, put, quatf
+from hymeko_x.backends.usd.sheet import T, apply, point, put, quatf
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop

@@ -1,20 +1,25 @@
-"""One stage in several files: an interface with the default prim, and behind its payload geometry, materials and physics.
+"""Stages in several files, and the residue in a root layer.
 
-Source: the structure that public guidelines for simulation-ready assets ask for; what is opened first is small, and each
-aspect can be replaced by itself.
+A layered stage is an interface with the default prim, and behind its payload geometry, materials and physics: the structure
+that public guidelines for simulation-ready assets ask for. The interface is small, and each aspect can be replaced alone.
 """
 
 from __future__ import annotations
 
 import posixpath
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from pxr import Sdf
+from pxr import Sdf, Tf
+
+from hymeko_x.formats import carrier
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+
+    from hymeko_x.source import Package
 
 GEOMETRY, MATERIALS, PHYSICS = ASPECTS = ("geometry", "materials", "physics")
 _CONTENTS = "contents"
@@ -164,3 +169,46 @@ def _schema_aspect(schema: str, home: str) -> str:
     if schema.startswith(_PHYSICS_TYPES):
         return PHYSICS
     return MATERIALS if schema.startswith("Material") else home
+
+
+# ---- residue -----------------------------------------------------------------------------------------------------------------------
+
+
+def carry_in_text(package: Package, text: str) -> Package:
+    """The package with a residue in its text layer, of which only the header is parsed."""
+    whole = package.main.decode()
+    head, end, prims = whole.partition("\n)\n")
+    header = _parsed_layer(head + end)
+    if header is None:  # a string in the header looks like its end
+        header, prims = _parsed_layer(whole), ""
+    assert header is not None
+    _put(header, text)
+    said = header.ExportToString()
+    return replace(package, main=(said.rstrip("\n") + "\n" + prims if prims else said).encode())
+
+
+def _parsed_layer(text: str) -> Any | None:
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    try:
+        return layer if layer.ImportFromString(text) else None
+    except Tf.ErrorException:
+        return None
+
+
+def carry_in_crate(package: Package, text: str) -> Package:
+    """The package with a residue in its crate file."""
+    return replace(package, main=with_residue(package.main, text))
+
+
+def with_residue(crate: bytes, text: str) -> bytes:
+    with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
+        old, new = Path(folder) / "old.usdc", Path(folder) / "new.usdc"
+        old.write_bytes(crate)
+        layer = Sdf.Layer.OpenAsAnonymous(str(old))
+        _put(layer, text)
+        layer.Export(str(new))
+        return new.read_bytes()
+
+
+def _put(layer: Any, text: str) -> None:
+    layer.customLayerData = {**layer.customLayerData, carrier.USD_KEY: text}

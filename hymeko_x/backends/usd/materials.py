@@ -6,13 +6,12 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf
 
-from hymeko_x.backends.usd.prims import T
-from hymeko_x.backends.usd.sheet import connect, put
+from hymeko_x.backends.usd.sheet import T, apply, connect, point, put
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.parts import Layer, Material, Texture
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.backends.usd.sheet import Prim, Sheet
     from hymeko_x.ir.mechanism import Id
 
 
@@ -70,3 +69,9 @@ def _shader(sheet: Sheet, spec: Any, name: str, kind: str) -> Any:
     shader = sheet.define(spec.path.AppendChild(name), "Shader")
     put(shader, "info:id", T.Token, kind)
     return shader
+
+
+def bind(sheet: Sheet, spec: Prim, material: Id) -> None:
+    """Show a prim in a material."""
+    apply(spec, "MaterialBindingAPI")
+    point(spec, "material:binding", sheet.homes[material])

@@ -1,29 +1,24 @@
-"""Shapes as gprims below their bodies: what collides has the collision API, and what is only for that the purpose guide."""
+"""Shapes as gprims below their bodies: colliders have the collision API; those that are only for that, the purpose guide."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from pxr import Gf, Sdf, Vt
+from pxr import Gf, Vt
 
-from hymeko_x.backends.usd.prims import T
-from hymeko_x.backends.usd.sheet import apply, point, put
-from hymeko_x.backends.usd.surfaces import places_of, surface_of
+from hymeko_x.backends.usd.materials import bind
+from hymeko_x.backends.usd.meshes import write_mesh_shape, write_subsets, write_triangles
+from hymeko_x.backends.usd.sheet import T, apply, put
 from hymeko_x.formats import usd as words
-from hymeko_x.formats.usd import gprims
+from hymeko_x.formats.usd import shapes as gprims
 from hymeko_x.ir.mechanism import WORLD
-from hymeko_x.ir.parts import Mesh, MeshShape, Role
+from hymeko_x.ir.parts import MeshShape, Role
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_inverse
-from hymeko_x.meshes.measures import face_normals
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.prims import Prim
     from hymeko_x.backends.usd.sheet import Sheet
-    from hymeko_x.backends.usd.surfaces import Surface
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.values import Vec3
-
-_ST = "primvars:st"
 
 
 def write_shapes(sheet: Sheet) -> None:
@@ -58,7 +53,7 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
             spec.info.pop("displayName", None)
     if prim is not None:
         _write_primitive(spec, prim)
-    scale = _write_mesh_shape(sheet, spec, view, users, shared) if isinstance(view.shape.geometry, MeshShape) else None
+    scale = write_mesh_shape(sheet, spec, view, users, shared) if isinstance(view.shape.geometry, MeshShape) else None
     if not is_body:
         sheet.move(spec, skin_pose(view, prim), scale if prim is None else _unless_one(prim.scale), on=view.body)
     if view.shape.role is not Role.VISUAL:
@@ -69,7 +64,7 @@ def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dic
     if view.shape.role is Role.COLLISION:
         put(spec, "purpose", T.Token, "guide")
     _write_looks(sheet, spec, view)
-    _write_subsets(sheet, spec, view)
+    write_subsets(sheet, spec, view)
 
 
 def _is_hull(mechanism: Mechanism, view: ShapeView, prim: gprims.Gprim | None) -> bool:
@@ -90,7 +85,7 @@ def gprim_of(mechanism: Mechanism, view: ShapeView) -> gprims.Gprim | None:
 def _write_primitive(spec: Any, prim: gprims.Gprim) -> None:
     """Type, sizes, axis and the box around it."""
     if prim.kind == "Mesh":
-        return _write_surface(spec, gprims.ball())
+        return write_triangles(spec, gprims.ball())
     spec.kind = prim.kind
     for (name, _), value in zip(gprims.SIZES[prim.kind], prim.sizes, strict=True):
         put(spec, name, T.Double, value)
@@ -99,89 +94,6 @@ def _write_primitive(spec: Any, prim: gprims.Gprim) -> None:
     half = gprims.half_extent(prim)
     put(spec, "extent", T.Float3Array, Vt.Vec3fArray([Gf.Vec3f(*(-value for value in half)), Gf.Vec3f(*half)]))
     return None
-
-
-# ---- meshes --------------------------------------------------------------------------------------------------------------------
-
-
-def _write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, int], shared: dict[Id, Any]) -> Vec3 | None:
-    """The mesh itself, or a reference to where it is; without points the prim stays a mere place."""
-    mesh = sheet.mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
-    if view.mesh is None or not isinstance(mesh, Mesh):
-        return None
-    if view.mesh not in sheet.surfaces:
-        sheet.surfaces[view.mesh] = surface_of(mesh)
-    surface = sheet.surfaces[view.mesh]
-    if users[view.mesh] == 1 or surface is None:
-        _carry_mesh(sheet, spec, view.mesh)
-        if surface is not None:
-            _write_surface(spec, surface)
-            if _says(sheet.mechanism, view.id, words.NORMALS):
-                _write_normals(spec, surface)
-            if _says(sheet.mechanism, view.id, words.TEXCOORDS):
-                _write_places(spec, mesh)
-    else:
-        if view.mesh not in shared:
-            shared[view.mesh] = _write_prototype(sheet, view.mesh, mesh, surface)
-            _carry_mesh(sheet, spec, view.mesh)
-        spec.kind = "Mesh"
-        spec.reference = shared[view.mesh]
-    return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
-
-
-def _says(mechanism: Mechanism, shape: Id, notation: str) -> bool:
-    """Whether a mesh says this of its triangles as we do: ours do, those of others where they did."""
-    return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, notation) is not None
-
-
-def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
-    """The prim of a mesh carries it; it says nothing about subdivision but that there is none."""
-    sheet.homes[mesh] = spec.path
-
-
-def _write_prototype(sheet: Sheet, key: Id, mesh: Mesh, surface: Surface) -> Any:
-    """A mesh that is shown several times: a class, which is seen only through references to it."""
-    scope = sheet.root.AppendChild("meshes")
-    if scope not in sheet.prims:
-        group = sheet.define(scope, "Scope")
-        group.specifier = Sdf.SpecifierClass
-        put(group, f"{words.PREFIX}scope", T.Bool, True)
-    spec = sheet.define(sheet.free_path(scope, key.name), "Mesh")
-    _write_surface(spec, surface)
-    _write_normals(spec, surface)
-    _write_places(spec, mesh)
-    return spec.path
-
-
-def _write_surface(prim: Prim, surface: Surface) -> None:
-    """Points in single precision, triangles, and no subdivision."""
-    import numpy as np
-
-    points, faces = surface
-    prim.kind = "Mesh"
-    put(prim, "points", T.Point3fArray, Vt.Vec3fArray.FromNumpy(points))
-    put(prim, "faceVertexCounts", T.IntArray, Vt.IntArray(len(faces) // 3, 3))
-    put(prim, "faceVertexIndices", T.IntArray, Vt.IntArray.FromNumpy(faces))
-    put(prim, "subdivisionScheme", T.Token, "none")
-    axes = np.ascontiguousarray(points.T)  # of which a least value is found much faster
-    box = np.stack([axes.min(axis=1), axes.max(axis=1)])
-    put(prim, "extent", T.Float3Array, Vt.Vec3fArray.FromNumpy(box))
-
-
-def _write_normals(prim: Prim, surface: Surface) -> None:
-    """One normal for each triangle, for programs that compute none of their own; a degenerate triangle has some unit vector."""
-    put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(face_normals(*surface)))
-    prim.spread["normals"] = "uniform"
-
-
-def _write_places(prim: Prim, mesh: Mesh) -> None:
-    """Where the corners of the triangles are in the image of the material."""
-    found = places_of(mesh)
-    if found is None:
-        return
-    put(prim, _ST, T.TexCoord2fArray, Vt.Vec2fArray.FromNumpy(found[0]))
-    put(prim, f"{_ST}:indices", T.IntArray, Vt.IntArray.FromNumpy(found[1]))
-    prim.spread[_ST] = "faceVarying"
 
 
 # ---- looks ---------------------------------------------------------------------------------------------------------------------
@@ -193,24 +105,4 @@ def _write_looks(sheet: Sheet, spec: Any, view: ShapeView) -> None:
         put(spec, "primvars:displayColor", T.Color3fArray, Vt.Vec3fArray([Gf.Vec3f(*rgba[:3])]))
         put(spec, "primvars:displayOpacity", T.FloatArray, Vt.FloatArray([rgba[3]]))
     if view.material is not None and view.material in sheet.homes:
-        _bind(sheet, spec, view.material)
-
-
-def _bind(sheet: Sheet, spec: Prim, material: Id) -> None:
-    apply(spec, "MaterialBindingAPI")
-    point(spec, "material:binding", sheet.homes[material])
-
-
-def _write_subsets(sheet: Sheet, spec: Prim, view: ShapeView) -> None:
-    """The triangles of a mesh that show other materials, each a prim below it."""
-    surface = sheet.surfaces.get(view.mesh) if view.mesh is not None else None
-    count = 0 if surface is None else len(surface[1]) // 3
-    for subset in sheet.mechanism.subsets.get(view.id, ()):
-        if not subset.faces or min(subset.faces) < 0 or max(subset.faces) >= count or subset.material not in sheet.homes:
-            continue
-        prim = sheet.place(subset.id, spec.path, "GeomSubset", subset.id.name.partition("#")[0], below=True)
-        put(prim, "elementType", T.Token, words.FACE)
-        put(prim, "familyName", T.Token, words.LOOKS)
-        put(prim, "indices", T.IntArray, Vt.IntArray(subset.faces))
-        _bind(sheet, prim, subset.material)
-        put(spec, words.FAMILY, T.Token, words.APART)
+        bind(sheet, spec, view.material)

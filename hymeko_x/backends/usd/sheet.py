@@ -1,4 +1,8 @@
-"""A layer in the making: prims at valid, unique paths, attributes with their types, all authored through Sdf."""
+"""The open layer of the writer: prims at valid, unique paths, authored through Sdf when all of them are known.
+
+Every call into USD costs more than all that Python does for a property; so prims are plain values until they are authored,
+each property once.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +12,98 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Vt
 
-from hymeko_x.backends.usd.prims import Prim, T
 from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd import FAMILY
+from hymeko_x.ir.parts import DofKind, Joint
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.surfaces import Surface
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from collections.abc import Iterable
+
+    from numpy.typing import NDArray
+
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc
+    from hymeko_x.ir.parts import Dof
     from hymeko_x.ir.values import Pose, Quat, Vec3
+
+T = Sdf.ValueTypeNames
+
+if TYPE_CHECKING:
+    Triangles = tuple[NDArray[Any], NDArray[Any]]
+    """Points (n, 3) in single precision, and the corners of triangles as rows of them (flat)."""
+_UNIFORM = frozenset(
+    (
+        *("physics:axis", "axis", "purpose", "xformOpOrder", "physics:approximation", "subdivisionScheme", "info:id"),
+        *("elementType", "familyName", FAMILY),
+    )
+)
+
+
+@dataclass(slots=True, eq=False)
+class Prim:
+    """A prim in the making: its type, metadata, API schemas, attributes (type and value), and the targets of its relationships.
+
+    ``connections`` lead an attribute to that whose value it takes; ``spread`` are the attributes with values
+    for each face or corner, and for which; ``reference`` is the path of a prim of the same layer.
+    """
+
+    path: Any
+    kind: str = "Xform"
+    specifier: Any = Sdf.SpecifierDef
+    info: dict[str, Any] = field(default_factory=dict)
+    schemas: list[str] = field(default_factory=list)
+    attributes: dict[str, tuple[Any, Any]] = field(default_factory=dict)
+    targets: dict[str, list[Any]] = field(default_factory=dict)
+    connections: dict[str, Any] = field(default_factory=dict)
+    spread: dict[str, str] = field(default_factory=dict)
+    reference: Any = None
+
+    @property
+    def name(self) -> str:
+        """The last step of the path."""
+        return str(self.path.name)
+
+
+def author(prims: Iterable[Prim], layer: Any) -> None:
+    """Write every prim into the layer, parents before their children.
+
+    No spec is kept: of a layer of which many were held at once the text takes longer per prim the more there were.
+    """
+    above, parent = Sdf.Path.absoluteRootPath, layer
+    for prim in prims:
+        path = prim.path
+        if path.GetParentPath() != above:
+            above = path.GetParentPath()
+            parent = layer if above.IsAbsoluteRootPath() else layer.GetPrimAtPath(above)
+        spec = Sdf.PrimSpec(parent, path.name, prim.specifier, prim.kind)
+        for name, value in prim.info.items():
+            spec.SetInfo(name, value)
+        if prim.schemas:
+            set_schemas(spec, prim.schemas)
+        if prim.reference is not None:
+            spec.referenceList.prependedItems = [Sdf.Reference(primPath=prim.reference)]
+        for name, (kind, value) in prim.attributes.items():
+            attribute = add_attribute(spec, name, kind, value)
+            if name in prim.connections:
+                attribute.connectionPathList.explicitItems = [prim.connections[name]]
+            if name in prim.spread:
+                attribute.SetInfo("interpolation", prim.spread[name])
+        for name, targets in prim.targets.items():
+            Sdf.RelationshipSpec(spec, name, False).targetPathList.explicitItems = targets
+
+
+def add_attribute(spec: Any, name: str, kind: Any, value: Any) -> Any:
+    """A new attribute of a prim that is authored already."""
+    is_uniform = name in _UNIFORM or name.startswith("mjc:")
+    attribute = Sdf.AttributeSpec(spec, name, kind, Sdf.VariabilityUniform if is_uniform else Sdf.VariabilityVarying)
+    if value is not None:
+        attribute.default = value
+    return attribute
+
+
+def set_schemas(spec: Any, schemas: list[str]) -> None:
+    """Say which API schemas a prim has."""
+    spec.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=schemas))
+
 
 _INVALID = re.compile(r"\W")
 RESET = "!resetXformStack!"
@@ -38,7 +127,7 @@ class Sheet:
     prims: dict[Any, Prim] = field(default_factory=dict)
     skins: dict[Id, Id] = field(default_factory=dict)
     scales: dict[Id, Vec3] = field(default_factory=dict)
-    surfaces: dict[Id, Surface | None] = field(default_factory=dict)
+    surfaces: dict[Id, Triangles | None] = field(default_factory=dict)
 
     # ---- prims -----------------------------------------------------------------------------------------------------------
 
@@ -171,3 +260,28 @@ def quatd(quat: Quat) -> Any:
 def quatf(quat: Quat) -> Any:
     """A quaternion in single precision."""
     return Gf.Quatf(quat[0], Gf.Vec3f(*quat[1:]))
+
+
+# ---- prims of joints and their dofs --------------------------------------------------------------------------------------------------
+
+
+def dof_of(sheet: Sheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
+    """The prim of the dof that an arc means, its axis where that is a generic joint, and the dof itself (hinge or slide)."""
+    from hymeko_x.ir.kinematics import dof_number
+
+    edge = sheet.mechanism.graph.edges.get(arc.target)
+    if edge is None or not isinstance(edge.data, Joint):
+        return None
+    number = dof_number(edge.data, arc.role)
+    place = sheet.dofs.get((arc.target, number)) if number is not None else None
+    if place is None or number is None or edge.data.dofs[number].kind not in (DofKind.HINGE, DofKind.SLIDE):
+        return None
+    return sheet.prims[place[0]], place[1], edge.data.dofs[number]
+
+
+def prim_of(sheet: Sheet, arc: RobotArc) -> Any | None:
+    """The path of the prim of what an arc means: of one dof where a joint has several; None where an axis of a joint is no prim."""
+    if arc.target.kind != "joint":
+        return sheet.homes.get(arc.target)
+    found = dof_of(sheet, arc)
+    return found[0].path if found is not None and not found[1] else None

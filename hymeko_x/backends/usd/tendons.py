@@ -7,17 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Vt
 
-from hymeko_x.backends.usd.prims import T
-from hymeko_x.backends.usd.relations import prim_of
-from hymeko_x.backends.usd.sheet import point, put
+from hymeko_x.backends.usd.sheet import T, point, prim_of, put
 from hymeko_x.formats.usd import tendons as table
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Tendon
 from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, wrong_path
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.prims import Prim
-    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.backends.usd.sheet import Prim, Sheet
     from hymeko_x.ir.mechanism import RobotArc
 
 

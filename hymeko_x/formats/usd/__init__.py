@@ -1,4 +1,4 @@
-"""The words of USD that its reader and its writer share. Data and plain values only; nothing here knows the USD libraries."""
+"""The names of USD that its reader and its writer share. Data and plain values only; nothing here imports the USD libraries."""
 
 from __future__ import annotations
 
@@ -98,3 +98,12 @@ def single(value: float) -> float:
         if _pack(short) == packed:
             return short
     return float(f"{value:.9g}")
+
+
+LAYOUT = "usd.layout"
+"""The notation of the mechanism that says ``layered`` where the stage has a file for each of its aspects."""
+NESTED = "usd.nested"
+"""The notation of the mechanism that says ``true`` where each body is inside of its parent."""
+
+POINTS = "usd.points"
+"""The notation of the mechanism that names the crate file which holds what is too long for a text."""

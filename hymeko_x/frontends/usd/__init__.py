@@ -15,23 +15,21 @@ from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import carrier
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd.actuators import PRIM as ACTUATOR
-from hymeko_x.frontends.usd.actuators import read_actuator
-from hymeko_x.frontends.usd.bare_links import hang_bare_links, read_bare_links
-from hymeko_x.frontends.usd.bodies import BODY, read_body, read_mass
-from hymeko_x.frontends.usd.collision_groups import read_collision_groups
-from hymeko_x.frontends.usd.contacts import read_filtered_pairs
-from hymeko_x.frontends.usd.dialects import is_passive_drive, is_world, read_named_mimic
-from hymeko_x.frontends.usd.draft import Draft
-from hymeko_x.frontends.usd.joints import TYPES, ReadJoint, read_joint
-from hymeko_x.frontends.usd.leftovers import gather_leftovers
-from hymeko_x.frontends.usd.lights import read_light
+from hymeko_x.frontends.usd.actuators import read_actuator, read_drives
+from hymeko_x.frontends.usd.bodies import BODY, ReadShape, read_body, read_mass
+from hymeko_x.frontends.usd.builder import Draft
+from hymeko_x.frontends.usd.contacts import read_collision_groups, read_filtered_pairs
+from hymeko_x.frontends.usd.couplings import read_mimic
+from hymeko_x.frontends.usd.dialects import hang_bare_links, is_passive_drive, is_world, read_bare_links, read_named_mimic, with_dialect
+from hymeko_x.frontends.usd.extras import gather_leftovers
+from hymeko_x.frontends.usd.joints import TYPES, Driven, ReadJoint, driven_ends, read_joint
 from hymeko_x.frontends.usd.materials import read_material
-from hymeko_x.frontends.usd.places import check_ops
-from hymeko_x.frontends.usd.relations import Driven, driven_ends, read_camera, read_drives, read_mimic, read_site
-from hymeko_x.frontends.usd.shapes import Read, is_shape, read_shape
+from hymeko_x.frontends.usd.mounts import read_camera, read_light, read_site
+from hymeko_x.frontends.usd.shapes import is_shape, read_shape
 from hymeko_x.frontends.usd.stage import Scene, open_scene
-from hymeko_x.frontends.usd.structure import build_trees, note_poses
 from hymeko_x.frontends.usd.tendons import read_tendons
+from hymeko_x.frontends.usd.transforms import check_ops
+from hymeko_x.frontends.usd.trees import build_trees, note_poses
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism
 from hymeko_x.ir.parts import Texture
 
@@ -55,7 +53,7 @@ def read(source: Source, report: Report) -> Mechanism:
         draft = Draft(source, report, scene)
         prims = _prims(scene)
         for prim in prims:
-            check_ops(prim, draft)
+            check_ops(prim, report, draft.origin)
             if prim.has_api(BODY):
                 read_body(prim, draft)
         bare = read_bare_links(prims, draft)
@@ -86,7 +84,7 @@ def _prims(scene: Scene) -> list[Prim]:
 
 def _read_shapes(prims: list[Prim], draft: Draft) -> None:
     """Shapes first, then the masses that may follow from them."""
-    on: dict[Id, list[Read]] = {}
+    on: dict[Id, list[ReadShape]] = {}
     for prim in prims:
         found = read_shape(prim, draft) if is_shape(prim) else None
         if found is not None:
@@ -117,7 +115,7 @@ def _read_things(prims: list[Prim], ends: dict[str, Driven], draft: Draft) -> No
 def _read_joints(prims: list[Prim], bare: list[Prim], draft: Draft) -> dict[str, Driven]:
     """The joints, with what acts on them; returns which dof each of their prims is."""
     joints = [joint for prim in prims if prim.kind in TYPES for joint in [read_joint(prim, draft)] if joint is not None]
-    joints = hang_bare_links(bare, joints, draft)
+    joints = hang_bare_links(bare, [with_dialect(joint, draft) for joint in joints], draft)
     joints = build_trees(joints, _articulation_roots(prims, joints, draft), _held(draft), draft)
     ends = {prim.path: end for joint in joints for prim, end in driven_ends(joint)}
     named = {end.dof or end.joint.name: end for end in ends.values()}

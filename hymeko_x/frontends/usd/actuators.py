@@ -1,20 +1,77 @@
-"""MjcActuator prims as actuators: the general ones of MJCF, a motor where nothing but its ranges and gear is said."""
+"""Actuators: the drives of UsdPhysics on joints, and MjcActuator prims."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import actuators as table
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.parts import Actuator, Drive
+from hymeko_x.ir.parts import Actuator, DofKind, Drive, Joint
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.joints import Driven
     from hymeko_x.frontends.usd.prims import Prim
-    from hymeko_x.frontends.usd.relations import Driven
-    from hymeko_x.ir.mechanism import RobotArc
+    from hymeko_x.ir.mechanism import Id, RobotArc
+
+
+# ---- drives of UsdPhysics ----------------------------------------------------------------------------------------------------------
+
+DRIVE = "PhysicsDriveAPI"
+
+
+def read_drives(prim: Prim, end: Driven, draft: Draft) -> None:
+    """Each DriveAPI of a joint as an actuator: position with a stiffness, velocity with damping alone, else motor."""
+    edge = draft.edges.get(end.joint)
+    if edge is None or not isinstance(edge.data, Joint):
+        return
+    for schema in prim.schemas:
+        instance = schema.removeprefix(f"{DRIVE}:")
+        number = _driven(instance, end.dof, edge.data) if instance != schema else None
+        if number is not None:
+            draft.take(prim, f"@{schema}")
+            _add_drive(prim, end.joint, instance, number, edge.data, draft)
+
+
+def _driven(instance: str, name: str, joint: Joint) -> int | None:
+    """Which dof a drive moves; None where the joint has no such axis or the drive is for another kind of motion."""
+    kinds = {"angular": DofKind.HINGE, "linear": DofKind.SLIDE}
+    for number, dof in enumerate(joint.dofs):
+        if instance in kinds:
+            if (dof.name == name if name else len(joint.dofs) == 1) and dof.kind is kinds[instance]:
+                return number
+        elif instance in words.D6_AXES:
+            kind, axis = words.d6_axis(instance)
+            if dof.kind is kind and tuple(map(abs, dof.axis)) == axis:
+                return number
+    return None
+
+
+def _add_drive(prim: Prim, key: Id, instance: str, number: int, joint: Joint, draft: Draft) -> None:
+    """Gains per degree become gains per radian; what a drive aims at stays an extra."""
+    scene, turns = draft.scene, joint.dofs[number].kind is DofKind.HINGE
+    gain = scene.kilograms * (scene.metres**2 * 180.0 / math.pi if turns else 1.0)
+    effort = scene.kilograms * scene.metres * (scene.metres if turns else 1.0)
+    prefix = f"drive:{instance}:physics"
+    kp = draft.number(prim, f"{prefix}:stiffness", 0.0) * gain
+    kv = draft.number(prim, f"{prefix}:damping", 0.0) * gain
+    most = draft.number(prim, f"{prefix}:maxForce", math.inf) * effort
+    kind = "position" if kp else "velocity" if kv else "motor"
+    gains = [(name, value) for name, value in (("kp", kp), ("kv", kv)) if value]
+    limits: list[tuple[str, float | str | tuple[float, ...]]] = [("forcerange", (-most, most))] if math.isfinite(most) else []
+    own = joint.dofs[number].name
+    name = own or (key.name if len(joint.dofs) == 1 else f"{key.name}_{instance}")
+    actuator = draft.own(prim, "actuator", name)
+    draft.vertices[actuator] = Actuator(kind, (*gains, *limits))
+    draft.note(actuator, words.TYPE, instance)
+    role = "" if len(joint.dofs) == 1 else own or str(number)
+    draft.edges[draft.own(prim, "drive", name)] = Edge(Drive(), (Arc(actuator, 1), Arc(key, -1, None, role)))
+
+
+# ---- MjcActuator -------------------------------------------------------------------------------------------------------------------
 
 _GENERAL = ("gaintype", "gainprm", "biastype", "biasprm", "dyntype", "dynprm")
 _KINDS = ("frame", "body", "tendon")

@@ -7,23 +7,35 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x.formats import usd as words
-from hymeko_x.frontends.usd.bindings import bound_to
-from hymeko_x.frontends.usd.places import numbers_of, turn_of
-from hymeko_x.frontends.usd.volumes import Solid, joined, solid_of
-from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Role, Shape
-from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, rotate_tensor
+from hymeko_x.frontends.usd.materials import bound_to
+from hymeko_x.frontends.usd.transforms import numbers_of, turn_of
+from hymeko_x.frozen import frozen
+from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Inertial, InertialWritten, MeshShape, Role, Shape, Sphere
+from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, apply, rotate_tensor
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.draft import Draft
+    from numpy.typing import NDArray
+
+    from hymeko_x.frontends.usd.builder import Draft
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
+    from hymeko_x.ir.parts import Geometry
 
 BODY = "PhysicsRigidBodyAPI"
 MASS = "PhysicsMassAPI"
 _DENSITY = 1000.0
+
+
+class ReadShape(NamedTuple):
+    """A shape that was read: its prim, part, pose in the body, and for a mesh its points (n, 3) in the shape's frame."""
+
+    prim: Prim
+    shape: Shape
+    pose: Pose
+    points: NDArray[Any] | None
 
 
 def read_body(prim: Prim, draft: Draft) -> None:
@@ -49,15 +61,15 @@ def body_at(prim: Prim | None, draft: Draft) -> tuple[Prim, Id] | None:
 # ---- mass --------------------------------------------------------------------------------------------------------------------
 
 
-def read_mass(prim: Prim, key: Id, shapes: list[tuple[Prim, Shape, Pose, Any]], draft: Draft) -> None:
-    """The inertial of a body. ``shapes`` are its own, each with its prim, pose in the body and mesh points."""
+def read_mass(prim: Prim, key: Id, shapes: list[ReadShape], draft: Draft) -> None:
+    """The inertial of a body. ``shapes`` are its own."""
     stated = _stated(prim, draft) if prim.has_api(MASS) else Inertial()
     if stated.mass is not None and stated.tensor is not None:
         draft.take(prim, f"@{MASS}")
         draft.vertices[key] = Body(stated)
         return
     density = draft.scene.kilograms / draft.scene.metres**3 * _plain(prim, "physics:density")
-    solids = [solid for item in shapes for solid in [_solid(*item, density, draft)] if solid is not None]
+    solids = [solid for item in shapes for solid in [_solid(item, density, draft)] if solid is not None]
     if not solids and stated == Inertial():
         return
     draft.vertices[key] = Body(_completed(stated, joined(solids)) if solids else _massless(stated))
@@ -95,11 +107,12 @@ def _tensor(prim: Prim, com: Vec3, unit: float, draft: Draft) -> tuple[Tensor | 
     return rotate_tensor(quat, principal), InertialWritten(Pose(com, quat), principal)
 
 
-def _solid(prim: Prim, shape: Shape, pose: Pose, points: Any, density: float, draft: Draft) -> Solid | None:
-    """A collider with its mass, by the rules of precedence; None for what has no volume or only is looked at."""
-    if shape.role is Role.VISUAL:
+def _solid(read: ReadShape, density: float, draft: Draft) -> Solid | None:
+    """A collider with its mass, by the rules of precedence; None for visuals and shapes without a volume."""
+    prim = read.prim
+    if read.shape.role is Role.VISUAL:
         return None
-    unit = solid_of(shape.geometry, pose, points)
+    unit = solid_of(read.shape.geometry, read.pose, read.points)
     if unit is None:
         return None
     mass = _plain(prim, "physics:mass") * draft.scene.kilograms
@@ -134,3 +147,112 @@ def _completed(stated: Inertial, solid: Solid) -> Inertial:
     if stated.tensor is not None:
         return replace(stated, mass=mass, com=com)
     return Inertial(mass, com, solid.about(com, mass))
+
+
+# ---- solids of density 1 ---------------------------------------------------------------------------------------------------------
+
+
+@frozen
+class Solid:
+    """Mass in kg, centre of mass in m and tensor in kg m^2 about it, in the axes of the body."""
+
+    mass: float
+    com: Vec3
+    tensor: Tensor
+
+    def times(self, factor: float) -> Solid:
+        """The same solid, this much denser."""
+        return Solid(self.mass * factor, self.com, _times(self.tensor, factor))
+
+    def about(self, com: Vec3, mass: float) -> Tensor:
+        """The tensor when it weighs ``mass`` and its centre of mass is said to be elsewhere."""
+        del com  # UsdPhysics moves no tensor along with a stated centre of mass
+        return _times(self.tensor, mass / self.mass if self.mass else 1.0)
+
+
+def joined(solids: list[Solid]) -> Solid:
+    """Several solids as one."""
+    mass = sum(solid.mass for solid in solids)
+    if mass <= 0.0:
+        return Solid(0.0, (0.0, 0.0, 0.0), (0.0,) * 6)
+    x, y, z = (sum(solid.mass * solid.com[i] for solid in solids) / mass for i in range(3))
+    total = [0.0] * 6
+    for solid in solids:
+        offset = _point_mass(solid.mass, (solid.com[0] - x, solid.com[1] - y, solid.com[2] - z))
+        total = [a + b + c for a, b, c in zip(total, solid.tensor, offset, strict=True)]
+    return Solid(mass, (x, y, z), (total[0], total[1], total[2], total[3], total[4], total[5]))
+
+
+def solid_of(geometry: Geometry, pose: Pose, points: NDArray | None) -> Solid | None:  # type: ignore[type-arg]
+    """A geometry of density 1 at its pose in the body; a mesh (its points, n x 3) counts as its convex hull. None: no volume."""
+    if isinstance(geometry, MeshShape):
+        return _moved(_hull(points), pose) if points is not None else None
+    moments = _moments(geometry)
+    if moments is None:
+        return None
+    volume, xx, yy, zz = moments
+    return _moved(Solid(volume, (0.0, 0.0, 0.0), (xx, yy, zz, 0.0, 0.0, 0.0)), pose)
+
+
+def _moments(geometry: Geometry) -> tuple[float, float, float, float] | None:
+    """Volume and principal moments of a centred primitive."""
+    match geometry:
+        case Box((x, y, z)):
+            v = x * y * z
+            return v, v * (y * y + z * z) / 12, v * (x * x + z * z) / 12, v * (x * x + y * y) / 12
+        case Sphere(r):
+            v = 4 / 3 * math.pi * r**3
+            return v, 0.4 * v * r * r, 0.4 * v * r * r, 0.4 * v * r * r
+        case Ellipsoid((a, b, c)):
+            v = 4 / 3 * math.pi * a * b * c
+            return v, v * (b * b + c * c) / 5, v * (a * a + c * c) / 5, v * (a * a + b * b) / 5
+        case Cylinder(r, h):
+            v = math.pi * r * r * h
+            across = v * (3 * r * r + h * h) / 12
+            return v, across, across, v * r * r / 2
+        case Capsule(r, h):
+            middle, caps = math.pi * r * r * h, 4 / 3 * math.pi * r**3
+            across = middle * (3 * r * r + h * h) / 12 + caps * (0.4 * r * r + h * h / 4 + 3 * h * r / 8)
+            return middle + caps, across, across, middle * r * r / 2 + caps * 0.4 * r * r
+        case _:
+            return None
+
+
+def _moved(solid: Solid | None, pose: Pose) -> Solid | None:
+    if solid is None:
+        return None
+    return Solid(solid.mass, apply(pose, solid.com), rotate_tensor(pose.quat, solid.tensor))
+
+
+def _hull(points: NDArray) -> Solid | None:  # type: ignore[type-arg]
+    """The convex hull of points as a sum of tetrahedra from its middle. None where it is flat."""
+    import numpy as np
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        hull = ConvexHull(points)
+    except (QhullError, ValueError):
+        return None
+    middle = points[hull.vertices].mean(axis=0)
+    corners = points[hull.simplices] - middle
+    volumes = np.abs(np.linalg.det(corners)) / 6
+    total = float(volumes.sum())
+    if total <= 0.0:
+        return None
+    com = (volumes[:, None] * corners.sum(axis=1) / 4).sum(axis=0) / total
+    sums = corners.sum(axis=1)
+    second = (np.einsum("n,nci,ncj->ij", volumes, corners, corners) + np.einsum("n,ni,nj->ij", volumes, sums, sums)) / 20
+    second -= total * np.outer(com, com)
+    tensor = np.trace(second) * np.eye(3) - second
+    x, y, z = (com + middle).tolist()
+    return Solid(total, (x, y, z), (*tensor.diagonal().tolist(), float(tensor[0, 1]), float(tensor[0, 2]), float(tensor[1, 2])))
+
+
+def _point_mass(mass: float, at: Vec3) -> Tensor:
+    x, y, z = at
+    return (mass * (y * y + z * z), mass * (x * x + z * z), mass * (x * x + y * y), -mass * x * y, -mass * x * z, -mass * y * z)
+
+
+def _times(tensor: Tensor, factor: float) -> Tensor:
+    xx, yy, zz, xy, xz, yz = tensor
+    return (xx * factor, yy * factor, zz * factor, xy * factor, xz * factor, yz * factor)

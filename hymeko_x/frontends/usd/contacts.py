@@ -1,18 +1,25 @@
-"""What touches what: pairs of bodies that do not collide, and the friction that physics materials give to colliders."""
+"""Pairs of bodies that do not collide, by filtered pairs and by collision groups, and the friction of colliders."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from itertools import combinations, product
+from typing import TYPE_CHECKING, NamedTuple
 
+from hymeko_x import codes
 from hymeko_x.formats.usd import single
-from hymeko_x.frontends.usd.bindings import bound_to
+from hymeko_x.formats.usd.contacts import APART_BY_BOTH, APART_BY_GROUPS, GROUP, GROUPED, GROUPS, pairs_print
+from hymeko_x.frontends.usd.materials import bound_to
 from hymeko_x.frontends.usd.prims import BINDING
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.parts import Contact
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Contact, Role, Shape
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.draft import Draft
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.frontends.usd.builder import Draft
     from hymeko_x.frontends.usd.prims import Prim
+    from hymeko_x.ir.mechanism import Id
 
 PAIRS = "PhysicsFilteredPairsAPI"
 _TARGETS = "physics:filteredPairs"
@@ -53,3 +60,145 @@ def friction_of(prim: Prim, draft: Draft) -> tuple[float, ...]:
         if BINDING not in prim.properties:
             draft.take(prim, "@MaterialBindingAPI")
     return tuple(found)
+
+
+# ---- collision groups --------------------------------------------------------------------------------------------------------------
+
+MOST_PAIRS = 10_000
+"""How many pairs of bodies are typed at most: a hundred groups of a hundred bodies are as many words as a large robot."""
+_MOST_GROUPS = 500
+_MOST_KINDS = 400
+_MOST_MEMBERS = 1_000_000
+"""How many prims all groups together may include."""
+
+Memberships = frozenset[str]
+"""The groups that a collider is in."""
+
+
+class _TooMany(Exception):
+    """More than anybody can say in pairs; the text says of what."""
+
+
+def read_collision_groups(prims: list[Prim], draft: Draft) -> None:
+    """Each pair of bodies of which no collider of the one touches a collider of the other, as an exclusion that says where it is from."""
+    groups = [prim for prim in prims if prim.kind == GROUP]
+    if not groups:
+        return
+    try:
+        pairs = _pairs(groups, draft)
+    except _TooMany as error:
+        said = f"collision groups with {error} are kept as written; other formats do not hear of them"
+        draft.report.warn(codes.NOT_SAID, said, draft.origin, element=groups[0].path)
+        return
+    if not pairs:
+        return
+    known = {frozenset(arc.target for arc in edge.arcs): key for key, edge in draft.edges.items() if isinstance(edge.data, Contact)}
+    for first, second in pairs:
+        key = known.get(frozenset((first, second)))
+        if key is None:
+            key = draft.names.take("contact", f"{first.name or 'world'}_{second.name}")
+            draft.origins[key] = draft.origin
+            draft.edges[key] = Edge(Contact("exclude"), (Arc(first), Arc(second)))
+            draft.note(key, GROUPED, APART_BY_GROUPS)
+        else:
+            draft.note(key, GROUPED, APART_BY_BOTH)
+    draft.note(ROOT, GROUPS, pairs_print(pairs))
+
+
+def _pairs(groups: list[Prim], draft: Draft) -> list[tuple[Id, Id]]:
+    """The pairs in the order of the bodies. Raises: _TooMany."""
+    kinds: dict[frozenset[Memberships], list[tuple[int, Id]]] = {}
+    for number, (body, memberships) in enumerate(_memberships(groups, draft).items()):
+        kinds.setdefault(frozenset(memberships), []).append((number, body))
+    if len(kinds) > _MOST_KINDS or sum(len(groups_of) for kind in kinds for groups_of in kind) > 5 * _MOST_KINDS:
+        raise _TooMany(f"{len(kinds)} kinds of members")
+    rules = _rules(groups, {name for kind in kinds for memberships in kind for name in memberships})
+    found: list[tuple[tuple[int, Id], tuple[int, Id]]] = []
+    partly = None
+    for (one, here), (other, there) in [*combinations(kinds.items(), 2), *((item, item) for item in kinds.items())]:
+        apart = [rules.are_apart(a, b) for a, b in product(one, other)]
+        if any(apart) and not all(apart):
+            partly = partly or (here[0][1], there[-1][1])
+        if not all(apart):
+            continue
+        count = len(here) * (len(here) - 1) // 2 if here is there else len(here) * len(there)
+        if len(found) + count > MOST_PAIRS:
+            raise _TooMany(f"more than {MOST_PAIRS} pairs of bodies")
+        found += combinations(here, 2) if here is there else ((a, b) if a < b else (b, a) for a, b in product(here, there))
+    if partly is not None:
+        said = f"collision groups keep only some colliders of {partly[0]} and {partly[1]} apart, which is kept as written"
+        draft.report.note(codes.NOT_SAID, said, draft.origin, element=groups[0].path)
+    return [(a, b) for (_, a), (_, b) in sorted(found)]
+
+
+def _memberships(groups: list[Prim], draft: Draft) -> dict[Id, set[Memberships]]:
+    """For each body (and the world) with colliders, in which groups these are."""
+    inside: dict[str, list[str]] = {}
+    count = 0
+    if len(groups) > _MOST_GROUPS:
+        raise _TooMany(f"{len(groups)} groups")
+    for group in groups:
+        for path in _members(group):
+            inside.setdefault(path, []).append(group.path)
+            count += 1
+        if count > _MOST_MEMBERS:
+            raise _TooMany(f"more than {_MOST_MEMBERS} members")
+    found: dict[Id, set[Memberships]] = {}
+    for path, body in _colliders(draft):
+        found.setdefault(body, set()).add(frozenset(inside.get(path, ())))
+    return found
+
+
+def _members(group: Prim) -> Iterator[str]:
+    """The paths of all prims that are in a group."""
+    from pxr import Usd, UsdPhysics
+
+    collection = UsdPhysics.CollisionGroup(group.composed).GetCollidersCollectionAPI()
+    return map(str, Usd.CollectionAPI.ComputeIncludedPaths(collection.ComputeMembershipQuery(), group.scene.stage))
+
+
+def _colliders(draft: Draft) -> Iterator[tuple[str, Id]]:
+    """The path of each collider with its body."""
+    for path, keys in draft.elements.items():
+        for key in keys:
+            edge = draft.edges.get(key) if key.kind == "shape" else None
+            if edge is not None and isinstance(edge.data, Shape) and edge.data.role is not Role.VISUAL:
+                yield path, edge.arcs[0].target
+
+
+class _Rules(NamedTuple):
+    """What groups say of each other: with whom each does not collide, and which collide only with whom they name."""
+
+    apart: Mapping[str, Memberships]
+    inverted: Memberships
+
+    def are_apart(self, one: Memberships, other: Memberships) -> bool:
+        """Whether a collider in these groups does not touch one in those. Without a group one touches all but the picky."""
+        if one and other:
+            return any(not self.apart[group].isdisjoint(other) for group in one)
+        return not self.inverted.isdisjoint(one or other)
+
+
+def _rules(groups: list[Prim], used: set[str]) -> _Rules:
+    """The rules of the groups that have colliders; groups of one merge name are one group, which heeds what each of them says.
+
+    Source: the schema of UsdPhysics and OpenUSD's own table, which takes a filtered group that is not there for the first one.
+    """
+    merged = {group.path: f"merge {name}" if (name := group.value("physics:mergeGroup")) else group.path for group in groups}
+    filtered = [(merged[group.path], _others(group, merged), group.value("physics:invertFilteredGroups") is True) for group in groups]
+    names = set(merged.values())
+    apart: dict[str, set[str]] = {name: set() for name in names}
+    for name, others, inverted in filtered:
+        for other in names - others if inverted else others:
+            apart[name].add(other)
+            apart[other].add(name)
+    picky = {name for name, _, inverted in filtered if inverted}
+    return _Rules(
+        {name: frozenset(other for other in used if merged[other] in apart[merged[name]]) for name in used},
+        frozenset(name for name in used if merged[name] in picky),
+    )
+
+
+def _others(group: Prim, merged: Mapping[str, str]) -> set[str]:
+    """The groups that a group names."""
+    return {merged[path] for path in group.targets("physics:filteredGroups") if path in merged}

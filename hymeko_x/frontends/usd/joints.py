@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
-from hymeko_x.frontends.usd.dialects import with_dialect
-from hymeko_x.frontends.usd.places import turn_of
+from hymeko_x.frontends.usd.transforms import turn_of
 from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
-from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, compose, inverse
+from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, compose, inverse, rotate, rotation_angle, unit
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.builder import Draft
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 
@@ -128,7 +127,7 @@ def _note_ground(prim: Prim, side: int, end: End, key: Id, draft: Draft) -> None
 
 
 def _in_world(local: Pose, draft: Draft) -> Pose:
-    from hymeko_x.frontends.usd.places import placed
+    from hymeko_x.frontends.usd.transforms import placed
 
     world = placed(draft.scene.world)
     return compose(world.pose, Pose(_stretched(local.xyz, world.scale), local.quat))
@@ -235,7 +234,7 @@ def _behaving(prim: Prim, dof: Dof, draft: Draft) -> Dof:
     speed = newton["velocityLimit"] * angle
     if math.isfinite(speed):
         draft.take(prim, "newton:velocityLimit")
-    found = replace(
+    return replace(
         dof,
         armature=_first(mjc["armature"] * inertia, newton["armature"] * inertia),
         damping=_first(mjc["damping"] * inertia, newton["damping"] * inertia * degree),
@@ -245,7 +244,6 @@ def _behaving(prim: Prim, dof: Dof, draft: Draft) -> Dof:
         spring_ref=_first(mjc["springref"] * angle),
         limits=replace(dof.limits, velocity=speed if math.isfinite(speed) else None, effort=_effort(prim, effort, draft)),
     )
-    return with_dialect(prim, found, draft)
 
 
 def _effort(prim: Prim, unit: float, draft: Draft) -> float | None:
@@ -260,3 +258,83 @@ def _effort(prim: Prim, unit: float, draft: Draft) -> float | None:
 def _first(*values: float) -> float:
     """The first value that was said, else 0."""
     return next((value for value in values if not math.isnan(value)), 0.0)
+
+
+# ---- drives --------------------------------------------------------------------------------------------------------------------
+
+
+class Driven(NamedTuple):
+    """A joint, or by its name one dof of a joint that was made of several."""
+
+    joint: Id
+    dof: str
+
+
+def driven_ends(joint: ReadJoint) -> list[tuple[Prim, Driven]]:
+    """Each prim of a joint with what it moves."""
+    if not joint.merged:
+        return [(joint.prim, Driven(joint.id, ""))]
+    return [(prim, Driven(joint.id, dof.name or "")) for prim, dof in zip(joint.merged, joint.dofs, strict=True)]
+
+
+# ---- several joints between the same two bodies ------------------------------------------------------------------------------------
+
+_MERGED = ("PhysicsRevoluteJoint", "PhysicsPrismaticJoint", "PhysicsSphericalJoint")
+_SAME = 1e-5
+"""In rad, and in m or of the distance where that is longer: frames of joints have single precision."""
+
+
+def merge_parallel(joints: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
+    """The joints with every run of hinges, slides and balls between the same two bodies made one, at the place of its first."""
+    groups: dict[object, list[ReadJoint]] = {}
+    for joint in joints:
+        first, second = joint.ends
+        is_simple = joint.prim.kind in _MERGED and joint.is_enabled and not joint.is_excluded
+        groups.setdefault((first.body, second.body) if is_simple else joint.id, []).append(joint)
+    return [merged for group in groups.values() for merged in _merged(group, draft)]
+
+
+def _merged(group: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
+    """One joint for those that agree on where the child is; the others, if any, stay by themselves and close a loop."""
+    first = group[0]
+    at = _child_at(first)
+    agreeing = [joint for joint in group if _is_close(_child_at(joint), at)]
+    if len(agreeing) < 2:
+        return group
+    dofs = tuple(_dof_seen_from(first, joint) for joint in agreeing)
+    draft.note(first.id, words.PATH, " ".join(joint.prim.path for joint in agreeing))
+    for joint in agreeing:
+        if joint.prim.display_name == joint.id.name:  # which the dof is called
+            draft.take(joint.prim, "displayName")
+    for joint in agreeing[1:]:
+        draft.elements[joint.prim.path] = [first.id]
+        draft.notations.pop(joint.id, None)
+    rest = [joint for joint in group if joint not in agreeing]
+    return [replace(first, dofs=dofs, merged=tuple(joint.prim for joint in agreeing)), *rest]
+
+
+def _child_at(joint: ReadJoint) -> Pose:
+    """The child in its parent where all coordinates are at their reference."""
+    return compose(joint.ends[0].pose, inverse(joint.ends[1].pose))
+
+
+def _is_close(a: Pose, b: Pose) -> bool:
+    size = max(1.0, *map(abs, (*a.xyz, *b.xyz)))
+    return max(abs(p - q) for p, q in zip(a.xyz, b.xyz, strict=True)) < _SAME * size and rotation_angle(a.quat, b.quat) < _SAME
+
+
+def _dof_seen_from(first: ReadJoint, joint: ReadJoint) -> Dof:
+    """A joint's dof in the frame of the first one, under the joint's name."""
+    dof = replace(joint.dofs[0], name=joint.id.name)
+    if joint.ends[0].pose == first.ends[0].pose:
+        return dof
+    frame = compose(inverse(first.ends[0].pose), joint.ends[0].pose)
+    anchor = (0.0, 0.0, 0.0) if dof.kind is DofKind.SLIDE else frame.xyz
+    axis = dof.axis if dof.kind is DofKind.BALL else unit(rotate(frame.quat, dof.axis))
+    return replace(dof, axis=axis, anchor=_tidy(anchor))
+
+
+def _tidy(vector: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Rounding errors of single precision are no anchors."""
+    x, y, z = (0.0 if abs(value) < 1e-9 else value for value in vector)
+    return (x, y, z)

@@ -1,29 +1,24 @@
-"""Geometry: gprims as shapes on bodies or the world, in metres; what is for looking and what for colliding."""
+"""Gprims as shapes on bodies or the world, in metres: geometry, role, colour."""
 
 from __future__ import annotations
 
-import hashlib
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from hymeko_x import codes
 from hymeko_x.formats import usd as words
-from hymeko_x.formats.usd import gprims, single
-from hymeko_x.frontends.usd.bodies import body_at
+from hymeko_x.formats.usd import shapes as gprims
+from hymeko_x.formats.usd import single
+from hymeko_x.frontends.usd.bodies import ReadShape, body_at
 from hymeko_x.frontends.usd.contacts import friction_of
 from hymeko_x.frontends.usd.materials import bound_material
-from hymeko_x.frontends.usd.places import numbers_of
-from hymeko_x.frontends.usd.subsets import read_subsets
-from hymeko_x.frontends.usd.texcoords import read_places, says_places
+from hymeko_x.frontends.usd.meshes import read_mesh, read_subsets, says_normals, says_places
+from hymeko_x.frontends.usd.transforms import numbers_of
 from hymeko_x.ir.mechanism import WORLD, Id, shape_edge
-from hymeko_x.ir.parts import Mesh, MeshShape, Role, Shape, World
+from hymeko_x.ir.parts import MeshShape, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Vec3, compose
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.builder import Draft
     from hymeko_x.frontends.usd.prims import Prim
-    from hymeko_x.frontends.usd.texcoords import Places
     from hymeko_x.ir.parts import Geometry, Rgba
 
 COLLISION = "PhysicsCollisionAPI"
@@ -31,10 +26,6 @@ TYPES = ("Cube", "Sphere", "Cylinder", "Capsule", "Plane", "Mesh")
 _XFORM = "xformOp"
 _HULL = "PhysicsMeshCollisionAPI"
 _APPROXIMATION = "physics:approximation"
-_OF_NORMALS = frozenset(("typeName", "variability", "custom", "default", "interpolation"))
-
-Read = tuple["Prim", Shape, Pose, "NDArray[Any] | None"]
-"""A shape that was read: its prim, part, pose in the body, and for a mesh its points in the shape's frame (n x 3)."""
 
 
 def is_shape(prim: Prim) -> bool:
@@ -42,7 +33,7 @@ def is_shape(prim: Prim) -> bool:
     return prim.kind in TYPES and not any(prim.has_api(site) for site in words.SITES)
 
 
-def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
+def read_shape(prim: Prim, draft: Draft) -> tuple[Id, ReadShape] | None:
     """Add the shape of a gprim; returns the body (or the world) that it is on with what was read. None where it cannot be one."""
     found = body_at(prim, draft)
     body, owner = found if found is not None else (None, WORLD)
@@ -50,7 +41,7 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
     pose, points, mesh, said = IDENTITY if prim is body else at.pose, None, None, None
     geometry: Geometry = MeshShape()
     if prim.kind == "Mesh" and not _is_ball(prim, draft):
-        points, mesh = _read_mesh(prim, draft, at.scale)
+        points, mesh = read_mesh(prim, draft, at.scale)
         if mesh is None:
             return None
     else:
@@ -67,14 +58,14 @@ def read_shape(prim: Prim, draft: Draft) -> tuple[Id, Read] | None:
     key = draft.own(prim, "shape")
     if said is not None and said != gprims.chosen(geometry, role):
         draft.note(key, gprims.NOTATION, str(said))
-    if points is not None and _says_normals(prim, draft):
+    if points is not None and says_normals(prim, draft):
         draft.note(key, words.NORMALS, "faces")
     if points is not None and says_places(prim, draft):
         draft.note(key, words.TEXCOORDS, "corners")
     draft.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, draft))
     if points is not None:
         read_subsets(prim, key, draft)
-    return owner, (prim, shape, pose, points)
+    return owner, ReadShape(prim, shape, pose, points)
 
 
 # ---- primitives ------------------------------------------------------------------------------------------------------------------
@@ -110,85 +101,6 @@ def _take_extent(prim: Prim, half: Vec3, draft: Draft) -> None:
     low, high = numbers_of(said)
     if all(abs(a - b) <= 1e-6 * max(half) for a, b in zip((*low, *high), box, strict=True)):
         draft.take(prim, "extent")
-
-
-# ---- meshes --------------------------------------------------------------------------------------------------------------------
-
-
-def _read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | None, Id | None]:
-    """The points of a mesh prim in metres with the mesh's id. Equal meshes at equal scale share one; polygons become fans."""
-    import numpy as np
-
-    from hymeko_x.meshes.polygons import fans
-
-    points, counts, indices = (prim.value(name) for name in ("points", "faceVertexCounts", "faceVertexIndices"))
-    if points is None or counts is None or indices is None:
-        return _refused(prim, "has no points or no faces", draft)
-    vertices = np.asarray(points, dtype=np.float64).reshape(-1, 3)
-    sizes, corners = np.asarray(counts, dtype=np.int64), np.asarray(indices, dtype=np.int64)
-    if sizes.size and (sizes.min() < 0 or sizes.sum() != corners.size):
-        return _refused(prim, "says another number of corners than it has", draft)
-    if corners.size and (corners.min() < 0 or corners.max() >= len(vertices)):
-        return _refused(prim, "has a face with a point that does not exist", draft)
-    if not np.isfinite(vertices).all():
-        return _refused(prim, "has points that are not finite", draft)
-    faces = fans(sizes, corners)
-    if not prim.is_animated("points"):
-        draft.take(prim, "points")
-    _take_mesh_extent(prim, vertices, draft)
-    if prim.value("subdivisionScheme") == "none":  # which is what we say of every mesh
-        draft.take(prim, "subdivisionScheme")
-    if (sizes == 3).all():
-        draft.take(prim, "faceVertexCounts", "faceVertexIndices")
-    key = _shared_mesh(prim, vertices, faces, read_places(prim, sizes, corners), scale, draft)
-    return vertices * np.asarray(scale), key
-
-
-def _take_mesh_extent(prim: Prim, vertices: NDArray[Any], draft: Draft) -> None:
-    import numpy as np
-
-    said = prim.value("extent")
-    if said is not None and len(said) == 2 and len(vertices):
-        box = np.stack([vertices.min(axis=0), vertices.max(axis=0)])
-        if np.allclose(np.asarray(said, dtype=np.float64), box, rtol=1e-6, atol=1e-6 * float(np.abs(box).max())):
-            draft.take(prim, "extent")
-
-
-def _says_normals(prim: Prim, draft: Draft) -> bool:
-    """Whether the normals of a mesh are those of its triangles, which nobody has to keep."""
-    normals, counts = prim.value("normals"), prim.value("faceVertexCounts")
-    if normals is None or len(normals) != len(counts) or "faceVertexCounts" not in draft.taken.get(prim.path, ()):
-        return False
-    import numpy as np
-
-    from hymeko_x.meshes.measures import face_normals
-
-    spec = prim.spec.attributes["normals"]
-    is_plain = set(spec.ListInfoKeys()) <= _OF_NORMALS and spec.GetInfo("interpolation") == "uniform" and not prim.is_animated("normals")
-    points, corners = (np.asarray(prim.value(name)) for name in ("points", "faceVertexIndices"))
-    if not is_plain or not np.array_equal(np.asarray(normals), face_normals(points, corners)):
-        return False
-    draft.take(prim, "normals")
-    return True
-
-
-def _refused(prim: Prim, why: str, draft: Draft) -> tuple[None, None]:
-    said = f"mesh '{prim.path}' {why}; it is kept as written"
-    draft.report.error(codes.ASSET_UNREADABLE, said, draft.origin, element=prim.path)
-    return None, None
-
-
-def _shared_mesh(prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], places: Places, scale: Vec3, draft: Draft) -> Id:
-    about = tuple(f"{factor:.12g}" for factor in scale)  # computed from what is above the prim: its last bits are those of no author
-    said = repr((about, places) if places[0] else about)
-    content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + said.encode()).hexdigest()
-    known = draft.meshes.get(content)
-    if known is not None:
-        return known
-    key = draft.own(prim, "mesh", prim.name)
-    draft.meshes[content] = key
-    draft.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), tuple(faces.ravel().tolist()), *places)
-    return key
 
 
 # ---- looks and purpose -----------------------------------------------------------------------------------------------------------

@@ -1,27 +1,19 @@
-"""A composed stage from bytes: the file and every layer that it refers to, laid out in a private temporary folder.
-
-USD opens layers by path only, and crate files only from a disk. So the bytes that the source's ``files`` hand out are
-written below one temporary folder, in which no reference leads anywhere else; it is gone when the reading is done.
-"""
+"""A composed stage from bytes, with its variants chosen, its instances expanded and its units."""
 
 from __future__ import annotations
 
 import os
-import posixpath
 import re
 import tempfile
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.frontends.usd.layers import _UP, _gather, _words, check_paths, check_size, drop_unknown_types, lay_out
 from hymeko_x.frontends.usd.prims import read_layer
-from hymeko_x.frontends.usd.size import check_depth, check_paths, check_size
-from hymeko_x.frontends.usd.types import drop_unknown_types
-from hymeko_x.frontends.usd.unpack import lay_out
 from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
@@ -32,14 +24,9 @@ if TYPE_CHECKING:
     from hymeko_x.source import Source
 
 MOST_PRIMS = 2_000_000
-MOST_LAYERS = 10_000
 _MOST_UNIT = 1e12
 """Units of a stage lie between this and its inverse: from less than a picometre to more than the solar system."""
 MOST_NESTED_INSTANCES = 32
-_FOLDER = re.compile(r"[^\s'<@]*hymeko-usd-[^\s'>@]*/")
-_UP = 8
-"""How many folders a reference may lead upwards from the file."""
-_SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
 
 @frozen
@@ -116,89 +103,6 @@ def _composed(main: str, source: Source) -> Any:
         return Usd.Stage.Open(main, Usd.Stage.LoadAll)
     except Tf.ErrorException as error:
         raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error)}", Origin(source.name)) from error
-
-
-def _words(error: Exception) -> str:
-    """The first sentence of what USD says, without its own source files and our temporary folder."""
-    try:
-        text = str(error)
-    except UnicodeDecodeError:  # USD quotes the bytes of the file
-        return "it is not UTF-8"
-    said = text.rsplit(" : ", 1)[-1].split(" matching ")[0] if " : " in text else text
-    return " ".join(_FOLDER.sub("", said).strip("' \n\t").split())[:300] or "no reason is given"
-
-
-# ---- layers ------------------------------------------------------------------------------------------------------------------
-
-
-def _gather(main: str, base: str, source: Source, report: Report) -> list[Any]:
-    """Every layer that can be reached, written where the reference expects it; what cannot be found is said and stays out."""
-    waiting, kept, seen = [main], [], {main}
-    while waiting:
-        path = waiting.pop()
-        layer = _layer(path, base, source, report, is_main=path == main)
-        if layer is None:
-            continue
-        kept.append(layer)
-        if len(kept) > MOST_LAYERS:
-            raise refuse(codes.TOO_LARGE, f"it is made of more than {MOST_LAYERS} layers", Origin(source.name))
-        for uri in sorted(layer.GetCompositionAssetDependencies()):
-            found = _fetch(uri, layer.realPath, base, source, report)
-            layer.UpdateCompositionAssetDependency(uri, found or "")
-            if found and found not in seen:
-                seen.add(found)
-                waiting.append(found)
-    return kept
-
-
-def _layer(path: str, base: str, source: Source, report: Report, *, is_main: bool) -> Any | None:
-    check_depth(path, source)
-    try:
-        return Sdf.Layer.FindOrOpen(path)
-    except Tf.ErrorException as error:
-        if is_main:
-            raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error)}", Origin(source.name)) from error
-        said = f"layer '{os.path.relpath(path, base)}' cannot be read: {_words(error)}; it is left out"
-        report.error(codes.CANNOT_READ, said, Origin(source.name))
-        return None
-
-
-def _fetch(uri: str, layer: str, base: str, source: Source, report: Report) -> str | None:
-    """The path in the temporary folder of the file that a layer refers to; None when there is none."""
-    if not uri:
-        return None
-    folder = posixpath.dirname(os.path.relpath(layer, base).replace(os.sep, "/"))
-    there = os.path.normpath(os.path.join(base, folder, uri))
-    if not _is_absolute(uri) and there.startswith(base + os.sep) and os.path.isfile(there):
-        return there
-    for way in dict.fromkeys((uri if _is_absolute(uri) else posixpath.normpath(posixpath.join(folder, uri)), uri)):
-        found = source.files.find(way)
-        if found is None:
-            continue
-        target = _target(way, found, base)
-        try:
-            data = source.files.read(found)
-        except OSError:
-            continue
-        os.makedirs(os.path.dirname(target), exist_ok=True)
-        Path(target).write_bytes(data)
-        return target
-    report.warn(codes.ASSET_NOT_FOUND, f"the layer '{uri}' was not found; what it says is missing", Origin(source.name))
-    return None
-
-
-def _target(way: str, found: str, base: str) -> str:
-    """Where a file is laid: at its place relative to the main file where it has one, else in a folder for such files."""
-    place = os.path.normpath(os.path.join(base, way))
-    root = os.path.join(base, *[".."] * _UP)
-    is_inside = not _is_absolute(way) and place.startswith(os.path.normpath(root) + os.sep)
-    if is_inside and posixpath.splitext(way)[1].lower() in _SUFFIXES and not os.path.basename(place).startswith("stage."):
-        return place
-    return os.path.join(base, "elsewhere", found.replace(os.sep, "/").strip("/").replace("/", "__").replace(":", "_"))
-
-
-def _is_absolute(uri: str) -> bool:
-    return uri.startswith(("/", "\\")) or "://" in uri or (len(uri) > 1 and uri[1] == ":")
 
 
 _ARCS = frozenset(("references", "payload", "inheritPaths", "specializes", "variantSetNames", "instanceable"))

@@ -17,9 +17,9 @@ from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, SPATIAL, WRAP, wrong_path
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.joints import Driven
     from hymeko_x.frontends.usd.prims import Prim
-    from hymeko_x.frontends.usd.relations import Driven
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.parts import Rgba
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from pxr import Usd, UsdGeom, UsdPhysics
 
-from hymeko_x.formats.usd.gprims import ball
+from hymeko_x.formats.usd.shapes import ball
 from hymeko_x.verify.model import Array, Role, Shape, Surface
 from hymeko_x.verify.readers.usd.scene import owner
 from hymeko_x.verify.spatial import rigid

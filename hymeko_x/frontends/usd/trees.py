@@ -1,7 +1,7 @@
 """From an undirected graph of joints to trees and loops, the same way every time.
 
 Joints that UsdPhysics excludes from the articulation, and in stage order every further one that closes a cycle, become
-loops. What is left is directed away from the world, from articulation roots, or from bodies that no joint has as body1.
+loops. The others are directed away from the world, from articulation roots, or from bodies that no joint has as body1.
 """
 
 from __future__ import annotations
@@ -12,8 +12,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats import usd as words
-from hymeko_x.frontends.usd.joints import DISTANCE
-from hymeko_x.frontends.usd.parallel import merge_parallel
+from hymeko_x.frontends.usd.joints import DISTANCE, merge_parallel
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.parts import Dof, DofKind, Joint, Loop, World
@@ -22,7 +21,7 @@ from hymeko_x.ir.values import IDENTITY, compose, inverse, numbers_text, rotatio
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.builder import Draft
     from hymeko_x.frontends.usd.joints import End, ReadJoint
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.parts import Parameters

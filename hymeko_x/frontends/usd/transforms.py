@@ -1,4 +1,4 @@
-"""Where prims are: matrices of USD as poses in metres with z up, and the scale that is left."""
+"""Transforms of prims: matrices of USD as poses in metres with z up, and the scale that is left."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hymeko_x.frozen import frozen
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, cross, scaled, unit_quat
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.diagnostics import Origin, Report
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.stage import Scene
 
@@ -62,13 +62,13 @@ class Places:
         return self.matrix(prim) * matrix_of(self.of(body).pose).GetInverse()
 
 
-def check_ops(prim: Prim, draft: Draft) -> None:
+def check_ops(prim: Prim, report: Report, origin: Origin) -> None:
     """Say which steps of the way to a prim are named and not there; USD goes on without them."""
     steps = {step.removeprefix("!invert!"): None for step in prim.value(_ORDER) or ()}
     missing = [step for step in steps if step not in prim.types and step != _RESET]
     if missing:
         said = f"{_ORDER} names {', '.join(missing)}, which {'are' if missing[1:] else 'is'} not there; passed over"
-        draft.report.warn(codes.UNDEFINED_REFERENCE, said, draft.origin, element=prim.path)
+        report.warn(codes.UNDEFINED_REFERENCE, said, origin, element=prim.path)
 
 
 def matrix_of(pose: Pose) -> Any:

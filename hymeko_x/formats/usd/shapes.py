@@ -1,6 +1,6 @@
-"""Primitive prims of UsdGeom as plain values: what a prim says, and the geometry that it stands for.
+"""Primitive prims of UsdGeom as plain values: the attributes of a prim, and the geometry that it stands for.
 
-Shared by reader and writer, so that sizes, axis and scale leave as their author wrote them.
+Shared by reader and writer, so that sizes, axis and scale are written as their author wrote them.
 """
 
 from __future__ import annotations

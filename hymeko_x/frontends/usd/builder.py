@@ -1,4 +1,4 @@
-"""A mechanism in the making, and what has been read of each prim so far: the rest becomes extras by itself."""
+"""The mechanism while a stage is read, and which properties of each prim have been read: the unread ones become extras."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
-from hymeko_x.frontends.usd.places import Places, numbers_of
+from hymeko_x.frontends.usd.transforms import Places, numbers_of
 from hymeko_x.ir.builder import Builder
 
 if TYPE_CHECKING:

@@ -1,4 +1,4 @@
-"""Everything that was not read of any prim, as extras of the nearest element: nobody has to remember to keep it.
+"""Everything unread of any prim, as extras of the nearest element.
 
 An extra is the text of a prim in USD's own language, without its children; its path leads from the element's prim to it.
 """
@@ -11,12 +11,12 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
-from hymeko_x.frontends.usd.places import matrix_of, placed
+from hymeko_x.frontends.usd.transforms import matrix_of, placed
 from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import ROOT, Extra
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.draft import Draft
+    from hymeko_x.frontends.usd.builder import Draft
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 

@@ -1,0 +1,163 @@
+"""Mesh prims: points, triangles, normals, texture coordinates, and subsets with materials of their own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pxr import Sdf, Vt
+
+from hymeko_x.backends.usd.materials import bind
+from hymeko_x.backends.usd.sheet import T, put
+from hymeko_x.formats import usd as words
+from hymeko_x.ir.parts import Mesh
+from hymeko_x.meshes.measures import face_normals
+from hymeko_x.meshes.part import FilledMesh
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from hymeko_x.backends.usd.sheet import Prim, Sheet, Triangles
+    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
+    from hymeko_x.ir.values import Vec3
+    from hymeko_x.meshes.part import Part
+
+_ST = "primvars:st"
+
+
+# ---- meshes --------------------------------------------------------------------------------------------------------------------
+
+
+def write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, int], shared: dict[Id, Any]) -> Vec3 | None:
+    """The mesh itself, or a reference to where it is; without points the prim stays a mere place."""
+    mesh = sheet.mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
+    if view.mesh is None or not isinstance(mesh, Mesh):
+        return None
+    if view.mesh not in sheet.surfaces:
+        sheet.surfaces[view.mesh] = surface_of(mesh)
+    surface = sheet.surfaces[view.mesh]
+    if users[view.mesh] == 1 or surface is None:
+        _carry_mesh(sheet, spec, view.mesh)
+        if surface is not None:
+            write_triangles(spec, surface)
+            if _says(sheet.mechanism, view.id, words.NORMALS):
+                _write_normals(spec, surface)
+            if _says(sheet.mechanism, view.id, words.TEXCOORDS):
+                _write_places(spec, mesh)
+    else:
+        if view.mesh not in shared:
+            shared[view.mesh] = _write_prototype(sheet, view.mesh, mesh, surface)
+            _carry_mesh(sheet, spec, view.mesh)
+        spec.kind = "Mesh"
+        spec.reference = shared[view.mesh]
+    return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
+
+
+def _says(mechanism: Mechanism, shape: Id, notation: str) -> bool:
+    """Whether a mesh says this of its triangles as we do: ours do, those of others where they did."""
+    return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, notation) is not None
+
+
+def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
+    """The prim of a mesh carries it; it says nothing about subdivision but that there is none."""
+    sheet.homes[mesh] = spec.path
+
+
+def _write_prototype(sheet: Sheet, key: Id, mesh: Mesh, surface: Triangles) -> Any:
+    """A mesh that is shown several times: a class, which is seen only through references to it."""
+    scope = sheet.root.AppendChild("meshes")
+    if scope not in sheet.prims:
+        group = sheet.define(scope, "Scope")
+        group.specifier = Sdf.SpecifierClass
+        put(group, f"{words.PREFIX}scope", T.Bool, True)
+    spec = sheet.define(sheet.free_path(scope, key.name), "Mesh")
+    write_triangles(spec, surface)
+    _write_normals(spec, surface)
+    _write_places(spec, mesh)
+    return spec.path
+
+
+def write_triangles(prim: Prim, surface: Triangles) -> None:
+    """Points in single precision, triangles, and no subdivision."""
+    points, faces = surface
+    prim.kind = "Mesh"
+    put(prim, "points", T.Point3fArray, Vt.Vec3fArray.FromNumpy(points))
+    put(prim, "faceVertexCounts", T.IntArray, Vt.IntArray(len(faces) // 3, 3))
+    put(prim, "faceVertexIndices", T.IntArray, Vt.IntArray.FromNumpy(faces))
+    put(prim, "subdivisionScheme", T.Token, "none")
+    axes = np.ascontiguousarray(points.T)  # of which a least value is found much faster
+    box = np.stack([axes.min(axis=1), axes.max(axis=1)])
+    put(prim, "extent", T.Float3Array, Vt.Vec3fArray.FromNumpy(box))
+
+
+def _write_normals(prim: Prim, surface: Triangles) -> None:
+    """One normal for each triangle, for programs that compute none of their own; a degenerate triangle has some unit vector."""
+    put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(face_normals(*surface)))
+    prim.spread["normals"] = "uniform"
+
+
+def _write_places(prim: Prim, mesh: Mesh) -> None:
+    """Where the corners of the triangles are in the image of the material."""
+    found = places_of(mesh)
+    if found is None:
+        return
+    put(prim, _ST, T.TexCoord2fArray, Vt.Vec2fArray.FromNumpy(found[0]))
+    put(prim, f"{_ST}:indices", T.IntArray, Vt.IntArray.FromNumpy(found[1]))
+    prim.spread[_ST] = "faceVarying"
+
+
+def write_subsets(sheet: Sheet, spec: Prim, view: ShapeView) -> None:
+    """The triangles of a mesh that show other materials, each a prim below it."""
+    surface = sheet.surfaces.get(view.mesh) if view.mesh is not None else None
+    count = 0 if surface is None else len(surface[1]) // 3
+    for subset in sheet.mechanism.subsets.get(view.id, ()):
+        if not subset.faces or min(subset.faces) < 0 or max(subset.faces) >= count or subset.material not in sheet.homes:
+            continue
+        prim = sheet.place(subset.id, spec.path, "GeomSubset", subset.id.name.partition("#")[0], below=True)
+        put(prim, "elementType", T.Token, words.FACE)
+        put(prim, "familyName", T.Token, words.LOOKS)
+        put(prim, "indices", T.IntArray, Vt.IntArray(subset.faces))
+        bind(sheet, prim, subset.material)
+        put(spec, words.FAMILY, T.Token, words.APART)
+
+
+# ---- triangles of meshes as arrays -------------------------------------------------------------------------------------------------
+
+
+def places_of(mesh: Mesh) -> Triangles | None:
+    """The places of a mesh in its image (n x 2, single precision) and the row of each corner; None where they are none or broken."""
+    table = _mapped(mesh.part) if isinstance(mesh, FilledMesh) else _listed_places(mesh)
+    return None if table is None else _in_single(*table)
+
+
+def _mapped(part: Part) -> Triangles | None:
+    return None if part.uv is None else (part.uv, (part.faces if part.corners is None else part.corners).ravel())
+
+
+def _listed_places(mesh: Mesh) -> Triangles | None:
+    rows = mesh.texfaces or mesh.faces
+    if not mesh.texcoords or len(mesh.texcoords) % 2 or len(rows) != len(mesh.faces):
+        return None
+    return np.fromiter(mesh.texcoords, np.float64, len(mesh.texcoords)).reshape(-1, 2), np.fromiter(rows, np.int64, len(rows))
+
+
+def surface_of(mesh: Mesh) -> Triangles | None:
+    """What of a mesh can be drawn; None without points, with one that single precision cannot hold, or with a broken triangle."""
+    table = (mesh.part.points, mesh.part.faces.ravel()) if isinstance(mesh, FilledMesh) else _listed(mesh)
+    return None if table is None or not len(table[0]) else _in_single(*table)
+
+
+def _in_single(rows: NDArray[Any], corners: NDArray[Any]) -> Triangles | None:
+    """Rows of numbers and the row of each corner; None where single precision cannot hold a number, or a row is not there."""
+    with np.errstate(over="ignore"):
+        numbers = rows.astype(np.float32)
+    if not np.isfinite(numbers).all() or (corners.size and (corners.min() < 0 or corners.max() >= len(numbers))):
+        return None
+    return numbers, corners.astype(np.int32)
+
+
+def _listed(mesh: Mesh) -> Triangles | None:
+    if len(mesh.vertices) % 3 or len(mesh.faces) % 3:
+        return None
+    points = np.fromiter(mesh.vertices, np.float64, len(mesh.vertices)).reshape(-1, 3)
+    return points, np.fromiter(mesh.faces, np.int64, len(mesh.faces))

@@ -1,0 +1,77 @@
+"""Sites, cameras and lights on their bodies."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+from pxr import Gf, Vt
+
+from hymeko_x.backends.usd.sheet import T, apply, put
+from hymeko_x.formats import usd as words
+from hymeko_x.ir.mechanism import WORLD, pose_weight
+from hymeko_x.ir.parts import Camera, Frame, Light, Mount, Tendon
+
+if TYPE_CHECKING:
+    from hymeko_x.backends.usd.sheet import Prim, Sheet
+
+_SITE_SIZE = 0.005
+"""The radius in m of a site of which MJCF says none."""
+
+
+# ---- what is mounted on bodies -----------------------------------------------------------------------------------------------
+
+
+def write_mounts(sheet: Sheet) -> None:
+    """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras and lights; each carries where it is mounted.
+
+    A site of a cable is a small ball that nobody sees, as MuJoCo's converter writes sites: Newton leads cables through shapes alone.
+    """
+    knots = {arc.target for _, _, arcs in sheet.mechanism.edges(Tendon) for arc in arcs if arc.target.kind == "frame"}
+    for key, _, arcs in sheet.mechanism.edges(Mount):
+        body = next((arc for arc in arcs if arc.sign > 0), None)
+        thing = next((arc for arc in arcs if arc.sign < 0), None)
+        part = sheet.mechanism.graph.vertices.get(thing.target) if thing else None
+        if body is None or thing is None or not isinstance(part, Frame | Camera | Light) or thing.target in sheet.homes:
+            continue
+        home = sheet.root if body.target == WORLD else sheet.homes.get(body.target)
+        if home is None:
+            continue
+        spec = sheet.place(thing.target, home, _type_of(part), below=body.target != WORLD)
+        sheet.homes[key] = spec.path
+        sheet.move(spec, pose_weight(body), on=body.target)
+        _write_thing(spec, part)
+        if isinstance(part, Frame) and thing.target in knots and sheet.mechanism.notation(thing.target, words.PATH) is None:
+            _write_ball(spec, part.size[0] if part.size and part.size[0] > 0.0 else _SITE_SIZE)
+
+
+def _write_ball(spec: Prim, radius: float) -> None:
+    """The shape of a site, of this radius in m."""
+    spec.kind = "Sphere"
+    put(spec, "radius", T.Double, radius)
+    put(spec, "purpose", T.Token, "guide")
+    put(spec, "extent", T.Float3Array, Vt.Vec3fArray([Gf.Vec3f(-radius), Gf.Vec3f(radius)]))
+
+
+def _type_of(part: Frame | Camera | Light) -> str:
+    match part:
+        case Frame():
+            return "Xform"
+        case Camera():
+            return "Camera"
+        case Light(kind):
+            return next((name for name, meant in words.LIGHTS.items() if meant == kind), "SphereLight")
+
+
+def _write_thing(spec: Any, part: Frame | Camera | Light) -> None:
+    """What a frame, a camera or a light says beside where it is."""
+    if isinstance(part, Frame):
+        apply(spec, *words.SITES)
+    elif isinstance(part, Light):
+        if part.kind == "spot":
+            apply(spec, words.CONE)
+        if part.diffuse is not None:
+            put(spec, "inputs:color", T.Color3f, Gf.Vec3f(*part.diffuse))
+    elif part.fovy is not None and 0.0 < part.fovy < math.pi:
+        put(spec, "verticalAperture", T.Float, words.APERTURE)
+        put(spec, "focalLength", T.Float, words.APERTURE / 2.0 / math.tan(part.fovy / 2.0))

@@ -1,0 +1,27 @@
+"""The notations of exclusions that come from collision groups."""
+
+from __future__ import annotations
+
+import hashlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from hymeko_x.ir.mechanism import Id
+
+
+# ---- collision groups ------------------------------------------------------------------------------------------------------------
+
+GROUP = "PhysicsCollisionGroup"
+GROUPED = "usd.grouped"
+"""The notation of an exclusion that collision groups say: ``groups`` where they alone do, ``both`` where a filtered pair says it, too."""
+APART_BY_GROUPS, APART_BY_BOTH = "groups", "both"
+GROUPS = "usd.groups"
+"""The notation of the mechanism that tells whether the exclusions which its collision groups say are all still there, and no others."""
+
+
+def pairs_print(pairs: Iterable[tuple[Id, Id]]) -> str:
+    """A fingerprint of pairs of bodies, in whatever order."""
+    lines = sorted("\n".join(sorted(map(str, pair))) for pair in pairs)
+    return hashlib.sha256("\n\n".join(lines).encode()).hexdigest()[:16]

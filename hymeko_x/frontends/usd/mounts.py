@@ -1,0 +1,66 @@
+"""Sites, cameras and lights: the elements that a prim mounts on a body or on the world."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats import usd as words
+from hymeko_x.frontends.usd.bodies import body_at
+from hymeko_x.ir.mechanism import WORLD, mount_edge
+from hymeko_x.ir.parts import Camera, Frame, Light, World
+
+if TYPE_CHECKING:
+    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.prims import Prim
+    from hymeko_x.ir.mechanism import Id
+
+
+# ---- things that sit somewhere -------------------------------------------------------------------------------------------------
+
+
+def read_site(prim: Prim, draft: Draft) -> None:
+    """A frame at the prim, which is no more than that if it says all that we would say; the shape by which it is shown stays an extra."""
+    key = draft.own(prim, "frame")
+    draft.vertices[key] = Frame()
+    if prim.kind == "Xform" and all(map(prim.has_api, words.SITES)):
+        draft.take(prim, "@type", *(f"@{schema}" for schema in words.SITES))
+    mount(prim, key, draft)
+
+
+def read_camera(prim: Prim, draft: Draft) -> None:
+    """A camera with its vertical field of view, 2 atan(aperture / 2 f); the rest of its lens stays extras."""
+    key = draft.own(prim, "camera")
+    focal = words.single(prim.value("focalLength") or 50.0)
+    aperture = words.single(prim.value("verticalAperture") or words.APERTURE)
+    fovy = 2.0 * math.atan(aperture / (2.0 * focal))
+    draft.vertices[key] = Camera(fovy)
+    draft.take(prim, "@type")
+    if aperture == words.APERTURE and 0.0 < fovy < math.pi:  # as we say it
+        draft.take(prim, *(name for name in ("focalLength", "verticalAperture") if not prim.is_animated(name)))
+    mount(prim, key, draft)
+
+
+def mount(prim: Prim, key: Id, draft: Draft) -> None:
+    """The edge that puts a thing where its prim is, on the body above or on the world."""
+    found = body_at(prim, draft)
+    body, owner = found if found is not None else (None, WORLD)
+    if owner == WORLD:
+        draft.vertices.setdefault(WORLD, World())
+    pose = draft.places.seen_from(prim, body).pose
+    draft.edges[draft.own(prim, "mount", key.name)] = mount_edge(owner, key, pose)
+    ops = [name for name in prim.properties if name.startswith("xformOp")]
+    draft.take(prim, *(name for name in ops if "scale" not in name or name == words.WITHIN))
+
+
+def read_light(prim: Prim, draft: Draft) -> None:
+    """A light where it shines; a sphere light with a cone is a spot."""
+    kind = words.LIGHTS[prim.kind]
+    if kind == "point" and prim.has_api(words.CONE):
+        kind = "spot"
+        draft.take(prim, f"@{words.CONE}")
+    key = draft.own(prim, "light")
+    colour = draft.get(prim, "inputs:color")
+    draft.vertices[key] = Light(kind, colour)
+    draft.take(prim, "@type")
+    mount(prim, key, draft)
