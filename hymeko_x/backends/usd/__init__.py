@@ -20,7 +20,7 @@ from hymeko_x.backends.usd.layers import encoded, set_points_aside, split
 from hymeko_x.backends.usd.materials import write_materials
 from hymeko_x.backends.usd.mounts import write_mounts
 from hymeko_x.backends.usd.shapes import write_shapes
-from hymeko_x.backends.usd.sheet import Sheet, apply, author, valid_name
+from hymeko_x.backends.usd.sheet import UsdSheet, apply, author, valid_name
 from hymeko_x.backends.usd.tendons import write_tendons
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import LAYOUT, POINTS
@@ -77,7 +77,7 @@ def _within(mechanism: Mechanism) -> str:
 def write_layer(mechanism: Mechanism, report: Report) -> Any:
     """The mechanism as one layer in memory."""
     layer = Sdf.Layer.CreateAnonymous(".usda")
-    sheet = Sheet(mechanism, layer, _root(mechanism))
+    sheet = UsdSheet(mechanism, layer, _root(mechanism))
     with Sdf.ChangeBlock():
         _write_stage(sheet)
         for section in _SECTIONS:
@@ -95,7 +95,7 @@ def _root(mechanism: Mechanism) -> Any:
     return Sdf.Path.absoluteRootPath.AppendChild(valid_name(mechanism.name))
 
 
-def _write_stage(sheet: Sheet) -> None:
+def _write_stage(sheet: UsdSheet) -> None:
     """Units, up axis and the default prim, which stands for the robot."""
     stage = sheet.layer.pseudoRoot
     stage.SetInfo("metersPerUnit", 1.0)
@@ -103,17 +103,17 @@ def _write_stage(sheet: Sheet) -> None:
     stage.SetInfo("upAxis", UsdGeom.Tokens.z)
     sheet.layer.defaultPrim = sheet.root.name
     prim = sheet.define(sheet.root, "Xform", sheet.mechanism.name)
-    sheet.groups.add(sheet.root)
+    sheet.group_paths.add(sheet.root)
     if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is None:
         prim.info["kind"] = Kind.Tokens.component
 
 
-def _write_articulations(sheet: Sheet) -> None:
+def _write_articulations(sheet: UsdSheet) -> None:
     """The robot's prim is the root of its articulation; several trees have one root each. Those of the source stay."""
     if any(_ARTICULATION in extra.text for extras in sheet.mechanism.extras.values() for extra in extras if extra.format == words.FORMAT):
         return
     roots = sheet.mechanism.roots
     if sheet.mechanism.notation(ROOT, words.ROOT_PRIM) is not None or not sheet.dofs:
         return
-    for path in [sheet.root] if len(roots) == 1 else [sheet.homes[root] for root in roots if sheet.mechanism.children.get(root)]:
+    for path in [sheet.root] if len(roots) == 1 else [sheet.paths[root] for root in roots if sheet.mechanism.children.get(root)]:
         apply(sheet.prims[path], _ARTICULATION)

@@ -14,7 +14,7 @@ from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Drive
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, Sheet
+    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Dof, Parameters
 
@@ -25,7 +25,7 @@ SERVOS = ("position", "velocity")
 """The kinds of actuators that are drives on a joint."""
 
 
-def write_drives(sheet: Sheet) -> None:
+def write_drives(sheet: UsdSheet) -> None:
     """Each servo or motor on one dof as a DriveAPI of its joint; gains per degree, force limits from its force range."""
     driven_prims: set[Any] = set()
     for key, _, arcs in sheet.mechanism.edges(Drive):
@@ -39,10 +39,10 @@ def write_drives(sheet: Sheet) -> None:
         _write_drive(spec, axis or ("angular" if dof.kind is DofKind.HINGE else "linear"), actuator, dof)
         if spec.path not in driven_prims:
             driven_prims.add(spec.path)
-            sheet.homes |= {source: spec.path, key: spec.path}
+            sheet.paths |= {source: spec.path, key: spec.path}
 
 
-def _is_drive(sheet: Sheet, key: Id, actuator: Actuator) -> bool:
+def _is_drive(sheet: UsdSheet, key: Id, actuator: Actuator) -> bool:
     """Whether a drive says it: servos, and motors that were drives before."""
     noted = sheet.mechanism.notation(key, words.TYPE)
     return actuator.kind in SERVOS or (actuator.kind == "motor" and noted in words.DRIVES)
@@ -50,13 +50,13 @@ def _is_drive(sheet: Sheet, key: Id, actuator: Actuator) -> bool:
 
 def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None:
     unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else 1.0
-    said = dict(actuator.parameters)
+    authored = dict(actuator.parameters)
     apply(spec, f"PhysicsDriveAPI:{instance}")
     for name, parameter in (("stiffness", "kp"), ("damping", "kv")):
-        value = said.get(parameter)
+        value = authored.get(parameter)
         if isinstance(value, int | float):
             put(spec, f"drive:{instance}:physics:{name}", T.Float, value * unit)
-    most = said.get("forcerange")
+    most = authored.get("forcerange")
     if isinstance(most, tuple) and len(most) == 2:
         put(spec, f"drive:{instance}:physics:maxForce", T.Float, max(map(abs, most)))
 
@@ -64,13 +64,13 @@ def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None
 # ---- MjcActuator -------------------------------------------------------------------------------------------------------------------
 
 
-def write_actuators(sheet: Sheet) -> None:
+def write_actuators(sheet: UsdSheet) -> None:
     """Each actuator that no drive says, with what it acts on: as a general one, where that is known. Servos of joints are drives."""
     for key, drive, arcs in sheet.mechanism.edges(Drive):
         source = next((arc.target for arc in arcs if arc.sign > 0), None)
         actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
         targets = [(arc, _target(sheet, arc)) for arc in arcs if arc.sign < 0]
-        if source is None or not isinstance(actuator, Actuator) or source in sheet.homes:
+        if source is None or not isinstance(actuator, Actuator) or source in sheet.paths:
             continue
         if not targets or any(target is None for _, target in targets):
             continue
@@ -78,15 +78,15 @@ def write_actuators(sheet: Sheet) -> None:
         parameters = None if is_servo else table.in_general(actuator.kind, actuator.parameters)
         if parameters is None:
             continue
-        spec = sheet.place(source, "actuators", table.PRIM)
-        sheet.homes[key] = spec.path
+        spec = sheet.add_prim(source, "actuators", table.PRIM)
+        sheet.paths[key] = spec.path
         _write_targets(spec, targets, drive)
         _write_parameters(spec, parameters)
 
 
-def _target(sheet: Sheet, arc: RobotArc) -> Any | None:
+def _target(sheet: UsdSheet, arc: RobotArc) -> Any | None:
     """The prim of what an arc means, or else of its whole joint. A joint that a body's freedom stands for has none."""
-    found, home = prim_of(sheet, arc), sheet.homes.get(arc.target)
+    found, home = prim_of(sheet, arc), sheet.paths.get(arc.target)
     if found is not None or home is None:
         return found
     return home if sheet.prims[home].kind.startswith("Physics") else None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from pxr import Gf, Vt
 
-from hymeko_x.backends.usd.shapes import gprim_of, skin_pose
+from hymeko_x.backends.usd.shapes import gprim_of, gprim_pose
 from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import NESTED
@@ -17,7 +17,7 @@ from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, ro
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.backends.usd.sheet import UsdSheet
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Quat, Tensor, Vec3
@@ -25,37 +25,37 @@ if TYPE_CHECKING:
 _NEAR = 1e-9
 
 
-def write_bodies(sheet: Sheet) -> None:
+def write_bodies(sheet: UsdSheet) -> None:
     """Every body: flat below the robot's prim, inside of its parent where that is wanted, or where it was before.
 
     One inside of another for another reason starts again from the world.
     """
     poses = world_poses(sheet.mechanism)
-    note_skins(sheet)
+    note_body_shapes(sheet)
     is_nested = sheet.mechanism.notation(ROOT, NESTED) == "true"
     placed: set[Any] = set()
     for key in _parents_first(sheet.mechanism) if is_nested else [key for key, _ in sheet.mechanism.vertices(Body)]:
-        spec = _place_nested(sheet, key) if is_nested else sheet.place(key, sheet.root, "Xform")
+        spec = _place_nested(sheet, key) if is_nested else sheet.add_prim(key, sheet.root, "Xform")
         placed.add(spec.path)
         _write_body(sheet, spec, key)
     for key, _ in sheet.mechanism.vertices(Body):
-        path = sheet.homes[key]
+        path = sheet.paths[key]
         spec = sheet.prims[path]
         pose = _noted_pose(sheet.mechanism, key) or poses.get(key, IDENTITY)
         above = _parent_body(sheet.mechanism, key) if is_nested else None
         if above is not None:
             seen = compose(inverse(_noted_pose(sheet.mechanism, above) or poses.get(above, IDENTITY)), pose)
-            transform(spec, seen, sheet.scales.get(key), within=sheet.scales.get(above))
+            transform(spec, seen, sheet.body_scales.get(key), within=sheet.body_scales.get(above))
             continue
         is_inside = any(prefix in placed for prefix in path.GetParentPath().GetPrefixes())
-        transform(spec, pose, sheet.scales.get(key), reset=is_inside)
+        transform(spec, pose, sheet.body_scales.get(key), reset=is_inside)
 
 
-def _write_body(sheet: Sheet, spec: Any, key: Id) -> None:
+def _write_body(sheet: UsdSheet, spec: Any, key: Id) -> None:
     apply(spec, "PhysicsRigidBodyAPI")
     inertial = sheet.mechanism.vertex(key, Body).inertial
     if inertial is not None:
-        write_inertial(spec, inertial, sheet.shrunk(key, inertial.com))
+        write_inertial(spec, inertial, sheet.in_prim_space(key, inertial.com))
 
 
 def _parents_first(mechanism: Mechanism) -> list[Id]:
@@ -68,12 +68,14 @@ def _parent_body(mechanism: Mechanism, body: Id) -> Id | None:
     return None if view is None or view.parent == WORLD else view.parent
 
 
-def _place_nested(sheet: Sheet, key: Id) -> Any:
+def _place_nested(sheet: UsdSheet, key: Id) -> Any:
     above = _parent_body(sheet.mechanism, key)
-    return sheet.put_prim(key, sheet.free_path(sheet.homes.get(above, sheet.root) if above is not None else sheet.root, key.name), "Xform")
+    return sheet.add_prim_at(
+        key, sheet.free_path(sheet.paths.get(above, sheet.root) if above is not None else sheet.root, key.name), "Xform"
+    )
 
 
-def note_skins(sheet: Sheet) -> None:
+def note_body_shapes(sheet: UsdSheet) -> None:
     """The bodies whose own prim was a geometry, as their notations tell: it will be that again, with its scale."""
     mechanism = sheet.mechanism
     for key, _ in mechanism.vertices(Body):
@@ -82,14 +84,14 @@ def note_skins(sheet: Sheet) -> None:
         if view is None:
             continue
         prim = gprim_of(mechanism, view)
-        pose = skin_pose(view, prim)
+        pose = gprim_pose(view, prim)
         mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
         scale = prim.scale if prim is not None else mesh.scale if isinstance(mesh, Mesh) else (1.0, 1.0, 1.0)
         is_here = math.hypot(*pose.xyz) < _NEAR and rotation_angle(pose.quat, NO_ROTATION) < _NEAR
         if is_here and all(scale):
-            sheet.skins[key] = view.id
+            sheet.body_shapes[key] = view.id
             if scale != (1.0, 1.0, 1.0):
-                sheet.scales[key] = scale
+                sheet.body_scales[key] = scale
 
 
 def _noted_pose(mechanism: Mechanism, body: Id) -> Pose | None:
@@ -119,7 +121,7 @@ def world_poses(mechanism: Mechanism) -> dict[Id, Pose]:
 def write_inertial(spec: Any, inertial: Inertial, com: Vec3) -> None:
     """Mass, centre of mass (in the prim's space), and the tensor both as principal moments and as Newton's six doubles."""
     apply(spec, "PhysicsMassAPI")
-    if inertial.mass:  # a mass of 0 means that nothing was said
+    if inertial.mass:  # a mass of 0 means that nothing was authored
         put(spec, "physics:mass", T.Float, inertial.mass)
     put(spec, "physics:centerOfMass", T.Point3f, Gf.Vec3f(*com))
     if inertial.tensor is None:

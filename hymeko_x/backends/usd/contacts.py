@@ -6,21 +6,21 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x.backends.usd.sheet import T, apply, point, put
 from hymeko_x.formats import usd as words
-from hymeko_x.formats.usd.contacts import APART_BY_GROUPS, GROUPED
+from hymeko_x.formats.usd.contacts import BY_GROUPS, GROUPED
 from hymeko_x.ir.parts import Contact, Role
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.backends.usd.sheet import UsdSheet
 
 _BINDING = "material:binding:physics"
 
 
-def write_contacts(sheet: Sheet) -> None:
+def write_contacts(sheet: UsdSheet) -> None:
     """Pairs of bodies that do not collide, on the first of them; each prim carries one of its pairs. Collision groups say others."""
     first: set[Any] = set()
     for key, contact, arcs in sheet.mechanism.edges(Contact):
-        paths = [sheet.homes.get(arc.target) for arc in arcs if arc.target.kind == "body"]
-        if contact.kind != "exclude" or sheet.mechanism.notation(key, GROUPED) == APART_BY_GROUPS:
+        paths = [sheet.paths.get(arc.target) for arc in arcs if arc.target.kind == "body"]
+        if contact.kind != "exclude" or sheet.mechanism.notation(key, GROUPED) == BY_GROUPS:
             continue
         if len(paths) != 2 or None in paths:
             continue
@@ -29,29 +29,29 @@ def write_contacts(sheet: Sheet) -> None:
         point(spec, "physics:filteredPairs", paths[1])
         if spec.path not in first:
             first.add(spec.path)
-            sheet.homes[key] = spec.path
+            sheet.paths[key] = spec.path
 
 
-def write_frictions(sheet: Sheet) -> None:
+def write_frictions(sheet: UsdSheet) -> None:
     """One physics material for all colliders of one friction; those that had a material of their own keep that."""
     materials: dict[tuple[float, ...], Any] = {}
     for view in sheet.mechanism.every_shape():
         extras = sheet.mechanism.extras.get(view.id, ())
         is_bound = any(extra.format == words.FORMAT and _BINDING in extra.text for extra in extras)
-        if not view.shape.friction or view.shape.role is Role.VISUAL or is_bound or view.id not in sheet.homes:
+        if not view.shape.friction or view.shape.role is Role.VISUAL or is_bound or view.id not in sheet.paths:
             continue
         if view.shape.friction not in materials:
             materials[view.shape.friction] = _write_material(sheet, view.shape.friction)
-        spec = sheet.prims[sheet.homes[view.id]]
+        spec = sheet.prims[sheet.paths[view.id]]
         apply(spec, "MaterialBindingAPI")
         point(spec, _BINDING, materials[view.shape.friction])
 
 
-def _write_material(sheet: Sheet, friction: tuple[float, ...]) -> Any:
+def _write_material(sheet: UsdSheet, friction: tuple[float, ...]) -> Any:
     """Sliding friction for UsdPhysics, torsional and rolling friction for MuJoCo and Newton."""
     scope = sheet.scope("frictions")
     put(sheet.prims[scope], f"{words.PREFIX}scope", T.Bool, True)
-    sheet.groups.discard(scope)
+    sheet.group_paths.discard(scope)
     spec = sheet.define(sheet.free_path(scope, "friction"), "Material")
     apply(spec, "PhysicsMaterialAPI")
     put(spec, "physics:staticFriction", T.Float, friction[0])

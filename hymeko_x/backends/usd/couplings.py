@@ -10,7 +10,7 @@ from hymeko_x.formats import usd as words
 from hymeko_x.ir.parts import Coupling, DofKind
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, Sheet
+    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Dof
 
@@ -26,7 +26,7 @@ class _Follower(NamedTuple):
     weight: tuple[float, ...]
 
 
-def write_mimics(sheet: Sheet) -> None:
+def write_mimics(sheet: UsdSheet) -> None:
     """Each coupling with one leader as Newton's mimic; the constant of a hinge in degrees. MuJoCo's schema has powers up to four.
 
     Newton refuses a leader that follows another joint itself, so that it is led by the first of its leaders.
@@ -46,10 +46,10 @@ def write_mimics(sheet: Sheet) -> None:
             apply(spec, "MjcEqualityJointAPI")
             point(spec, "mjc:target", found.leader.path)
             _write_powers(spec, weight, 0)
-        sheet.homes[found.key] = spec.path
+        sheet.paths[found.key] = spec.path
 
 
-def _follower(sheet: Sheet, key: Id, coupling: Coupling, arcs: tuple[RobotArc, ...]) -> _Follower | None:
+def _follower(sheet: UsdSheet, key: Id, coupling: Coupling, arcs: tuple[RobotArc, ...]) -> _Follower | None:
     follower = next((arc for arc in arcs if arc.sign > 0), None)
     leaders = [arc for arc in arcs if arc.sign < 0]
     if follower is None or len(leaders) != 1:
@@ -86,7 +86,7 @@ def _write_mimic(spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is
 
 def _write_powers(spec: Any, weight: tuple[float, ...], first: int) -> None:
     """The coefficients of MuJoCo's schema from this power on; the default is 1 for the first power, else 0."""
-    said = [(power, value) for power, value in enumerate(weight) if power >= first and value != (1.0 if power == 1 else 0.0)]
-    for power, value in said:
+    authored = [(power, value) for power, value in enumerate(weight) if power >= first and value != (1.0 if power == 1 else 0.0)]
+    for power, value in authored:
         apply(spec, "MjcEqualityJointAPI")
         put(spec, f"mjc:coef{power}", T.Double, value)

@@ -13,14 +13,14 @@ from hymeko_x.formats.usd import FORMAT
 from hymeko_x.ir.mechanism import ROOT, Extra
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.backends.usd.sheet import UsdSheet
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id
 
 _STAGE = "/"
 
 
-def restore_extras(sheet: Sheet, report: Report) -> None:
+def restore_extras(sheet: UsdSheet, report: Report) -> None:
     """Every extra of this format: its attributes win over those that were derived, its API schemas are added."""
     found = [(key, extra) for key, extras in sheet.mechanism.extras.items() for extra in extras if extra.format == FORMAT]
     for key, extra in found:
@@ -59,7 +59,7 @@ def _layer_of(text: str) -> Any | None:
         return None
 
 
-def _restore_stage(sheet: Sheet, extra: Extra, report: Report) -> None:
+def _restore_stage(sheet: UsdSheet, extra: Extra, report: Report) -> None:
     header = _layer_of(extra.text)
     if header is None:
         report.warn(codes.NOT_SAID, "an extra of the stage is no USD text; it is left out")
@@ -69,8 +69,8 @@ def _restore_stage(sheet: Sheet, extra: Extra, report: Report) -> None:
             sheet.layer.pseudoRoot.SetInfo(name, header.pseudoRoot.GetInfo(name))
 
 
-def _target(sheet: Sheet, key: Id, relative: str) -> Any | None:
-    home = sheet.homes.get(key, Sdf.Path.absoluteRootPath if key == ROOT else None)
+def _target(sheet: UsdSheet, key: Id, relative: str) -> Any | None:
+    home = sheet.paths.get(key, Sdf.Path.absoluteRootPath if key == ROOT else None)
     if home is None:
         return None
     if not relative:
@@ -81,7 +81,7 @@ def _target(sheet: Sheet, key: Id, relative: str) -> Any | None:
     return path if path.IsPrimPath() else None
 
 
-def _merge(sheet: Sheet, spec: Any, path: Any) -> None:
+def _merge(sheet: UsdSheet, spec: Any, path: Any) -> None:
     """Everything that a block says about a prim, on the prim at this path, which may have to be made."""
     there = sheet.layer.GetPrimAtPath(path)
     if there is None:
@@ -91,7 +91,7 @@ def _merge(sheet: Sheet, spec: Any, path: Any) -> None:
         there.specifier = spec.specifier
     if spec.typeName and (there.typeName in ("", "Xform") or not sheet.is_made(path)):
         there.typeName = spec.typeName
-    if not spec.typeName and spec.specifier != Sdf.SpecifierOver and path not in sheet.placed:
+    if not spec.typeName and spec.specifier != Sdf.SpecifierOver and path not in sheet.element_paths:
         there.ClearInfo("typeName")
     if spec.HasInfo("apiSchemas"):
         schemas = spec.GetInfo("apiSchemas").GetAppliedItems()
@@ -112,7 +112,7 @@ def _says_nothing(item: Any) -> bool:
     return isinstance(value, float) and (value == 0.0 or math.isinf(value))
 
 
-def _new_prim(sheet: Sheet, path: Any) -> Any:
+def _new_prim(sheet: UsdSheet, path: Any) -> Any:
     """A prim where there was none; so are groups above it that nothing was said about."""
     missing = [above for above in path.GetPrefixes()[:-1] if not sheet.layer.GetPrimAtPath(above)]
     spec = Sdf.CreatePrimInLayer(sheet.layer, path)

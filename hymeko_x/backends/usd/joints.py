@@ -16,7 +16,7 @@ from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inv
 from hymeko_x.rewrite.urdf import stands_for_world
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.backends.usd.sheet import UsdSheet
     from hymeko_x.ir.mechanism import JointView, RobotArc
     from hymeko_x.ir.values import Quat, Vec3
 
@@ -25,7 +25,7 @@ _TYPES = {DofKind.HINGE: "PhysicsRevoluteJoint", DofKind.SLIDE: "PhysicsPrismati
 _TOKENS = {axis: token for token, axis in words.AXES.items()}
 
 
-def write_joints(sheet: Sheet) -> None:
+def write_joints(sheet: UsdSheet) -> None:
     """Every joint of the tree. A base that floats needs no prim: its body is just where it is."""
     for view in sheet.mechanism.joints.values():
         is_held = not view.joint.dofs and sheet.mechanism.notation(view.id, words.HELD) is not None
@@ -38,24 +38,24 @@ def write_joints(sheet: Sheet) -> None:
             _hold(sheet, root)
 
 
-def _hold(sheet: Sheet, root: Id) -> None:
+def _hold(sheet: UsdSheet, root: Id) -> None:
     """Fix a root that stands for the world to it, as UsdPhysics has to be told."""
     path = sheet.free_path(sheet.scope("joints"), f"{root.name}_base")
     prim = sheet.define(path, "PhysicsFixedJoint")
-    point(prim, "physics:body1", sheet.homes[root])
+    point(prim, "physics:body1", sheet.paths[root])
 
 
 def _floats(view: JointView) -> bool:
     return len(view.joint.dofs) == 1 and view.joint.dofs[0].kind is DofKind.FREE
 
 
-def _carry_on_body(sheet: Sheet, view: JointView) -> None:
-    home = sheet.homes.get(view.child)
+def _carry_on_body(sheet: UsdSheet, view: JointView) -> None:
+    home = sheet.paths.get(view.child)
     if home is not None:
-        sheet.homes[view.id] = home
+        sheet.paths[view.id] = home
 
 
-def write_joint(sheet: Sheet, view: JointView) -> None:
+def write_joint(sheet: UsdSheet, view: JointView) -> None:
     """One prim for a joint with at most one dof or with the axes of a generic one, else one for each dof."""
     dofs = view.joint.dofs
     is_turned = sheet.mechanism.notation(view.id, words.REVERSED) is not None
@@ -71,7 +71,7 @@ def write_joint(sheet: Sheet, view: JointView) -> None:
         dofs = tuple(opposite(dof) for dof in reversed(dofs))
     numbers = range(len(dofs) - 1, -1, -1) if is_turned else range(len(dofs))
     if not dofs or len(dofs) == 1 or sheet.mechanism.notation(view.id, words.TYPE) == GENERIC:
-        spec = sheet.place(view.id, "joints", _type_of(sheet, view.id, dofs))
+        spec = sheet.add_prim(view.id, "joints", _type_of(sheet, view.id, dofs))
         write_frames(sheet, spec, view.id, ends, dofs)
         for number, dof in zip(numbers, dofs, strict=True):
             sheet.dofs[view.id, number] = (spec.path, axis_name(dof) if spec.kind == GENERIC else "")
@@ -89,7 +89,7 @@ def opposite(dof: Dof) -> Dof:
     return replace(dof, axis=(x + 0.0, y + 0.0, z + 0.0))
 
 
-def _type_of(sheet: Sheet, key: Id, dofs: tuple[Dof, ...]) -> str:
+def _type_of(sheet: UsdSheet, key: Id, dofs: tuple[Dof, ...]) -> str:
     if sheet.mechanism.notation(key, words.TYPE) == GENERIC:
         return GENERIC
     return "PhysicsFixedJoint" if not dofs else _TYPES.get(dofs[0].kind, GENERIC)
@@ -104,7 +104,7 @@ def axis_name(dof: Dof) -> str:
 End = tuple[Id, Pose]
 
 
-def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: tuple[Dof, ...], numbers: list[int]) -> None:
+def _write_parallel(sheet: UsdSheet, view: JointView, ends: tuple[End, End], dofs: tuple[Dof, ...], numbers: list[int]) -> None:
     """Several dofs: a joint for each between the same two bodies, which together are one (Newton, MuJoCo's converters)."""
     numbered = [f"{view.id.name}_{place + 1}" for place in range(len(dofs))]
     names = [dof.name or name for dof, name in zip(dofs, numbered, strict=True)]
@@ -112,14 +112,14 @@ def _write_parallel(sheet: Sheet, view: JointView, ends: tuple[End, End], dofs: 
     for place, (number, dof) in enumerate(zip(numbers, dofs, strict=True)):
         path, name = paths[place], names[place]
         spec = sheet.define(path, _TYPES.get(dof.kind, GENERIC), name)
-        sheet.placed.add(path)
+        sheet.element_paths.add(path)
         write_frames(sheet, spec, view.id, ends, (dof,))
         sheet.dofs[view.id, number] = (path, "")
         if place == 0:
-            sheet.homes[view.id] = path
+            sheet.paths[view.id] = path
 
 
-def _parallel_paths(sheet: Sheet, key: Id, names: list[str], numbered: list[str]) -> list[Any]:
+def _parallel_paths(sheet: UsdSheet, key: Id, names: list[str], numbered: list[str]) -> list[Any]:
     """Where the joints of one joint's dofs go: where they were, else by their names, which have to be in alphabetical order.
 
     UsdPhysics' parser lists the joints of an articulation in that order, and Newton takes it for the order of the dofs.
@@ -137,14 +137,14 @@ def _parallel_paths(sheet: Sheet, key: Id, names: list[str], numbered: list[str]
 # ---- one prim ------------------------------------------------------------------------------------------------------------------
 
 
-def write_frames(sheet: Sheet, spec: Any, key: Id, ends: tuple[End, End], dofs: tuple[Dof, ...]) -> None:
+def write_frames(sheet: UsdSheet, spec: Any, key: Id, ends: tuple[End, End], dofs: tuple[Dof, ...]) -> None:
     """Bodies, local frames, axis and limits. An axis that is none of x, y, z turns both frames so that it is their x."""
     turn, token = _turn(dofs[0]) if len(dofs) == 1 and spec.kind not in (GENERIC, _TYPES[DofKind.BALL]) else (IDENTITY.quat, "X")
     anchor = dofs[0].anchor if len(dofs) == 1 else (0.0, 0.0, 0.0)
     for side, (body, pose) in enumerate(ends):
         _write_end(sheet, spec, side, body, key)
         frame = compose(pose, Pose(anchor, turn)) if any(anchor) or turn != IDENTITY.quat else pose
-        put(spec, f"physics:localPos{side}", T.Point3f, Gf.Vec3f(*sheet.shrunk(body, frame.xyz)))
+        put(spec, f"physics:localPos{side}", T.Point3f, Gf.Vec3f(*sheet.in_prim_space(body, frame.xyz)))
         put(spec, f"physics:localRot{side}", T.Quatf, quatf(frame.quat))
     if spec.kind == GENERIC:
         _write_generic(spec, dofs)
@@ -155,10 +155,10 @@ def write_frames(sheet: Sheet, spec: Any, key: Id, ends: tuple[End, End], dofs: 
         write_behaviour(spec, dof)
 
 
-def _write_end(sheet: Sheet, spec: Any, side: int, body: Id, key: Id) -> None:
+def _write_end(sheet: UsdSheet, spec: Any, side: int, body: Id, key: Id) -> None:
     """The body of one side; for the world none, or the group without a place of its own that stood for it."""
-    if body != WORLD and body in sheet.homes:
-        point(spec, f"physics:body{side}", sheet.homes[body])
+    if body != WORLD and body in sheet.paths:
+        point(spec, f"physics:body{side}", sheet.paths[body])
     noted = sheet.mechanism.notation(key, words.GROUND[side]) if body == WORLD else None
     if noted is not None and Sdf.Path.IsValidPathString(noted) and Sdf.Path(noted) in sheet.prims:
         point(spec, f"physics:body{side}", Sdf.Path(noted))
@@ -191,12 +191,12 @@ def _write_generic(spec: Any, dofs: tuple[Dof, ...]) -> None:
     """A LimitAPI on each axis that is limited or locked, which low above high says; the others are free."""
     if dofs and dofs[0].kind is DofKind.FREE:
         return
-    said = {axis_name(dof): dof for dof in dofs if dof.kind is not DofKind.BALL}
+    authored = {axis_name(dof): dof for dof in dofs if dof.kind is not DofKind.BALL}
     bare = {"rotX", "rotY", "rotZ"} if any(dof.kind is DofKind.BALL for dof in dofs) else set()
     for name in words.D6_AXES:
         if name in bare:
             continue
-        dof = said.get(name)
+        dof = authored.get(name)
         if dof is None or dof.limits.lower is not None or dof.limits.upper is not None:
             apply(spec, f"PhysicsLimitAPI:{name}")
         low, high = words.LOCKED if dof is None else (dof.limits.lower, dof.limits.upper)
@@ -230,24 +230,24 @@ def write_behaviour(spec: Any, dof: Dof) -> None:
 
 
 def _write_schema(spec: Any, schema: str, prefix: str, kind: Any, values: dict[str, float]) -> None:
-    said = {name: value for name, value in values.items() if value}
-    if said:
+    authored = {name: value for name, value in values.items() if value}
+    if authored:
         apply(spec, schema)
-    for name, value in said.items():
+    for name, value in authored.items():
         put(spec, f"{prefix}:{name}", kind, value)
 
 
 # ---- closures --------------------------------------------------------------------------------------------------------------------
 
 
-def write_loops(sheet: Sheet) -> None:
+def write_loops(sheet: UsdSheet) -> None:
     """Each closure between two bodies as a joint that is not part of the articulation."""
     frames = _frames(sheet)
     for key, loop, arcs in sheet.mechanism.edges(Loop):
         ends = [_closure_end(arc, frames) for arc in arcs]
-        if len(ends) != 2 or any(body != WORLD and body not in sheet.homes for body, _ in ends):
+        if len(ends) != 2 or any(body != WORLD and body not in sheet.paths for body, _ in ends):
             continue
-        spec = sheet.place(key, "joints", _loop_type(sheet, key, loop))
+        spec = sheet.add_prim(key, "joints", _loop_type(sheet, key, loop))
         write_frames(sheet, spec, key, (ends[0], ends[1]), loop.dofs)
         if sheet.mechanism.notation(key, "usd.articulated") is None:
             put(spec, "physics:excludeFromArticulation", T.Bool, True)
@@ -259,7 +259,7 @@ def write_loops(sheet: Sheet) -> None:
                     put(spec, f"physics:{name}", T.Float, value)
 
 
-def _loop_type(sheet: Sheet, key: Id, loop: Loop) -> str:
+def _loop_type(sheet: UsdSheet, key: Id, loop: Loop) -> str:
     noted = sheet.mechanism.notation(key, words.TYPE)
     if noted is not None:
         return noted
@@ -268,7 +268,7 @@ def _loop_type(sheet: Sheet, key: Id, loop: Loop) -> str:
     return _type_of(sheet, key, loop.dofs) if len(loop.dofs) < 2 else GENERIC
 
 
-def _frames(sheet: Sheet) -> dict[Id, End]:
+def _frames(sheet: UsdSheet) -> dict[Id, End]:
     """The body and pose of each thing that is mounted somewhere."""
     return {view.thing: (view.body, view.pose) for views in sheet.mechanism.mounts.values() for view in views}
 

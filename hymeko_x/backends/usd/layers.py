@@ -183,8 +183,8 @@ def carry_in_text(package: Package, text: str) -> Package:
         header, prims = _parsed_layer(whole), ""
     assert header is not None
     _put(header, text)
-    said = header.ExportToString()
-    return replace(package, main=(said.rstrip("\n") + "\n" + prims if prims else said).encode())
+    authored = header.ExportToString()
+    return replace(package, main=(authored.rstrip("\n") + "\n" + prims if prims else authored).encode())
 
 
 def _parsed_layer(text: str) -> Any | None:

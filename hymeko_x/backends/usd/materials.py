@@ -11,21 +11,21 @@ from hymeko_x.formats import usd as words
 from hymeko_x.ir.parts import Layer, Material, Texture
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, Sheet
+    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
     from hymeko_x.ir.mechanism import Id
 
 
-def write_materials(sheet: Sheet) -> None:
+def write_materials(sheet: UsdSheet) -> None:
     """Every material; one whose shader network was kept as it is gets that network back instead."""
     images = _images(sheet)
     for key, material in sheet.mechanism.vertices(Material):
-        spec = sheet.place(key, "materials", "Material", material.name)
+        spec = sheet.add_prim(key, "materials", "Material", material.name)
         has_own = any(extra.format == words.FORMAT and extra.path for extra in sheet.mechanism.extras.get(key, ()))
         if not has_own:
             _write_surface(sheet, spec, material, images.get(key))
 
 
-def _images(sheet: Sheet) -> dict[Id, tuple[Id, Texture]]:
+def _images(sheet: UsdSheet) -> dict[Id, tuple[Id, Texture]]:
     """The texture that colours each material."""
     found: dict[Id, tuple[Id, Texture]] = {}
     for _, layer, arcs in sheet.mechanism.edges(Layer):
@@ -37,7 +37,7 @@ def _images(sheet: Sheet) -> dict[Id, tuple[Id, Texture]]:
     return found
 
 
-def _write_surface(sheet: Sheet, spec: Any, material: Material, image: tuple[Id, Texture] | None) -> None:
+def _write_surface(sheet: UsdSheet, spec: Any, material: Material, image: tuple[Id, Texture] | None) -> None:
     shader = _shader(sheet, spec, "surface", "UsdPreviewSurface")
     put(shader, "outputs:surface", T.Token, None)
     connect(spec, "outputs:surface", T.Token, shader, "outputs:surface")
@@ -52,7 +52,7 @@ def _write_surface(sheet: Sheet, spec: Any, material: Material, image: tuple[Id,
         _write_image(sheet, spec, shader, image[1])
 
 
-def _write_image(sheet: Sheet, spec: Any, shader: Any, texture: Texture) -> None:
+def _write_image(sheet: UsdSheet, spec: Any, shader: Any, texture: Texture) -> None:
     coordinates = _shader(sheet, spec, "coordinates", "UsdPrimvarReader_float2")
     put(coordinates, "inputs:varname", T.String, "st")
     put(coordinates, "outputs:result", T.Float2, None)
@@ -65,13 +65,13 @@ def _write_image(sheet: Sheet, spec: Any, shader: Any, texture: Texture) -> None
     connect(shader, "inputs:diffuseColor", T.Color3f, image, "outputs:rgb")
 
 
-def _shader(sheet: Sheet, spec: Any, name: str, kind: str) -> Any:
+def _shader(sheet: UsdSheet, spec: Any, name: str, kind: str) -> Any:
     shader = sheet.define(spec.path.AppendChild(name), "Shader")
     put(shader, "info:id", T.Token, kind)
     return shader
 
 
-def bind(sheet: Sheet, spec: Prim, material: Id) -> None:
+def bind(sheet: UsdSheet, spec: Prim, material: Id) -> None:
     """Show a prim in a material."""
     apply(spec, "MaterialBindingAPI")
-    point(spec, "material:binding", sheet.homes[material])
+    point(spec, "material:binding", sheet.paths[material])

@@ -17,7 +17,7 @@ from hymeko_x.meshes.part import FilledMesh
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from hymeko_x.backends.usd.sheet import Prim, Sheet, Triangles
+    from hymeko_x.backends.usd.sheet import Prim, Triangles, UsdSheet
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.values import Vec3
     from hymeko_x.meshes.part import Part
@@ -28,14 +28,14 @@ _ST = "primvars:st"
 # ---- meshes --------------------------------------------------------------------------------------------------------------------
 
 
-def write_mesh_shape(sheet: Sheet, spec: Any, view: ShapeView, users: dict[Id, int], shared: dict[Id, Any]) -> Vec3 | None:
+def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id, int], shared: dict[Id, Any]) -> Vec3 | None:
     """The mesh itself, or a reference to where it is; without points the prim stays a mere place."""
     mesh = sheet.mechanism.graph.vertices.get(view.mesh) if view.mesh is not None else None
     if view.mesh is None or not isinstance(mesh, Mesh):
         return None
-    if view.mesh not in sheet.surfaces:
-        sheet.surfaces[view.mesh] = surface_of(mesh)
-    surface = sheet.surfaces[view.mesh]
+    if view.mesh not in sheet.triangles:
+        sheet.triangles[view.mesh] = surface_of(mesh)
+    surface = sheet.triangles[view.mesh]
     if users[view.mesh] == 1 or surface is None:
         _carry_mesh(sheet, spec, view.mesh)
         if surface is not None:
@@ -58,12 +58,12 @@ def _says(mechanism: Mechanism, shape: Id, notation: str) -> bool:
     return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, notation) is not None
 
 
-def _carry_mesh(sheet: Sheet, spec: Any, mesh: Id) -> None:
+def _carry_mesh(sheet: UsdSheet, spec: Any, mesh: Id) -> None:
     """The prim of a mesh carries it; it says nothing about subdivision but that there is none."""
-    sheet.homes[mesh] = spec.path
+    sheet.paths[mesh] = spec.path
 
 
-def _write_prototype(sheet: Sheet, key: Id, mesh: Mesh, surface: Triangles) -> Any:
+def _write_prototype(sheet: UsdSheet, key: Id, mesh: Mesh, surface: Triangles) -> Any:
     """A mesh that is shown several times: a class, which is seen only through references to it."""
     scope = sheet.root.AppendChild("meshes")
     if scope not in sheet.prims:
@@ -93,7 +93,7 @@ def write_triangles(prim: Prim, surface: Triangles) -> None:
 def _write_normals(prim: Prim, surface: Triangles) -> None:
     """One normal for each triangle, for programs that compute none of their own; a degenerate triangle has some unit vector."""
     put(prim, "normals", T.Normal3fArray, Vt.Vec3fArray.FromNumpy(face_normals(*surface)))
-    prim.spread["normals"] = "uniform"
+    prim.interpolation["normals"] = "uniform"
 
 
 def _write_places(prim: Prim, mesh: Mesh) -> None:
@@ -103,22 +103,22 @@ def _write_places(prim: Prim, mesh: Mesh) -> None:
         return
     put(prim, _ST, T.TexCoord2fArray, Vt.Vec2fArray.FromNumpy(found[0]))
     put(prim, f"{_ST}:indices", T.IntArray, Vt.IntArray.FromNumpy(found[1]))
-    prim.spread[_ST] = "faceVarying"
+    prim.interpolation[_ST] = "faceVarying"
 
 
-def write_subsets(sheet: Sheet, spec: Prim, view: ShapeView) -> None:
+def write_subsets(sheet: UsdSheet, spec: Prim, view: ShapeView) -> None:
     """The triangles of a mesh that show other materials, each a prim below it."""
-    surface = sheet.surfaces.get(view.mesh) if view.mesh is not None else None
+    surface = sheet.triangles.get(view.mesh) if view.mesh is not None else None
     count = 0 if surface is None else len(surface[1]) // 3
     for subset in sheet.mechanism.subsets.get(view.id, ()):
-        if not subset.faces or min(subset.faces) < 0 or max(subset.faces) >= count or subset.material not in sheet.homes:
+        if not subset.faces or min(subset.faces) < 0 or max(subset.faces) >= count or subset.material not in sheet.paths:
             continue
-        prim = sheet.place(subset.id, spec.path, "GeomSubset", subset.id.name.partition("#")[0], below=True)
+        prim = sheet.add_prim(subset.id, spec.path, "GeomSubset", subset.id.name.partition("#")[0], below=True)
         put(prim, "elementType", T.Token, words.FACE)
-        put(prim, "familyName", T.Token, words.LOOKS)
+        put(prim, "familyName", T.Token, words.MATERIAL_BIND)
         put(prim, "indices", T.IntArray, Vt.IntArray(subset.faces))
         bind(sheet, prim, subset.material)
-        put(spec, words.FAMILY, T.Token, words.APART)
+        put(spec, words.FAMILY, T.Token, words.NON_OVERLAPPING)
 
 
 # ---- triangles of meshes as arrays -------------------------------------------------------------------------------------------------

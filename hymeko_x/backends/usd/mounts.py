@@ -13,7 +13,7 @@ from hymeko_x.ir.mechanism import WORLD, pose_weight
 from hymeko_x.ir.parts import Camera, Frame, Light, Mount, Tendon
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, Sheet
+    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
 
 _SITE_SIZE = 0.005
 """The radius in m of a site of which MJCF says none."""
@@ -22,7 +22,7 @@ _SITE_SIZE = 0.005
 # ---- what is mounted on bodies -----------------------------------------------------------------------------------------------
 
 
-def write_mounts(sheet: Sheet) -> None:
+def write_mounts(sheet: UsdSheet) -> None:
     """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras and lights; each carries where it is mounted.
 
     A site of a cable is a small ball that nobody sees, as MuJoCo's converter writes sites: Newton leads cables through shapes alone.
@@ -32,14 +32,14 @@ def write_mounts(sheet: Sheet) -> None:
         body = next((arc for arc in arcs if arc.sign > 0), None)
         thing = next((arc for arc in arcs if arc.sign < 0), None)
         part = sheet.mechanism.graph.vertices.get(thing.target) if thing else None
-        if body is None or thing is None or not isinstance(part, Frame | Camera | Light) or thing.target in sheet.homes:
+        if body is None or thing is None or not isinstance(part, Frame | Camera | Light) or thing.target in sheet.paths:
             continue
-        home = sheet.root if body.target == WORLD else sheet.homes.get(body.target)
+        home = sheet.root if body.target == WORLD else sheet.paths.get(body.target)
         if home is None:
             continue
-        spec = sheet.place(thing.target, home, _type_of(part), below=body.target != WORLD)
-        sheet.homes[key] = spec.path
-        sheet.move(spec, pose_weight(body), on=body.target)
+        spec = sheet.add_prim(thing.target, home, _type_of(part), below=body.target != WORLD)
+        sheet.paths[key] = spec.path
+        sheet.set_pose(spec, pose_weight(body), on=body.target)
         _write_thing(spec, part)
         if isinstance(part, Frame) and thing.target in knots and sheet.mechanism.notation(thing.target, words.PATH) is None:
             _write_ball(spec, part.size[0] if part.size and part.size[0] > 0.0 else _SITE_SIZE)

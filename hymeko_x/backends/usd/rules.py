@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats.usd import LAYOUT, NESTED, POINTS
-from hymeko_x.formats.usd.contacts import GROUP, GROUPED, GROUPS, pairs_print
+from hymeko_x.formats.usd.contacts import GROUP, GROUPED, GROUPS, pairs_digest
 from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Contact, Loop
 from hymeko_x.rewrite.joints import expand_screws
@@ -55,10 +55,10 @@ def drop_stale_groups(mechanism: Mechanism, options: Options, report: Report) ->
     if noted is None:
         return mechanism
     marked = [(key, arcs) for key, _, arcs in mechanism.edges(Contact) if mechanism.notation(key, GROUPED) is not None]
-    if pairs_print((arcs[0].target, arcs[-1].target) for _, arcs in marked) == noted:
+    if pairs_digest((arcs[0].target, arcs[-1].target) for _, arcs in marked) == noted:
         return mechanism
-    said = "exclusions have changed, so that the collision groups that said them are left out; what is excluded now is said in pairs"
-    report.note(codes.REWRITTEN, said)
+    message = "exclusions have changed, so that the collision groups that said them are left out; what is excluded now is said in pairs"
+    report.note(codes.REWRITTEN, message)
     gone = (GROUPS, GROUPED)
     notations = {key: {name: text for name, text in own.items() if name not in gone} for key, own in mechanism.notations.items()}
     extras = {key: tuple(extra for extra in found if not _is_group(extra)) for key, found in mechanism.extras.items()}

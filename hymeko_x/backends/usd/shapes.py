@@ -16,12 +16,12 @@ from hymeko_x.ir.parts import MeshShape, Role
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_inverse
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Sheet
+    from hymeko_x.backends.usd.sheet import UsdSheet
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.values import Vec3
 
 
-def write_shapes(sheet: Sheet) -> None:
+def write_shapes(sheet: UsdSheet) -> None:
     """Every shape of every body and of the world; a mesh that is shown more than once is authored once and referred to."""
     users = {mesh: len(views) for mesh, views in sheet.mechanism.shapes_by_mesh().items()}
     shared: dict[Id, Any] = {}
@@ -29,9 +29,9 @@ def write_shapes(sheet: Sheet) -> None:
         write_shape(sheet, view, users, shared)
 
 
-def skin_pose(view: ShapeView, prim: gprims.Gprim | None) -> Pose:
+def gprim_pose(view: ShapeView, prim: gprims.Gprim | None) -> Pose:
     """Where the prim of a shape is in its body: a primitive along another axis than z is turned back."""
-    turn = NO_ROTATION if prim is None else gprims.meaning(prim).turn
+    turn = NO_ROTATION if prim is None else gprims.geometry_of(prim).turn
     return view.pose if turn == NO_ROTATION else compose(view.pose, Pose(quat=quat_inverse(turn)))
 
 
@@ -39,23 +39,23 @@ def _unless_one(scale: Vec3) -> Vec3 | None:
     return None if scale == (1.0, 1.0, 1.0) else scale
 
 
-def write_shape(sheet: Sheet, view: ShapeView, users: dict[Id, int], shared: dict[Id, Any]) -> None:
+def write_shape(sheet: UsdSheet, view: ShapeView, users: dict[Id, int], shared: dict[Id, Any]) -> None:
     """One gprim with its pose, size, purpose, colour and material."""
-    body = sheet.root if view.body == WORLD else sheet.homes[view.body]
+    body = sheet.root if view.body == WORLD else sheet.paths[view.body]
     prim = gprim_of(sheet.mechanism, view)
-    is_body = sheet.skins.get(view.body) == view.id
+    is_body = sheet.body_shapes.get(view.body) == view.id
     if is_body:
         spec = sheet.prims[body]
-        sheet.homes[view.id] = body
+        sheet.paths[view.id] = body
     else:
-        spec = sheet.place(view.id, body, "Xform", view.shape.name or view.shape.role.value, below=view.body != WORLD)
+        spec = sheet.add_prim(view.id, body, "Xform", view.shape.name or view.shape.role.value, below=view.body != WORLD)
         if view.shape.name is None:  # nobody calls it so
             spec.info.pop("displayName", None)
     if prim is not None:
         _write_primitive(spec, prim)
     scale = write_mesh_shape(sheet, spec, view, users, shared) if isinstance(view.shape.geometry, MeshShape) else None
     if not is_body:
-        sheet.move(spec, skin_pose(view, prim), scale if prim is None else _unless_one(prim.scale), on=view.body)
+        sheet.set_pose(spec, gprim_pose(view, prim), scale if prim is None else _unless_one(prim.scale), on=view.body)
     if view.shape.role is not Role.VISUAL:
         apply(spec, "PhysicsCollisionAPI")
         if _is_hull(sheet.mechanism, view, prim):
@@ -77,9 +77,9 @@ def _is_hull(mechanism: Mechanism, view: ShapeView, prim: gprims.Gprim | None) -
 def gprim_of(mechanism: Mechanism, view: ShapeView) -> gprims.Gprim | None:
     """The primitive of a shape: as its author wrote it where that still means the same, else the plainest one."""
     noted = gprims.parse(mechanism.notation(view.id, gprims.NOTATION))
-    if noted is not None and gprims.meaning(noted).geometry == view.shape.geometry:
+    if noted is not None and gprims.geometry_of(noted).geometry == view.shape.geometry:
         return noted
-    return gprims.chosen(view.shape.geometry, view.shape.role)
+    return gprims.default_gprim(view.shape.geometry, view.shape.role)
 
 
 def _write_primitive(spec: Any, prim: gprims.Gprim) -> None:
@@ -99,10 +99,10 @@ def _write_primitive(spec: Any, prim: gprims.Gprim) -> None:
 # ---- looks ---------------------------------------------------------------------------------------------------------------------
 
 
-def _write_looks(sheet: Sheet, spec: Any, view: ShapeView) -> None:
+def _write_looks(sheet: UsdSheet, spec: Any, view: ShapeView) -> None:
     rgba = view.shape.rgba
     if rgba is not None:
         put(spec, "primvars:displayColor", T.Color3fArray, Vt.Vec3fArray([Gf.Vec3f(*rgba[:3])]))
         put(spec, "primvars:displayOpacity", T.FloatArray, Vt.FloatArray([rgba[3]]))
-    if view.material is not None and view.material in sheet.homes:
+    if view.material is not None and view.material in sheet.paths:
         bind(sheet, spec, view.material)

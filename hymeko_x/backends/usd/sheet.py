@@ -42,7 +42,7 @@ _UNIFORM = frozenset(
 class Prim:
     """A prim in the making: its type, metadata, API schemas, attributes (type and value), and the targets of its relationships.
 
-    ``connections`` lead an attribute to that whose value it takes; ``spread`` are the attributes with values
+    ``connections`` lead an attribute to that whose value it takes; ``interpolation`` are the attributes with values
     for each face or corner, and for which; ``reference`` is the path of a prim of the same layer.
     """
 
@@ -54,7 +54,7 @@ class Prim:
     attributes: dict[str, tuple[Any, Any]] = field(default_factory=dict)
     targets: dict[str, list[Any]] = field(default_factory=dict)
     connections: dict[str, Any] = field(default_factory=dict)
-    spread: dict[str, str] = field(default_factory=dict)
+    interpolation: dict[str, str] = field(default_factory=dict)
     reference: Any = None
 
     @property
@@ -85,8 +85,8 @@ def author(prims: Iterable[Prim], layer: Any) -> None:
             attribute = add_attribute(spec, name, kind, value)
             if name in prim.connections:
                 attribute.connectionPathList.explicitItems = [prim.connections[name]]
-            if name in prim.spread:
-                attribute.SetInfo("interpolation", prim.spread[name])
+            if name in prim.interpolation:
+                attribute.SetInfo("interpolation", prim.interpolation[name])
         for name, targets in prim.targets.items():
             Sdf.RelationshipSpec(spec, name, False).targetPathList.explicitItems = targets
 
@@ -110,24 +110,24 @@ RESET = "!resetXformStack!"
 
 
 @dataclass(slots=True)
-class Sheet:
-    """The layer, and where each element's prim is: ``homes`` by id, ``dofs`` the prim of each dof of a joint.
+class UsdSheet:
+    """The open layer. ``paths`` are the paths of the prims of elements by id, ``dofs`` the prim and axis of each dof of a joint.
 
-    ``placed`` are the prims that stand for elements, ``groups`` those that hold them. ``skins`` is the shape of each body whose
-    own prim is its geometry, ``scales`` the scale of such a prim.
+    ``element_paths`` are the paths of prims that represent elements, ``group_paths`` of those that contain them. ``body_shapes``
+    is the shape of each body whose own prim is its geometry, ``body_scales`` the scale of such a prim.
     """
 
     mechanism: Mechanism
     layer: Any
     root: Any
-    homes: dict[Id, Any] = field(default_factory=dict)
+    paths: dict[Id, Any] = field(default_factory=dict)
     dofs: dict[tuple[Id, int], tuple[Any, str]] = field(default_factory=dict)
-    placed: set[Any] = field(default_factory=set)
-    groups: set[Any] = field(default_factory=set)
+    element_paths: set[Any] = field(default_factory=set)
+    group_paths: set[Any] = field(default_factory=set)
     prims: dict[Any, Prim] = field(default_factory=dict)
-    skins: dict[Id, Id] = field(default_factory=dict)
-    scales: dict[Id, Vec3] = field(default_factory=dict)
-    surfaces: dict[Id, Triangles | None] = field(default_factory=dict)
+    body_shapes: dict[Id, Id] = field(default_factory=dict)
+    body_scales: dict[Id, Vec3] = field(default_factory=dict)
+    triangles: dict[Id, Triangles | None] = field(default_factory=dict)
 
     # ---- prims -----------------------------------------------------------------------------------------------------------
 
@@ -153,7 +153,7 @@ class Sheet:
 
     def is_made(self, path: Any) -> bool:
         """Whether a prim is there for an element or a group of ours, not only because something is below it."""
-        return path in self.placed or path in self.groups
+        return path in self.element_paths or path in self.group_paths
 
     def noted_path(self, key: Id) -> Any | None:
         """The path of the prim that an element was read from, where nothing else stands there yet."""
@@ -164,7 +164,7 @@ class Sheet:
         is_free = path not in self.prims or not self.is_made(path)
         return path if path.IsAbsoluteRootOrPrimPath() and is_free else None
 
-    def place(self, key: Id, parent: Any, kind: str, name: str | None = None, *, below: bool = False) -> Prim:
+    def add_prim(self, key: Id, parent: Any, kind: str, name: str | None = None, *, below: bool = False) -> Prim:
         """A new prim for an element: at its old path if it has one (for ``below`` only under the parent), else below the parent.
 
         ``parent`` is a path, or the name of one of our own groups, which is there only when something is in it.
@@ -176,22 +176,22 @@ class Sheet:
         own = name or key.name
         if noted is not None and own.partition("#")[0] == noted.name:  # the second prim of that name
             own = noted.name
-        return self.put_prim(key, path, kind, own)
+        return self.add_prim_at(key, path, kind, own)
 
-    def put_prim(self, key: Id, path: Any, kind: str, name: str | None = None) -> Prim:
+    def add_prim_at(self, key: Id, path: Any, kind: str, name: str | None = None) -> Prim:
         """A new prim at this path for an element."""
         prim = self.define(path, kind, name or key.name)
-        self.homes[key] = path
-        self.placed.add(path)
+        self.paths[key] = path
+        self.element_paths.add(path)
         return prim
 
-    def move(self, prim: Prim, pose: Pose, scale: Vec3 | None = None, *, on: Id) -> None:
+    def set_pose(self, prim: Prim, pose: Pose, scale: Vec3 | None = None, *, on: Id) -> None:
         """Put a prim at a pose in a body's rigid frame, whatever scale the body's prim has."""
-        transform(prim, pose, scale, within=self.scales.get(on))
+        transform(prim, pose, scale, within=self.body_scales.get(on))
 
-    def shrunk(self, body: Id, point: Vec3) -> Vec3:
+    def in_prim_space(self, body: Id, point: Vec3) -> Vec3:
         """A point of a body in m, in the scaled space of its prim."""
-        scale = self.scales.get(body)
+        scale = self.body_scales.get(body)
         return point if scale is None else (point[0] / scale[0], point[1] / scale[1], point[2] / scale[2])
 
     def scope(self, name: str) -> Any:
@@ -199,7 +199,7 @@ class Sheet:
         path = self.root.AppendChild(name)
         if path not in self.prims:
             self.define(path, "Scope")
-            self.groups.add(path)
+            self.group_paths.add(path)
         return path
 
 
@@ -265,7 +265,7 @@ def quatf(quat: Quat) -> Any:
 # ---- prims of joints and their dofs --------------------------------------------------------------------------------------------------
 
 
-def dof_of(sheet: Sheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
+def dof_of(sheet: UsdSheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
     """The prim of the dof that an arc means, its axis where that is a generic joint, and the dof itself (hinge or slide)."""
     from hymeko_x.ir.kinematics import dof_number
 
@@ -279,9 +279,9 @@ def dof_of(sheet: Sheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
     return sheet.prims[place[0]], place[1], edge.data.dofs[number]
 
 
-def prim_of(sheet: Sheet, arc: RobotArc) -> Any | None:
+def prim_of(sheet: UsdSheet, arc: RobotArc) -> Any | None:
     """The path of the prim of what an arc means: of one dof where a joint has several; None where an axis of a joint is no prim."""
     if arc.target.kind != "joint":
-        return sheet.homes.get(arc.target)
+        return sheet.paths.get(arc.target)
     found = dof_of(sheet, arc)
     return found[0].path if found is not None and not found[1] else None

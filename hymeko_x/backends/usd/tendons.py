@@ -14,17 +14,17 @@ from hymeko_x.ir.parts import Tendon
 from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, wrong_path
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.usd.sheet import Prim, Sheet
+    from hymeko_x.backends.usd.sheet import Prim, UsdSheet
     from hymeko_x.ir.mechanism import RobotArc
 
 
-def write_tendons(sheet: Sheet) -> None:
+def write_tendons(sheet: UsdSheet) -> None:
     """Each tendon whose path leads through prims; the schema has no word for one through an axis of a generic joint."""
     for key, tendon, arcs in sheet.mechanism.edges(Tendon):
         path = None if wrong_path(tendon, arcs, sheet.mechanism.graph.edges) else _path(sheet, arcs)
         if path is None:
             continue
-        spec = sheet.place(key, "tendons", table.PRIM)
+        spec = sheet.add_prim(key, "tendons", table.PRIM)
         put(spec, table.KIND, T.Token, tendon.kind)
         _write_path(spec, tendon, path)
         _write_behaviour(spec, tendon)
@@ -57,7 +57,7 @@ class _Path:
     divisors: list[float] = field(default_factory=lambda: [1.0])
 
 
-def _path(sheet: Sheet, arcs: tuple[RobotArc, ...]) -> _Path | None:
+def _path(sheet: UsdSheet, arcs: tuple[RobotArc, ...]) -> _Path | None:
     """The path as the schema divides it; None where it leads through something that is no prim.
 
     Nothing is in the first segment of a path that begins with a pulley: MuJoCo and Newton overlook the divisor of the first one.

@@ -66,30 +66,30 @@ def in_general(kind: str, parameters: Parameters) -> Parameters | None:
     if kind in ("motor", "general"):
         return parameters
     numbers = {name: value if isinstance(value, tuple) else (value,) for name, value in parameters if not isinstance(value, str)}
-    said = _GENERAL.get(kind)
-    if said is None:
+    authored = _GENERAL.get(kind)
+    if authored is None:
         return None
-    return (*said(numbers), *(item for item in parameters if item[0] not in _DETAILS))
+    return (*authored(numbers), *(item for item in parameters if item[0] not in _DETAILS))
 
 
-def _servo(said: Mapping[str, Numbers]) -> Parameters:
+def _servo(authored: Mapping[str, Numbers]) -> Parameters:
     """A position servo: kp (u - length) - kv velocity; a positive number in place of -kv is a damping ratio."""
-    kp, lag = said.get("kp", (1.0,))[0], said.get("timeconst", (0.0,))[0]
-    damping = -said.get("kv", (0.0,))[0] or said.get("dampratio", (0.0,))[0]
+    kp, lag = authored.get("kp", (1.0,))[0], authored.get("timeconst", (0.0,))[0]
+    damping = -authored.get("kv", (0.0,))[0] or authored.get("dampratio", (0.0,))[0]
     filtered: Parameters = (("dyntype", "filterexact"), ("dynprm", (lag,))) if lag else ()
     return (*filtered, ("gainprm", (kp,)), ("biastype", "affine"), ("biasprm", (0.0, -kp, damping)))
 
 
-def _speed(said: Mapping[str, Numbers]) -> Parameters:
+def _speed(authored: Mapping[str, Numbers]) -> Parameters:
     """A velocity servo: kv (u - velocity)."""
-    kv = said.get("kv", (1.0,))[0]
+    kv = authored.get("kv", (1.0,))[0]
     return (("gainprm", (kv,)), ("biastype", "affine"), ("biasprm", (0.0, 0.0, -kv)))
 
 
-def _muscle(said: Mapping[str, Numbers]) -> Parameters:
+def _muscle(authored: Mapping[str, Numbers]) -> Parameters:
     """A muscle; the same numbers say its active and its passive force."""
-    law = (*said.get("range", (0.75, 1.05)), *(said.get(name, usual)[0] for name, usual in _MUSCLE.items()))
-    times = (*said.get("timeconst", (0.01, 0.04)), *said.get("tausmooth", (0.0,)))
+    law = (*authored.get("range", (0.75, 1.05)), *(authored.get(name, usual)[0] for name, usual in _MUSCLE.items()))
+    times = (*authored.get("timeconst", (0.01, 0.04)), *authored.get("tausmooth", (0.0,)))
     kinds = tuple((name, "muscle") for name in DEFAULTS)
     return (*kinds, ("dynprm", times), ("gainprm", law), ("biasprm", law))
 

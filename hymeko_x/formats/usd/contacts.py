@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 GROUP = "PhysicsCollisionGroup"
 GROUPED = "usd.grouped"
 """The notation of an exclusion that collision groups say: ``groups`` where they alone do, ``both`` where a filtered pair says it, too."""
-APART_BY_GROUPS, APART_BY_BOTH = "groups", "both"
+BY_GROUPS, BY_BOTH = "groups", "both"
 GROUPS = "usd.groups"
 """The notation of the mechanism that tells whether the exclusions which its collision groups say are all still there, and no others."""
 
 
-def pairs_print(pairs: Iterable[tuple[Id, Id]]) -> str:
+def pairs_digest(pairs: Iterable[tuple[Id, Id]]) -> str:
     """A fingerprint of pairs of bodies, in whatever order."""
     lines = sorted("\n".join(sorted(map(str, pair))) for pair in pairs)
     return hashlib.sha256("\n\n".join(lines).encode()).hexdigest()[:16]

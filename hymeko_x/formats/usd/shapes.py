@@ -62,7 +62,7 @@ class Gprim:
         return f"{self.kind} {self.axis} {' '.join(map(repr, self.sizes))}; {' '.join(map(repr, self.scale))}"
 
 
-class Meaning(NamedTuple):
+class PlacedGeometry(NamedTuple):
     """The geometry of a primitive, and the rotation from its own z to its axis."""
 
     geometry: Geometry
@@ -81,7 +81,7 @@ def parse(text: str | None) -> Gprim | None:
     return Gprim(found[1], sizes, found[2], (x, y, z)) if len(sizes) == len(SIZES[found[1]]) else None
 
 
-def meaning(prim: Gprim) -> Meaning:
+def geometry_of(prim: Gprim) -> PlacedGeometry:
     """A primitive with its scale in its sizes. Where a scale would bend a round shape, the largest factor counts; a sphere bends.
 
     Source: the shapes of UsdPhysics' parser.
@@ -91,23 +91,23 @@ def meaning(prim: Gprim) -> Meaning:
     turn = TURNS[prim.axis]
     match prim.kind:
         case "Cube":
-            return Meaning(Box((first * x, first * y, first * z)), NO_ROTATION)
+            return PlacedGeometry(Box((first * x, first * y, first * z)), NO_ROTATION)
         case "Sphere":
             is_round = max(x, y, z) - min(x, y, z) < 1e-6 * max(x, y, z)
-            return Meaning(Sphere(first * x) if is_round else Ellipsoid((first * x, first * y, first * z)), NO_ROTATION)
+            return PlacedGeometry(Sphere(first * x) if is_round else Ellipsoid((first * x, first * y, first * z)), NO_ROTATION)
         case "Mesh":
-            return Meaning(Ellipsoid((x, y, z)), NO_ROTATION)
+            return PlacedGeometry(Ellipsoid((x, y, z)), NO_ROTATION)
         case "Plane":
             across, along = {"Z": (x, y), "X": (z, y), "Y": (x, z)}[prim.axis]
-            return Meaning(Plane((first / 2 * across, rest[0] / 2 * along)), turn)
+            return PlacedGeometry(Plane((first / 2 * across, rest[0] / 2 * along)), turn)
         case kind:
             along = (x, y, z)["XYZ".index(prim.axis)]
             across = max(value for letter, value in zip("XYZ", (x, y, z), strict=True) if letter != prim.axis)
             radius, height = first * across, rest[0] * along
-            return Meaning(Capsule(radius, height) if kind == "Capsule" else Cylinder(radius, height), turn)
+            return PlacedGeometry(Capsule(radius, height) if kind == "Capsule" else Cylinder(radius, height), turn)
 
 
-def chosen(geometry: Geometry, role: Role) -> Gprim | None:
+def default_gprim(geometry: Geometry, role: Role) -> Gprim | None:
     """The primitive by which the writer says a geometry; None for meshes and empty shapes.
 
     UsdPhysics takes a sphere whose scale is not uniform for no collider, but the hull of any mesh.

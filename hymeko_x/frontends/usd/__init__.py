@@ -17,12 +17,12 @@ from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd.actuators import PRIM as ACTUATOR
 from hymeko_x.frontends.usd.actuators import read_actuator, read_drives
 from hymeko_x.frontends.usd.bodies import BODY, ReadShape, read_body, read_mass
-from hymeko_x.frontends.usd.builder import Draft
+from hymeko_x.frontends.usd.builder import UsdBuilder
 from hymeko_x.frontends.usd.contacts import read_collision_groups, read_filtered_pairs
 from hymeko_x.frontends.usd.couplings import read_mimic
-from hymeko_x.frontends.usd.dialects import hang_bare_links, is_passive_drive, is_world, read_bare_links, read_named_mimic, with_dialect
-from hymeko_x.frontends.usd.extras import gather_leftovers
-from hymeko_x.frontends.usd.joints import TYPES, Driven, ReadJoint, driven_ends, read_joint
+from hymeko_x.frontends.usd.dialects import is_passive_drive, is_world, join_bare_links, read_bare_links, read_named_mimic, with_dialect
+from hymeko_x.frontends.usd.extras import gather_extras
+from hymeko_x.frontends.usd.joints import TYPES, DofRef, ReadJoint, dof_refs, read_joint
 from hymeko_x.frontends.usd.materials import read_material
 from hymeko_x.frontends.usd.mounts import read_camera, read_light, read_site
 from hymeko_x.frontends.usd.shapes import is_shape, read_shape
@@ -50,21 +50,21 @@ def read(source: Source, report: Report) -> Mechanism:
     """
     with open_scene(source, report) as scene:
         residue = list(_take_residue(scene))
-        draft = Draft(source, report, scene)
+        builder = UsdBuilder(source, report, scene)
         prims = _prims(scene)
         for prim in prims:
-            check_ops(prim, report, draft.origin)
+            check_ops(prim, report, builder.origin)
             if prim.has_api(BODY):
-                read_body(prim, draft)
-        bare = read_bare_links(prims, draft)
+                read_body(prim, builder)
+        bare = read_bare_links(prims, builder)
         for prim in prims:
-            if prim.kind == "Material" and not prim.is_ours:
-                read_material(prim, draft)
-        _read_shapes(prims, draft)
-        _read_things(prims, _read_joints(prims, bare, draft), draft)
-        note_poses(draft)
-        gather_leftovers(draft)
-        return carrier.with_residue(_finished(scene, draft), residue)
+            if prim.kind == "Material" and not prim.is_generated:
+                read_material(prim, builder)
+        _read_shapes(prims, builder)
+        _read_things(prims, _read_joints(prims, bare, builder), builder)
+        note_poses(builder)
+        gather_extras(builder)
+        return carrier.with_residue(_finished(scene, builder), residue)
 
 
 def _take_residue(scene: Scene) -> Iterator[str]:
@@ -82,90 +82,90 @@ def _prims(scene: Scene) -> list[Prim]:
     return [prim for prim in scene.prims.values() if prim.is_real and f"{words.PREFIX}scope" not in prim.types]
 
 
-def _read_shapes(prims: list[Prim], draft: Draft) -> None:
+def _read_shapes(prims: list[Prim], builder: UsdBuilder) -> None:
     """Shapes first, then the masses that may follow from them."""
     on: dict[Id, list[ReadShape]] = {}
     for prim in prims:
-        found = read_shape(prim, draft) if is_shape(prim) else None
+        found = read_shape(prim, builder) if is_shape(prim) else None
         if found is not None:
             on.setdefault(found[0], []).append(found[1])
-    for path, body in draft.bodies.items():
-        read_mass(draft.prim_at(path), body, on.get(body, []), draft)
+    for path, body in builder.bodies.items():
+        read_mass(builder.prim_at(path), body, on.get(body, []), builder)
 
 
-def _read_things(prims: list[Prim], ends: dict[str, Driven], draft: Draft) -> None:
+def _read_things(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder) -> None:
     """What sits on bodies, then what acts on it."""
     for prim in prims:
         kind = prim.kind
         if kind == "Camera":
-            read_camera(prim, draft)
+            read_camera(prim, builder)
         elif kind in words.LIGHTS:
-            read_light(prim, draft)
+            read_light(prim, builder)
         elif any(prim.has_api(site) for site in words.SITES):
-            read_site(prim, draft)
-    read_tendons(prims, ends, draft)
+            read_site(prim, builder)
+    read_tendons(prims, ends, builder)
     for prim in prims:
         if prim.kind == ACTUATOR:
-            read_actuator(prim, ends, draft)
-    for path in draft.bodies:
-        read_filtered_pairs(draft.prim_at(path), draft)
-    read_collision_groups(prims, draft)
+            read_actuator(prim, ends, builder)
+    for path in builder.bodies:
+        read_filtered_pairs(builder.prim_at(path), builder)
+    read_collision_groups(prims, builder)
 
 
-def _read_joints(prims: list[Prim], bare: list[Prim], draft: Draft) -> dict[str, Driven]:
+def _read_joints(prims: list[Prim], bare: list[Prim], builder: UsdBuilder) -> dict[str, DofRef]:
     """The joints, with what acts on them; returns which dof each of their prims is."""
-    joints = [joint for prim in prims if prim.kind in TYPES for joint in [read_joint(prim, draft)] if joint is not None]
-    joints = hang_bare_links(bare, [with_dialect(joint, draft) for joint in joints], draft)
-    joints = build_trees(joints, _articulation_roots(prims, joints, draft), _held(draft), draft)
-    ends = {prim.path: end for joint in joints for prim, end in driven_ends(joint)}
+    joints = [joint for prim in prims if prim.kind in TYPES for joint in [read_joint(prim, builder)] if joint is not None]
+    joints = join_bare_links(bare, [with_dialect(joint, builder) for joint in joints], builder)
+    joints = build_trees(joints, _articulation_roots(prims, joints, builder), _held(builder), builder)
+    ends = {prim.path: end for joint in joints for prim, end in dof_refs(joint)}
     named = {end.dof or end.joint.name: end for end in ends.values()}
     for joint in joints:
-        for prim, end in driven_ends(joint):
+        for prim, end in dof_refs(joint):
             if not is_passive_drive(prim):
-                read_drives(prim, end, draft)
-            read_mimic(prim, end, ends, draft)
-            read_named_mimic(prim, end, named, draft)
+                read_drives(prim, end, builder)
+            read_mimic(prim, end, ends, builder)
+            read_named_mimic(prim, end, named, builder)
     return ends
 
 
-def _articulation_roots(prims: list[Prim], joints: list[ReadJoint], draft: Draft) -> list[Id]:
+def _articulation_roots(prims: list[Prim], joints: list[ReadJoint], builder: UsdBuilder) -> list[Id]:
     """The bodies at which articulations begin: those that bear the API, or an end of the joint that does."""
     ends = {joint.prim.path: [end.body for end in joint.ends if end.body != WORLD] for joint in joints}
     roots: list[Id] = []
     for prim in prims:
         if prim.has_api(_ARTICULATION):
-            roots += [draft.bodies[prim.path]] if prim.path in draft.bodies else ends.get(prim.path, [])[:1]
+            roots += [builder.bodies[prim.path]] if prim.path in builder.bodies else ends.get(prim.path, [])[:1]
     return roots
 
 
-def _held(draft: Draft) -> list[Id]:
+def _held(builder: UsdBuilder) -> list[Id]:
     """The bodies whose simulation is switched off, that only a user moves, or that mean the world: by themselves they stand still."""
-    prims = {body: draft.prim_at(path) for path, body in draft.bodies.items()}
-    return [body for body, prim in prims.items() if is_world(prim, draft) or _stands_still(prim)]
+    prims = {body: builder.prim_at(path) for path, body in builder.bodies.items()}
+    return [body for body, prim in prims.items() if is_world(prim, builder) or _stands_still(prim)]
 
 
 def _stands_still(prim: Prim) -> bool:
     return prim.value("physics:rigidBodyEnabled") is False or prim.value("physics:kinematicEnabled") is True
 
 
-def _finished(scene: Scene, draft: Draft) -> Mechanism:
+def _finished(scene: Scene, builder: UsdBuilder) -> Mechanism:
     default = scene.stage.GetDefaultPrim()
-    first = next(iter(draft.bodies), "")
+    first = next(iter(builder.bodies), "")
     root = default or scene.stage.GetPrimAtPath("/" + first.split("/")[1] if first else "/")
-    stem = PurePath(draft.source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
+    stem = PurePath(builder.source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
     name = str(default.GetName()) if default else stem
     if root and not root.IsPseudoRoot():
-        draft.note(ROOT, words.ROOT_PRIM, str(root.GetPath()))
-    if not draft.bodies:
-        draft.report.error(codes.MISSING_PART, "the stage has no rigid bodies; the result has no bodies", Origin(draft.source.name))
-    return replace(draft.build(name), places=dict(_packed_images(draft)))
+        builder.note(ROOT, words.ROOT_PRIM, str(root.GetPath()))
+    if not builder.bodies:
+        builder.report.error(codes.MISSING_PART, "the stage has no rigid bodies; the result has no bodies", Origin(builder.source.name))
+    return replace(builder.build(name), places=dict(_packed_images(builder)))
 
 
-def _packed_images(draft: Draft) -> Iterator[tuple[str, str]]:
+def _packed_images(builder: UsdBuilder) -> Iterator[tuple[str, str]]:
     """How the images in a package are called outside of it."""
-    package = PurePath(draft.source.name.replace("\\", "/")).name
-    if not draft.source.data.startswith(b"PK") or not package.lower().endswith(".usdz"):
+    package = PurePath(builder.source.name.replace("\\", "/")).name
+    if not builder.source.data.startswith(b"PK") or not package.lower().endswith(".usdz"):
         return
-    for part in draft.vertices.values():
+    for part in builder.vertices.values():
         if isinstance(part, Texture) and part.uri is not None:
             yield part.uri, f"{package}[{part.uri}]"

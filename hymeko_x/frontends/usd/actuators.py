@@ -12,8 +12,8 @@ from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Actuator, DofKind, Drive, Joint
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.builder import Draft
-    from hymeko_x.frontends.usd.joints import Driven
+    from hymeko_x.frontends.usd.builder import UsdBuilder
+    from hymeko_x.frontends.usd.joints import DofRef
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id, RobotArc
 
@@ -23,17 +23,17 @@ if TYPE_CHECKING:
 DRIVE = "PhysicsDriveAPI"
 
 
-def read_drives(prim: Prim, end: Driven, draft: Draft) -> None:
+def read_drives(prim: Prim, end: DofRef, builder: UsdBuilder) -> None:
     """Each DriveAPI of a joint as an actuator: position with a stiffness, velocity with damping alone, else motor."""
-    edge = draft.edges.get(end.joint)
+    edge = builder.edges.get(end.joint)
     if edge is None or not isinstance(edge.data, Joint):
         return
     for schema in prim.schemas:
         instance = schema.removeprefix(f"{DRIVE}:")
         number = _driven(instance, end.dof, edge.data) if instance != schema else None
         if number is not None:
-            draft.take(prim, f"@{schema}")
-            _add_drive(prim, end.joint, instance, number, edge.data, draft)
+            builder.mark_read(prim, f"@{schema}")
+            _add_drive(prim, end.joint, instance, number, edge.data, builder)
 
 
 def _driven(instance: str, name: str, joint: Joint) -> int | None:
@@ -50,25 +50,25 @@ def _driven(instance: str, name: str, joint: Joint) -> int | None:
     return None
 
 
-def _add_drive(prim: Prim, key: Id, instance: str, number: int, joint: Joint, draft: Draft) -> None:
+def _add_drive(prim: Prim, key: Id, instance: str, number: int, joint: Joint, builder: UsdBuilder) -> None:
     """Gains per degree become gains per radian; what a drive aims at stays an extra."""
-    scene, turns = draft.scene, joint.dofs[number].kind is DofKind.HINGE
+    scene, turns = builder.scene, joint.dofs[number].kind is DofKind.HINGE
     gain = scene.kilograms * (scene.metres**2 * 180.0 / math.pi if turns else 1.0)
     effort = scene.kilograms * scene.metres * (scene.metres if turns else 1.0)
     prefix = f"drive:{instance}:physics"
-    kp = draft.number(prim, f"{prefix}:stiffness", 0.0) * gain
-    kv = draft.number(prim, f"{prefix}:damping", 0.0) * gain
-    most = draft.number(prim, f"{prefix}:maxForce", math.inf) * effort
+    kp = builder.number(prim, f"{prefix}:stiffness", 0.0) * gain
+    kv = builder.number(prim, f"{prefix}:damping", 0.0) * gain
+    most = builder.number(prim, f"{prefix}:maxForce", math.inf) * effort
     kind = "position" if kp else "velocity" if kv else "motor"
     gains = [(name, value) for name, value in (("kp", kp), ("kv", kv)) if value]
     limits: list[tuple[str, float | str | tuple[float, ...]]] = [("forcerange", (-most, most))] if math.isfinite(most) else []
     own = joint.dofs[number].name
     name = own or (key.name if len(joint.dofs) == 1 else f"{key.name}_{instance}")
-    actuator = draft.own(prim, "actuator", name)
-    draft.vertices[actuator] = Actuator(kind, (*gains, *limits))
-    draft.note(actuator, words.TYPE, instance)
+    actuator = builder.new_id(prim, "actuator", name)
+    builder.vertices[actuator] = Actuator(kind, (*gains, *limits))
+    builder.note(actuator, words.TYPE, instance)
     role = "" if len(joint.dofs) == 1 else own or str(number)
-    draft.edges[draft.own(prim, "drive", name)] = Edge(Drive(), (Arc(actuator, 1), Arc(key, -1, None, role)))
+    builder.edges[builder.new_id(prim, "drive", name)] = Edge(Drive(), (Arc(actuator, 1), Arc(key, -1, None, role)))
 
 
 # ---- MjcActuator -------------------------------------------------------------------------------------------------------------------
@@ -77,26 +77,26 @@ _GENERAL = ("gaintype", "gainprm", "biastype", "biasprm", "dyntype", "dynprm")
 _KINDS = ("frame", "body", "tendon")
 
 
-def read_actuator(prim: Prim, ends: dict[str, Driven], draft: Draft) -> None:
+def read_actuator(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder) -> None:
     """The actuator of a prim with the edge to its targets; one without a target that we know stays an extra."""
-    arcs = [arc for role, name in _relationships(prim) for arc in _arcs(prim, role, name, ends, draft)]
+    arcs = [arc for role, name in _relationships(prim) for arc in _arcs(prim, role, name, ends, builder)]
     if not arcs:
-        said = f"actuator '{prim.path}' acts on nothing that is known; it is kept as written"
-        draft.report.warn(codes.UNDEFINED_REFERENCE, said, draft.origin, element=prim.path)
+        message = f"actuator '{prim.path}' acts on nothing that is known; it is kept as written"
+        builder.report.warn(codes.UNDEFINED_REFERENCE, message, builder.origin, element=prim.path)
         return
-    parameters = _parameters(prim, draft)
+    parameters = _parameters(prim, builder)
     is_plain = arcs[0].target.kind != "body" and not any(name in _GENERAL for name, _ in parameters)
     kind = "motor" if is_plain else "general"  # MJCF has no motor on a body
-    key = draft.own(prim, "actuator")
-    draft.vertices[key] = Actuator(kind, tuple(parameters))
-    draft.note(key, words.TYPE, table.PRIM)
-    gear = draft.get(prim, "mjc:gear")
+    key = builder.new_id(prim, "actuator")
+    builder.vertices[key] = Actuator(kind, tuple(parameters))
+    builder.note(key, words.TYPE, table.PRIM)
+    gear = builder.get(prim, "mjc:gear")
     weight = _trimmed(tuple(map(float, gear))) if gear is not None else None
     first: RobotArc = Arc(arcs[0].target, -1, weight, arcs[0].role)
     is_in_parent = prim.value("mjc:jointInParent") is True
-    draft.take(prim, "@type", *(name for _, name in _relationships(prim)), *(["mjc:jointInParent"] if is_in_parent else []))
+    builder.mark_read(prim, "@type", *(name for _, name in _relationships(prim)), *(["mjc:jointInParent"] if is_in_parent else []))
     drive = Drive("jointinparent" if is_in_parent else "")
-    draft.edges[draft.own(prim, "drive", key.name)] = Edge(drive, (Arc(key, 1), first, *arcs[1:]))
+    builder.edges[builder.new_id(prim, "drive", key.name)] = Edge(drive, (Arc(key, 1), first, *arcs[1:]))
 
 
 def _relationships(prim: Prim) -> list[tuple[str, str]]:
@@ -106,45 +106,45 @@ def _relationships(prim: Prim) -> list[tuple[str, str]]:
     return [(roles[name], name) for name in named]
 
 
-def _arcs(prim: Prim, role: str, name: str, ends: dict[str, Driven], draft: Draft) -> list[RobotArc]:
+def _arcs(prim: Prim, role: str, name: str, ends: dict[str, DofRef], builder: UsdBuilder) -> list[RobotArc]:
     path = prim.targets(name)[0]
     end = ends.get(path)
     if end is not None:
         return [Arc(end.joint, -1, None, end.dof)]
-    found = next((key for key in draft.elements.get(path, ()) if key.kind in _KINDS), None)
+    found = next((key for key in builder.elements.get(path, ()) if key.kind in _KINDS), None)
     return [Arc(found, -1, None, role)] if found is not None else []
 
 
 # ---- parameters ------------------------------------------------------------------------------------------------------------------
 
 
-def _parameters(prim: Prim, draft: Draft) -> list[tuple[str, float | str | tuple[float, ...]]]:
+def _parameters(prim: Prim, builder: UsdBuilder) -> list[tuple[str, float | str | tuple[float, ...]]]:
     """What the prim says beside its targets, under the names of MJCF; what is the schema's default says nothing."""
     found: list[tuple[str, float | str | tuple[float, ...]]] = []
     for name, attribute in table.TOKENS.items():
-        value = draft.get(prim, f"mjc:{attribute}")
+        value = builder.get(prim, f"mjc:{attribute}")
         if isinstance(value, str) and value not in ("auto", table.DEFAULTS.get(name)):
             found.append((name, value))
         elif value is not None:
-            _leave(prim, f"mjc:{attribute}", draft)
+            _leave(prim, f"mjc:{attribute}", builder)
     for name, attribute in table.VECTORS.items():
-        value = draft.get(prim, f"mjc:{attribute}")
+        value = builder.get(prim, f"mjc:{attribute}")
         if value is not None:
             found.append((name, _trimmed(tuple(map(float, value)))))
     for name, attribute in table.RANGES.items():
         if any(prim.has_value(f"mjc:{attribute}:{end}") for end in ("min", "max")):
-            low, high = (float(draft.get(prim, f"mjc:{attribute}:{end}") or 0.0) for end in ("min", "max"))
+            low, high = (float(builder.get(prim, f"mjc:{attribute}:{end}") or 0.0) for end in ("min", "max"))
             found.append((name, (low, high)))
     for name, attribute in (*table.NUMBERS.items(), *table.INTEGERS.items()):
-        value = draft.get(prim, f"mjc:{attribute}")
+        value = builder.get(prim, f"mjc:{attribute}")
         if isinstance(value, int | float):
             found.append((name, float(value)))
     return found
 
 
-def _leave(prim: Prim, name: str, draft: Draft) -> None:
+def _leave(prim: Prim, name: str, builder: UsdBuilder) -> None:
     """A property that was looked at stays an extra."""
-    draft.taken.get(prim.path, set()).discard(name)
+    builder.read_names.get(prim.path, set()).discard(name)
 
 
 def _trimmed(values: tuple[float, ...]) -> tuple[float, ...]:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.materials import bound_to
-from hymeko_x.frontends.usd.transforms import numbers_of, turn_of
+from hymeko_x.frontends.usd.transforms import numbers_of, rotation_of
 from hymeko_x.frozen import frozen
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Inertial, InertialWritten, MeshShape, Role, Shape, Sphere
 from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, apply, rotate_tensor
@@ -19,7 +19,7 @@ from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, apply, rot
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Geometry
@@ -38,20 +38,20 @@ class ReadShape(NamedTuple):
     points: NDArray[Any] | None
 
 
-def read_body(prim: Prim, draft: Draft) -> None:
+def read_body(prim: Prim, builder: UsdBuilder) -> None:
     """The vertex of a rigid body; its mass comes later, when its shapes are known."""
-    key = draft.own(prim, "body")
-    draft.bodies[prim.path] = key
-    draft.vertices[key] = Body()
-    draft.take(prim, f"@{BODY}", *(name for name in prim.properties if name.startswith("xformOp")))
+    key = builder.new_id(prim, "body")
+    builder.bodies[prim.path] = key
+    builder.vertices[key] = Body()
+    builder.mark_read(prim, f"@{BODY}", *(name for name in prim.properties if name.startswith("xformOp")))
     if prim.kind in ("Xform", ""):
-        draft.take(prim, "@type")
+        builder.mark_read(prim, "@type")
 
 
-def body_at(prim: Prim | None, draft: Draft) -> tuple[Prim, Id] | None:
+def body_at(prim: Prim | None, builder: UsdBuilder) -> tuple[Prim, Id] | None:
     """The nearest body at or above a prim, as prim and id."""
     while prim is not None:
-        key = draft.bodies.get(prim.path)
+        key = builder.bodies.get(prim.path)
         if key is not None:
             return prim, key
         prim = prim.parent
@@ -61,53 +61,53 @@ def body_at(prim: Prim | None, draft: Draft) -> tuple[Prim, Id] | None:
 # ---- mass --------------------------------------------------------------------------------------------------------------------
 
 
-def read_mass(prim: Prim, key: Id, shapes: list[ReadShape], draft: Draft) -> None:
+def read_mass(prim: Prim, key: Id, shapes: list[ReadShape], builder: UsdBuilder) -> None:
     """The inertial of a body. ``shapes`` are its own."""
-    stated = _stated(prim, draft) if prim.has_api(MASS) else Inertial()
+    stated = _stated(prim, builder) if prim.has_api(MASS) else Inertial()
     if stated.mass is not None and stated.tensor is not None:
-        draft.take(prim, f"@{MASS}")
-        draft.vertices[key] = Body(stated)
+        builder.mark_read(prim, f"@{MASS}")
+        builder.vertices[key] = Body(stated)
         return
-    density = draft.scene.kilograms / draft.scene.metres**3 * _plain(prim, "physics:density")
-    solids = [solid for item in shapes for solid in [_solid(item, density, draft)] if solid is not None]
+    density = builder.scene.kilograms / builder.scene.metres**3 * _plain(prim, "physics:density")
+    solids = [solid for item in shapes for solid in [_solid(item, density, builder)] if solid is not None]
     if not solids and stated == Inertial():
         return
-    draft.vertices[key] = Body(_completed(stated, joined(solids)) if solids else _massless(stated))
-    draft.take(prim, f"@{MASS}", *(["physics:mass"] if solids else []))
+    builder.vertices[key] = Body(_completed(stated, joined(solids)) if solids else _massless(stated))
+    builder.mark_read(prim, f"@{MASS}", *(["physics:mass"] if solids else []))
 
 
-def _stated(prim: Prim, draft: Draft) -> Inertial:
+def _stated(prim: Prim, builder: UsdBuilder) -> Inertial:
     """What the body's own MassAPI says; None for what it leaves to be computed."""
-    scene = draft.scene
-    mass = draft.number(prim, "physics:mass", 0.0) * scene.kilograms
-    centre = draft.get(prim, "physics:centerOfMass")
-    scale = draft.places.of(prim).scale
+    scene = builder.scene
+    mass = builder.number(prim, "physics:mass", 0.0) * scene.kilograms
+    centre = builder.get(prim, "physics:centerOfMass")
+    scale = builder.transforms.of(prim).scale
     com: Vec3 = ZERO
     if centre is not None and all(map(math.isfinite, centre)):
         com = (centre[0] * scale[0] + 0.0, centre[1] * scale[1] + 0.0, centre[2] * scale[2] + 0.0)
-    tensor, written = _tensor(prim, com, scene.kilograms * scene.metres**2, draft)
+    tensor, written = _tensor(prim, com, scene.kilograms * scene.metres**2, builder)
     return Inertial(mass if mass > 0.0 else None, com, tensor, written)
 
 
-def _tensor(prim: Prim, com: Vec3, unit: float, draft: Draft) -> tuple[Tensor | None, InertialWritten | None]:
+def _tensor(prim: Prim, com: Vec3, unit: float, builder: UsdBuilder) -> tuple[Tensor | None, InertialWritten | None]:
     """The tensor in body axes: Newton's six doubles before UsdPhysics' principal moments."""
-    full = draft.get(prim, "newton:inertia")
-    diagonal = draft.get(prim, "physics:diagonalInertia")
-    axes = draft.get(prim, "physics:principalAxes")
+    full = builder.get(prim, "newton:inertia")
+    diagonal = builder.get(prim, "physics:diagonalInertia")
+    axes = builder.get(prim, "physics:principalAxes")
     if full is not None and len(full) == 6:
-        draft.take(prim, "@NewtonMassAPI")
+        builder.mark_read(prim, "@NewtonMassAPI")
         xx, yy, zz, xy, xz, yz = (value * unit for value in numbers_of(full))
         return (xx, yy, zz, xy, xz, yz), None
     if diagonal is None or not any(diagonal):
         return None, None
     principal: Tensor = (diagonal[0] * unit, diagonal[1] * unit, diagonal[2] * unit, 0.0, 0.0, 0.0)
-    quat = turn_of(axes) if axes is not None else NO_ROTATION
+    quat = rotation_of(axes) if axes is not None else NO_ROTATION
     if quat == NO_ROTATION:
         return principal, None
     return rotate_tensor(quat, principal), InertialWritten(Pose(com, quat), principal)
 
 
-def _solid(read: ReadShape, density: float, draft: Draft) -> Solid | None:
+def _solid(read: ReadShape, density: float, builder: UsdBuilder) -> Solid | None:
     """A collider with its mass, by the rules of precedence; None for visuals and shapes without a volume."""
     prim = read.prim
     if read.shape.role is Role.VISUAL:
@@ -115,17 +115,17 @@ def _solid(read: ReadShape, density: float, draft: Draft) -> Solid | None:
     unit = solid_of(read.shape.geometry, read.pose, read.points)
     if unit is None:
         return None
-    mass = _plain(prim, "physics:mass") * draft.scene.kilograms
+    mass = _plain(prim, "physics:mass") * builder.scene.kilograms
     if mass > 0.0 and unit.mass > 0.0:
         return unit.times(mass / unit.mass)
-    per_volume = draft.scene.kilograms / draft.scene.metres**3
+    per_volume = builder.scene.kilograms / builder.scene.metres**3
     own = _plain(prim, "physics:density") * per_volume
-    return unit.times(own or density or _material_density(prim, draft) * per_volume or _DENSITY)
+    return unit.times(own or density or _material_density(prim, builder) * per_volume or _DENSITY)
 
 
-def _material_density(prim: Prim, draft: Draft) -> float:
+def _material_density(prim: Prim, builder: UsdBuilder) -> float:
     """The density of the physics material that is bound to a collider, 0 without one."""
-    bound = bound_to(prim, draft.scene, "physics")
+    bound = bound_to(prim, builder.scene, "physics")
     return _plain(bound, "physics:density") if bound is not None else 0.0
 
 

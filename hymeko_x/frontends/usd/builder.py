@@ -11,7 +11,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
-from hymeko_x.frontends.usd.transforms import Places, numbers_of
+from hymeko_x.frontends.usd.transforms import Transforms, numbers_of
 from hymeko_x.ir.builder import Builder
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ ORIGINAL_NAME = "cyberwave:name"
 
 
 @dataclass(slots=True)
-class Draft(Builder):
+class UsdBuilder(Builder):
     """A robot of a stage so far.
 
     ``bodies`` and ``elements`` lead from a prim's path to its body and to all elements that were read from it; ``taken`` holds,
@@ -46,15 +46,15 @@ class Draft(Builder):
     source: Source
     report: Report
     scene: Scene
-    places: Places = field(init=False)
+    transforms: Transforms = field(init=False)
     bodies: dict[str, Id] = field(default_factory=dict)
     elements: dict[str, list[Id]] = field(default_factory=dict)
-    taken: dict[str, set[str]] = field(default_factory=dict)
+    read_names: dict[str, set[str]] = field(default_factory=dict)
     meshes: dict[str, Id] = field(default_factory=dict)
     materials: dict[str, Id] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        self.places = Places(self.scene)
+        self.transforms = Transforms(self.scene)
 
     def prim_at(self, path: str) -> Prim:
         """The prim at a path that something was read from."""
@@ -65,7 +65,7 @@ class Draft(Builder):
         """The file; USD keeps no lines."""
         return Origin(self.source.name)
 
-    def own(self, prim: Prim, kind: str, fallback: str | None = None) -> Id:
+    def new_id(self, prim: Prim, kind: str, fallback: str | None = None) -> Id:
         """A fresh id for the element that a prim stands for, after the name that it carries."""
         key = self.fresh(kind, self._name(prim, fallback), self.origin)
         path = prim.path
@@ -79,18 +79,18 @@ class Draft(Builder):
             return fallback
         own = prim.value(ORIGINAL_NAME)
         if isinstance(own, str) and own:
-            self.take(prim, ORIGINAL_NAME)
+            self.mark_read(prim, ORIGINAL_NAME)
             return own
         return prim.display_name or prim.name
 
     def part_name(self, prim: Prim) -> str:
         """The name that a part keeps by itself, whatever its id is: what people call the prim."""
-        self.take(prim, "displayName")
+        self.mark_read(prim, "displayName")
         return prim.display_name or prim.name
 
-    def take(self, prim: Prim, *names: str) -> None:
+    def mark_read(self, prim: Prim, *names: str) -> None:
         """These properties, ``@Api`` schemas or the ``@type`` of a prim are typed now."""
-        self.taken.setdefault(prim.path, set()).update(names)
+        self.read_names.setdefault(prim.path, set()).update(names)
 
     def get(self, prim: Prim, name: str) -> Any:
         """An authored value, single precision as the decimal that it stands for; None without one. The property counts as read.
@@ -108,11 +108,11 @@ class Draft(Builder):
         read = _numbers(value, kind) if name in _SIZES else _rounded(value, kind)
         if name in _SIZES and (read is None or len(read) != _SIZES[name]):
             has = "is no row of numbers" if read is None else f"has {len(read)} numbers"
-            said = f"'{name}' {has} and takes {_SIZES[name]}; it is not used"
-            self.report.error(codes.BAD_VALUE, said, self.origin, element=prim.path)
+            message = f"'{name}' {has} and takes {_SIZES[name]}; it is not used"
+            self.report.error(codes.BAD_VALUE, message, self.origin, element=prim.path)
             return None
         if not prim.is_animated(name):
-            self.take(prim, name)
+            self.mark_read(prim, name)
         return read
 
     def axis(self, prim: Prim, name: str, default: str) -> str:
@@ -120,9 +120,9 @@ class Draft(Builder):
         word = str(self.get(prim, name) or default)
         if word in words.AXES:
             return word
-        self.taken.get(prim.path, set()).discard(name)
-        said = f"{prim.path}: {name} is '{word}'; {default} instead"
-        self.report.warn(codes.UNKNOWN_WORD, said, self.origin, element=prim.path)
+        self.read_names.get(prim.path, set()).discard(name)
+        message = f"{prim.path}: {name} is '{word}'; {default} instead"
+        self.report.warn(codes.UNKNOWN_WORD, message, self.origin, element=prim.path)
         return default
 
     def number(self, prim: Prim, name: str, default: float) -> float:
@@ -132,7 +132,7 @@ class Draft(Builder):
         value = self.get(prim, name)
         is_nothing = value == 0.0 or (isinstance(value, float) and math.isinf(value))
         if is_nothing and (value == default or math.isnan(default)):
-            self.taken.get(prim.path, set()).discard(name)
+            self.read_names.get(prim.path, set()).discard(name)
         return float(value) if isinstance(value, int | float) else default
 
 

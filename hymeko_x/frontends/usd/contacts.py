@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.formats.usd import single
-from hymeko_x.formats.usd.contacts import APART_BY_BOTH, APART_BY_GROUPS, GROUP, GROUPED, GROUPS, pairs_print
+from hymeko_x.formats.usd.contacts import BY_BOTH, BY_GROUPS, GROUP, GROUPED, GROUPS, pairs_digest
 from hymeko_x.frontends.usd.materials import bound_to
 from hymeko_x.frontends.usd.prims import BINDING
 from hymeko_x.ir.graph import Arc, Edge
@@ -17,7 +17,7 @@ from hymeko_x.ir.parts import Contact, Role, Shape
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 
@@ -31,34 +31,34 @@ _FRICTIONS = (
 )
 
 
-def read_filtered_pairs(prim: Prim, draft: Draft) -> None:
+def read_filtered_pairs(prim: Prim, builder: UsdBuilder) -> None:
     """Each body that another one is filtered against; a list that names anything else than bodies stays an extra."""
-    body = draft.bodies.get(prim.path)
-    others = [draft.bodies.get(path) for path in prim.targets(_TARGETS)] if prim.has_api(PAIRS) else []
+    body = builder.bodies.get(prim.path)
+    others = [builder.bodies.get(path) for path in prim.targets(_TARGETS)] if prim.has_api(PAIRS) else []
     if body is None or not others or None in others:
         return
-    draft.take(prim, f"@{PAIRS}", _TARGETS)
+    builder.mark_read(prim, f"@{PAIRS}", _TARGETS)
     for other in others:
         if other is not None:
-            key = draft.own(prim, "contact", f"{body.name}_{other.name}")
-            draft.edges[key] = Edge(Contact("exclude"), (Arc(body), Arc(other)))
+            key = builder.new_id(prim, "contact", f"{body.name}_{other.name}")
+            builder.edges[key] = Edge(Contact("exclude"), (Arc(body), Arc(other)))
 
 
-def friction_of(prim: Prim, draft: Draft) -> tuple[float, ...]:
+def friction_of(prim: Prim, builder: UsdBuilder) -> tuple[float, ...]:
     """Sliding, torsional and rolling friction of a collider by its physics material; nothing where that does not say."""
-    bound = bound_to(prim, draft.scene, "physics")
+    bound = bound_to(prim, builder.scene, "physics")
     found: list[float] = []
     if bound is None:
         return ()
     for names in _FRICTIONS:
-        said = next((value for name in names for value in [bound.value(name)] if value is not None), None)
-        if said is None:
+        authored = next((value for name in names for value in [bound.value(name)] if value is not None), None)
+        if authored is None:
             break
-        found.append(single(float(said)))
-    if bound.is_ours and prim.targets(_BINDING):
-        draft.take(prim, _BINDING)
+        found.append(single(float(authored)))
+    if bound.is_generated and prim.targets(_BINDING):
+        builder.mark_read(prim, _BINDING)
         if BINDING not in prim.properties:
-            draft.take(prim, "@MaterialBindingAPI")
+            builder.mark_read(prim, "@MaterialBindingAPI")
     return tuple(found)
 
 
@@ -79,36 +79,36 @@ class _TooMany(Exception):
     """More than anybody can say in pairs; the text says of what."""
 
 
-def read_collision_groups(prims: list[Prim], draft: Draft) -> None:
+def read_collision_groups(prims: list[Prim], builder: UsdBuilder) -> None:
     """Each pair of bodies of which no collider of the one touches a collider of the other, as an exclusion that says where it is from."""
     groups = [prim for prim in prims if prim.kind == GROUP]
     if not groups:
         return
     try:
-        pairs = _pairs(groups, draft)
+        pairs = _pairs(groups, builder)
     except _TooMany as error:
-        said = f"collision groups with {error} are kept as written; other formats do not hear of them"
-        draft.report.warn(codes.NOT_SAID, said, draft.origin, element=groups[0].path)
+        message = f"collision groups with {error} are kept as written; other formats do not hear of them"
+        builder.report.warn(codes.NOT_SAID, message, builder.origin, element=groups[0].path)
         return
     if not pairs:
         return
-    known = {frozenset(arc.target for arc in edge.arcs): key for key, edge in draft.edges.items() if isinstance(edge.data, Contact)}
+    known = {frozenset(arc.target for arc in edge.arcs): key for key, edge in builder.edges.items() if isinstance(edge.data, Contact)}
     for first, second in pairs:
         key = known.get(frozenset((first, second)))
         if key is None:
-            key = draft.names.take("contact", f"{first.name or 'world'}_{second.name}")
-            draft.origins[key] = draft.origin
-            draft.edges[key] = Edge(Contact("exclude"), (Arc(first), Arc(second)))
-            draft.note(key, GROUPED, APART_BY_GROUPS)
+            key = builder.names.take("contact", f"{first.name or 'world'}_{second.name}")
+            builder.origins[key] = builder.origin
+            builder.edges[key] = Edge(Contact("exclude"), (Arc(first), Arc(second)))
+            builder.note(key, GROUPED, BY_GROUPS)
         else:
-            draft.note(key, GROUPED, APART_BY_BOTH)
-    draft.note(ROOT, GROUPS, pairs_print(pairs))
+            builder.note(key, GROUPED, BY_BOTH)
+    builder.note(ROOT, GROUPS, pairs_digest(pairs))
 
 
-def _pairs(groups: list[Prim], draft: Draft) -> list[tuple[Id, Id]]:
+def _pairs(groups: list[Prim], builder: UsdBuilder) -> list[tuple[Id, Id]]:
     """The pairs in the order of the bodies. Raises: _TooMany."""
     kinds: dict[frozenset[Memberships], list[tuple[int, Id]]] = {}
-    for number, (body, memberships) in enumerate(_memberships(groups, draft).items()):
+    for number, (body, memberships) in enumerate(_memberships(groups, builder).items()):
         kinds.setdefault(frozenset(memberships), []).append((number, body))
     if len(kinds) > _MOST_KINDS or sum(len(groups_of) for kind in kinds for groups_of in kind) > 5 * _MOST_KINDS:
         raise _TooMany(f"{len(kinds)} kinds of members")
@@ -126,12 +126,12 @@ def _pairs(groups: list[Prim], draft: Draft) -> list[tuple[Id, Id]]:
             raise _TooMany(f"more than {MOST_PAIRS} pairs of bodies")
         found += combinations(here, 2) if here is there else ((a, b) if a < b else (b, a) for a, b in product(here, there))
     if partly is not None:
-        said = f"collision groups keep only some colliders of {partly[0]} and {partly[1]} apart, which is kept as written"
-        draft.report.note(codes.NOT_SAID, said, draft.origin, element=groups[0].path)
+        message = f"collision groups keep only some colliders of {partly[0]} and {partly[1]} apart, which is kept as written"
+        builder.report.note(codes.NOT_SAID, message, builder.origin, element=groups[0].path)
     return [(a, b) for (_, a), (_, b) in sorted(found)]
 
 
-def _memberships(groups: list[Prim], draft: Draft) -> dict[Id, set[Memberships]]:
+def _memberships(groups: list[Prim], builder: UsdBuilder) -> dict[Id, set[Memberships]]:
     """For each body (and the world) with colliders, in which groups these are."""
     inside: dict[str, list[str]] = {}
     count = 0
@@ -144,7 +144,7 @@ def _memberships(groups: list[Prim], draft: Draft) -> dict[Id, set[Memberships]]
         if count > _MOST_MEMBERS:
             raise _TooMany(f"more than {_MOST_MEMBERS} members")
     found: dict[Id, set[Memberships]] = {}
-    for path, body in _colliders(draft):
+    for path, body in _colliders(builder):
         found.setdefault(body, set()).add(frozenset(inside.get(path, ())))
     return found
 
@@ -157,11 +157,11 @@ def _members(group: Prim) -> Iterator[str]:
     return map(str, Usd.CollectionAPI.ComputeIncludedPaths(collection.ComputeMembershipQuery(), group.scene.stage))
 
 
-def _colliders(draft: Draft) -> Iterator[tuple[str, Id]]:
+def _colliders(builder: UsdBuilder) -> Iterator[tuple[str, Id]]:
     """The path of each collider with its body."""
-    for path, keys in draft.elements.items():
+    for path, keys in builder.elements.items():
         for key in keys:
-            edge = draft.edges.get(key) if key.kind == "shape" else None
+            edge = builder.edges.get(key) if key.kind == "shape" else None
             if edge is not None and isinstance(edge.data, Shape) and edge.data.role is not Role.VISUAL:
                 yield path, edge.arcs[0].target
 

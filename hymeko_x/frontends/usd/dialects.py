@@ -20,8 +20,8 @@ from hymeko_x.ir.parts import Body, Coupling, DofKind
 from hymeko_x.ir.values import IDENTITY, compose, inverse
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.builder import Draft
-    from hymeko_x.frontends.usd.joints import Driven
+    from hymeko_x.frontends.usd.builder import UsdBuilder
+    from hymeko_x.frontends.usd.joints import DofRef
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Dof, Limits
@@ -33,36 +33,36 @@ _JOINT = "cyberwave:joint:"
 # ---- dofs ----------------------------------------------------------------------------------------------------------------------
 
 
-def with_dialect(joint: ReadJoint, draft: Draft) -> ReadJoint:
+def with_dialect(joint: ReadJoint, builder: UsdBuilder) -> ReadJoint:
     """The joint with its dofs as a converter's own attributes describe them, where the public ones have no value."""
-    return replace(joint, dofs=tuple(_with_dialect(joint.prim, dof, draft) for dof in joint.dofs))
+    return replace(joint, dofs=tuple(_with_dialect(joint.prim, dof, builder) for dof in joint.dofs))
 
 
-def _with_dialect(prim: Prim, dof: Dof, draft: Draft) -> Dof:
+def _with_dialect(prim: Prim, dof: Dof, builder: UsdBuilder) -> Dof:
     if dof.kind not in (DofKind.HINGE, DofKind.SLIDE):
         return dof
-    effort = draft.get(prim, "urdf:limit:effort")
+    effort = builder.get(prim, "urdf:limit:effort")
     if effort is not None and dof.limits.effort is None:
         dof = replace(dof, limits=replace(dof.limits, effort=effort))
-    return _cyberwave_dof(prim, dof, draft) if f"{_JOINT}type" in prim.types else dof
+    return _cyberwave_dof(prim, dof, builder) if f"{_JOINT}type" in prim.types else dof
 
 
-def _cyberwave_dof(prim: Prim, dof: Dof, draft: Draft) -> Dof:
-    draft.take(prim, f"{_JOINT}type", f"{_JOINT}hasLimits", f"{_JOINT}hasDynamics")
+def _cyberwave_dof(prim: Prim, dof: Dof, builder: UsdBuilder) -> Dof:
+    builder.mark_read(prim, f"{_JOINT}type", f"{_JOINT}hasLimits", f"{_JOINT}hasDynamics")
     return replace(
         dof,
-        limits=_cyberwave_limits(prim, dof.limits, draft),
-        damping=draft.number(prim, f"{_JOINT}dynamicsDamping", dof.damping),
-        friction=draft.number(prim, f"{_JOINT}dynamicsFriction", dof.friction),
-        stiffness=draft.number(prim, f"{_JOINT}dynamicsSpringStiffness", dof.stiffness),
-        spring_ref=draft.number(prim, f"{_JOINT}dynamicsSpringReference", dof.spring_ref),
+        limits=_cyberwave_limits(prim, dof.limits, builder),
+        damping=builder.number(prim, f"{_JOINT}dynamicsDamping", dof.damping),
+        friction=builder.number(prim, f"{_JOINT}dynamicsFriction", dof.friction),
+        stiffness=builder.number(prim, f"{_JOINT}dynamicsSpringStiffness", dof.stiffness),
+        spring_ref=builder.number(prim, f"{_JOINT}dynamicsSpringReference", dof.spring_ref),
     )
 
 
-def _cyberwave_limits(prim: Prim, limits: Limits, draft: Draft) -> Limits:
+def _cyberwave_limits(prim: Prim, limits: Limits, builder: UsdBuilder) -> Limits:
     """Speed and effort, which UsdPhysics has not, and bounds in double precision where they still are those of the joint."""
-    lower, upper = (draft.number(prim, f"{_JOINT}limit{name}", math.nan) for name in ("Lower", "Upper"))
-    velocity, effort = (draft.number(prim, f"{_JOINT}limit{name}", math.inf) for name in ("Velocity", "Effort"))
+    lower, upper = (builder.number(prim, f"{_JOINT}limit{name}", math.nan) for name in ("Lower", "Upper"))
+    velocity, effort = (builder.number(prim, f"{_JOINT}limit{name}", math.inf) for name in ("Velocity", "Effort"))
     return replace(
         limits,
         lower=_sharper(limits.lower, lower),
@@ -86,24 +86,24 @@ def is_passive_drive(prim: Prim) -> bool:
 # ---- mimics --------------------------------------------------------------------------------------------------------------------
 
 
-def read_named_mimic(prim: Prim, end: Driven, named: dict[str, Driven], draft: Draft) -> None:
+def read_named_mimic(prim: Prim, end: DofRef, named: dict[str, DofRef], builder: UsdBuilder) -> None:
     """cyberwave-robot-format's mimic: the name of the leader, in SI units."""
-    name = draft.get(prim, f"{_JOINT}mimicJoint")
+    name = builder.get(prim, f"{_JOINT}mimicJoint")
     leader = named.get(name) if isinstance(name, str) else None
     if leader is None:
         return
-    constant = draft.number(prim, f"{_JOINT}mimicOffset", 0.0)
-    factor = draft.number(prim, f"{_JOINT}mimicMultiplier", 1.0)
+    constant = builder.number(prim, f"{_JOINT}mimicOffset", 0.0)
+    factor = builder.number(prim, f"{_JOINT}mimicMultiplier", 1.0)
     arcs: tuple[RobotArc, ...] = (Arc(end.joint, 1, (1.0,), end.dof), Arc(leader.joint, -1, (constant, factor), leader.dof))
-    draft.edges[draft.own(prim, "coupling", end.dof or end.joint.name)] = Edge(Coupling(True), arcs)
+    builder.edges[builder.new_id(prim, "coupling", end.dof or end.joint.name)] = Edge(Coupling(True), arcs)
 
 
 # ---- the world -----------------------------------------------------------------------------------------------------------------
 
 
-def is_world(prim: Prim, draft: Draft) -> bool:
+def is_world(prim: Prim, builder: UsdBuilder) -> bool:
     """Whether a rigid body is what cyberwave-robot-format makes of the world body of an MJCF."""
-    return prim.name == "world" and any("cyberwave" in top.custom_data for top in draft.scene.prims.values() if top.parent is None)
+    return prim.name == "world" and any("cyberwave" in top.custom_data for top in builder.scene.prims.values() if top.parent is None)
 
 
 # ---- links that are plain Xforms ---------------------------------------------------------------------------------------------------
@@ -113,9 +113,9 @@ _LINKS = "Geometry"
 FIXED_SUFFIX = "_fixed"
 
 
-def read_bare_links(prims: list[Prim], draft: Draft) -> list[Prim]:
+def read_bare_links(prims: list[Prim], builder: UsdBuilder) -> list[Prim]:
     """Add the links that are plain Xforms as bodies without mass; returns their prims."""
-    stage = draft.scene.stage
+    stage = builder.scene.stage
     creator = stage.GetRootLayer().customLayerData.get("creator", "")
     default = stage.GetDefaultPrim()
     if not str(creator).startswith(_CREATOR) or not default:
@@ -123,10 +123,10 @@ def read_bare_links(prims: list[Prim], draft: Draft) -> list[Prim]:
     above = f"{default.GetPath()}/{_LINKS}/"
     bare = [prim for prim in prims if prim.path.startswith(above) and _is_bare_link(prim, above)]
     for prim in bare:
-        key = draft.own(prim, "body")
-        draft.bodies[prim.path] = key
-        draft.vertices[key] = Body()
-        draft.take(prim, "@type", *(name for name in prim.properties if name.startswith("xformOp")))
+        key = builder.new_id(prim, "body")
+        builder.bodies[prim.path] = key
+        builder.vertices[key] = Body()
+        builder.mark_read(prim, "@type", *(name for name in prim.properties if name.startswith("xformOp")))
     return bare
 
 
@@ -139,35 +139,35 @@ def _is_bare_link(prim: Prim, above: str) -> bool:
     return prim.kind == "Xform" and not is_world and not prim.has_api(BODY) and not prim.composed.HasAuthoredReferences()
 
 
-def hang_bare_links(bare: list[Prim], joints: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
+def join_bare_links(bare: list[Prim], joints: list[ReadJoint], builder: UsdBuilder) -> list[ReadJoint]:
     """The joints, with each bare link between the bodies where its prim stands."""
     if not bare:
         return joints
-    prims = {key: draft.prim_at(path) for path, key in draft.bodies.items()}
-    links = {draft.bodies[prim.path] for prim in bare}
-    moved = [_from_bare_link(joint, links, prims, draft) for joint in joints]
-    return [*moved, *(_fixed_above(prim, draft) for prim in bare)]
+    prims = {key: builder.prim_at(path) for path, key in builder.bodies.items()}
+    links = {builder.bodies[prim.path] for prim in bare}
+    moved = [_from_bare_link(joint, links, prims, builder) for joint in joints]
+    return [*moved, *(_fixed_above(prim, builder) for prim in bare)]
 
 
-def _from_bare_link(joint: ReadJoint, links: set[Id], prims: dict[Id, Prim], draft: Draft) -> ReadJoint:
+def _from_bare_link(joint: ReadJoint, links: set[Id], prims: dict[Id, Prim], builder: UsdBuilder) -> ReadJoint:
     """The joint from the bare link right above its child, if there is one; seen from the world both frames are the same."""
     first, second = joint.ends
-    above = body_at(prims[second.body].parent, draft) if second.body in prims else None
+    above = body_at(prims[second.body].parent, builder) if second.body in prims else None
     if above is None or above[1] not in links:
         return joint
-    start = draft.places.of(prims[first.body]).pose if first.body in prims else IDENTITY
-    pose = compose(inverse(draft.places.of(above[0]).pose), compose(start, first.pose))
+    start = builder.transforms.of(prims[first.body]).pose if first.body in prims else IDENTITY
+    pose = compose(inverse(builder.transforms.of(above[0]).pose), compose(start, first.pose))
     return replace(joint, ends=(End(above[1], pose), second))
 
 
-def _fixed_above(prim: Prim, draft: Draft) -> ReadJoint:
+def _fixed_above(prim: Prim, builder: UsdBuilder) -> ReadJoint:
     """The fixed joint above a bare link; a bare root stands on the world, as its other roots do."""
-    body = draft.bodies[prim.path]
+    body = builder.bodies[prim.path]
     start: Pose = IDENTITY
     parent = WORLD
-    above = body_at(prim.parent, draft)
+    above = body_at(prim.parent, builder)
     if above is not None:
-        start, parent = draft.places.of(above[0]).pose, above[1]
-    pose = compose(inverse(start), draft.places.of(prim).pose)
-    key = draft.own(prim, "joint", body.name + FIXED_SUFFIX)
+        start, parent = builder.transforms.of(above[0]).pose, above[1]
+    pose = compose(inverse(start), builder.transforms.of(prim).pose)
+    key = builder.new_id(prim, "joint", body.name + FIXED_SUFFIX)
     return ReadJoint(prim, key, (), (End(parent, pose), End(body, IDENTITY)), is_enabled=True, is_excluded=False)

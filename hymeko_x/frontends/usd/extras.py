@@ -11,12 +11,12 @@ from pxr import Gf, Sdf, Usd, UsdGeom
 
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
-from hymeko_x.frontends.usd.transforms import matrix_of, placed
+from hymeko_x.frontends.usd.transforms import decomposed, matrix_of
 from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import ROOT, Extra
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 
@@ -28,32 +28,32 @@ _ARCS = ("references", "payload", "inheritPaths", "specializes", "variantSetName
 _COMPOSED = ("specifier", "typeName", "apiSchemas", "instanceable", *_ARCS)
 
 
-def gather_leftovers(draft: Draft) -> None:
+def gather_extras(builder: UsdBuilder) -> None:
     """Add the extras of all prims. Runs last, when everything that is typed has been taken."""
-    layer = draft.scene.layer
-    _turn_gravity(draft)
+    layer = builder.scene.layer
+    _turn_gravity(builder)
     scratch = Sdf.Layer.CreateAnonymous(".usda")
-    _gather_stage(layer, draft)
-    folded = _above_typed(draft)
+    _gather_stage(layer, builder)
+    folded = _above_typed(builder)
     owners: dict[Prim | None, tuple[Id, str] | None] = {None: (ROOT, "/")}
-    for prim in draft.scene.prims.values():
+    for prim in builder.scene.prims.values():
         above = owners[prim.parent]
         if above is None or f"{words.PREFIX}scope" in prim.types:  # what we made up ourselves, with all that is in it
             owners[prim] = None
             continue
-        found = draft.elements.get(prim.path)
-        owners[prim] = owner = (found[0], _home(found[0], prim.path, draft)) if found else above
-        _gather_prim(prim, owner, folded, scratch, draft)
+        found = builder.elements.get(prim.path)
+        owners[prim] = owner = (found[0], _home(found[0], prim.path, builder)) if found else above
+        _gather_prim(prim, owner, folded, scratch, builder)
 
 
-def _home(key: Id, path: str, draft: Draft) -> str:
+def _home(key: Id, path: str, builder: UsdBuilder) -> str:
     """The prim from which the extras of an element are counted: the first one where it was made of several."""
-    noted = draft.notations.get(key, {}).get(words.PATH, "")
+    noted = builder.notations.get(key, {}).get(words.PATH, "")
     return noted.split()[0] if " " in noted else path
 
 
 @frozen
-class _Rest:
+class _Unread:
     """What was not read of a prim: whether its type was not, its schemas, metadata and properties, and where it stands now."""
 
     has_type: bool
@@ -69,27 +69,27 @@ class _Rest:
         return bool(self.schemas or self.metadata or self.properties) or is_moved
 
 
-def _gather_prim(prim: Prim, owner: tuple[Id, str], folded: set[str], scratch: Any, draft: Draft) -> None:
-    if "@spec" in draft.taken.get(prim.path, ()):
+def _gather_prim(prim: Prim, owner: tuple[Id, str], folded: set[str], scratch: Any, builder: UsdBuilder) -> None:
+    if "@spec" in builder.read_names.get(prim.path, ()):
         return
-    is_typed = prim.path in draft.elements
-    rest = _rest_of(prim, owner[0] if is_typed else None, None if is_typed else _new_place(prim, folded, draft), draft)
-    has_own_type = rest.has_type and (is_typed or prim.kind != "Xform" or prim.path not in folded)
-    if rest.is_something or has_own_type or not (is_typed or prim.kind):
+    is_typed = prim.path in builder.elements
+    unread = _unread_of(prim, owner[0] if is_typed else None, None if is_typed else _new_place(prim, folded, builder), builder)
+    has_own_type = unread.has_type and (is_typed or prim.kind != "Xform" or prim.path not in folded)
+    if unread.is_something or has_own_type or not (is_typed or prim.kind):
         relative = str(Sdf.Path(prim.path).MakeRelativePath(Sdf.Path(owner[1]))) if prim.path != owner[1] else ""
-        is_over = is_typed or "@type" in draft.taken.get(prim.path, ())
-        text = _text_of(prim, rest, scratch, is_over=is_over).replace(draft.scene.folder + "/", "")
-        draft.add_extras(owner[0], Extra(words.FORMAT, relative, text))
+        is_over = is_typed or "@type" in builder.read_names.get(prim.path, ())
+        text = _text_of(prim, unread, scratch, is_over=is_over).replace(builder.scene.folder + "/", "")
+        builder.add_extras(owner[0], Extra(words.FORMAT, relative, text))
 
 
-def _rest_of(prim: Prim, element: Id | None, moved: Any | None, draft: Draft) -> _Rest:
+def _unread_of(prim: Prim, element: Id | None, moved: Any | None, builder: UsdBuilder) -> _Unread:
     """What is left of a prim, which is the one of an element or none."""
-    taken = draft.taken.get(prim.path, set())
-    metadata = [name for name in prim.said if name not in _COMPOSED and name not in taken]
+    taken = builder.read_names.get(prim.path, set())
+    metadata = [name for name in prim.metadata if name not in _COMPOSED and name not in taken]
     if "displayName" in metadata and element is not None and prim.display_name == element.name:
         metadata.remove("displayName")
     ignored = (words.PREFIX,) if moved is None else (words.PREFIX, "xformOp")
-    return _Rest(
+    return _Unread(
         bool(prim.kind) and "@type" not in taken,
         tuple(schema for schema in prim.schemas if f"@{schema}" not in taken),
         tuple(metadata),
@@ -98,22 +98,22 @@ def _rest_of(prim: Prim, element: Id | None, moved: Any | None, draft: Draft) ->
     )
 
 
-def _text_of(prim: Prim, rest: _Rest, scratch: Any, *, is_over: bool) -> str:
+def _text_of(prim: Prim, unread: _Unread, scratch: Any, *, is_over: bool) -> str:
     """What is left of a prim as text of USD."""
     spec = prim.spec
     copy = Sdf.CreatePrimInLayer(scratch, f"/{prim.name}")
-    copy.specifier = Sdf.SpecifierOver if is_over and not rest.has_type else spec.specifier
-    if rest.has_type:
+    copy.specifier = Sdf.SpecifierOver if is_over and not unread.has_type else spec.specifier
+    if unread.has_type:
         copy.typeName = prim.kind
-    if rest.schemas:
-        copy.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=list(rest.schemas)))
-    for name in rest.metadata:
+    if unread.schemas:
+        copy.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=list(unread.schemas)))
+    for name in unread.metadata:
         copy.SetInfo(name, spec.GetInfo(name))
-    for name in rest.properties:
+    for name in unread.properties:
         Sdf.CopySpec(spec.layer, f"{prim.path}.{name}", scratch, f"/{prim.name}.{name}")
         _lead_where_it_led(spec.layer.GetObjectAtPath(f"{prim.path}.{name}"), scratch.GetObjectAtPath(f"/{prim.name}.{name}"))
-    if rest.moved is not None and rest.moved != Gf.Matrix4d(1):
-        _author_matrix(copy, rest.moved)
+    if unread.moved is not None and unread.moved != Gf.Matrix4d(1):
+        _author_matrix(copy, unread.moved)
     text = str(copy.GetAsText().strip())
     del scratch.rootPrims[prim.name]
     return text
@@ -126,23 +126,23 @@ def _lead_where_it_led(item: Any, copy: Any) -> None:
             getattr(copy, paths).CopyItems(getattr(item, paths))
 
 
-def _gather_stage(layer: Any, draft: Draft) -> None:
+def _gather_stage(layer: Any, builder: UsdBuilder) -> None:
     """What the root layer says besides its units, as the header of an empty layer."""
     header = Sdf.Layer.CreateAnonymous(".usda")
     for name in layer.pseudoRoot.ListInfoKeys():
         if name not in _STAGE_KNOWN and not (name == "customLayerData" and not layer.customLayerData):
             header.pseudoRoot.SetInfo(name, layer.pseudoRoot.GetInfo(name))
     if header.pseudoRoot.ListInfoKeys():
-        draft.add_extras(ROOT, Extra(words.FORMAT, STAGE, header.ExportToString().strip()))
+        builder.add_extras(ROOT, Extra(words.FORMAT, STAGE, header.ExportToString().strip()))
 
 
 # ---- places of prims that are not typed ------------------------------------------------------------------------------------------
 
 
-def _above_typed(draft: Draft) -> set[str]:
+def _above_typed(builder: UsdBuilder) -> set[str]:
     """The paths of all prims with a typed one somewhere below: their transformations are part of what is below."""
     above: set[str] = set()
-    for path in draft.elements:
+    for path in builder.elements:
         way = path.rpartition("/")[0]
         while way and way not in above:
             above.add(way)
@@ -150,7 +150,7 @@ def _above_typed(draft: Draft) -> set[str]:
     return above
 
 
-def _new_place(prim: Prim, folded: set[str], draft: Draft) -> Any | None:
+def _new_place(prim: Prim, folded: set[str], builder: UsdBuilder) -> Any | None:
     """The matrix of a prim in the frame in which it will stand, or None where what it says stays true.
 
     Groups above typed prims stand in the frame of their body or the world; what hangs below such a group alone gets its
@@ -159,20 +159,20 @@ def _new_place(prim: Prim, folded: set[str], draft: Draft) -> Any | None:
     if prim.path in folded:
         return Gf.Matrix4d(1)
     parent = prim.parent
-    is_top = parent is None or parent.path in folded or parent.path in draft.elements
+    is_top = parent is None or parent.path in folded or parent.path in builder.elements
     composed = prim.composed if is_top else None
-    if not composed or not UsdGeom.Xformable(composed) or (parent is not None and _is_skin(parent, draft)):
+    if not composed or not UsdGeom.Xformable(composed) or (parent is not None and _is_skin(parent, builder)):
         return None
-    found = body_at(prim, draft)
-    matrix = draft.places.relative(prim, found[0] if found is not None else None)
+    found = body_at(prim, builder)
+    matrix = builder.transforms.relative(prim, found[0] if found is not None else None)
     if found is None and "xformOpOrder" not in prim.types and Gf.IsClose(matrix, Gf.Matrix4d(1), 1e-12):
         return None
     return None if Gf.IsClose(matrix, _own_matrix(composed), 1e-12) else matrix
 
 
-def _is_skin(prim: Prim, draft: Draft) -> bool:
+def _is_skin(prim: Prim, builder: UsdBuilder) -> bool:
     """Whether the prim is a body and its geometry at once: it keeps its scale, so what is below keeps its place."""
-    return {"body", "shape"} <= {key.kind for key in draft.elements.get(prim.path, ())}
+    return {"body", "shape"} <= {key.kind for key in builder.elements.get(prim.path, ())}
 
 
 def _own_matrix(composed: Any) -> Any:
@@ -185,16 +185,16 @@ def _author_matrix(copy: Any, matrix: Any) -> None:
     Sdf.AttributeSpec(copy, "xformOp:transform", Sdf.ValueTypeNames.Matrix4d).default = matrix
 
 
-def _turn_gravity(draft: Draft) -> None:
+def _turn_gravity(builder: UsdBuilder) -> None:
     """Gravity in metres, seen with z up, where the stage has other units or another up axis."""
-    turn = matrix_of(placed(draft.scene.world).pose)
-    if draft.scene.metres == 1.0 and turn == Gf.Matrix4d(1):
+    turn = matrix_of(decomposed(builder.scene.world).pose)
+    if builder.scene.metres == 1.0 and turn == Gf.Matrix4d(1):
         return
-    for prim in draft.scene.prims.values():
+    for prim in builder.scene.prims.values():
         if prim.kind != "PhysicsScene" or not prim.is_real:
             continue
         direction, magnitude = (prim.spec.attributes.get(f"physics:gravity{name}") for name in ("Direction", "Magnitude"))
         if direction is not None and direction.default is not None:
             direction.default = Gf.Vec3f(turn.TransformDir(Gf.Vec3d(direction.default)))
         if magnitude is not None and magnitude.default is not None:
-            magnitude.default = magnitude.default * draft.scene.metres
+            magnitude.default = magnitude.default * builder.scene.metres

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING, NamedTuple
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
-from hymeko_x.frontends.usd.transforms import turn_of
+from hymeko_x.frontends.usd.transforms import rotation_of
 from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
 from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, compose, inverse, rotate, rotation_angle, unit
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 
@@ -59,83 +59,83 @@ class ReadJoint:
     merged: tuple[Prim, ...] = ()
 
 
-def read_joint(prim: Prim, draft: Draft) -> ReadJoint | None:
+def read_joint(prim: Prim, builder: UsdBuilder) -> ReadJoint | None:
     """The joint of a prim; None, said and kept as an extra, where it does not connect two bodies."""
-    first, second = _end(prim, 0, draft), _end(prim, 1, draft)
+    first, second = _end(prim, 0, builder), _end(prim, 1, builder)
     if first is None or second is None:
         return None
     if first.body == second.body:
-        said = f"joint '{prim.path}' connects {first.body} with itself; it is kept as written and moves nothing"
-        draft.report.warn(codes.MISSING_PART, said, draft.origin, element=prim.path)
+        message = f"joint '{prim.path}' connects {first.body} with itself; it is kept as written and moves nothing"
+        builder.report.warn(codes.MISSING_PART, message, builder.origin, element=prim.path)
         return None
-    key = draft.own(prim, "joint")
+    key = builder.new_id(prim, "joint")
     kind = prim.kind
-    dofs = _dofs(prim, kind, draft)
-    draft.take(prim, "@type", *(f"physics:local{what}{side}" for what in ("Pos", "Rot") for side in "01"))
-    draft.take(prim, *(name for name in ("physics:body0", "physics:body1") if prim.targets(name)))
-    _take_schemas(prim, draft)
+    dofs = _dofs(prim, kind, builder)
+    builder.mark_read(prim, "@type", *(f"physics:local{what}{side}" for what in ("Pos", "Rot") for side in "01"))
+    builder.mark_read(prim, *(name for name in ("physics:body0", "physics:body1") if prim.targets(name)))
+    _take_schemas(prim, builder)
     enabled = prim.value("physics:jointEnabled") is not False
     excluded = bool(prim.value("physics:excludeFromArticulation"))
     if kind == GENERIC:
-        draft.note(key, words.TYPE, kind)
+        builder.note(key, words.TYPE, kind)
     for side, end in enumerate((first, second)):
-        _note_ground(prim, side, end, key, draft)
+        _note_ground(prim, side, end, key, builder)
     return ReadJoint(prim, key, dofs, (first, second), enabled, excluded)
 
 
-def _take_schemas(prim: Prim, draft: Draft) -> None:
+def _take_schemas(prim: Prim, builder: UsdBuilder) -> None:
     """A schema of which every value is typed needs no extra; one that says nothing does."""
-    taken = draft.taken.get(prim.path, set())
+    taken = builder.read_names.get(prim.path, set())
     own = [name for name in prim.properties if not name.startswith(_OF_COUPLINGS)]
     for prefix, schema in (("mjc:", "MjcJointAPI"), ("newton:", "NewtonJointAPI")):
-        said = [name for name in own if name.startswith(prefix)]
-        if said and taken.issuperset(said):
-            draft.take(prim, f"@{schema}")
+        authored = [name for name in own if name.startswith(prefix)]
+        if authored and taken.issuperset(authored):
+            builder.mark_read(prim, f"@{schema}")
 
 
 # ---- ends --------------------------------------------------------------------------------------------------------------------
 
 
-def _end(prim: Prim, side: int, draft: Draft) -> End | None:
+def _end(prim: Prim, side: int, builder: UsdBuilder) -> End | None:
     """The joint's frame in the body of one side; without a body in the world, in the frame of whatever prim is named."""
-    position = draft.get(prim, f"physics:localPos{side}") or ZERO
-    quat = draft.get(prim, f"physics:localRot{side}") or NO_ROTATION
-    local = Pose(position, turn_of(quat))
+    position = builder.get(prim, f"physics:localPos{side}") or ZERO
+    quat = builder.get(prim, f"physics:localRot{side}") or NO_ROTATION
+    local = Pose(position, rotation_of(quat))
     targets = prim.targets(f"physics:body{side}")
     if not targets:
-        return End(WORLD, _in_world(local, draft))
-    target = draft.scene.prims.get(targets[0])
+        return End(WORLD, _in_world(local, builder))
+    target = builder.scene.prims.get(targets[0])
     if target is None:
-        said = f"joint '{prim.path}': body{side} is '{targets[0]}', which does not exist; the joint is kept as written"
-        draft.report.error(codes.UNDEFINED_REFERENCE, said, draft.origin, element=prim.path)
+        message = f"joint '{prim.path}': body{side} is '{targets[0]}', which does not exist; the joint is kept as written"
+        builder.report.error(codes.UNDEFINED_REFERENCE, message, builder.origin, element=prim.path)
         return None
-    found = body_at(target, draft)
-    frame = _frame_on(target, local, draft)
+    found = body_at(target, builder)
+    frame = _frame_on(target, local, builder)
     if found is None:
         return End(WORLD, frame)
     body, key = found
     if body is target:
-        return End(key, Pose(_stretched(position, draft.places.of(body).scale), local.quat))
-    return End(key, compose(inverse(draft.places.of(body).pose), frame))
+        return End(key, Pose(_stretched(position, builder.transforms.of(body).scale), local.quat))
+    return End(key, compose(inverse(builder.transforms.of(body).pose), frame))
 
 
-def _note_ground(prim: Prim, side: int, end: End, key: Id, draft: Draft) -> None:
+def _note_ground(prim: Prim, side: int, end: End, key: Id, builder: UsdBuilder) -> None:
     """Keep which prim stood for the world, where it is a group above bodies, which will be written without a place of its own."""
     targets = prim.targets(f"physics:body{side}") if end.body == WORLD else []
-    if targets and any(path.startswith(f"{targets[0]}/") for path in draft.bodies):
-        draft.note(key, words.GROUND[side], targets[0])
+    if targets and any(path.startswith(f"{targets[0]}/") for path in builder.bodies):
+        builder.note(key, words.GROUND[side], targets[0])
 
 
-def _in_world(local: Pose, draft: Draft) -> Pose:
-    from hymeko_x.frontends.usd.transforms import placed
+def _in_world(local: Pose, builder: UsdBuilder) -> Pose:
+    from hymeko_x.frontends.usd.transforms import decomposed
 
-    world = placed(draft.scene.world)
+    world = decomposed(builder.scene.world)
     return compose(world.pose, Pose(_stretched(local.xyz, world.scale), local.quat))
 
 
-def _frame_on(target: Prim, local: Pose, draft: Draft) -> Pose:
+def _frame_on(target: Prim, local: Pose, builder: UsdBuilder) -> Pose:
     """A frame given in the scaled space of a prim, seen from the world."""
-    at = draft.places.of(target)
+    at = builder.transforms.of(target)
     return compose(at.pose, Pose(_stretched(local.xyz, at.scale), local.quat))
 
 
@@ -146,40 +146,40 @@ def _stretched(vector: Vec3, scale: Vec3) -> Vec3:
 # ---- dofs --------------------------------------------------------------------------------------------------------------------
 
 
-def _dofs(prim: Prim, kind: str, draft: Draft) -> tuple[Dof, ...]:
+def _dofs(prim: Prim, kind: str, builder: UsdBuilder) -> tuple[Dof, ...]:
     match kind:
         case "PhysicsRevoluteJoint":
-            return (_behaving(prim, Dof(DofKind.HINGE, _axis(prim, draft), _limits(prim, DofKind.HINGE, draft)), draft),)
+            return (_behaving(prim, Dof(DofKind.HINGE, _axis(prim, builder), _limits(prim, DofKind.HINGE, builder)), builder),)
         case "PhysicsPrismaticJoint":
-            return (_behaving(prim, Dof(DofKind.SLIDE, _axis(prim, draft), _limits(prim, DofKind.SLIDE, draft)), draft),)
+            return (_behaving(prim, Dof(DofKind.SLIDE, _axis(prim, builder), _limits(prim, DofKind.SLIDE, builder)), builder),)
         case "PhysicsSphericalJoint":
-            return (_behaving(prim, Dof(DofKind.BALL), draft),)
+            return (_behaving(prim, Dof(DofKind.BALL), builder),)
         case "PhysicsJoint":
-            return _generic_dofs(prim, draft)
+            return _generic_dofs(prim, builder)
         case _:
             return ()
 
 
-def _axis(prim: Prim, draft: Draft) -> Vec3:
-    return words.AXES[draft.axis(prim, "physics:axis", "X")]
+def _axis(prim: Prim, builder: UsdBuilder) -> Vec3:
+    return words.AXES[builder.axis(prim, "physics:axis", "X")]
 
 
-def _limits(prim: Prim, kind: DofKind, draft: Draft) -> Limits:
+def _limits(prim: Prim, kind: DofKind, builder: UsdBuilder) -> Limits:
     """Degrees or lengths of the stage as rad or m. Infinite bounds are none; lower above upper switches both off."""
-    lower = draft.number(prim, "physics:lowerLimit", -math.inf)
-    upper = draft.number(prim, "physics:upperLimit", math.inf)
+    lower = builder.number(prim, "physics:lowerLimit", -math.inf)
+    upper = builder.number(prim, "physics:upperLimit", math.inf)
     if lower > upper:
         return Limits()
-    return Limits(_bound(lower, kind, draft), _bound(upper, kind, draft))
+    return Limits(_bound(lower, kind, builder), _bound(upper, kind, builder))
 
 
-def _bound(value: float, kind: DofKind, draft: Draft) -> float | None:
+def _bound(value: float, kind: DofKind, builder: UsdBuilder) -> float | None:
     if not math.isfinite(value) or abs(value) > 3e38:
         return None
-    return math.radians(value) if kind is DofKind.HINGE else value * draft.scene.metres
+    return math.radians(value) if kind is DofKind.HINGE else value * builder.scene.metres
 
 
-def _generic_dofs(prim: Prim, draft: Draft) -> tuple[Dof, ...]:
+def _generic_dofs(prim: Prim, builder: UsdBuilder) -> tuple[Dof, ...]:
     """The axes that are left free: low above high locks one, an axis without a LimitAPI is free.
 
     A point that turns freely in all directions is a ball, and one without any limit at all floats.
@@ -193,25 +193,25 @@ def _generic_dofs(prim: Prim, draft: Draft) -> tuple[Dof, ...]:
     for name in free[:-3] if is_ball else free:
         kind, axis = words.d6_axis(name)
         is_limited = prim.has_api(f"PhysicsLimitAPI:{name}")
-        low = draft.number(prim, f"limit:{name}:physics:low", -math.inf) if is_limited else -math.inf
-        high = draft.number(prim, f"limit:{name}:physics:high", math.inf) if is_limited else math.inf
+        low = builder.number(prim, f"limit:{name}:physics:low", -math.inf) if is_limited else -math.inf
+        high = builder.number(prim, f"limit:{name}:physics:high", math.inf) if is_limited else math.inf
         if math.isfinite(low) or math.isfinite(high):
-            draft.take(prim, f"@PhysicsLimitAPI:{name}")
-        limits = Limits(_bound(low, kind, draft), _bound(high, kind, draft))
-        dofs.append(_behaving(prim, Dof(kind, axis, limits), draft))
+            builder.mark_read(prim, f"@PhysicsLimitAPI:{name}")
+        limits = Limits(_bound(low, kind, builder), _bound(high, kind, builder))
+        dofs.append(_behaving(prim, Dof(kind, axis, limits), builder))
     if is_ball:
-        dofs.append(_behaving(prim, Dof(DofKind.BALL), draft))
+        dofs.append(_behaving(prim, Dof(DofKind.BALL), builder))
     for name in words.D6_AXES:
         if name not in free:
-            _take_lock(prim, name, draft)
+            _take_lock(prim, name, builder)
     return tuple(dofs)
 
 
-def _take_lock(prim: Prim, name: str, draft: Draft) -> None:
+def _take_lock(prim: Prim, name: str, builder: UsdBuilder) -> None:
     """A locked axis; by how much its bounds are crossed only counts where it is not by as much as the writer's."""
     low, high = f"limit:{name}:physics:low", f"limit:{name}:physics:high"
-    said = prim.value(low), prim.value(high)
-    draft.take(prim, f"@PhysicsLimitAPI:{name}", *((low, high) if said == words.LOCKED else ()))
+    authored = prim.value(low), prim.value(high)
+    builder.mark_read(prim, f"@PhysicsLimitAPI:{name}", *((low, high) if authored == words.LOCKED else ()))
 
 
 def _is_locked(prim: Prim, name: str) -> bool:
@@ -221,19 +221,19 @@ def _is_locked(prim: Prim, name: str) -> bool:
     return bool((-math.inf if low is None else low) > (math.inf if high is None else high))
 
 
-def _behaving(prim: Prim, dof: Dof, draft: Draft) -> Dof:
+def _behaving(prim: Prim, dof: Dof, builder: UsdBuilder) -> Dof:
     """The dof with what MuJoCo's and Newton's schemas say about the whole joint. Newton counts angles in degrees, MuJoCo in radians."""
-    scene = draft.scene
+    scene = builder.scene
     turns = dof.kind is not DofKind.SLIDE
     inertia = scene.kilograms * (scene.metres**2 if turns else 1.0)
     effort = scene.kilograms * scene.metres * (scene.metres if turns else 1.0)
     degree = 180.0 / math.pi if turns else 1.0
     angle = math.pi / 180.0 if turns else scene.metres
-    mjc = {name: draft.number(prim, f"mjc:{name}", math.nan) for name in _MJC}
-    newton = {name: draft.number(prim, f"newton:{name}", math.nan) for name in _NEWTON}
+    mjc = {name: builder.number(prim, f"mjc:{name}", math.nan) for name in _MJC}
+    newton = {name: builder.number(prim, f"newton:{name}", math.nan) for name in _NEWTON}
     speed = newton["velocityLimit"] * angle
     if math.isfinite(speed):
-        draft.take(prim, "newton:velocityLimit")
+        builder.mark_read(prim, "newton:velocityLimit")
     return replace(
         dof,
         armature=_first(mjc["armature"] * inertia, newton["armature"] * inertia),
@@ -242,16 +242,16 @@ def _behaving(prim: Prim, dof: Dof, draft: Draft) -> Dof:
         stiffness=_first(mjc["stiffness"] * inertia),
         ref=_first(mjc["ref"] * angle),
         spring_ref=_first(mjc["springref"] * angle),
-        limits=replace(dof.limits, velocity=speed if math.isfinite(speed) else None, effort=_effort(prim, effort, draft)),
+        limits=replace(dof.limits, velocity=speed if math.isfinite(speed) else None, effort=_effort(prim, effort, builder)),
     )
 
 
-def _effort(prim: Prim, unit: float, draft: Draft) -> float | None:
+def _effort(prim: Prim, unit: float, builder: UsdBuilder) -> float | None:
     """MuJoCo's symmetric limit of the force at the joint; a one-sided one stays an extra."""
     low, high = (prim.value(f"mjc:actuatorfrcrange:{end}") for end in ("min", "max"))
     if low is None or high is None or low != -high:
         return None
-    draft.take(prim, "mjc:actuatorfrcrange:min", "mjc:actuatorfrcrange:max")
+    builder.mark_read(prim, "mjc:actuatorfrcrange:min", "mjc:actuatorfrcrange:max")
     return float(abs(high * unit))
 
 
@@ -263,18 +263,18 @@ def _first(*values: float) -> float:
 # ---- drives --------------------------------------------------------------------------------------------------------------------
 
 
-class Driven(NamedTuple):
+class DofRef(NamedTuple):
     """A joint, or by its name one dof of a joint that was made of several."""
 
     joint: Id
     dof: str
 
 
-def driven_ends(joint: ReadJoint) -> list[tuple[Prim, Driven]]:
+def dof_refs(joint: ReadJoint) -> list[tuple[Prim, DofRef]]:
     """Each prim of a joint with what it moves."""
     if not joint.merged:
-        return [(joint.prim, Driven(joint.id, ""))]
-    return [(prim, Driven(joint.id, dof.name or "")) for prim, dof in zip(joint.merged, joint.dofs, strict=True)]
+        return [(joint.prim, DofRef(joint.id, ""))]
+    return [(prim, DofRef(joint.id, dof.name or "")) for prim, dof in zip(joint.merged, joint.dofs, strict=True)]
 
 
 # ---- several joints between the same two bodies ------------------------------------------------------------------------------------
@@ -284,17 +284,17 @@ _SAME = 1e-5
 """In rad, and in m or of the distance where that is longer: frames of joints have single precision."""
 
 
-def merge_parallel(joints: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
+def merge_parallel(joints: list[ReadJoint], builder: UsdBuilder) -> list[ReadJoint]:
     """The joints with every run of hinges, slides and balls between the same two bodies made one, at the place of its first."""
     groups: dict[object, list[ReadJoint]] = {}
     for joint in joints:
         first, second = joint.ends
         is_simple = joint.prim.kind in _MERGED and joint.is_enabled and not joint.is_excluded
         groups.setdefault((first.body, second.body) if is_simple else joint.id, []).append(joint)
-    return [merged for group in groups.values() for merged in _merged(group, draft)]
+    return [merged for group in groups.values() for merged in _merged(group, builder)]
 
 
-def _merged(group: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
+def _merged(group: list[ReadJoint], builder: UsdBuilder) -> list[ReadJoint]:
     """One joint for those that agree on where the child is; the others, if any, stay by themselves and close a loop."""
     first = group[0]
     at = _child_at(first)
@@ -302,13 +302,13 @@ def _merged(group: list[ReadJoint], draft: Draft) -> list[ReadJoint]:
     if len(agreeing) < 2:
         return group
     dofs = tuple(_dof_seen_from(first, joint) for joint in agreeing)
-    draft.note(first.id, words.PATH, " ".join(joint.prim.path for joint in agreeing))
+    builder.note(first.id, words.PATH, " ".join(joint.prim.path for joint in agreeing))
     for joint in agreeing:
         if joint.prim.display_name == joint.id.name:  # which the dof is called
-            draft.take(joint.prim, "displayName")
+            builder.mark_read(joint.prim, "displayName")
     for joint in agreeing[1:]:
-        draft.elements[joint.prim.path] = [first.id]
-        draft.notations.pop(joint.id, None)
+        builder.elements[joint.prim.path] = [first.id]
+        builder.notations.pop(joint.id, None)
     rest = [joint for joint in group if joint not in agreeing]
     return [replace(first, dofs=dofs, merged=tuple(joint.prim for joint in agreeing)), *rest]
 

@@ -98,8 +98,8 @@ def _words(error: Exception) -> str:
         text = str(error)
     except UnicodeDecodeError:  # USD quotes the bytes of the file
         return "it is not UTF-8"
-    said = text.rsplit(" : ", 1)[-1].split(" matching ")[0] if " : " in text else text
-    return " ".join(_FOLDER.sub("", said).strip("' \n\t").split())[:300] or "no reason is given"
+    authored = text.rsplit(" : ", 1)[-1].split(" matching ")[0] if " : " in text else text
+    return " ".join(_FOLDER.sub("", authored).strip("' \n\t").split())[:300] or "no reason is given"
 
 
 # ---- layers ------------------------------------------------------------------------------------------------------------------
@@ -132,8 +132,8 @@ def _layer(path: str, base: str, source: Source, report: Report, *, is_main: boo
     except Tf.ErrorException as error:
         if is_main:
             raise refuse(codes.CANNOT_READ, f"USD cannot read it: {_words(error)}", Origin(source.name)) from error
-        said = f"layer '{os.path.relpath(path, base)}' cannot be read: {_words(error)}; it is left out"
-        report.error(codes.CANNOT_READ, said, Origin(source.name))
+        message = f"layer '{os.path.relpath(path, base)}' cannot be read: {_words(error)}; it is left out"
+        report.error(codes.CANNOT_READ, message, Origin(source.name))
         return None
 
 
@@ -275,6 +275,6 @@ def drop_unknown_types(layers: list[Any], source: Source, report: Report) -> Non
         for prim in specs(layer):
             unknown = [attribute for attribute in prim.attributes if attribute.typeName.type == Tf.Type.Unknown]
             for attribute in unknown:
-                said = f"'{attribute.path}' has the type '{attribute.typeName}', which USD does not know; it is left out"
-                report.error(codes.BAD_VALUE, said, Origin(source.name), element=str(prim.path))
+                message = f"'{attribute.path}' has the type '{attribute.typeName}', which USD does not know; it is left out"
+                report.error(codes.BAD_VALUE, message, Origin(source.name), element=str(prim.path))
                 prim.RemoveProperty(attribute)

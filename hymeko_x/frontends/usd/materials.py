@@ -14,7 +14,7 @@ from hymeko_x.ir.mechanism import layer_edge
 from hymeko_x.ir.parts import Material, Texture
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.stage import Scene
     from hymeko_x.ir.mechanism import Id
@@ -27,41 +27,41 @@ _OF_IMAGE = frozenset(("info:id", "inputs:file", "inputs:st", "outputs:rgb", *wo
 _OF_COORDINATES = frozenset(("info:id", "inputs:varname", "outputs:result"))
 
 
-def read_material(prim: Prim, draft: Draft) -> None:
+def read_material(prim: Prim, builder: UsdBuilder) -> None:
     """The vertex of a material; its network is typed only where nothing of it would be left over."""
-    key = draft.own(prim, "material")
-    draft.materials[prim.path] = key
+    key = builder.new_id(prim, "material")
+    builder.materials[prim.path] = key
     surface = UsdShade.Material(prim.composed).ComputeSurfaceSource()[0]
     shader = surface.GetPrim() if surface else None
     if shader is None or surface.GetShaderId() != PREVIEW:
-        draft.vertices[key] = Material(draft.part_name(prim))
-        draft.take(prim, "@type")
+        builder.vertices[key] = Material(builder.part_name(prim))
+        builder.mark_read(prim, "@type")
         return
-    draft.vertices[key] = _looks(draft.part_name(prim), shader)
-    draft.take(prim, "@type")
+    builder.vertices[key] = _material(builder.part_name(prim), shader)
+    builder.mark_read(prim, "@type")
     if _is_plain(prim.composed, shader):
-        _take_network(prim, draft)
-    said = _image(shader)
-    if said is not None:
-        image = _seen_from(draft.scene.folder, said)
-        texture = draft.own(prim, "texture", key.name)
-        draft.vertices[texture] = Texture(image)
-        draft.edges[draft.own(prim, "layer", key.name)] = layer_edge(texture, key)
+        _take_network(prim, builder)
+    authored = _image(shader)
+    if authored is not None:
+        image = _seen_from(builder.scene.folder, authored)
+        texture = builder.new_id(prim, "texture", key.name)
+        builder.vertices[texture] = Texture(image)
+        builder.edges[builder.new_id(prim, "layer", key.name)] = layer_edge(texture, key)
 
 
-def bound_material(prim: Prim, draft: Draft) -> Id | None:
+def bound_material(prim: Prim, builder: UsdBuilder) -> Id | None:
     """The material that a shape shows; a binding of its own is typed, one of a prim above stays there as well."""
-    bound = bound_to(prim, draft.scene)
-    key = draft.materials.get(bound.path) if bound is not None else None
+    bound = bound_to(prim, builder.scene)
+    key = builder.materials.get(bound.path) if bound is not None else None
     if key is not None and prim.targets(BINDING) and not prim.composed.GetRelationship(BINDING).GetMetadata("bindMaterialAs"):
-        draft.take(prim, BINDING)
-        taken = draft.taken.get(prim.path, ())
+        builder.mark_read(prim, BINDING)
+        taken = builder.read_names.get(prim.path, ())
         if all(name in taken for name in prim.properties if name.startswith(f"{BINDING}:")):
-            draft.take(prim, "@MaterialBindingAPI")
+            builder.mark_read(prim, "@MaterialBindingAPI")
     return key
 
 
-def _looks(name: str, shader: Any) -> Material:
+def _material(name: str, shader: Any) -> Material:
     colour, opacity = _constant(shader, "diffuseColor"), _constant(shader, "opacity")
     rgba = None
     if colour is not None:
@@ -101,9 +101,9 @@ def _is_plain(prim: Any, shader: Any) -> bool:
 
 def _is_plain_image(image: Any, coordinates: Any, shader: Any) -> bool:
     """Whether an image is repeated, and nothing is said of it that we would not say."""
-    said = [{str(name) for name in child.GetAuthoredPropertyNames()} for child in (image, coordinates)]
+    authored = [{str(name) for name in child.GetAuthoredPropertyNames()} for child in (image, coordinates)]
     is_repeated = all(image.GetAttribute(name).Get() == words.REPEAT for name in words.WRAPS)
-    is_ours = said[0] == _OF_IMAGE and said[1] == _OF_COORDINATES and is_repeated
+    is_ours = authored[0] == _OF_IMAGE and authored[1] == _OF_COORDINATES and is_repeated
     return is_ours and coordinates.GetAttribute("inputs:varname").Get() == "st" and _image(shader) is not None
 
 
@@ -128,12 +128,12 @@ def _seen_from(folder: str, image: Any) -> str:
     return posixpath.relpath(there, folder) if there.startswith(posixpath.dirname(folder)) else path
 
 
-def _take_network(prim: Prim, draft: Draft) -> None:
+def _take_network(prim: Prim, builder: UsdBuilder) -> None:
     """Everything below the material is typed, or follows from what is."""
-    draft.take(prim, "outputs:surface")
+    builder.mark_read(prim, "outputs:surface")
     for child in prim.children:
         if child.is_real:
-            draft.take(child, "@type", "@spec", *child.properties)
+            builder.mark_read(child, "@type", "@spec", *child.properties)
 
 
 # ---- bindings ----------------------------------------------------------------------------------------------------------------------

@@ -15,7 +15,7 @@ from hymeko_x.ir.parts import Mesh
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.values import Vec3
 
@@ -25,7 +25,7 @@ _OF_NORMALS = frozenset(("typeName", "variability", "custom", "default", "interp
 # ---- meshes --------------------------------------------------------------------------------------------------------------------
 
 
-def read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | None, Id | None]:
+def read_mesh(prim: Prim, builder: UsdBuilder, scale: Vec3) -> tuple[NDArray[Any] | None, Id | None]:
     """The points of a mesh prim in metres with the mesh's id. Equal meshes at equal scale share one; polygons become fans."""
     import numpy as np
 
@@ -33,41 +33,41 @@ def read_mesh(prim: Prim, draft: Draft, scale: Vec3) -> tuple[NDArray[Any] | Non
 
     points, counts, indices = (prim.value(name) for name in ("points", "faceVertexCounts", "faceVertexIndices"))
     if points is None or counts is None or indices is None:
-        return _refused(prim, "has no points or no faces", draft)
+        return _refused(prim, "has no points or no faces", builder)
     vertices = np.asarray(points, dtype=np.float64).reshape(-1, 3)
     sizes, corners = np.asarray(counts, dtype=np.int64), np.asarray(indices, dtype=np.int64)
     if sizes.size and (sizes.min() < 0 or sizes.sum() != corners.size):
-        return _refused(prim, "says another number of corners than it has", draft)
+        return _refused(prim, "says another number of corners than it has", builder)
     if corners.size and (corners.min() < 0 or corners.max() >= len(vertices)):
-        return _refused(prim, "has a face with a point that does not exist", draft)
+        return _refused(prim, "has a face with a point that does not exist", builder)
     if not np.isfinite(vertices).all():
-        return _refused(prim, "has points that are not finite", draft)
+        return _refused(prim, "has points that are not finite", builder)
     faces = fans(sizes, corners)
     if not prim.is_animated("points"):
-        draft.take(prim, "points")
-    _take_mesh_extent(prim, vertices, draft)
+        builder.mark_read(prim, "points")
+    _take_mesh_extent(prim, vertices, builder)
     if prim.value("subdivisionScheme") == "none":  # which is what we say of every mesh
-        draft.take(prim, "subdivisionScheme")
+        builder.mark_read(prim, "subdivisionScheme")
     if (sizes == 3).all():
-        draft.take(prim, "faceVertexCounts", "faceVertexIndices")
-    key = _shared_mesh(prim, vertices, faces, read_places(prim, sizes, corners), scale, draft)
+        builder.mark_read(prim, "faceVertexCounts", "faceVertexIndices")
+    key = _shared_mesh(prim, vertices, faces, read_places(prim, sizes, corners), scale, builder)
     return vertices * np.asarray(scale), key
 
 
-def _take_mesh_extent(prim: Prim, vertices: NDArray[Any], draft: Draft) -> None:
+def _take_mesh_extent(prim: Prim, vertices: NDArray[Any], builder: UsdBuilder) -> None:
     import numpy as np
 
-    said = prim.value("extent")
-    if said is not None and len(said) == 2 and len(vertices):
+    authored = prim.value("extent")
+    if authored is not None and len(authored) == 2 and len(vertices):
         box = np.stack([vertices.min(axis=0), vertices.max(axis=0)])
-        if np.allclose(np.asarray(said, dtype=np.float64), box, rtol=1e-6, atol=1e-6 * float(np.abs(box).max())):
-            draft.take(prim, "extent")
+        if np.allclose(np.asarray(authored, dtype=np.float64), box, rtol=1e-6, atol=1e-6 * float(np.abs(box).max())):
+            builder.mark_read(prim, "extent")
 
 
-def says_normals(prim: Prim, draft: Draft) -> bool:
+def read_normals(prim: Prim, builder: UsdBuilder) -> bool:
     """Whether the normals of a mesh are those of its triangles, which nobody has to keep."""
     normals, counts = prim.value("normals"), prim.value("faceVertexCounts")
-    if normals is None or len(normals) != len(counts) or "faceVertexCounts" not in draft.taken.get(prim.path, ()):
+    if normals is None or len(normals) != len(counts) or "faceVertexCounts" not in builder.read_names.get(prim.path, ()):
         return False
     import numpy as np
 
@@ -78,26 +78,28 @@ def says_normals(prim: Prim, draft: Draft) -> bool:
     points, corners = (np.asarray(prim.value(name)) for name in ("points", "faceVertexIndices"))
     if not is_plain or not np.array_equal(np.asarray(normals), face_normals(points, corners)):
         return False
-    draft.take(prim, "normals")
+    builder.mark_read(prim, "normals")
     return True
 
 
-def _refused(prim: Prim, why: str, draft: Draft) -> tuple[None, None]:
-    said = f"mesh '{prim.path}' {why}; it is kept as written"
-    draft.report.error(codes.ASSET_UNREADABLE, said, draft.origin, element=prim.path)
+def _refused(prim: Prim, why: str, builder: UsdBuilder) -> tuple[None, None]:
+    message = f"mesh '{prim.path}' {why}; it is kept as written"
+    builder.report.error(codes.ASSET_UNREADABLE, message, builder.origin, element=prim.path)
     return None, None
 
 
-def _shared_mesh(prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], places: TextureCoordinates, scale: Vec3, draft: Draft) -> Id:
+def _shared_mesh(
+    prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], places: TextureCoordinates, scale: Vec3, builder: UsdBuilder
+) -> Id:
     about = tuple(f"{factor:.12g}" for factor in scale)  # computed from what is above the prim: its last bits are those of no author
-    said = repr((about, places) if places[0] else about)
-    content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + said.encode()).hexdigest()
-    known = draft.meshes.get(content)
+    authored = repr((about, places) if places[0] else about)
+    content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + authored.encode()).hexdigest()
+    known = builder.meshes.get(content)
     if known is not None:
         return known
-    key = draft.own(prim, "mesh", prim.name)
-    draft.meshes[content] = key
-    draft.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), tuple(faces.ravel().tolist()), *places)
+    key = builder.new_id(prim, "mesh", prim.name)
+    builder.meshes[content] = key
+    builder.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), tuple(faces.ravel().tolist()), *places)
     return key
 
 
@@ -114,14 +116,14 @@ _OF_PLACES = frozenset(("typeName", "variability", "custom", "default", "interpo
 
 def read_places(prim: Prim, sizes: NDArray[Any], corners: NDArray[Any]) -> TextureCoordinates:
     """The places of a mesh in an image, and for each corner of its triangles the row of its place; nothing where it has none."""
-    said = prim.value(_ST)
-    if said is None or prim.types[_ST] not in _ST_TYPES or prim.is_animated(_ST):
+    authored = prim.value(_ST)
+    if authored is None or prim.types[_ST] not in _ST_TYPES or prim.is_animated(_ST):
         return (), ()
     import numpy as np
 
     from hymeko_x.meshes.polygons import fans
 
-    places, rows = np.asarray(said, dtype=np.float64).reshape(-1, 2), prim.value(f"{_ST}:indices")
+    places, rows = np.asarray(authored, dtype=np.float64).reshape(-1, 2), prim.value(f"{_ST}:indices")
     spread = prim.spec.attributes[_ST].GetInfo("interpolation")
     index = np.arange(len(corners)) if spread == "faceVarying" else corners
     if rows is not None:
@@ -135,9 +137,9 @@ def read_places(prim: Prim, sizes: NDArray[Any], corners: NDArray[Any]) -> Textu
     return tuple(places.ravel().tolist()), tuple(fans(sizes, index).ravel().tolist())
 
 
-def says_places(prim: Prim, draft: Draft) -> bool:
+def read_st_as_written(prim: Prim, builder: UsdBuilder) -> bool:
     """Whether a mesh says the place of each corner of its triangles as we would, so that nobody has to keep it."""
-    if prim.value(_ST) is None or prim.value(f"{_ST}:indices") is None or "faceVertexCounts" not in draft.taken.get(prim.path, ()):
+    if prim.value(_ST) is None or prim.value(f"{_ST}:indices") is None or "faceVertexCounts" not in builder.read_names.get(prim.path, ()):
         return False
     specs = [prim.spec.attributes[name] for name in (_ST, f"{_ST}:indices")]
     is_plain = set(specs[0].ListInfoKeys()) <= _OF_PLACES and set(specs[1].ListInfoKeys()) <= _OF_PLACES
@@ -145,16 +147,16 @@ def says_places(prim: Prim, draft: Draft) -> bool:
         return False
     if len(prim.value(f"{_ST}:indices")) != len(prim.value("faceVertexIndices")) or any(map(prim.is_animated, (_ST, f"{_ST}:indices"))):
         return False
-    draft.take(prim, _ST, f"{_ST}:indices")
+    builder.mark_read(prim, _ST, f"{_ST}:indices")
     return True
 
 
 # ---- subsets -----------------------------------------------------------------------------------------------------------------------
 
 
-def read_subsets(mesh: Prim, shape: Id, draft: Draft) -> None:
+def read_subsets(mesh: Prim, shape: Id, builder: UsdBuilder) -> None:
     """Add the faces of a mesh that show a material which we know. What is no such subset, or is broken, stays an extra."""
-    found = [prim for prim in mesh.children if _is_bound(prim, draft)]
+    found = [prim for prim in mesh.children if _is_bound(prim, builder)]
     if not found:
         return
     import numpy as np
@@ -167,27 +169,27 @@ def read_subsets(mesh: Prim, shape: Id, draft: Draft) -> None:
         faces = np.asarray(prim.value("indices"), dtype=np.int64)
         why = _broken(faces, free)
         if why is not None:
-            said = f"subset '{prim.path}' {why}; it is kept as written"
-            draft.report.warn(codes.ASSET_UNREADABLE, said, draft.origin, element=prim.path)
+            message = f"subset '{prim.path}' {why}; it is kept as written"
+            builder.report.warn(codes.ASSET_UNREADABLE, message, builder.origin, element=prim.path)
             continue
         free[faces] = False
         ordered = np.sort(faces)
         triangles = ordered if is_plain else _triangles(counts[ordered], starts[ordered])
-        _add_subset(prim, triangles, shape, draft, is_ours=is_plain and np.array_equal(ordered, faces))
-    if mesh.value(words.FAMILY) == words.APART and not free.all():
-        draft.take(mesh, words.FAMILY)
+        _add_subset(prim, triangles, shape, builder, is_ours=is_plain and np.array_equal(ordered, faces))
+    if mesh.value(words.FAMILY) == words.NON_OVERLAPPING and not free.all():
+        builder.mark_read(mesh, words.FAMILY)
 
 
-def _is_bound(prim: Prim, draft: Draft) -> bool:
+def _is_bound(prim: Prim, builder: UsdBuilder) -> bool:
     """Whether a prim says of some faces that they show a material that was read."""
-    if prim.kind != "GeomSubset" or not prim.is_real or prim.value("familyName") != words.LOOKS:
+    if prim.kind != "GeomSubset" or not prim.is_real or prim.value("familyName") != words.MATERIAL_BIND:
         return False
     if not prim.value("indices"):
         return False
     if prim.value("elementType") not in (None, words.FACE) or any(map(prim.is_animated, ("indices", "elementType", "familyName"))):
         return False
-    targets, bound = prim.targets(BINDING), bound_to(prim, draft.scene)
-    return bound is not None and targets == [bound.path] and bound.path in draft.materials
+    targets, bound = prim.targets(BINDING), bound_to(prim, builder.scene)
+    return bound is not None and targets == [bound.path] and bound.path in builder.materials
 
 
 def _broken(faces: NDArray[Any], free: NDArray[Any]) -> str | None:
@@ -206,10 +208,10 @@ def _triangles(counts: NDArray[Any], starts: NDArray[Any]) -> NDArray[Any]:
     return np.repeat(starts - before, counts) + np.arange(int(counts.sum()))
 
 
-def _add_subset(prim: Prim, triangles: NDArray[Any], shape: Id, draft: Draft, *, is_ours: bool) -> None:
+def _add_subset(prim: Prim, triangles: NDArray[Any], shape: Id, builder: UsdBuilder, *, is_ours: bool) -> None:
     """The edge of a subset. Where its faces are no triangles, or in an order of the author's own, they stay beside it as well."""
-    material = bound_material(prim, draft) if len(triangles) else None
+    material = bound_material(prim, builder) if len(triangles) else None
     if material is None:
         return
-    draft.take(prim, "@type", "familyName", "elementType", *(["indices"] if is_ours else []))
-    draft.edges[draft.own(prim, "subset")] = subset_edge(tuple(triangles.tolist()), shape, material)
+    builder.mark_read(prim, "@type", "familyName", "elementType", *(["indices"] if is_ours else []))
+    builder.edges[builder.new_id(prim, "subset")] = subset_edge(tuple(triangles.tolist()), shape, material)

@@ -11,7 +11,7 @@ from hymeko_x.ir.mechanism import WORLD, mount_edge
 from hymeko_x.ir.parts import Camera, Frame, Light, World
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import Id
 
@@ -19,48 +19,48 @@ if TYPE_CHECKING:
 # ---- things that sit somewhere -------------------------------------------------------------------------------------------------
 
 
-def read_site(prim: Prim, draft: Draft) -> None:
+def read_site(prim: Prim, builder: UsdBuilder) -> None:
     """A frame at the prim, which is no more than that if it says all that we would say; the shape by which it is shown stays an extra."""
-    key = draft.own(prim, "frame")
-    draft.vertices[key] = Frame()
+    key = builder.new_id(prim, "frame")
+    builder.vertices[key] = Frame()
     if prim.kind == "Xform" and all(map(prim.has_api, words.SITES)):
-        draft.take(prim, "@type", *(f"@{schema}" for schema in words.SITES))
-    mount(prim, key, draft)
+        builder.mark_read(prim, "@type", *(f"@{schema}" for schema in words.SITES))
+    mount(prim, key, builder)
 
 
-def read_camera(prim: Prim, draft: Draft) -> None:
+def read_camera(prim: Prim, builder: UsdBuilder) -> None:
     """A camera with its vertical field of view, 2 atan(aperture / 2 f); the rest of its lens stays extras."""
-    key = draft.own(prim, "camera")
+    key = builder.new_id(prim, "camera")
     focal = words.single(prim.value("focalLength") or 50.0)
     aperture = words.single(prim.value("verticalAperture") or words.APERTURE)
     fovy = 2.0 * math.atan(aperture / (2.0 * focal))
-    draft.vertices[key] = Camera(fovy)
-    draft.take(prim, "@type")
+    builder.vertices[key] = Camera(fovy)
+    builder.mark_read(prim, "@type")
     if aperture == words.APERTURE and 0.0 < fovy < math.pi:  # as we say it
-        draft.take(prim, *(name for name in ("focalLength", "verticalAperture") if not prim.is_animated(name)))
-    mount(prim, key, draft)
+        builder.mark_read(prim, *(name for name in ("focalLength", "verticalAperture") if not prim.is_animated(name)))
+    mount(prim, key, builder)
 
 
-def mount(prim: Prim, key: Id, draft: Draft) -> None:
+def mount(prim: Prim, key: Id, builder: UsdBuilder) -> None:
     """The edge that puts a thing where its prim is, on the body above or on the world."""
-    found = body_at(prim, draft)
+    found = body_at(prim, builder)
     body, owner = found if found is not None else (None, WORLD)
     if owner == WORLD:
-        draft.vertices.setdefault(WORLD, World())
-    pose = draft.places.seen_from(prim, body).pose
-    draft.edges[draft.own(prim, "mount", key.name)] = mount_edge(owner, key, pose)
+        builder.vertices.setdefault(WORLD, World())
+    pose = builder.transforms.seen_from(prim, body).pose
+    builder.edges[builder.new_id(prim, "mount", key.name)] = mount_edge(owner, key, pose)
     ops = [name for name in prim.properties if name.startswith("xformOp")]
-    draft.take(prim, *(name for name in ops if "scale" not in name or name == words.WITHIN))
+    builder.mark_read(prim, *(name for name in ops if "scale" not in name or name == words.WITHIN))
 
 
-def read_light(prim: Prim, draft: Draft) -> None:
+def read_light(prim: Prim, builder: UsdBuilder) -> None:
     """A light where it shines; a sphere light with a cone is a spot."""
     kind = words.LIGHTS[prim.kind]
     if kind == "point" and prim.has_api(words.CONE):
         kind = "spot"
-        draft.take(prim, f"@{words.CONE}")
-    key = draft.own(prim, "light")
-    colour = draft.get(prim, "inputs:color")
-    draft.vertices[key] = Light(kind, colour)
-    draft.take(prim, "@type")
-    mount(prim, key, draft)
+        builder.mark_read(prim, f"@{words.CONE}")
+    key = builder.new_id(prim, "light")
+    colour = builder.get(prim, "inputs:color")
+    builder.vertices[key] = Light(kind, colour)
+    builder.mark_read(prim, "@type")
+    mount(prim, key, builder)

@@ -69,7 +69,7 @@ class Prim:
     spec: Any
     parent: Prim | None
     scene: Layer
-    said: tuple[str, ...]
+    metadata: tuple[str, ...]
     properties: tuple[str, ...]
     types: dict[str, str]
     is_real: bool
@@ -84,18 +84,18 @@ class Prim:
     @property
     def display_name(self) -> str:
         """What people call it; empty where nothing is said."""
-        shown = self.spec.GetInfo("displayName") if "displayName" in self.said else ""
+        shown = self.spec.GetInfo("displayName") if "displayName" in self.metadata else ""
         return shown if isinstance(shown, str) else ""
 
     @property
-    def is_ours(self) -> bool:
+    def is_generated(self) -> bool:
         """Whether it stands in a group that our writer made up, and says nothing but what the elements that use it say."""
         return self.parent is not None and f"{PREFIX}scope" in self.parent.types
 
     @property
     def custom_data(self) -> dict[str, Any]:
         """Its custom data."""
-        return dict(self.spec.GetInfo("customData")) if "customData" in self.said else {}
+        return dict(self.spec.GetInfo("customData")) if "customData" in self.metadata else {}
 
     def value(self, name: str) -> Any:
         """The value of an attribute that does not change with time; None where there is none."""
@@ -131,7 +131,7 @@ class Prim:
         """Whether the schema is applied."""
         return schema in self.schemas
 
-    def above(self) -> Iterator[Prim]:
+    def with_ancestors(self) -> Iterator[Prim]:
         """The prim and all above it, from below."""
         prim: Prim | None = self
         while prim is not None:
@@ -180,7 +180,7 @@ def read_layer(layer: Any, most: int) -> Layer | None:
             parent.children.append(prim)
         if len(found.prims) > most:
             return None
-        stack.extend((f"{path}/{name}", prim) for name in reversed(_children(spec, prim.said, names)))
+        stack.extend((f"{path}/{name}", prim) for name in reversed(_children(spec, prim.metadata, names)))
     found.has_unknown_types = not all(names.types.values())
     return found
 
@@ -197,16 +197,16 @@ class _Names:
 
 
 def _read_prim(spec: Any, path: str, parent: Prim | None, scene: Layer, names: _Names) -> Prim:
-    said = tuple(map(names.one, spec.ListInfoKeys()))
-    schemas = tuple(map(names.one, spec.GetInfo("apiSchemas").GetAppliedItems())) if "apiSchemas" in said else ()
+    authored = tuple(map(names.one, spec.ListInfoKeys()))
+    schemas = tuple(map(names.one, spec.GetInfo("apiSchemas").GetAppliedItems())) if "apiSchemas" in authored else ()
     layer = spec.layer
     items = {names.one(name): layer.GetObjectAtPath(f"{path}.{name}") for name in spec.GetInfo("properties") or () if name}
     types = {name: _type_of(item, names) for name, item in items.items() if isinstance(item, Sdf.AttributeSpec)}
     properties = tuple(name for name, item in items.items() if item is not None)  # a damaged crate lists some that it does not have
-    is_real = spec.specifier == Sdf.SpecifierDef and ("active" not in said or spec.active) and (parent is None or parent.is_real)
+    is_real = spec.specifier == Sdf.SpecifierDef and ("active" not in authored or spec.active) and (parent is None or parent.is_real)
     is_bound = (parent is not None and parent.is_bound) or any(name.startswith(BINDING) for name in properties)
     kind, name = names.one(str(spec.typeName)), path.rpartition("/")[2]
-    return Prim(path, name, kind, schemas, spec, parent, scene, said, properties, types, is_real, is_bound)
+    return Prim(path, name, kind, schemas, spec, parent, scene, authored, properties, types, is_real, is_bound)
 
 
 def _type_of(attribute: Any, names: _Names) -> str:
@@ -217,9 +217,9 @@ def _type_of(attribute: Any, names: _Names) -> str:
     return name
 
 
-def _children(spec: Any, said: Collection[str], names: _Names) -> list[str]:
+def _children(spec: Any, authored: Collection[str], names: _Names) -> list[str]:
     """The names of the prims below, in the order that the prim wants."""
     below = [names.one(name) for name in spec.GetInfo("primChildren") or ()]
-    if "primOrder" in said:
+    if "primOrder" in authored:
         below = list(spec.ApplyNameChildrenOrder(below))
     return below

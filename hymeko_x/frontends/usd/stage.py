@@ -114,7 +114,7 @@ def _read_plain(layers: list[Any], source: Source, report: Report) -> Layer | No
     if len(layers) > 1 or root.subLayerPaths or root.relocates or source.variants:
         return None
     found = _read_layer(root, source)
-    if any(not _ARCS.isdisjoint(prim.said) for prim in found.prims.values()):
+    if any(not _ARCS.isdisjoint(prim.metadata) for prim in found.prims.values()):
         return None
     if not found.has_unknown_types:
         return found
@@ -147,9 +147,9 @@ def _choose_variants(stage: Any, source: Source) -> None:
             break
     for name, variant in source.variants.items():
         if variant not in known.get(name, ()):
-            said = f"the variant set '{name}' has no variant '{variant}'" if name in known else f"no prim has a variant set '{name}'"
+            message = f"the variant set '{name}' has no variant '{variant}'" if name in known else f"no prim has a variant set '{name}'"
             hint = f"it has: {', '.join(sorted(known[name]))}" if name in known else ""
-            raise refuse(codes.UNDEFINED_REFERENCE, said, Origin(source.name), hint=hint)
+            raise refuse(codes.UNDEFINED_REFERENCE, message, Origin(source.name), hint=hint)
 
 
 def _select(stage: Any, source: Source, found: list[tuple[Any, str]]) -> bool:
@@ -185,5 +185,5 @@ _OURS = re.compile(r",?@anon:0x[0-9a-f]+:[^@]*@")
 
 def _say_composition_errors(stage: Any, base: str, source: Source, report: Report) -> None:
     for error in stage.GetCompositionErrors()[:20]:
-        said = _OURS.sub("", str(error).replace(base + "/", ""))
-        report.error(codes.UNDEFINED_REFERENCE, f"composition: {' '.join(said.split())[:300]}", Origin(source.name))
+        authored = _OURS.sub("", str(error).replace(base + "/", ""))
+        report.error(codes.UNDEFINED_REFERENCE, f"composition: {' '.join(authored.split())[:300]}", Origin(source.name))

@@ -17,8 +17,8 @@ from hymeko_x.ir.tendons import FIXED, PULLEY, SIDE, SPATIAL, WRAP, wrong_path
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from hymeko_x.frontends.usd.builder import Draft
-    from hymeko_x.frontends.usd.joints import Driven
+    from hymeko_x.frontends.usd.builder import UsdBuilder
+    from hymeko_x.frontends.usd.joints import DofRef
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.parts import Rgba
@@ -37,16 +37,16 @@ class _BadPath(Exception):
     """A path that nobody can follow; the text says why."""
 
 
-def read_tendons(prims: list[Prim], ends: dict[str, Driven], draft: Draft) -> None:
+def read_tendons(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder) -> None:
     """The tendons of these prims; one whose path leads nowhere is said and stays an extra."""
     found = [prim for prim in prims if prim.kind == table.PRIM]
     automatic = _limits_are_automatic(prims) if found else True
     for prim in found:
         try:
-            _read_tendon(prim, ends, draft, automatic=automatic)
+            _read_tendon(prim, ends, builder, automatic=automatic)
         except _BadPath as error:
-            said = f"the path of tendon '{prim.path}' {error}; it is kept as written"
-            draft.report.warn(codes.UNDEFINED_REFERENCE, said, draft.origin, element=prim.path)
+            message = f"the path of tendon '{prim.path}' {error}; it is kept as written"
+            builder.report.warn(codes.UNDEFINED_REFERENCE, message, builder.origin, element=prim.path)
 
 
 def _limits_are_automatic(prims: list[Prim]) -> bool:
@@ -54,45 +54,45 @@ def _limits_are_automatic(prims: list[Prim]) -> bool:
     return not any(prim.value("mjc:compiler:autoLimits") is False for prim in prims)
 
 
-def _read_tendon(prim: Prim, ends: dict[str, Driven], draft: Draft, *, automatic: bool) -> None:
+def _read_tendon(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder, *, automatic: bool) -> None:
     """Raises: _BadPath."""
     kind = prim.value(table.KIND) or SPATIAL
-    path = _joints(prim, ends, draft) if kind == FIXED else _cable(prim, ends, draft)
-    wrong = wrong_path(Tendon(kind), path, draft.edges)
+    path = _joints(prim, ends, builder) if kind == FIXED else _cable(prim, ends, builder)
+    wrong = wrong_path(Tendon(kind), path, builder.edges)
     if wrong is not None:
         raise _BadPath(wrong)
-    key = draft.own(prim, "tendon")
-    draft.take(prim, "@type", table.KIND, table.PATH, table.INDICES, *_OF_KIND[kind == FIXED])
+    key = builder.new_id(prim, "tendon")
+    builder.mark_read(prim, "@type", table.KIND, table.PATH, table.INDICES, *_OF_KIND[kind == FIXED])
     arcs: tuple[RobotArc, ...] = tuple(Arc(key, 0, arc.weight, PULLEY) if arc.role == PULLEY else arc for arc in path)
-    draft.edges[key] = Edge(_tendon(prim, kind, _limits(prim, draft, automatic=automatic), draft), arcs)
+    builder.edges[key] = Edge(_tendon(prim, kind, _limits(prim, builder, automatic=automatic), builder), arcs)
 
 
 # ---- paths -----------------------------------------------------------------------------------------------------------------------
 
 
-def _joints(prim: Prim, ends: dict[str, Driven], draft: Draft) -> list[RobotArc]:
+def _joints(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder) -> list[RobotArc]:
     """The joints of a fixed tendon with their coefficients, which are 1 where nothing is said."""
-    steps = _steps(prim, ends, draft)
+    steps = _steps(prim, ends, builder)
     coefficients = _numbers(prim, table.COEFFICIENTS) or [1.0] * len(steps)
     if len(coefficients) != len(steps):
         raise _BadPath(f"has {len(steps)} joints and {len(coefficients)} coefficients")
     found: list[RobotArc] = []
     for (target, role), value in zip(steps, coefficients, strict=True):
-        found.append(Arc(target, 1, (value * _unit(target, role, draft),), role))
+        found.append(Arc(target, 1, (value * _unit(target, role, builder),), role))
     return found
 
 
-def _unit(joint: Id, role: str, draft: Draft) -> float:
+def _unit(joint: Id, role: str, builder: UsdBuilder) -> float:
     """What a coefficient of 1 is: a length for an angle, or for a length."""
-    edge = draft.edges.get(joint)
+    edge = builder.edges.get(joint)
     dofs = edge.data.dofs if edge is not None and isinstance(edge.data, Joint) else ()
     turns = any(dof.kind is DofKind.HINGE for dof in dofs if not role or dof.name == role)
-    return draft.scene.metres if turns else 1.0
+    return builder.scene.metres if turns else 1.0
 
 
-def _cable(prim: Prim, ends: dict[str, Driven], draft: Draft) -> list[RobotArc]:
+def _cable(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder) -> list[RobotArc]:
     """The sites, shapes and pulleys of a cable; the site beside a shape comes after it."""
-    steps = _steps(prim, ends, draft)
+    steps = _steps(prim, ends, builder)
     segments, divisors = _indices(prim, table.SEGMENTS, len(steps)), _numbers(prim, table.DIVISORS)
     sides, beside = prim.targets(table.SIDES), _indices(prim, table.SIDE_INDICES, len(steps))
     arcs, last = _pulley(divisors, 0) if divisors and divisors[0] != 1.0 else [], 0
@@ -104,7 +104,7 @@ def _cable(prim: Prim, ends: dict[str, Driven], draft: Draft) -> list[RobotArc]:
         last = segment
         arcs.append(Arc(target, 0, None, WRAP if target.kind == "shape" else role))
         if target.kind == "shape" and beside and beside[place] != table.NO_SIDE:
-            arcs.append(Arc(_site(sides, beside[place], draft), 0, None, SIDE))
+            arcs.append(Arc(_site(sides, beside[place], builder), 0, None, SIDE))
     return arcs
 
 
@@ -115,18 +115,18 @@ def _pulley(divisors: list[float], segment: int) -> list[RobotArc]:
     return [Arc(_NOBODY, 0, (divisors[segment],), PULLEY)]
 
 
-def _site(sides: list[str], index: int, draft: Draft) -> Id:
+def _site(sides: list[str], index: int, builder: UsdBuilder) -> Id:
     if not 0 <= index < len(sides):
         raise _BadPath(f"has no site {index} beside it")
-    found = next((key for key in draft.elements.get(sides[index], ()) if key.kind == "frame"), None)
+    found = next((key for key in builder.elements.get(sides[index], ()) if key.kind == "frame"), None)
     if found is None:
         raise _BadPath(f"has '{sides[index]}' beside it, which is no site")
     return found
 
 
-def _steps(prim: Prim, ends: dict[str, Driven], draft: Draft) -> list[tuple[Id, str]]:
+def _steps(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder) -> list[tuple[Id, str]]:
     """What the path leads through, in order, each with the dof that is meant where it is a joint."""
-    known = [_element(path, ends, draft) for path in prim.targets(table.PATH)]
+    known = [_element(path, ends, builder) for path in prim.targets(table.PATH)]
     order = _indices(prim, table.INDICES) or range(len(known))
     wrong = next((index for index in order if not 0 <= index < len(known)), None)
     if wrong is not None:
@@ -134,11 +134,11 @@ def _steps(prim: Prim, ends: dict[str, Driven], draft: Draft) -> list[tuple[Id, 
     return [known[index] for index in order]
 
 
-def _element(path: str, ends: dict[str, Driven], draft: Draft) -> tuple[Id, str]:
+def _element(path: str, ends: dict[str, DofRef], builder: UsdBuilder) -> tuple[Id, str]:
     end = ends.get(path)
     if end is not None:
         return end.joint, end.dof
-    found = next((key for key in draft.elements.get(path, ()) if key.kind in _STEPS), None)
+    found = next((key for key in builder.elements.get(path, ()) if key.kind in _STEPS), None)
     if found is None:
         raise _BadPath(f"leads to '{path}', which is neither a site nor a shape nor a joint")
     return found, ""
@@ -168,75 +168,75 @@ def _items(prim: Prim, name: str) -> list[float]:
 # ---- what it is like -------------------------------------------------------------------------------------------------------------
 
 
-def _limits(prim: Prim, draft: Draft, *, automatic: bool) -> Limits:
+def _limits(prim: Prim, builder: UsdBuilder, *, automatic: bool) -> Limits:
     """The shortest and the greatest length where they hold; a range that does not stays an extra."""
     word = prim.value(table.LIMITED)
     low, high = (value if isinstance(value, float) else 0.0 for value in map(prim.value, table.RANGE))
     if not low < high or not (word == "true" or (word in (None, "auto") and automatic)):
         return UNLIMITED
-    draft.take(prim, *table.RANGE, *([table.LIMITED] if word == "true" else []))
-    return Limits(low * draft.scene.metres, high * draft.scene.metres)
+    builder.mark_read(prim, *table.RANGE, *([table.LIMITED] if word == "true" else []))
+    return Limits(low * builder.scene.metres, high * builder.scene.metres)
 
 
-def _tendon(prim: Prim, kind: str, limits: Limits, draft: Draft) -> Tendon:
+def _tendon(prim: Prim, kind: str, limits: Limits, builder: UsdBuilder) -> Tendon:
     """The tendon in m, N and kg."""
-    scene = draft.scene
+    scene = builder.scene
     units = {"friction": scene.kilograms * scene.metres}
-    said = {name: draft.number(prim, path, 0.0) * units.get(name, scene.kilograms) for name, path in table.NUMBERS.items()}
-    width = draft.get(prim, table.WIDTH) if isinstance(prim.value(table.WIDTH), float) else None
+    authored = {name: builder.number(prim, path, 0.0) * units.get(name, scene.kilograms) for name, path in table.NUMBERS.items()}
+    width = builder.get(prim, table.WIDTH) if isinstance(prim.value(table.WIDTH), float) else None
     return Tendon(
         kind,
         limits,
-        said["damping"],
-        said["stiffness"],
-        said["friction"],
-        said["armature"],
+        authored["damping"],
+        authored["stiffness"],
+        authored["friction"],
+        authored["armature"],
         None if width is None else width * scene.metres,
-        _colour(prim, draft),
-        tuple(_parameters(prim, draft)),
+        _colour(prim, builder),
+        tuple(_parameters(prim, builder)),
     )
 
 
-def _colour(prim: Prim, draft: Draft) -> Rgba | None:
+def _colour(prim: Prim, builder: UsdBuilder) -> Rgba | None:
     if prim.types.get(table.COLOUR) != "color4f" or prim.value(table.COLOUR) is None:
         return None
-    red, green, blue, alpha = draft.get(prim, table.COLOUR)
+    red, green, blue, alpha = builder.get(prim, table.COLOUR)
     return red, green, blue, alpha
 
 
-def _parameters(prim: Prim, draft: Draft) -> Iterator[tuple[str, float | str | tuple[float, ...]]]:
+def _parameters(prim: Prim, builder: UsdBuilder) -> Iterator[tuple[str, float | str | tuple[float, ...]]]:
     """What else the prim says, under the names of MJCF and in their order there."""
     for name in TENDON_PARAMETERS:
-        value = _parameter(prim, name, draft)
+        value = _parameter(prim, name, builder)
         if value is not None:
             yield name, value
 
 
-def _parameter(prim: Prim, name: str, draft: Draft) -> float | str | tuple[float, ...] | None:
-    attribute, scene = table.attribute(name), draft.scene
+def _parameter(prim: Prim, name: str, builder: UsdBuilder) -> float | str | tuple[float, ...] | None:
+    attribute, scene = table.attribute(name), builder.scene
     if name == table.FORCE_RANGE:
         names = [f"{attribute}:{end}" for end in ("min", "max")]
         if not all(isinstance(prim.value(name), float) for name in names):
             return None
-        low, high = (draft.get(prim, name) * scene.kilograms * scene.metres for name in names)
+        low, high = (builder.get(prim, name) * scene.kilograms * scene.metres for name in names)
         return low, high
     if name in table.VECTORS or name == table.SPRING:
-        return _vector(prim, name, _items(prim, attribute), draft)
+        return _vector(prim, name, _items(prim, attribute), builder)
     value = prim.value(attribute)
     if not isinstance(value, _TYPES.get(name, ())) or value == "auto":
         return None
-    value = draft.get(prim, attribute)
+    value = builder.get(prim, attribute)
     return value * scene.metres if name == table.MARGIN else value if isinstance(value, str) else float(value)
 
 
-def _vector(prim: Prim, name: str, said: list[float], draft: Draft) -> float | tuple[float, ...] | None:
+def _vector(prim: Prim, name: str, authored: list[float], builder: UsdBuilder) -> float | tuple[float, ...] | None:
     """Several numbers without those at the end that count anyway; any other number of them stays an extra."""
     default = table.VECTORS.get(name)
-    if len(said) != (2 if default is None else len(default)):
+    if len(authored) != (2 if default is None else len(default)):
         return None
-    draft.take(prim, table.attribute(name))
+    builder.mark_read(prim, table.attribute(name))
     if default is None:
-        low, high = (value if value < 0.0 else value * draft.scene.metres for value in said)
+        low, high = (value if value < 0.0 else value * builder.scene.metres for value in authored)
         return low if low == high else (low, high)
-    count = max((place for place, pair in enumerate(zip(said, default, strict=True), 1) if pair[0] != pair[1]), default=1)
-    return said[0] if count == 1 else tuple(said[:count])
+    count = max((place for place, pair in enumerate(zip(authored, default, strict=True), 1) if pair[0] != pair[1]), default=1)
+    return authored[0] if count == 1 else tuple(authored[:count])

@@ -24,7 +24,7 @@ _UNIT = 1e-6
 
 
 @frozen
-class Placed:
+class Transform:
     """A rigid pose in m and the scale along its axes; ``sheared`` when the matrix says more than that."""
 
     pose: Pose
@@ -32,28 +32,28 @@ class Placed:
     sheared: bool = False
 
 
-class Places:
+class Transforms:
     """World matrices in metres with z up, each computed once."""
 
     def __init__(self, scene: Scene) -> None:
         self._cache = UsdGeom.XformCache()
         self._world = scene.world
-        self._bodies: dict[str, Placed] = {}
+        self._bodies: dict[str, Transform] = {}
 
     def matrix(self, prim: Prim) -> Any:
         """Local to world, for row vectors."""
         return self._cache.GetLocalToWorldTransform(prim.composed) * self._world
 
-    def of(self, prim: Prim) -> Placed:
+    def of(self, prim: Prim) -> Transform:
         """The prim in the world."""
         found = self._bodies.get(prim.path)
         if found is None:
-            found = self._bodies[prim.path] = placed(self.matrix(prim))
+            found = self._bodies[prim.path] = decomposed(self.matrix(prim))
         return found
 
-    def seen_from(self, prim: Prim, body: Prim | None) -> Placed:
+    def seen_from(self, prim: Prim, body: Prim | None) -> Transform:
         """The prim in the rigid frame of a body; in the world without one."""
-        return placed(self.relative(prim, body))
+        return decomposed(self.relative(prim, body))
 
     def relative(self, prim: Prim, body: Prim | None) -> Any:
         """The matrix from a prim to the rigid frame of a body, or to the world."""
@@ -67,8 +67,8 @@ def check_ops(prim: Prim, report: Report, origin: Origin) -> None:
     steps = {step.removeprefix("!invert!"): None for step in prim.value(_ORDER) or ()}
     missing = [step for step in steps if step not in prim.types and step != _RESET]
     if missing:
-        said = f"{_ORDER} names {', '.join(missing)}, which {'are' if missing[1:] else 'is'} not there; passed over"
-        report.warn(codes.UNDEFINED_REFERENCE, said, origin, element=prim.path)
+        message = f"{_ORDER} names {', '.join(missing)}, which {'are' if missing[1:] else 'is'} not there; passed over"
+        report.warn(codes.UNDEFINED_REFERENCE, message, origin, element=prim.path)
 
 
 def matrix_of(pose: Pose) -> Any:
@@ -78,21 +78,21 @@ def matrix_of(pose: Pose) -> Any:
     return rotation * Gf.Matrix4d().SetTranslate(Gf.Vec3d(*pose.xyz))
 
 
-def placed(matrix: Any) -> Placed:
+def decomposed(matrix: Any) -> Transform:
     """The rigid pose and the scale of a matrix; a mirrored one has a negative scale along x."""
     *rows, at = ((row[0], row[1], row[2]) for row in numbers_of(matrix))
     lengths = [math.sqrt(_dot(row, row)) for row in rows]
     xyz = (at[0] + 0.0, at[1] + 0.0, at[2] + 0.0)
     if min(lengths) < 1e-12 or not all(map(math.isfinite, (*lengths, *xyz))):
         x, y, z = (v if math.isfinite(v) else 0.0 for v in xyz)
-        return Placed(Pose((x, y, z)), (lengths[0], lengths[1], lengths[2]), True)
+        return Transform(Pose((x, y, z)), (lengths[0], lengths[1], lengths[2]), True)
     if _dot(cross(rows[0], rows[1]), rows[2]) < 0.0:
         lengths[0] = -lengths[0]
     axes = [scaled(row, 1.0 / length) for row, length in zip(rows, lengths, strict=True)]
     sheared = max(abs(_dot(axes[0], axes[1])), abs(_dot(axes[0], axes[2])), abs(_dot(axes[1], axes[2]))) > 1e-4
     turn = Gf.Matrix3d(*axes[0], *axes[1], *axes[2])
     turn.Orthonormalize(False)
-    return Placed(_pose(xyz, quat_of(turn.ExtractRotation().GetQuat())), _scale(lengths), sheared)
+    return Transform(_pose(xyz, quat_of(turn.ExtractRotation().GetQuat())), _scale(lengths), sheared)
 
 
 def _dot(a: Vec3, b: Vec3) -> float:
@@ -117,10 +117,10 @@ def numbers_of(value: Any) -> list[Any]:
 def quat_of(quat: Any) -> Quat:
     """A quaternion of USD as one of ours."""
     x, y, z = numbers_of(quat.imaginary)
-    return turn_of((float(quat.real), x, y, z))
+    return rotation_of((float(quat.real), x, y, z))
 
 
-def turn_of(numbers: Quat) -> Quat:
+def rotation_of(numbers: Quat) -> Quat:
     """The rotation of four numbers; those that are no rotation turn nothing."""
     try:
         return unit_quat(numbers)

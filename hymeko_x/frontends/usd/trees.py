@@ -21,7 +21,7 @@ from hymeko_x.ir.values import IDENTITY, compose, inverse, numbers_text, rotatio
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from hymeko_x.frontends.usd.builder import Draft
+    from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.joints import End, ReadJoint
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.parts import Parameters
@@ -30,33 +30,33 @@ _NEAR = 1e-7
 FREE_SUFFIX = "_free"
 
 
-def build_trees(joints: list[ReadJoint], roots: Iterable[Id], held: Iterable[Id], draft: Draft) -> list[ReadJoint]:
+def build_trees(joints: list[ReadJoint], roots: Iterable[Id], held: Iterable[Id], builder: UsdBuilder) -> list[ReadJoint]:
     """Add every joint as an edge of a tree or as a loop, and a free joint above each body that is left without one.
 
     Returns the joints as they are in the result. ``roots`` are the bodies that bear an articulation root, ``held`` those
     whose simulation is switched off: they stand still.
     """
-    joints = merge_parallel(joints, draft)
+    joints = merge_parallel(joints, builder)
     tree, loops = _split(joints)
-    above = _directed(tree, [*roots], draft)
+    above = _directed(tree, [*roots], builder)
     if any(joint.ends[side].body == WORLD for joint in joints for side in (0, 1)):
-        draft.vertices.setdefault(WORLD, World())
+        builder.vertices.setdefault(WORLD, World())
     for joint in joints:
         if joint.id in loops:
-            _add_loop(joint, draft)
+            _add_loop(joint, builder)
         else:
-            _add_joint(joint, joint.id in above, draft)
-    _hang_free_bodies({end.body for joint in tree for end in [_child(joint, above)]}, set(held), draft)
+            _add_joint(joint, joint.id in above, builder)
+    _join_free_bodies({end.body for joint in tree for end in [_child(joint, above)]}, set(held), builder)
     return joints
 
 
-def note_poses(draft: Draft) -> None:
+def note_poses(builder: UsdBuilder) -> None:
     """Keep where a body's prim stands where that is not where the joints above it put it: only their frames count for the robot."""
-    mechanism = Mechanism("", Hypergraph(draft.vertices, draft.edges))
-    prims = {key: draft.prim_at(path) for path, key in draft.bodies.items()}
+    mechanism = Mechanism("", Hypergraph(builder.vertices, builder.edges))
+    prims = {key: builder.prim_at(path) for path, key in builder.bodies.items()}
     poses = {WORLD: IDENTITY}
     for body in mechanism.depth_first():
-        stands = draft.places.of(prims[body]).pose
+        stands = builder.transforms.of(prims[body]).pose
         view = mechanism.parent_joint.get(body)
         if view is None:
             poses[body] = stands
@@ -64,7 +64,7 @@ def note_poses(draft: Draft) -> None:
         poses[body] = compose(poses.get(view.parent, IDENTITY), compose(view.parent_pose, inverse(view.child_pose)))
         is_near = math.dist(poses[body].xyz, stands.xyz) < _NEAR and rotation_angle(poses[body].quat, stands.quat) < _NEAR
         if not is_near:
-            draft.note(body, words.POSE, numbers_text((*stands.xyz, *stands.quat)))
+            builder.note(body, words.POSE, numbers_text((*stands.xyz, *stands.quat)))
 
 
 def _split(joints: list[ReadJoint]) -> tuple[list[ReadJoint], set[Id]]:
@@ -89,14 +89,14 @@ def _leader(body: Id, leader: dict[Id, Id]) -> Id:
     return body
 
 
-def _directed(tree: list[ReadJoint], roots: list[Id], draft: Draft) -> set[Id]:
+def _directed(tree: list[ReadJoint], roots: list[Id], builder: UsdBuilder) -> set[Id]:
     """The joints whose parent is their body1. Breadth first from each component's root."""
     ends: dict[Id, list[tuple[ReadJoint, int]]] = {}
     for joint in tree:
         for side in (0, 1):
             ends.setdefault(joint.ends[side].body, []).append((joint, side))
     below = {joint.ends[1].body for joint in tree}
-    first = [WORLD, *roots, *(body for body in draft.bodies.values() if body not in below), *draft.bodies.values()]
+    first = [WORLD, *roots, *(body for body in builder.bodies.values() if body not in below), *builder.bodies.values()]
     turned: set[Id] = set()
     seen: set[Id] = set()
     for root in first:
@@ -121,14 +121,14 @@ def _child(joint: ReadJoint, turned: set[Id]) -> End:
 # ---- edges -------------------------------------------------------------------------------------------------------------------
 
 
-def _add_joint(joint: ReadJoint, is_turned: bool, draft: Draft) -> None:
+def _add_joint(joint: ReadJoint, is_turned: bool, builder: UsdBuilder) -> None:
     """A turned joint moves the other way: its dofs stand in reverse order with opposite axes, so that coordinates keep their sign."""
     parent, child = (joint.ends[1], joint.ends[0]) if is_turned else joint.ends
     dofs = joint.dofs
     if is_turned:
         dofs = tuple(_opposite(dof) for dof in reversed(dofs))
-        draft.note(joint.id, words.REVERSED, "true")
-    draft.edges[joint.id] = joint_edge(Joint(dofs), parent.body, child.body, parent.pose, child.pose)
+        builder.note(joint.id, words.REVERSED, "true")
+    builder.edges[joint.id] = joint_edge(Joint(dofs), parent.body, child.body, parent.pose, child.pose)
 
 
 def _opposite(dof: Dof) -> Dof:
@@ -140,28 +140,28 @@ def _negated(dof: Dof) -> tuple[float, float, float]:
     return (x + 0.0, y + 0.0, z + 0.0)
 
 
-def _add_loop(joint: ReadJoint, draft: Draft) -> None:
+def _add_loop(joint: ReadJoint, builder: UsdBuilder) -> None:
     """A closure under the joint's name: weld, connect, distance, or a joint of its dofs."""
-    kind, dofs, parameters = _loop_kind(joint, draft)
-    key = draft.names.take("loop", joint.id.name)
+    kind, dofs, parameters = _loop_kind(joint, builder)
+    key = builder.names.take("loop", joint.id.name)
     arcs: tuple[RobotArc, ...] = tuple(Arc(end.body, 0, end.pose) for end in joint.ends)
-    draft.edges[key] = Edge(Loop(kind, dofs, joint.is_enabled, parameters), arcs)
-    draft.origins[key] = draft.origin
-    draft.notations[key] = {**draft.notations.pop(joint.id, {}), words.TYPE: joint.prim.kind}
-    draft.elements[joint.prim.path] = [key]
-    draft.take(joint.prim, "physics:jointEnabled")
-    draft.take(joint.prim, "physics:excludeFromArticulation")
+    builder.edges[key] = Edge(Loop(kind, dofs, joint.is_enabled, parameters), arcs)
+    builder.origins[key] = builder.origin
+    builder.notations[key] = {**builder.notations.pop(joint.id, {}), words.TYPE: joint.prim.kind}
+    builder.elements[joint.prim.path] = [key]
+    builder.mark_read(joint.prim, "physics:jointEnabled")
+    builder.mark_read(joint.prim, "physics:excludeFromArticulation")
     if not joint.is_excluded:
-        draft.note(key, "usd.articulated", "true")
+        builder.note(key, "usd.articulated", "true")
 
 
-def _loop_kind(joint: ReadJoint, draft: Draft) -> tuple[str, tuple[Dof, ...], Parameters]:
+def _loop_kind(joint: ReadJoint, builder: UsdBuilder) -> tuple[str, tuple[Dof, ...], Parameters]:
     if joint.prim.kind == DISTANCE:
         found: list[tuple[str, float | str | tuple[float, ...]]] = []
         for name in ("minDistance", "maxDistance"):
-            value = draft.number(joint.prim, f"physics:{name}", -1.0)
+            value = builder.number(joint.prim, f"physics:{name}", -1.0)
             if value >= 0.0:
-                found.append((name, value * draft.scene.metres))
+                found.append((name, value * builder.scene.metres))
         return "distance", (), tuple(found)
     if not joint.dofs:
         return "weld", (), ()
@@ -170,15 +170,15 @@ def _loop_kind(joint: ReadJoint, draft: Draft) -> tuple[str, tuple[Dof, ...], Pa
     return "joint", joint.dofs, ()
 
 
-def _hang_free_bodies(hung: set[Id], held: set[Id], draft: Draft) -> None:
+def _join_free_bodies(hung: set[Id], held: set[Id], builder: UsdBuilder) -> None:
     """In UsdPhysics a body without a joint above it falls: a free joint says so and where it starts."""
-    for path, body in draft.bodies.items():
+    for path, body in builder.bodies.items():
         if body in hung:
             continue
-        prim = draft.prim_at(path)
-        key = draft.own(prim, "joint", body.name + FREE_SUFFIX)
+        prim = builder.prim_at(path)
+        key = builder.new_id(prim, "joint", body.name + FREE_SUFFIX)
         dofs = () if body in held else (Dof(DofKind.FREE),)
         if body in held:
-            draft.note(key, words.HELD, "true")
-        draft.vertices.setdefault(WORLD, World())
-        draft.edges[key] = joint_edge(Joint(dofs), WORLD, body, draft.places.of(prim).pose)
+            builder.note(key, words.HELD, "true")
+        builder.vertices.setdefault(WORLD, World())
+        builder.edges[key] = joint_edge(Joint(dofs), WORLD, body, builder.transforms.of(prim).pose)
