@@ -5,12 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
 import pytest
 from pxr import Usd, UsdGeom, UsdPhysics, UsdValidation
 
 import hymeko_x as hx
 from hymeko_x.compare.diff import diff
 from hymeko_x.corpus.catalog import development_files
+from hymeko_x.formats.usd import shapes
 from hymeko_x.ir.parts import Loop, Mesh
 
 FEW = ("racecar.urdf", "quadruped.urdf", "arm.xml", "tendon.xml")
@@ -83,6 +85,21 @@ def test_an_ellipsoid_collides_as_the_hull_of_a_mesh_and_is_an_ellipsoid_again(t
     }
     assert list(back.vertices(Mesh)) == []
     assert hx.verify(tmp_path / "egg.xml", tmp_path / "egg.usda").verdict == "same"
+
+
+BALL = shapes.ball()
+FAULTS = {
+    "ball": lambda: (BALL[0] * np.float32((1.0, 1.0, 0.5)), BALL[1]),
+    "default_gprim": lambda geometry, role: shapes.Gprim("Sphere", (0.05,)),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_the_verifier_finds_a_fault_in_the_writers_table_of_shapes(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "egg.xml").write_text(EGG, encoding="utf-8")
+    monkeypatch.setattr(shapes, name, FAULTS[name])
+    hx.convert(tmp_path / "egg.xml", tmp_path / "egg.usda", pure=True)
+    assert hx.verify(tmp_path / "egg.xml", tmp_path / "egg.usda").verdict == "different"
 
 
 def test_a_sphere_that_its_author_scaled_stays_a_sphere(tmp_path: Path) -> None:
