@@ -19,7 +19,7 @@ from hymeko_x.corpus.lengths import tokens_of
 from hymeko_x.diagnostics import Report
 from hymeko_x.disk import open_source
 from hymeko_x.frontends import mjcf, urdf
-from hymeko_x.language.comments import TOKENS
+from hymeko_x.language.grammar import TOKENS
 
 if TYPE_CHECKING:
     from pathlib import Path

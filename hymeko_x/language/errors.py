@@ -1,53 +1,27 @@
-"""What a syntax error says: the place, the line with a caret, what was expected, and a hint."""
+"""The message of a syntax error: the place, the line with a caret, what was expected, and a hint."""
 
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from functools import cache
 from typing import TYPE_CHECKING
 
-from lark import Lark
-from lark.exceptions import UnexpectedCharacters, UnexpectedToken
-
 from hymeko_x import codes
-from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.language.comments import TOKENS
-from hymeko_x.language.excerpts import excerpt
-from hymeko_x.language.generate import grammar_text
+from hymeko_x.diagnostics import Origin, Refusal, refuse
+from hymeko_x.language.grammar import TOKENS, grammar_text
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Refusal
+    from lark import Lark
+    from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
-# Terminals in the words of a user, in the order in which they are listed; several terminals may share one wording.
-_WORDS = {
-    "NAME": "a name",
-    "NUMBER": "a value",
-    "QUANTITY": "a value",
-    "STRING": "a value",
-    "NUMBERS": "a value",
-    "MATRIX": "a value",
-    "EXPRESSION": "a value",
-    "QUERY": "a value",
-    "LSQB": "a value",
-    "DIRECTION": "a direction (+ - ~ -> <- <>)",
-    "EQUAL": "'='",
-    "COLON": "':'",
-    "LBRACE": "'{'",
-    "RBRACE": "'}'",
-    "RSQB": "']'",
-    "LPAR": "'('",
-    "RPAR": "')'",
-    "COMMA": "','",
-    "DOT": "'.'",
-    "LESSTHAN": "'<'",
-    "MORETHAN": "'>'",
-    "EDGE_WORD": "'@'",
-    "USE": "'use'",
-    "IMPORT": "'import'",
-    "AS": "'as'",
-    "QUOTED_REF": "'@>\"name\"'",
-    "$END": "the end of the text",
-}
+_WORDS = {"NAME": "a name"}
+_WORDS |= dict.fromkeys(("NUMBER", "QUANTITY", "STRING", "NUMBERS", "MATRIX", "EXPRESSION", "QUERY", "LSQB"), "a value")
+_WORDS |= {"DIRECTION": "a direction (+ - ~ -> <- <>)", "EQUAL": "'='", "COLON": "':'", "LBRACE": "'{'", "RBRACE": "'}'"}
+_WORDS |= {"RSQB": "']'", "LPAR": "'('", "RPAR": "')'", "COMMA": "','", "DOT": "'.'", "LESSTHAN": "'<'", "MORETHAN": "'>'"}
+_WORDS |= {"EDGE_WORD": "'@'", "USE": "'use'", "IMPORT": "'import'", "AS": "'as'", "QUOTED_REF": "'@>\"name\"'"}
+_WORDS |= {"$END": "the end of the text"}
+"""Terminals in the words of a user, in the order in which they are listed."""
 _IGNORED = {"MODIFIER", "LEGACY_HEADER", "COMMENT"}
 _KEYWORDS = {"USE", "IMPORT", "AS", "EDGE_WORD"}
 _PAIRS = {"}": "{", "]": "[", ")": "("}
@@ -76,6 +50,8 @@ _CHARACTER_HINTS = {
 
 def explain_syntax_error(text: str, name: str) -> Refusal:
     """The refusal (HX060) for a text that is not HyMeKo: lark reads it again, because it knows what it expected where."""
+    from lark.exceptions import UnexpectedCharacters, UnexpectedToken
+
     try:
         _lark().parse(text)
     except UnexpectedToken as error:
@@ -87,6 +63,8 @@ def explain_syntax_error(text: str, name: str) -> Refusal:
 
 @cache
 def _lark() -> Lark:
+    from lark import Lark
+
     return Lark(grammar_text(), parser="lalr", maybe_placeholders=False)
 
 
@@ -229,3 +207,30 @@ def _end_of(text: str) -> tuple[int, int]:
     """Line and column behind the last character that is not white space."""
     rest = text.rstrip()
     return rest.count("\n") + 1, len(rest) - (rest.rfind("\n") + 1) + 1
+
+
+# ---- excerpts ------------------------------------------------------------------------------------------------------------
+
+_MAX_LINE = 160
+_WORD = re.compile(r"@?\s*(?:`[^`]*`|[\w.]+)")
+
+
+def with_excerpt(refusal: Refusal, text: str, name: str) -> Refusal:
+    """The refusal with the line of the text that it is about, unless it shows one or is about another file."""
+    diagnostic = refusal.diagnostic
+    origin = diagnostic.origin
+    if diagnostic.excerpt or origin is None or origin.file != name or origin.line is None:
+        return refusal
+    line, column = origin.line, origin.column or 1
+    word = _WORD.match(text.split("\n")[line - 1], column - 1)
+    return Refusal(replace(diagnostic, excerpt=excerpt(text, line, column, len(word[0]) if word else 1)))
+
+
+def excerpt(text: str, line: int, column: int, width: int) -> tuple[str, ...]:
+    """The source line and a caret line below it; a long line is cut around the place."""
+    source = text.split("\n")[line - 1].rstrip("\r").replace("\t", " ")
+    start = max(0, column - 1 - _MAX_LINE // 2) if len(source) > _MAX_LINE else 0
+    shown = source[start : start + _MAX_LINE]
+    room = max(1, min(width, len(shown) - (column - 1 - start)))
+    gutter = f"{line:>5}"
+    return (f"{gutter} | {shown}", f"{' ' * len(gutter)} | {' ' * (column - 1 - start)}{'^' * room}")

@@ -1,48 +1,36 @@
-"""Arithmetic in ``${ }``: numbers, parameters, the usual operators and a few functions. Nothing else can be said."""
+"""Arithmetic in ``${ }``: numbers, parameters, the usual operators and a few functions, and items with their expressions evaluated."""
 
 from __future__ import annotations
 
 import ast
 import math
+import operator
+import re
 import warnings
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.language.syntax import ArcItem, Comment, Expression, Field, Import, Item, Node, Ref, Stereotype, Value, origin_of
+
+Environment = Mapping[str, float | str]
+"""The parameters of a template with their values."""
 
 CONSTANTS: Mapping[str, float] = MappingProxyType({"pi": math.pi, "tau": math.tau, "e": math.e, "inf": math.inf})
+_MATH = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "hypot", "radians", "degrees", "exp", "log", "floor", "ceil"]
 FUNCTIONS: Mapping[str, Callable[..., float]] = MappingProxyType(
-    {
-        name: getattr(math, name)
-        for name in (
-            "sin",
-            "cos",
-            "tan",
-            "asin",
-            "acos",
-            "atan",
-            "atan2",
-            "sqrt",
-            "hypot",
-            "radians",
-            "degrees",
-            "exp",
-            "log",
-            "floor",
-            "ceil",
-        )
-    }
-    | {"abs": abs, "min": min, "max": max}
+    {name: getattr(math, name) for name in _MATH} | {"abs": abs, "min": min, "max": max}
 )
 _OPERATORS: Mapping[type[ast.operator], Callable[[float, float], float]] = MappingProxyType(
     {
-        ast.Add: lambda a, b: a + b,
-        ast.Sub: lambda a, b: a - b,
-        ast.Mult: lambda a, b: a * b,
-        ast.Div: lambda a, b: a / b,
-        ast.Mod: lambda a, b: a % b,
-        ast.FloorDiv: lambda a, b: a // b,
+        ast.Add: operator.add,
+        ast.Sub: operator.sub,
+        ast.Mult: operator.mul,
+        ast.Div: operator.truediv,
+        ast.Mod: operator.mod,
+        ast.FloorDiv: operator.floordiv,
+        ast.Pow: math.pow,  # a ValueError where the result is no real number
     }
 )
 _WORDS: Mapping[type[Exception], str] = MappingProxyType(
@@ -52,14 +40,17 @@ _WORDS: Mapping[type[Exception], str] = MappingProxyType(
         RecursionError: "it is nested too deep",
     }
 )
+MAX_TEXT = 100_000
+"""Characters of a text with `${ }` in it."""
+_INTERPOLATION = re.compile(r"\$\{([^{}]*)\}")
 _MAX_LENGTH = 1000  # characters; keeps Python's own recursive parser far from its limits
 
 
 class ExpressionError(ValueError):
-    """Says what is wrong with an expression, in words for its author."""
+    """The message for the author of an expression that has no value."""
 
 
-def evaluate(text: str, parameters: Mapping[str, float | str]) -> float | str:
+def evaluate(text: str, parameters: Environment) -> float | str:
     """The value of an expression. A parameter alone may be a text; everything else is a number.
 
     Raises: ExpressionError for anything that is not arithmetic on known names with a finite result.
@@ -85,7 +76,7 @@ def evaluate(text: str, parameters: Mapping[str, float | str]) -> float | str:
     return value
 
 
-def _evaluate(node: ast.expr, parameters: Mapping[str, float | str]) -> float:
+def _evaluate(node: ast.expr, parameters: Environment) -> float:
     match node:
         case ast.Constant(value=int() | float() as number) if not isinstance(number, bool):
             return float(number)
@@ -95,16 +86,14 @@ def _evaluate(node: ast.expr, parameters: Mapping[str, float | str]) -> float:
             return -_evaluate(operand, parameters)
         case ast.UnaryOp(op=ast.UAdd(), operand=operand):
             return _evaluate(operand, parameters)
-        case ast.BinOp(left=left, op=ast.Pow(), right=right):
-            return _power(_evaluate(left, parameters), _evaluate(right, parameters))
-        case ast.BinOp(left=left, op=operator, right=right) if type(operator) in _OPERATORS:
-            return _OPERATORS[type(operator)](_evaluate(left, parameters), _evaluate(right, parameters))
+        case ast.BinOp(left=left, op=op, right=right) if type(op) in _OPERATORS:
+            return _OPERATORS[type(op)](_evaluate(left, parameters), _evaluate(right, parameters))
         case ast.Call(func=ast.Name(id=name), args=arguments, keywords=[]) if name in FUNCTIONS:
             return float(FUNCTIONS[name](*[_evaluate(argument, parameters) for argument in arguments]))
     raise ExpressionError(f"'{ast.unparse(node)}' is not arithmetic; there are + - * / % ** ( ) and {', '.join(FUNCTIONS)}")
 
 
-def _named(name: str, parameters: Mapping[str, float | str]) -> float:
+def _named(name: str, parameters: Environment) -> float:
     value = parameters.get(name, CONSTANTS.get(name))
     if value is None:
         known = ", ".join([*parameters, *CONSTANTS])
@@ -114,5 +103,93 @@ def _named(name: str, parameters: Mapping[str, float | str]) -> float:
     return value
 
 
-def _power(base: float, exponent: float) -> float:
-    return math.pow(base, exponent)  # a ValueError where the result is no real number
+# ---- items ---------------------------------------------------------------------------------------------------------------
+
+
+def fill(item: Item, environment: Environment, file: str) -> Item:
+    """The item of a template with every expression replaced by its value.
+
+    Raises: Refusal (HX064) at the item, HX007 for texts that grow too long.
+    """
+    if not environment and not _calculates(item):
+        return item
+    match item:
+        case Field(value=None) | Import() | Comment():
+            return item
+        case Field():
+            assert item.value is not None
+            return item._replace(value=fill_value(item.value, environment, item, file))
+        case ArcItem():
+            return _filled_arc(item, environment, file)
+        case Node():
+            items = tuple(fill(inner, environment, file) for inner in item.items)
+            types = tuple(_filled_arguments(stereotype, environment, item, file) for stereotype in item.stereotypes)
+            return item._replace(name=fill_text(item.name, environment, item, file), items=items, stereotypes=types)
+
+
+def _filled_arguments(stereotype: Stereotype, environment: Environment, node: Node, file: str) -> Stereotype:
+    if not stereotype.arguments:
+        return stereotype
+    return stereotype._replace(arguments=tuple((name, fill_value(value, environment, node, file)) for name, value in stereotype.arguments))
+
+
+def _filled_arc(arc: ArcItem, environment: Environment, file: str) -> ArcItem:
+    weight = arc.weight
+    if weight is not None:
+        weight = tuple(fill_value(value, environment, arc, file) for value in weight)
+    path = tuple(fill_text(step, environment, arc, file) for step in arc.ref.path)
+    items = tuple(fill(inner, environment, file) for inner in arc.items)
+    return arc._replace(ref=arc.ref._replace(path=path), weight=weight, items=items)
+
+
+def fill_value(value: Value, environment: Environment, item: Item, file: str) -> Value:
+    """A value of the item with its expressions evaluated."""
+    if type(value) is float:
+        return value
+    if type(value) is str:
+        return fill_text(value, environment, item, file)
+    if isinstance(value, Expression):
+        return _value_of(value.text, environment, item, file)
+    if type(value) is tuple:
+        return tuple(fill_value(part, environment, item, file) for part in value)
+    return value
+
+
+def fill_text(text: str, environment: Environment, item: Item, file: str) -> str:
+    """A name or string of the item with its ``${ }`` filled in, inside a template."""
+    if not environment or "${" not in text:
+        return text
+
+    def interpolated(match: re.Match[str]) -> str:
+        value = _value_of(match[1], environment, item, file)
+        if isinstance(value, str):
+            return value
+        return str(int(value)) if value.is_integer() else repr(value)
+
+    filled = _INTERPOLATION.sub(interpolated, text)
+    if len(filled) > MAX_TEXT:
+        raise refuse(codes.TOO_LARGE, f"a text grows to more than {MAX_TEXT} characters", origin_of(item, file))
+    return type(text)(filled)
+
+
+def _value_of(text: str, environment: Environment, item: Item, file: str) -> float | str:
+    try:
+        return evaluate(text.strip(), environment)
+    except ExpressionError as error:
+        raise refuse(codes.BAD_EXPRESSION, f"${{{text}}}: {error}", origin_of(item, file)) from error
+
+
+def _calculates(item: Item | Value | None) -> bool:
+    """Whether there is an expression in it."""
+    match item:
+        case Expression():
+            return True
+        case Field():
+            return _calculates(item.value)
+        case ArcItem():
+            return _calculates(item.weight) or any(map(_calculates, item.items))
+        case Node():
+            return any(map(_calculates, item.items)) or any(kind.arguments for kind in item.stereotypes)
+        case float() | str() | None | Import() | Comment() | Ref():
+            return False
+    return any(map(_calculates, item))

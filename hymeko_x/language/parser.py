@@ -1,19 +1,21 @@
-"""HyMeKo text to syntax tree, built while the LALR(1) machine reads."""
+"""HyMeKo text to syntax tree, built while the LALR(1) machine reads, with the comments of the outermost levels in their places."""
 
 from __future__ import annotations
 
 import re
 import sys
+from bisect import bisect_left
 from functools import cache
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.language.comments import weave_comments
-from hymeko_x.language.excerpts import excerpt
-from hymeko_x.language.machine import MAX_DEPTH, Lines, Machine, ParseError, TooDeep
+from hymeko_x.language.errors import excerpt, explain_syntax_error
+from hymeko_x.language.machine import GAP_DEPTH, MAX_DEPTH, Lines, Machine, ParseError, TooDeep
 from hymeko_x.language.syntax import (
     ArcItem,
+    Comment,
     Document,
     Expression,
     Field,
@@ -30,10 +32,13 @@ from hymeko_x.language.syntax import (
 )
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Mapping
+
     from hymeko_x.language.machine import Convert, Gap, Reduce
 
 _QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
 _ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|.)", re.DOTALL)
+_COMMENT = re.compile(r"#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/")
 _ESCAPED = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}
 
 
@@ -43,10 +48,9 @@ def parse(text: str, name: str = "<text>") -> Document:
     Raises: Refusal (HX060) with the line, a caret, what was expected and a hint; HX007 for brackets nested too deep.
     """
     lines = Lines(text)
-    builder = _TreeBuilder(lines)
     gaps: list[Gap] = []
     try:
-        document = _tables().run(text, builder.terminals, builder.actions, gaps)
+        document = _machine().run(text, _TERMINALS, {**_ACTIONS, **_item_actions(lines.place)}, gaps)
     except TooDeep as error:
         line, column = lines.place(error.offset)
         raise refuse(codes.TOO_LARGE, f"brackets are nested more than {MAX_DEPTH} levels deep", Origin(name, line, column)) from error
@@ -54,26 +58,19 @@ def parse(text: str, name: str = "<text>") -> Document:
         line, column = lines.place(error.offset)
         raise refuse(codes.SYNTAX, str(error), Origin(name, line, column), excerpt=excerpt(text, line, column, 1)) from error
     except ParseError as error:
-        from hymeko_x.language.errors import explain_syntax_error  # with lark, which nothing else here needs
-
         raise explain_syntax_error(text, name) from error
-    return weave_comments(document, text, gaps, lines)
-
-
-@cache
-def _tables() -> Machine:
-    return Machine(frozenset(_RULES))
+    return _weave_comments(document, text, gaps, lines)
 
 
 class _Malformed(Exception):
-    """A token that the lexer lets through and that means nothing."""
+    """A token that the lexer accepts and that has no value."""
 
     def __init__(self, offset: int, message: str) -> None:
         super().__init__(message)
         self.offset = offset
 
 
-def unescape(text: str, offset: int) -> str:
+def _unescape(text: str, offset: int) -> str:
     """The characters behind the escapes of a quoted string or name: \\n, \\t, \\r, \\0, \\uXXXX, and any character itself."""
     if "\\" not in text:
         return text
@@ -88,20 +85,6 @@ def unescape(text: str, offset: int) -> str:
         return chr(number)
 
     return _ESCAPE.sub(plain, text)
-
-
-def _numbers(text: str) -> tuple[float, ...]:
-    return tuple(map(float, text.replace(",", " ").split()))
-
-
-def _malformed_number(text: str, offset: int) -> _Malformed:
-    """What is wrong with a list of numbers, at the number that is none."""
-    for match in re.finditer(r"[^\s,\[\]]+", text):
-        try:
-            float(match[0])
-        except ValueError:
-            return _Malformed(offset + match.start(), f"'{match[0]}' is not a number; expected numbers such as 1, -0.5 or 1e-3")
-    return _Malformed(offset, "this is not a list of numbers")
 
 
 class _Block(tuple[Item, ...]):
@@ -129,165 +112,203 @@ class _Stereotypes(tuple[Stereotype, ...]):
 
 
 class _Signature(NamedTuple):
-    """What stands between a node's name and its block."""
+    """Everything between a node's name and its block."""
 
     parameters: tuple[Parameter, ...] | None
     stereotypes: tuple[Stereotype, ...]
     uses: tuple[Ref, ...]
 
 
-class _TreeBuilder:
-    """Makes the tree while the machine reads: one method a terminal (text and offset), one a rule (children and offset)."""
+# ---- terminals -----------------------------------------------------------------------------------------------------------
 
-    def __init__(self, lines: Lines) -> None:
-        self._place = lines.place
-        names = ("number", "quantity", "string", "expression", "query", "numbers", "matrix", "name")
-        self.terminals: dict[str, Convert] = {name.upper(): getattr(self, f"_{name}") for name in names}
-        self.actions: dict[str, Reduce] = {rule: getattr(self, f"on_{rule}") for rule in _RULES}
 
-    # ---- terminals ---------------------------------------------------------------------------------------------------------
+def _quantity(text: str, offset: int) -> Quantity:
+    match = _QUANTITY.fullmatch(text)
+    assert match is not None, text
+    return Quantity(float(match[1]), match[2])
 
-    def _number(self, text: str, offset: int) -> float:
-        return float(text)
 
-    def _quantity(self, text: str, offset: int) -> Quantity:
-        match = _QUANTITY.fullmatch(text)
-        assert match is not None, text
-        return Quantity(float(match[1]), match[2])
+def _numbers(text: str, offset: int) -> tuple[float, ...]:
+    try:
+        return tuple(map(float, text[1:-1].replace(",", " ").split()))
+    except ValueError as error:
+        raise _malformed_number(text, offset) from error
 
-    def _string(self, text: str, offset: int) -> str:
-        return text[3:-3] if text.startswith('"""') else unescape(text[1:-1], offset)
 
-    def _expression(self, text: str, offset: int) -> Expression:
-        return Expression(text[2:-1].strip())
+def _matrix(text: str, offset: int) -> tuple[tuple[float, ...], ...]:
+    rows = text[1 : text.rindex("]")].replace("[", "").replace(",", " ").split("]")[:-1]
+    try:
+        return tuple(tuple(map(float, row.split())) for row in rows)
+    except ValueError as error:
+        raise _malformed_number(text, offset) from error
 
-    def _query(self, text: str, offset: int) -> Query:
-        return Query()
 
-    def _numbers(self, text: str, offset: int) -> tuple[float, ...]:
+def _malformed_number(text: str, offset: int) -> _Malformed:
+    """The error of a list of numbers, at the first word that is no number."""
+    for match in re.finditer(r"[^\s,\[\]]+", text):
         try:
-            return _numbers(text[1:-1])
-        except ValueError as error:
-            raise _malformed_number(text, offset) from error
-
-    def _matrix(self, text: str, offset: int) -> tuple[tuple[float, ...], ...]:
-        rows = text[1 : text.rindex("]")].replace("[", "").split("]")[:-1]
-        try:
-            return tuple(map(_numbers, rows))
-        except ValueError as error:
-            raise _malformed_number(text, offset) from error
-
-    def _name(self, text: str, offset: int) -> str:
-        if text[0] != "`":
-            return text
-        if len(text) == 2:
-            return QuotedName("")
-        return QuotedName(unescape(text[1:-1], offset))
-
-    # ---- references and values ---------------------------------------------------------------------------------------------
-
-    def on_ref(self, parts: list[str], offset: int) -> Ref:
-        return Ref(tuple(parts))
-
-    def on_relation(self, parts: list[Any], offset: int) -> Ref:
-        modifier = parts[0] if len(parts) == 3 else ""
-        return Ref(parts[-1].path, parts[-2], modifier)
-
-    def on_vector(self, parts: list[Value], offset: int) -> tuple[Value, ...]:
-        return tuple(parts)
-
-    def on_type(self, parts: list[Ref], offset: int) -> str:
-        return _TypeName(parts[0].dotted)
-
-    # ---- items -------------------------------------------------------------------------------------------------------------
-
-    def on_start(self, parts: list[Any], offset: int) -> Document:
-        if parts and type(parts[0]) is str:
-            return Document(tuple(parts[1:]), parts[0][1:-1].strip())
-        return Document(tuple(parts))
-
-    def on_block(self, parts: list[Item], offset: int) -> tuple[Item, ...]:
-        return _Block(parts)
-
-    def on_bare(self, parts: list[str], offset: int) -> Field:
-        return Field(parts[0], None, parts[1] if len(parts) > 1 else "", *self._place(offset))
-
-    def on_field(self, parts: list[Any], offset: int) -> Field:
-        return Field(parts[0], parts[-1], parts[1] if len(parts) == 3 else "", *self._place(offset))
-
-    def on_import_(self, parts: list[str], offset: int) -> Import:
-        return Import(parts[1], parts[3] if len(parts) > 2 else "", *self._place(offset))
-
-    def on_node(self, parts: list[Any], offset: int) -> Node:
-        return self._node("", parts, offset)
-
-    def on_edge(self, parts: list[Any], offset: int) -> Node:
-        return self._node(parts[0], parts[1:], offset)
-
-    def on_typed_edge(self, parts: list[Any], offset: int) -> Node:
-        return self._node(parts[0], parts[1:], offset)
-
-    def _node(self, edge: str, parts: list[Any], offset: int) -> Node:
-        line, column = self._place(offset)
-        items = tuple(parts[-1])
-        if len(parts) == 2:
-            return Node(parts[0], items, edge=edge, line=line, column=column)
-        signature: _Signature = parts[1]
-        return Node(parts[0], items, signature.stereotypes, signature.parameters, signature.uses, edge, line, column)
-
-    def on_plain_arc(self, parts: list[Any], offset: int) -> ArcItem:
-        return self._arc("", None, parts, offset)
-
-    def on_role_arc(self, parts: list[Any], offset: int) -> ArcItem:
-        return self._arc(parts[0], None, parts[1:], offset)
-
-    def on_weighted_arc(self, parts: list[Any], offset: int) -> ArcItem:
-        if type(parts[1]) is Ref:
-            return self._arc("", parts[0], parts[1:], offset)
-        return self._arc(parts[1], parts[0], parts[2:], offset)
-
-    def _arc(self, role: str, weight: tuple[Value, ...] | None, parts: list[Any], offset: int) -> ArcItem:
-        items = tuple(parts[1]) if len(parts) > 1 else ()
-        return ArcItem(parts[0], role, weight, items, *self._place(offset))
-
-    def on_quoted_arc(self, parts: list[str], offset: int) -> ArcItem:
-        return ArcItem(_quoted_ref(*parts), "", None, (), *self._place(offset))
-
-    def on_legacy_edge(self, parts: list[str], offset: int) -> ArcItem:
-        return ArcItem(_quoted_ref(*parts[1:]), parts[0], None, (), *self._place(offset))
-
-    # ---- signatures ----------------------------------------------------------------------------------------------------------
-
-    def on_signature(self, parts: list[Any], offset: int) -> _Signature:
-        parameters = next((tuple(part) for part in parts if type(part) is _Parameters), None)
-        stereotypes = next((tuple(part) for part in parts if type(part) is _Stereotypes), ())
-        return _Signature(parameters, stereotypes, tuple(part for part in parts if type(part) is Ref))
-
-    def on_stereotypes(self, parts: list[Stereotype], offset: int) -> tuple[Stereotype, ...]:
-        return _Stereotypes(parts)
-
-    def on_stereotype(self, parts: list[Any], offset: int) -> Stereotype:
-        return Stereotype(parts[0], parts[1] if len(parts) > 1 else None)
-
-    def on_use(self, parts: list[Any], offset: int) -> Ref:
-        ref: Ref = parts[-1]
-        return ref
-
-    def on_parameters(self, parts: list[Parameter], offset: int) -> tuple[Parameter, ...]:
-        return _Parameters(parts)
-
-    def on_parameter(self, parts: list[Any], offset: int) -> Parameter:
-        return Parameter(parts[0], parts[1] if len(parts) > 1 else None)
-
-    def on_arguments(self, parts: list[tuple[str, Value]], offset: int) -> tuple[tuple[str, Value], ...]:
-        return tuple(parts)
-
-    def on_argument(self, parts: list[Any], offset: int) -> tuple[str, Value]:
-        return parts[0], parts[1]
+            float(match[0])
+        except ValueError:
+            return _Malformed(offset + match.start(), f"'{match[0]}' is not a number; expected numbers such as 1, -0.5 or 1e-3")
+    return _Malformed(offset, "this is not a list of numbers")
 
 
-_RULES = tuple(name.removeprefix("on_") for name in vars(_TreeBuilder) if name.startswith("on_"))
+def _name(text: str, offset: int) -> str:
+    return QuotedName(_unescape(text[1:-1], offset)) if text[0] == "`" else text
+
+
+_TERMINALS: Mapping[str, Convert] = MappingProxyType(
+    {
+        "NUMBER": lambda text, _: float(text),
+        "QUANTITY": _quantity,
+        "STRING": lambda text, offset: text[3:-3] if text.startswith('"""') else _unescape(text[1:-1], offset),
+        "EXPRESSION": lambda text, _: Expression(text[2:-1].strip()),
+        "QUERY": lambda text, _: Query(),
+        "NUMBERS": _numbers,
+        "MATRIX": _matrix,
+        "NAME": _name,
+    }
+)
+"""The value of a token, from its text and offset; other tokens are their text."""
+
+
+# ---- rules ---------------------------------------------------------------------------------------------------------------
+
+
+def _start(parts: list[Any], _: int) -> Document:
+    if parts and type(parts[0]) is str:
+        return Document(tuple(parts[1:]), parts[0][1:-1].strip())
+    return Document(tuple(parts))
+
+
+def _relation(parts: list[Any], _: int) -> Ref:
+    return Ref(parts[-1].path, parts[-2], parts[0] if len(parts) == 3 else "")
+
+
+def _signature(parts: list[Any], _: int) -> _Signature:
+    parameters = next((tuple(part) for part in parts if type(part) is _Parameters), None)
+    stereotypes = next((tuple(part) for part in parts if type(part) is _Stereotypes), ())
+    return _Signature(parameters, stereotypes, tuple(part for part in parts if type(part) is Ref))
 
 
 def _quoted_ref(direction: str, target: str) -> Ref:
     return Ref((QuotedName(target[3:-1]),), direction)
+
+
+_ACTIONS: Mapping[str, Reduce] = MappingProxyType(
+    {
+        "start": _start,
+        "block": lambda parts, _: _Block(parts),
+        "ref": lambda parts, _: Ref(tuple(parts)),
+        "relation": _relation,
+        "vector": lambda parts, _: tuple(parts),
+        "type": lambda parts, _: _TypeName(parts[0].dotted),
+        "signature": _signature,
+        "stereotypes": lambda parts, _: _Stereotypes(parts),
+        "stereotype": lambda parts, _: Stereotype(parts[0], parts[1] if len(parts) > 1 else None),
+        "use": lambda parts, _: parts[-1],
+        "parameters": lambda parts, _: _Parameters(parts),
+        "parameter": lambda parts, _: Parameter(parts[0], parts[1] if len(parts) > 1 else None),
+        "arguments": lambda parts, _: tuple(parts),
+        "argument": lambda parts, _: (parts[0], parts[1]),
+    }
+)
+"""The value of a rule that has no place, from its children."""
+
+
+def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
+    """The items, from the children of their rules and the offset of the first character, whose line and column is ``place``."""
+
+    def node(edge: str, parts: list[Any], offset: int) -> Node:
+        line, column = place(offset)
+        if len(parts) == 2:
+            return Node(parts[0], tuple(parts[-1]), edge=edge, line=line, column=column)
+        signature: _Signature = parts[1]
+        return Node(parts[0], tuple(parts[-1]), signature.stereotypes, signature.parameters, signature.uses, edge, line, column)
+
+    def arc(role: str, weight: tuple[Value, ...] | None, parts: list[Any], offset: int) -> ArcItem:
+        return ArcItem(parts[0], role, weight, tuple(parts[1]) if len(parts) > 1 else (), *place(offset))
+
+    def weighted_arc(parts: list[Any], offset: int) -> ArcItem:
+        return arc("", parts[0], parts[1:], offset) if type(parts[1]) is Ref else arc(parts[1], parts[0], parts[2:], offset)
+
+    return {
+        "bare": lambda parts, offset: Field(parts[0], None, parts[1] if len(parts) > 1 else "", *place(offset)),
+        "field": lambda parts, offset: Field(parts[0], parts[-1], parts[1] if len(parts) == 3 else "", *place(offset)),
+        "import_": lambda parts, offset: Import(parts[1], parts[3] if len(parts) > 2 else "", *place(offset)),
+        "node": lambda parts, offset: node("", parts, offset),
+        "edge": lambda parts, offset: node(parts[0], parts[1:], offset),
+        "typed_edge": lambda parts, offset: node(parts[0], parts[1:], offset),
+        "plain_arc": lambda parts, offset: arc("", None, parts, offset),
+        "role_arc": lambda parts, offset: arc(parts[0], None, parts[1:], offset),
+        "weighted_arc": weighted_arc,
+        "quoted_arc": lambda parts, offset: arc("", None, [_quoted_ref(*parts)], offset),
+        "legacy_edge": lambda parts, offset: arc(parts[0], None, [_quoted_ref(*parts[1:])], offset),
+    }
+
+
+@cache
+def _machine() -> Machine:
+    return Machine(frozenset({*_ACTIONS, *_item_actions(Lines("").place)}))
+
+
+# ---- comments ------------------------------------------------------------------------------------------------------------
+
+_Place = tuple[int, int]
+_END = (1 << 60, 0)
+
+
+def _weave_comments(document: Document, text: str, gaps: list[Gap], lines: Lines) -> Document:
+    """The document with the comments in the gaps of its outermost levels among its items and those of its nodes."""
+    levels: list[list[Comment]] = [[] for _ in range(GAP_DEPTH + 1)]
+    for depth, comment in _comments(text, gaps, lines):
+        levels[depth].append(comment)
+    if not any(levels):
+        return document
+    return document._replace(items=_woven(document.items, levels, 0, (0, 0), _END))
+
+
+def comment_text(token: str) -> str:
+    """The text of a comment, without its signs and the blanks around it."""
+    if token.startswith("#"):
+        return token[1:].strip()
+    return (token[2:] if token.startswith("//") else token[2:-2]).strip()
+
+
+def _comments(text: str, gaps: list[Gap], lines: Lines) -> Iterator[tuple[int, Comment]]:
+    """Every comment outside all blocks (0), directly in an outermost block (1), or in one of its nodes (2)."""
+    for start, end, depth in gaps:
+        for match in _COMMENT.finditer(text, start, end):
+            yield depth, Comment(comment_text(match[0]), *lines.place(match.start()))
+
+
+def _woven(items: tuple[Item, ...], levels: list[list[Comment]], depth: int, start: _Place, end: _Place) -> tuple[Item, ...]:
+    """The items of one block with the comments between two places; nodes with those of their own blocks."""
+    found: list[Item] = []
+    ends = [*(_place(item) or end for item in items[1:]), end]
+    for item, behind in zip(items, ends, strict=False):
+        place = _place(item)
+        if isinstance(item, Node) and place and any(_between(level, place, behind) for level in levels[depth + 1 :]):
+            item = item._replace(items=_woven(item.items, levels, depth + 1, place, behind))
+        found.append(item)
+    return tuple(_merged(found, list(_between(levels[depth], start, end))))
+
+
+def _between(comments: list[Comment], start: _Place, end: _Place) -> list[Comment]:
+    """The comments between two places; they are in order."""
+    return comments[bisect_left(comments, start, key=_place) : bisect_left(comments, end, key=_place)]
+
+
+def _merged(items: list[Item], comments: list[Comment]) -> list[Item]:
+    """Both in the order of their places; items without a place stay behind their predecessor."""
+    merged: list[Item] = []
+    rest = list(reversed(comments))
+    for item in items:
+        while rest and _place(item) and _place(rest[-1]) < _place(item):
+            merged.append(rest.pop())
+        merged.append(item)
+    return [*merged, *reversed(rest)]
+
+
+def _place(item: Item) -> tuple[int, int]:
+    return (item.line, item.column) if item.line else ()  # type: ignore[return-value]

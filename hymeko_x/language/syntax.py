@@ -1,4 +1,4 @@
-"""The syntax tree of the HyMeKo language: what a text says before anybody knows what it means.
+"""The syntax tree of the HyMeKo language: the items of a text before their meaning is known.
 
 Plain named tuples, because a large robot has many of them. Lines and columns are one-based.
 """
@@ -6,6 +6,8 @@ Plain named tuples, because a large robot has many of them. Lines and columns ar
 from __future__ import annotations
 
 from typing import NamedTuple
+
+from hymeko_x.diagnostics import Origin
 
 
 class QuotedName(str):
@@ -41,7 +43,7 @@ class Expression(NamedTuple):
 
 
 class Query(NamedTuple):
-    """``<?>``: a value that is asked for."""
+    """``<?>``: a value that is left open."""
 
 
 class Parameter(NamedTuple):
@@ -128,3 +130,8 @@ class Document(NamedTuple):
 def is_list(value: Value | None) -> bool:
     """Whether the value is a list (and not a reference or a quantity, which are tuples as well)."""
     return type(value) is tuple
+
+
+def origin_of(item: Item, file: str) -> Origin:
+    """The place of an item in its file."""
+    return Origin(file, item.line or None, item.column or None)

@@ -23,9 +23,10 @@ from hymeko_x.formats.hymeko import (
 )
 from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir.mechanism import KINDS
-from hymeko_x.language.expand import MAX_ITEMS, standard_templates
+from hymeko_x.language.expansion import MAX_ITEMS
 from hymeko_x.language.expressions import CONSTANTS, FUNCTIONS
 from hymeko_x.language.machine import MAX_DEPTH
+from hymeko_x.language.templates import standard_templates
 from hymeko_x.language.units import BASE_UNITS
 from hymeko_x.source import Source
 

@@ -17,12 +17,11 @@ from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id
-from hymeko_x.language.comments import TOKENS
-from hymeko_x.language.expand import standard_templates
-from hymeko_x.language.generate import grammar_text, tables_text
+from hymeko_x.language.grammar import TOKENS, grammar_text, tables_text
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Field, Node, Query, Ref
+from hymeko_x.language.templates import standard_templates
 from hymeko_x.source import Source
 from hymeko_x.testing import DOCUMENTS
 

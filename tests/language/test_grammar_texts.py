@@ -11,7 +11,7 @@ from hypothesis.extra.lark import from_lark
 from lark import Lark
 
 from hymeko_x.diagnostics import Refusal
-from hymeko_x.language.generate import grammar_text
+from hymeko_x.language.grammar import grammar_text
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from tests.fuzz.cases import run

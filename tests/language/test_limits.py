@@ -14,7 +14,7 @@ from hymeko_x.backends.hymeko import write
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir.mechanism import Mechanism
-from hymeko_x.language import expand
+from hymeko_x.language import expansion
 from hymeko_x.language.expressions import ExpressionError, evaluate
 from hymeko_x.language.parser import parse
 from hymeko_x.source import Source
@@ -140,8 +140,8 @@ TYPES = "t0() : link {{ mass 1 }}\n" + _doubling("t{this}() : t{before}, t{befor
 
 @pytest.mark.parametrize("body", [ASSEMBLIES, TYPES], ids=["assemblies", "types"])
 def test_templates_that_double_forty_times_are_stopped(body: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(expand, "MAX_ITEMS", 2000)
-    monkeypatch.setattr(expand, "EACH", 0)
+    monkeypatch.setattr(expansion, "MAX_ITEMS", 2000)
+    monkeypatch.setattr(expansion, "EACH", 0)
     said = refusal_of("arm : robot {\n" + body.replace("{{", "{").replace("}}", "}") + "\n}")
     assert "error[HX007]: the templates make more than 2000 items" in said
 
@@ -149,22 +149,22 @@ def test_templates_that_double_forty_times_are_stopped(body: str, monkeypatch: p
 def test_templates_stop_at_the_bound_and_not_before(monkeypatch: pytest.MonkeyPatch) -> None:
     """The assembly takes one for itself and one for each item, and each item three: itself, and its template with one field."""
     text = "arm : robot {{ part() : link {{ mass 1 }} parts() : assembly {{ {} }} all : parts {{}} }}"
-    monkeypatch.setattr(expand, "MAX_ITEMS", 41)
-    monkeypatch.setattr(expand, "EACH", 0)
+    monkeypatch.setattr(expansion, "MAX_ITEMS", 41)
+    monkeypatch.setattr(expansion, "EACH", 0)
     assert len(read_text(text.format(" ".join(f"p{number} : part {{}}" for number in range(10)))).graph.vertices) == 10
     said = refusal_of(text.format(" ".join(f"p{number} : part {{}}" for number in range(11))))
     assert "error[HX007]: the templates make more than 41 items" in said
 
 
 def test_elements_that_the_text_has_itself_may_have_types_however_many_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(expand, "MAX_ITEMS", 5)
+    monkeypatch.setattr(expansion, "MAX_ITEMS", 5)
     parts = " ".join(f"p{number} : part {{}}" for number in range(1000))
     assert len(read_text(f"arm : robot {{ part() : link {{ mass 1 }} {parts} }}").graph.vertices) == 1000
 
 
 def test_what_an_assembly_says_itself_is_bounded_by_the_text_alone(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(expand, "MAX_ITEMS", 5)
-    monkeypatch.setattr(expand, "EACH", 0)
+    monkeypatch.setattr(expansion, "MAX_ITEMS", 5)
+    monkeypatch.setattr(expansion, "EACH", 0)
     parts = " ".join(f"p{number} {{}}" for number in range(10))
     assert len(read_text(f"arm : robot {{ all : assembly {{ {parts} }} }}").graph.vertices) == 10
 
@@ -179,7 +179,7 @@ def test_the_bound_of_templates_is_far_above_a_large_robot() -> None:
     body = "segment() : assembly { body : link { mass 1 } @joint : revolute { + base - body limit [-90 90] } }\n"
     robot = read_text("snake : robot { base {}\n" + body + "\n".join(f"s{number} : segment {{}}" for number in range(2000)) + "}")
     assert len(robot.joints) == 2000
-    assert expand.MAX_ITEMS >= 200_000
+    assert expansion.MAX_ITEMS >= 200_000
 
 
 # ---- depth --------------------------------------------------------------------------------------------------------------------

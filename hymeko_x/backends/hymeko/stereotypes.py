@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from hymeko_x.backends.hymeko.parts import value_of
 from hymeko_x.factor.sets import candidates, common_words
 from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
-from hymeko_x.language.expand import standard_templates
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, Stereotype
+from hymeko_x.language.templates import standard_templates
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

@@ -22,8 +22,8 @@ from hymeko_x.frontends.hymeko.joints import read_dofs, read_joint, read_limits,
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
-from hymeko_x.language.excerpts import with_excerpt
-from hymeko_x.language.expand import Element, Expanded, expand
+from hymeko_x.language.errors import with_excerpt
+from hymeko_x.language.expansion import Element, Expanded, expand
 from hymeko_x.language.foreign import SECTION_COMMENT
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item

@@ -18,7 +18,7 @@ from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_list
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.block import Context
     from hymeko_x.frontends.hymeko.build import Build
-    from hymeko_x.language.expand import Element, Scope
+    from hymeko_x.language.expansion import Element, Scope
     from hymeko_x.language.syntax import Value
 
 _ROLES = {"visual": parts.Role.VISUAL, "collision": parts.Role.COLLISION, "shape": parts.Role.BOTH, "geometry": parts.Role.BOTH}

@@ -12,14 +12,14 @@ from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
 from hymeko_x.ir.parts import EdgePart, Weight, World
-from hymeko_x.language.expand import standard_templates
 from hymeko_x.language.syntax import ArcItem, QuotedName, is_list
+from hymeko_x.language.templates import standard_templates
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.block import Block, Context
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.language.expand import Element, Scope
+    from hymeko_x.language.expansion import Element, Scope
     from hymeko_x.language.syntax import Item, Ref
 
 _FEW = 8

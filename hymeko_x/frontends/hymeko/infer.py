@@ -9,7 +9,7 @@ from hymeko_x.ir.mechanism import KINDS
 from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName
 
 if TYPE_CHECKING:
-    from hymeko_x.language.expand import Element, Expanded
+    from hymeko_x.language.expansion import Element, Expanded
 
 _EDGES = {"+": 1, "<-": 1, "-": -1, "->": -1}
 _SPRING = frozenset({"spring_constant", "stiffness", "k"})

@@ -18,7 +18,7 @@ from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, Ref
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.build import Build
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.language.expand import Element, Scope
+    from hymeko_x.language.expansion import Element, Scope
     from hymeko_x.language.syntax import Item
 
 _BODIES = ("body", "world")

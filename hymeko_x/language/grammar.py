@@ -1,17 +1,20 @@
-"""Makes tables.json from hymeko.lark: lark checks the grammar and computes the LALR(1) table, and what reading needs is kept.
+"""The grammar hymeko.lark, and tables.json made from it: lark checks the grammar and computes the LALR(1) table of the machine.
 
-Run it after every change of the grammar: ``python -m hymeko_x.language.generate``. A test fails while it was not run.
+Run it after every change of the grammar: ``python -m hymeko_x.language.grammar``. A test fails while it was not run.
 """
 
 from __future__ import annotations
 
 import json
+import re
 from importlib.resources import files
 from typing import Any
 
-from lark import Lark
-from lark.grammar import Rule
-from lark.lexer import TerminalDef
+TOKENS = re.compile(
+    r'"""[\s\S]*?"""|"[^"\\]*(?:\\[\s\S][^"\\]*)*"|\'[^\'\\]*(?:\\[\s\S][^\'\\]*)*\'|`[^`\\\n]*(?:\\.[^`\\\n]*)*`'
+    r"|#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/|[{}\[\]()]"
+)
+"""Everything in which a bracket or comment sign means something else, comments, and brackets."""
 
 
 def grammar_text() -> str:
@@ -21,6 +24,10 @@ def grammar_text() -> str:
 
 def tables_text() -> str:
     """The content of tables.json for the grammar as it is now."""
+    from lark import Lark
+    from lark.grammar import Rule
+    from lark.lexer import TerminalDef
+
     lark = Lark(grammar_text(), parser="lalr", maybe_placeholders=False)
     data, memo = lark.memo_serialize([TerminalDef, Rule])
     machine = data["parser"]["parser"]
@@ -84,8 +91,6 @@ def _is_keyword(item: dict[str, Any]) -> bool:
 
 
 def _pattern(item: dict[str, Any]) -> str:
-    import re
-
     pattern = item["pattern"]
     return re.escape(pattern["value"]) if pattern["__type__"] == "PatternStr" else str(pattern["value"])
 

@@ -1,0 +1,184 @@
+"""A syntax tree expanded: templates, stereotypes and imports resolved to flat elements with plain values.
+
+An element keeps the types that it was made from and the scope in which its references are looked up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.language.expressions import fill, fill_text
+from hymeko_x.language.syntax import ArcItem, Comment, Document, Field, Import, Item, Node, QuotedName
+from hymeko_x.language.templates import MAX_DEPTH, Templates, defined_templates, is_definition, merge
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from hymeko_x.language.expressions import Environment
+    from hymeko_x.language.templates import Fetch
+MAX_ITEMS = 500_000
+"""Items that templates may add to a text: elements, fields, arcs and nested nodes."""
+EACH = 20
+"""How much more they may add for each element that the text has itself: a robot of 100,000 links may use as many types."""
+
+
+@dataclass(slots=True)
+class Scope:
+    """Where names are looked up: the elements of one assembly instance, inside those of its parent."""
+
+    prefix: str = ""
+    parent: Scope | None = None
+    elements: set[str] = field(default_factory=set)
+    scopes: dict[str, Scope] = field(default_factory=dict)
+
+    def full(self, name: str) -> str:
+        """The name of an element of this scope in the whole mechanism."""
+        return f"{self.prefix}{name}"
+
+    def resolve(self, path: tuple[str, ...]) -> str | None:
+        """The full name behind a path, looked up here and then outwards; None when there is none."""
+        return next(self.meanings(path), None)
+
+    def meanings(self, path: tuple[str, ...]) -> Iterator[str]:
+        """The full names that a path may mean, from here outwards: elements of different kinds may share a name."""
+        here: Scope | None = self
+        while here is not None:
+            found = here._inside(path)
+            if found is not None:
+                yield found
+            here = here.parent
+
+    def _inside(self, path: tuple[str, ...]) -> str | None:
+        scope = self
+        for step in path[:-1]:
+            if step not in scope.scopes:
+                return None
+            scope = scope.scopes[step]
+        return scope.full(path[-1]) if path[-1] in scope.elements else None
+
+
+class Element(NamedTuple):
+    """A node or edge after expansion: full name, its node with plain values, its types from the nearest to the base."""
+
+    name: str
+    node: Node
+    types: tuple[str, ...]
+    scope: Scope
+
+
+class Statement(NamedTuple):
+    """A field or arc that stands in the root's block itself."""
+
+    item: Field | ArcItem | Comment
+    scope: Scope
+
+
+class Expanded(NamedTuple):
+    """A whole text, expanded: the root's name and types, and its elements and statements in order."""
+
+    name: str
+    types: tuple[str, ...]
+    items: tuple[Element | Statement, ...]
+    scope: Scope
+    root: str
+    preceding: tuple[Comment, ...] = ()
+    following: tuple[Comment, ...] = ()
+
+
+def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
+    """The elements of a text. ``fetch`` gives the bytes of an imported file, or None.
+
+    Raises: Refusal (HX061, HX063, HX064, HX040) at the place in the text.
+    """
+    preceding, document, following = _without_outer_comments(document)
+    header, roots, loose = _split(document)
+    definitions = defined_templates(document.items, roots, file, fetch)
+    templates = Templates(file, definitions, MAX_ITEMS + EACH * sum(len(node.items) for node in roots))
+    expansion = _Expansion(file, templates)
+    scope = Scope()
+    if len(roots) != 1 or loose:
+        found = expansion.elements([*loose, *roots], {}, scope)
+        return Expanded(header, (), tuple(found), scope, "", preceding, following)
+    root = roots[0]
+    preset = templates.preset(root, {})
+    found = expansion.elements(merge(preset.items, root.items), {}, scope)
+    return Expanded(header or root.name, preset.types, tuple(found), scope, root.name, preceding, following)
+
+
+def _without_outer_comments(document: Document) -> tuple[tuple[Comment, ...], Document, tuple[Comment, ...]]:
+    """The comments before the last item, the document without comments, and the comments behind it."""
+    numbers = [number for number, item in enumerate(document.items) if not isinstance(item, Comment)]
+    last = numbers[-1] if numbers else 0
+    preceding = tuple(item for item in document.items[:last] if isinstance(item, Comment))
+    following = tuple(item for item in document.items[last:] if isinstance(item, Comment))
+    return preceding, document._replace(items=tuple(document.items[number] for number in numbers)), following
+
+
+def _split(document: Document) -> tuple[str, list[Node], list[Item]]:
+    """The header name, the root nodes, and the items beside them."""
+    header = document.header
+    roots: list[Node] = []
+    loose: list[Item] = []
+    for position, item in enumerate(document.items):
+        if position == 0 and isinstance(item, Field) and item.value is None:
+            header = item.name
+        elif is_definition(item):
+            continue
+        elif isinstance(item, Node) and not item.edge:
+            roots.append(item)
+        else:
+            loose.append(item)
+    settings = [node for node in roots if node.name == "units" and not isinstance(node.name, QuotedName)]
+    bodies = [node for node in roots if node not in settings]
+    if len(bodies) == 1 and not loose:
+        return header, [bodies[0]._replace(items=(*settings, *bodies[0].items))], []
+    return header, roots, loose
+
+
+class _Expansion:
+    """The elements of blocks, with those of the assemblies in them."""
+
+    def __init__(self, file: str, templates: Templates) -> None:
+        self._file = file
+        self._templates = templates
+
+    def elements(
+        self, items: Sequence[Item], environment: Environment, scope: Scope, depth: int = 0, *, made: bool = False
+    ) -> Iterator[Element | Statement]:
+        """The elements of a block, with those of the assemblies in it in their place. ``made``: a template put them there."""
+        for item in items:
+            if is_definition(item):
+                continue
+            if isinstance(item, Node):
+                yield from self._element(item, environment, scope, depth, made=made)
+            else:
+                yield Statement(fill(item, environment, self._file), scope)  # type: ignore[arg-type]
+
+    def _element(self, node: Node, environment: Environment, scope: Scope, depth: int, *, made: bool) -> Iterator[Element | Statement]:
+        if made:
+            self._templates.count(node, 1)
+        name = fill_text(node.name, environment, node, self._file)
+        preset = self._templates.preset(node, environment)
+        merged = merge(preset.items, node.items)
+        if "assembly" in preset.types:
+            yield from self._assembly(node, name, merged, environment, scope, depth, made=made)
+            return
+        scope.elements.add(name)
+        plain = tuple(
+            fill(self._templates.refine(item, environment), environment, self._file) for item in merged if not isinstance(item, Import)
+        )
+        yield Element(scope.full(name), node._replace(name=name, items=plain, stereotypes=()), preset.types, scope)
+
+    def _assembly(
+        self, node: Node, name: str, items: tuple[Item, ...], environment: Environment, scope: Scope, depth: int, *, made: bool
+    ) -> Iterator[Element | Statement]:
+        """The elements of an assembly: its own nodes and comments, and the nodes of its template. One of the same name is continued."""
+        if depth > MAX_DEPTH:
+            hint = "an assembly that holds an instance of itself never ends"
+            raise self._templates.refuse(node, f"'{name}' is nested more than {MAX_DEPTH} levels deep", hint)
+        inner = scope.scopes.setdefault(name, Scope(f"{scope.full(name)}_", scope))
+        own = set(map(id, node.items))
+        for item in items:
+            if isinstance(item, Node) or (isinstance(item, Comment) and id(item) in own):
+                yield from self.elements([item], environment, inner, depth + 1, made=made or id(item) not in own)

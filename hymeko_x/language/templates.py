@@ -1,0 +1,241 @@
+"""Templates and stereotypes: the definitions of a text and of its imports, and the items that the types of a node preset."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from importlib.resources import files
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.language.expressions import fill, fill_value
+from hymeko_x.language.parser import parse
+from hymeko_x.language.syntax import ArcItem, Field, Import, Item, Node, Quantity, QuotedName, Ref, Stereotype, Value, origin_of
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Refusal
+    from hymeko_x.language.expressions import Environment
+
+MAX_DEPTH = 64
+"""Templates in templates, and assemblies in assemblies."""
+MAX_IMPORTS = 200
+
+Fetch = Callable[[str], bytes | None]
+_Imported = dict[str, dict[str, Node] | None]  # the definitions of each file; None while it is being read
+
+
+@cache
+def standard_templates() -> Mapping[str, Node]:
+    """The types of the standard vocabulary by name."""
+    text = files("hymeko_x.language").joinpath("std/kinematics.hymeko").read_text(encoding="utf-8")
+    return {item.name: item for item in parse(text, "std/kinematics.hymeko").items if isinstance(item, Node)}
+
+
+# ---- definitions ---------------------------------------------------------------------------------------------------------
+
+
+def is_definition(item: Item) -> bool:
+    """Whether an item defines a template, or imports some, and is no element itself."""
+    return isinstance(item, Import) or (isinstance(item, Node) and item.parameters is not None)
+
+
+def defined_templates(items: tuple[Item, ...], roots: list[Node], file: str, fetch: Fetch) -> dict[str, Node]:
+    """The standard types, those of imported files (also by alias and name), of the roots, and of the text itself.
+
+    Raises: Refusal (HX060, HX063, HX040, HX007) at the import.
+    """
+    templates = dict(standard_templates())
+    _import(items, file, fetch, templates, {})
+    for node in roots:
+        templates.update(_definitions(node.items))
+    return templates | _definitions(items)
+
+
+def _definitions(items: tuple[Item, ...]) -> dict[str, Node]:
+    return {item.name: item for item in items if isinstance(item, Node) and item.parameters is not None}
+
+
+def _import(items: tuple[Item, ...], file: str, fetch: Fetch, templates: dict[str, Node], seen: _Imported) -> None:
+    """Add the definitions of imported files: by name, and by alias and name."""
+    for item in items:
+        if not isinstance(item, Import) or item.path.startswith("std/") or item.path == "std":
+            continue
+        origin = origin_of(item, file)
+        if item.path not in seen:
+            seen[item.path] = None
+            seen[item.path] = _imported(item.path, fetch, templates, seen, origin)
+        found = seen[item.path]
+        if found is None:
+            raise refuse(codes.BAD_TEMPLATE, f"the import of '{item.path}' leads back to itself", origin)
+        templates.update(found)
+        if item.alias:
+            templates.update({f"{item.alias}.{name}": node for name, node in found.items()})
+
+
+def _imported(path: str, fetch: Fetch, templates: dict[str, Node], seen: _Imported, origin: Origin) -> dict[str, Node]:
+    """The definitions of one imported file, after those of its own imports."""
+    if len(seen) > MAX_IMPORTS:
+        raise refuse(codes.TOO_LARGE, f"more than {MAX_IMPORTS} files are imported", origin)
+    data = fetch(path)
+    if data is None:
+        raise refuse(codes.UNDEFINED_REFERENCE, f"the imported file '{path}' was not found", origin)
+    items = parse(decode(data, path), path).items
+    _import(items, path, fetch, templates, seen)
+    return _definitions(items)
+
+
+def decode(data: bytes, name: str) -> str:
+    """The text of a file.
+
+    Raises: Refusal (HX060) for bytes that are not UTF-8.
+    """
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise refuse(codes.SYNTAX, f"byte {error.start} is not UTF-8", Origin(name)) from error
+
+
+# ---- types ---------------------------------------------------------------------------------------------------------------
+
+
+class Preset(NamedTuple):
+    """The types of a node, from the nearest to the base, and the items that they preset."""
+
+    types: tuple[str, ...] = ()
+    items: tuple[Item, ...] = ()
+
+
+class Templates:
+    """The templates of one text, and how many items they have made."""
+
+    def __init__(self, file: str, templates: Mapping[str, Node], most: int) -> None:
+        self._file = file
+        self._templates = templates
+        self._most = most
+        self._made = 0
+
+    def count(self, node: Node, items: int) -> None:
+        """Count items that a template makes.
+
+        Raises: Refusal (HX007) when there are too many.
+        """
+        self._made += items
+        if self._made > self._most:
+            raise refuse(codes.TOO_LARGE, f"the templates make more than {self._most} items", origin_of(node, self._file))
+
+    def preset(self, node: Node, environment: Environment) -> Preset:
+        """All types of a node merged, the first one strongest, with their parameters filled in.
+
+        Raises: Refusal (HX061, HX063, HX064) at the node.
+        """
+        result = Preset()
+        for stereotype in node.stereotypes:
+            result = _combined(result, self._applied(stereotype, environment, node, ()))
+        return result
+
+    def refine(self, item: Item, environment: Environment) -> Item:
+        """A node inside an element, such as a shape, with the items of those of its types that the text defines."""
+        standard = standard_templates()
+        if not isinstance(item, Node) or all(
+            kind.ref.dotted in standard or kind.ref.dotted not in self._templates for kind in item.stereotypes
+        ):
+            return item
+        return item._replace(items=merge(self.preset(item, environment).items, item.items), stereotypes=())
+
+    def _applied(self, stereotype: Stereotype, environment: Environment, node: Node, chain: tuple[str, ...]) -> Preset:
+        name, preset = self._find(stereotype.ref, node)
+        if name in chain or len(chain) > MAX_DEPTH:
+            raise self.refuse(node, f"the template '{name}' applies itself: {' -> '.join([*chain, name])}")
+        template = self._templates[name]
+        if template is not standard_templates().get(name):
+            self.count(node, 1 + len(template.items))
+        inner = self._bind(template, stereotype, environment, node)
+        base = Preset()
+        for parent in template.stereotypes:
+            base = _combined(base, self._applied(parent, inner, node, (*chain, name)))
+        own = tuple(fill(_named_class(item, name), inner, self._file) for item in template.items)
+        return Preset((name, *base.types), (*merge(base.items, own), *preset))
+
+    def _find(self, ref: Ref, node: Node) -> tuple[str, tuple[Item, ...]]:
+        """The template's name behind a type, and the ``type`` preset of a dotted one (``sensor.imu``)."""
+        dotted = ref.dotted
+        if dotted in self._templates:
+            return dotted, ()
+        path = ref.path[1:] if len(ref.path) > 1 and ref.path[0] not in self._templates else ref.path
+        if ".".join(path) in self._templates:
+            return ".".join(path), ()
+        if len(path) == 2 and path[0] in self._templates:
+            return path[0], (Field("type", path[1]),)
+        from difflib import get_close_matches
+
+        near = get_close_matches(dotted, self._templates, n=3)
+        hint = f"did you mean {' or '.join(near)}?" if near else "the vocabulary is listed in the language reference"
+        message = f"'{node.name}' has the type '{dotted}', which is not known"
+        raise refuse(codes.UNKNOWN_TYPE, message, origin_of(node, self._file), hint=hint)
+
+    def _bind(self, template: Node, stereotype: Stereotype, environment: Environment, node: Node) -> Environment:
+        """The parameters of a template with the values of one application."""
+        given = dict(stereotype.arguments or ())
+        names = ", ".join(parameter.name for parameter in template.parameters or ())
+        bound: dict[str, float | str] = {}
+        for parameter in template.parameters or ():
+            scope = environment if parameter.name in given else bound
+            value = given.pop(parameter.name, parameter.default)
+            if value is None:
+                message = f"'{node.name}' applies '{template.name}' without its parameter '{parameter.name}'"
+                raise self.refuse(node, message, f"it has the parameters {names}")
+            bound[parameter.name] = self._scalar(parameter.name, value, scope, node)
+        if given:
+            unknown = ", ".join(f"'{name}'" for name in given)
+            message = f"'{node.name}' gives '{template.name}' the unknown parameter {unknown}; it has {names or 'no parameters'}"
+            raise self.refuse(node, message)
+        return bound
+
+    def _scalar(self, name: str, value: Value, environment: Environment, node: Node) -> float | str:
+        plain = fill_value(value, environment, node, self._file)
+        if isinstance(plain, float | str):
+            return plain
+        if isinstance(plain, Ref) and len(plain.path) == 1:
+            return plain.path[0]
+        hint = "pass a plain number in the unit of the field that uses it" if isinstance(plain, Quantity) else ""
+        raise self.refuse(node, f"the parameter '{name}' takes a number or a text", hint)
+
+    def refuse(self, node: Node, message: str, hint: str = "") -> Refusal:
+        """A refusal (HX063) at a node."""
+        return refuse(codes.BAD_TEMPLATE, message, origin_of(node, self._file), hint=hint)
+
+
+def _named_class(item: Item, name: str) -> Item:
+    """The field ``class`` without a value means the template's own name."""
+    return item._replace(value=name) if isinstance(item, Field) and item.name == "class" and item.value is None else item
+
+
+# ---- merging -------------------------------------------------------------------------------------------------------------
+
+
+def _combined(strong: Preset, weak: Preset) -> Preset:
+    """The presets of two types of one element: the first one wins."""
+    return Preset(tuple(dict.fromkeys((*strong.types, *weak.types))), merge(weak.items, strong.items))
+
+
+def merge(base: tuple[Item, ...], own: tuple[Item, ...]) -> tuple[Item, ...]:
+    """The items of a type with those of its instance: a field given again takes the place of the preset, all else is added."""
+    if not base:
+        return own
+    given = {slot: item for item in own if (slot := _slot(item)) is not None}
+    replaced = [(_slot(item), item) for item in base]
+    used = {slot for slot, _ in replaced} & set(given)
+    merged = [given[slot] if slot is not None and slot in given else item for slot, item in replaced]
+    return (*merged, *(item for item in own if _slot(item) not in used))
+
+
+def _slot(item: Item) -> str | None:
+    """The name of a field or the role of an arc; None for items of which there may be many."""
+    match item:
+        case Field(name=name, value=value) if value is not None:
+            return f"`{name}" if isinstance(name, QuotedName) else name
+        case ArcItem(role=role) if role:
+            return role
+        case _:
+            return None
