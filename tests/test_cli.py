@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from hymeko_x import codes
-from hymeko_x.cli import VERBS, exits, guard, main, terminal
-from hymeko_x.cli.losses import lines
+from hymeko_x.cli import VERBS, exits, main, terminal
+from hymeko_x.cli.terminal import loss_lines as lines
 from hymeko_x.compare.ledger import Loss
 from hymeko_x.diagnostics import Diagnostic, Origin, Severity, refuse
 
@@ -63,9 +63,9 @@ def test_an_unknown_option_is_a_usage_error(capsys: pytest.CaptureFixture[str]) 
 def test_formats_prints_the_table(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["formats"]) == exits.DONE
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0].split() == ["format", "read", "write", "suffixes", "title"]
-    assert lines[1].split()[:5] == ["hymeko", "yes", "yes", ".hymeko", ".himeko"]
-    assert lines[2].split()[:4] == ["urdf", "yes", "yes", ".urdf"]
+    assert lines[0].split() == ["format", "read", "write", "verify", "suffixes", "title"]
+    assert lines[1].split()[:6] == ["hymeko", "yes", "yes", "yes", ".hymeko", ".himeko"]
+    assert lines[2].split()[:5] == ["urdf", "yes", "yes", "yes", ".urdf"]
 
 
 def test_formats_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
@@ -77,6 +77,7 @@ def test_formats_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
         "suffixes": [".urdf"],
         "read": True,
         "write": True,
+        "verify": True,
     }
 
 
@@ -135,13 +136,13 @@ def test_a_refusal_is_one_diagnostic_and_exit_1(capsys: pytest.CaptureFixture[st
     def body() -> int:
         raise refuse(codes.CANNOT_READ, "cannot be read: No such file", Origin("a.urdf", 3), hint="look again")
 
-    assert guard.run("import", body) == exits.FAILED
+    assert exits.guarded("import", body) == exits.FAILED
     assert capsys.readouterr().err == "a.urdf:3: error[HX001]: cannot be read: No such file\n  hint: look again\n"
 
 
 def test_a_bug_is_one_diagnostic_with_its_place_and_exit_70(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("HYMEKO_X_DEBUG", raising=False)
-    assert guard.run("import", lambda: len(terminal.render(None, True))) == exits.BUG  # type: ignore[arg-type]
+    assert exits.guarded("import", lambda: len(terminal.render(None, True))) == exits.BUG  # type: ignore[arg-type]
     said = capsys.readouterr().err
     assert said.startswith("error[HX901]: AttributeError at cli/terminal.py:")
     assert "Traceback" not in said
@@ -150,19 +151,21 @@ def test_a_bug_is_one_diagnostic_with_its_place_and_exit_70(capsys: pytest.Captu
 def test_a_bug_shows_its_traceback_to_whoever_asks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HYMEKO_X_DEBUG", "1")
     with pytest.raises(ZeroDivisionError):
-        guard.run("import", lambda: 1 // 0)
+        exits.guarded("import", lambda: 1 // 0)
 
 
 def test_an_interrupt_is_silent(capsys: pytest.CaptureFixture[str]) -> None:
     def body() -> int:
         raise KeyboardInterrupt
 
-    assert guard.run("import", body) == exits.INTERRUPTED
+    assert exits.guarded("import", body) == exits.INTERRUPTED
     assert capsys.readouterr().err == ""
 
 
 def test_a_reader_that_leaves_early_is_no_error() -> None:
-    program = "import sys; from hymeko_x.cli import guard; sys.exit(guard.run('x', lambda: [print('y' * 99) for _ in range(10000)] and 0))"
+    program = (
+        "import sys; from hymeko_x.cli import exits; sys.exit(exits.guarded('x', lambda: [print('y' * 99) for _ in range(10000)] and 0))"
+    )
     run = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=Path(__file__).parents[1])
     assert run.stdout is not None
     assert run.stderr is not None

@@ -1,11 +1,10 @@
-"""The command line: a table of verbs, each in a module of its own that is loaded when it is used.
+"""The command line: a table of verbs, with the modules that are loaded when they are used.
 
 Data goes to standard output, words to standard error. Exit codes are in :mod:`hymeko_x.cli.exits`.
 """
 
 from __future__ import annotations
 
-import os
 import sys
 from importlib import import_module
 from typing import TYPE_CHECKING
@@ -16,20 +15,20 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 VERBS = {
-    "import": ("hymeko_x.cli.import_", "read any format, print HyMeKo"),
-    "export": ("hymeko_x.cli.export", "read HyMeKo (standard input by default), write another format"),
+    "import": ("hymeko_x.cli.convert", "read any format, print HyMeKo"),
+    "export": ("hymeko_x.cli.convert", "read HyMeKo (standard input by default), write another format"),
     "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
-    "diff": ("hymeko_x.cli.diff", "what differs between two robots, element by element"),
-    "verify": ("hymeko_x.cli.verify", "are two files the same robot? asked of the formats' own engines"),
-    "roundtrip": ("hymeko_x.cli.roundtrip", "through other formats and back, every leg verified"),
-    "check": ("hymeko_x.cli.check", "is a robot complete and sane? for people and for repair loops"),
+    "diff": ("hymeko_x.cli.compare", "what differs between two robots, element by element"),
+    "verify": ("hymeko_x.cli.compare", "are two files the same robot? asked of the formats' own engines"),
+    "roundtrip": ("hymeko_x.cli.compare", "through other formats and back, every leg verified"),
+    "check": ("hymeko_x.cli.info", "is a robot complete and sane? for people and for repair loops"),
     "dh": ("hymeko_x.cli.dh", "Denavit-Hartenberg tables: standard, modified, Hayati-Roberts"),
     "info": ("hymeko_x.cli.info", "what is in a file"),
-    "formats": ("hymeko_x.cli.formats", "the formats that can be read and written"),
-    "explain": ("hymeko_x.cli.explain", "what a code such as HX044 means"),
+    "formats": ("hymeko_x.cli.info", "the formats that can be read and written"),
+    "explain": ("hymeko_x.cli.info", "what a code such as HX044 means"),
     "corpus": ("hymeko_x.cli.corpus", "real robots from published packages: fetch, list, run, stats"),
 }
-"""Verb -> module with ``arguments(parser)`` and ``run(arguments) -> exit code``, and what it does in a few words."""
+"""Verb -> module with ``VERB_arguments(parser)`` and ``run_VERB(arguments) -> exit code``, and what the verb does in a few words."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -42,9 +41,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return exits.DONE if words else exits.USAGE
     if words[0] not in VERBS:
         return _unknown_verb(words[0])
-    from hymeko_x.cli import guard
-
-    return guard.run(words[0], lambda: _run_verb(words[0], words[1:]))
+    return exits.guarded(words[0], lambda: _run_verb(words[0], words[1:]))
 
 
 def _run_verb(verb: str, words: list[str]) -> int:
@@ -55,8 +52,8 @@ def _run_verb(verb: str, words: list[str]) -> int:
     module_name, summary = VERBS[verb]
     module = import_module(module_name)
     parser = argparse.ArgumentParser(f"hymeko-x {verb}", description=f"{summary[0].upper()}{summary[1:]}.", allow_abbrev=False)
-    module.arguments(parser)
-    code: int = module.run(parser.parse_args(words))
+    getattr(module, f"{verb}_arguments")(parser)
+    code: int = getattr(module, f"run_{verb}")(parser.parse_args(words))
     sys.stdout.flush()
     return code
 
@@ -84,8 +81,3 @@ def _print_version() -> int:
     except PackageNotFoundError:
         print("hymeko-x (running from a checkout that is not installed)")
     return exits.DONE
-
-
-def debugging() -> bool:
-    """Whether the user wants to see tracebacks: HYMEKO_X_DEBUG is set."""
-    return bool(os.environ.get("HYMEKO_X_DEBUG"))

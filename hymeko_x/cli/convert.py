@@ -1,35 +1,88 @@
-"""`hymeko-x convert IN OUT`: any format -> any format, with its meshes, and what got lost."""
+"""`hymeko-x import`, `export` and `convert`: read a robot, write it in a format, report, and return the exit code."""
 
 from __future__ import annotations
 
+import os
 import sys
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from hymeko_x import formats
+from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.cli import exits
-from hymeko_x.cli.guard import UsageError
+from hymeko_x.cli.compare import CODES, engine_arguments, verdict_lines, verdict_of
+from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, read_input
-from hymeko_x.cli.outputs import Output, deliver, output_arguments
-from hymeko_x.cli.verify import verify_arguments
-from hymeko_x.diagnostics import Report
+from hymeko_x.cli.terminal import show, show_losses
+from hymeko_x.delivery import Delivery
+from hymeko_x.diagnostics import Report, Severity
+from hymeko_x.rewrite import Options
+from hymeko_x.source import NoFiles, Package
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Iterable
+
+    from hymeko_x.cli.inputs import Input
+    from hymeko_x.compare.ledger import Loss
+    from hymeko_x.formats import Format
+    from hymeko_x.pipeline import Result
+
+FAIL_ON = ("error", "loss", "warning")
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """The verb's own words."""
+class Output(NamedTuple):
+    """Where the result goes: its format, and a path (`-` is standard output)."""
+
+    format: Format
+    path: str
+
+
+def import_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `import`."""
+    parser.add_argument("input", metavar="FILE", help="the robot to read; - is standard input")
+    parser.add_argument("-o", "--output", default="-", metavar="OUT.hymeko", help="where to write (default: standard output)")
+    input_arguments(parser)
+    _output_arguments(parser)
+
+
+def run_import(chosen: argparse.Namespace) -> int:
+    """Read the file and print it as HyMeKo, which represents everything: losses are measured only on request."""
+    report = Report()
+    given = read_input(chosen.input, chosen, report)
+    return _deliver(given, Output(formats.OWN, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))
+
+
+def export_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `export`."""
+    parser.add_argument("input", nargs="?", default="-", metavar="FILE", help="the robot to read (default: standard input)")
+    parser.add_argument("--to", dest="to_format", metavar="FORMAT", help="the format to write, where the output's suffix does not tell")
+    parser.add_argument("-o", "--output", default="-", metavar="OUT", help="where to write (default: standard output)")
+    input_arguments(parser)
+    _output_arguments(parser)
+
+
+def run_export(chosen: argparse.Namespace) -> int:
+    """Read HyMeKo and write the wanted format."""
+    if chosen.to_format is None and chosen.output == "-":
+        raise UsageError("say which format to write: --to FORMAT, or -o FILE with its suffix")
+    format = formats.of_output(chosen.output, chosen.to_format)
+    report = Report()
+    return _deliver(read_input(chosen.input, chosen, report), Output(format, chosen.output), chosen, report)
+
+
+def convert_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `convert`."""
     parser.add_argument("input", metavar="IN", help="the robot to read; - is standard input")
     parser.add_argument("output", metavar="OUT", help="where to write; its suffix tells the format; - is standard output")
     parser.add_argument("--to", dest="to_format", metavar="FORMAT", help="the format to write, where the output's suffix does not tell")
     parser.add_argument("--json", action="store_true", help="print diagnostics and losses as JSON to standard output")
     input_arguments(parser)
-    output_arguments(parser)
+    _output_arguments(parser)
     parser.add_argument("--verify", action="store_true", help="ask the formats' own engines whether it is the same robot; else exit 4")
-    verify_arguments(parser)
+    engine_arguments(parser)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run_convert(chosen: argparse.Namespace) -> int:
     """Convert one file."""
     if chosen.output == "-" and not chosen.to_format:
         raise UsageError("say which format to write to standard output: --to FORMAT")
@@ -39,14 +92,98 @@ def run(chosen: argparse.Namespace) -> int:
         raise UsageError("--verify reads the files again with other engines, so that neither can be a pipe")
     format = formats.of_output(chosen.output, chosen.to_format)
     report = Report()
-    code = deliver(read_input(chosen.input, chosen, report), Output(format, chosen.output), chosen, report)
-    return verified(chosen.input, chosen.output, chosen) if chosen.verify and code == exits.DONE else code
+    code = _deliver(read_input(chosen.input, chosen, report), Output(format, chosen.output), chosen, report)
+    return _verified(chosen.input, chosen.output, chosen) if chosen.verify and code == exits.DONE else code
 
 
-def verified(before: str, after: str, chosen: argparse.Namespace) -> int:
+def _verified(before: str, after: str, chosen: argparse.Namespace) -> int:
     """Say what the formats' own engines think of source and result; exit 4 when they see different robots."""
-    from hymeko_x.cli import verify
+    verdict = verdict_of(before, after, chosen)
+    print("\n".join(verdict_lines(verdict, coloured=False, brief=True)), file=sys.stderr)
+    return CODES[verdict.verdict]
 
-    verdict = verify.verdict_of(before, after, chosen)
-    print("\n".join(verify.lines(verdict, coloured=False, brief=True)), file=sys.stderr)
-    return verify.CODES[verdict.verdict]
+
+# ---- writing -----------------------------------------------------------------------------------------------------------
+
+
+def _output_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of every verb that writes a robot."""
+    parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the source leaves open")
+    parser.add_argument("--actuators", choices=("none", "motor", "position", "velocity"), help="the actuators to write")
+    parser.add_argument("--assets", choices=("copy", "reference"), help="put meshes beside the output, or refer to them where they are")
+    layouts = "USD: one file, or an interface with files for geometry, materials and physics behind it"
+    parser.add_argument("--layout", choices=("single", "layered"), help=layouts)
+    parser.add_argument("--nested", action="store_true", default=None, help="USD: put each body inside of its parent")
+    parser.add_argument("--pure", action="store_true", help="write no residue of what the format cannot say itself")
+    parser.add_argument("--split", action="store_true", help="xacro: put the macros into a file of their own")
+    parser.add_argument("--report", metavar="FILE.json", help="write diagnostics and losses to a file")
+    parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
+
+
+def _deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Report, *, measured: bool = True) -> int:
+    """Write the mechanism that was read, say what there is to say, and return the exit code.
+
+    With ``measured`` the result is read back and its losses are listed.
+    """
+    path = "" if output.path == "-" else output.path
+    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, Path(path).stem)
+    delivery = Delivery(given.mechanism, output.format, options, given.source.files, _place(output, chosen.assets), path)
+    result = delivery.convert(report, measured=measured)
+    beside = [*result.package.files, *result.package.copies]
+    if output.path == "-" and beside:
+        names = ", ".join(beside[:3]) + (f" and {len(beside) - 3} more" if len(beside) > 3 else "")
+        report.warn(codes.ASSET_NOT_WRITTEN, f"standard output cannot carry {names}", hint="-o FILE writes them beside the file")
+    failed = is_reached(chosen.fail_on, report, result.losses)
+    if not failed:
+        _write(delivery, output, result)
+    show(report)
+    show_losses(result.losses or ())
+    wants_json = getattr(chosen, "json", False)
+    document = as_json(given, output, report, result.losses) if chosen.report or wants_json else ""
+    if chosen.report:
+        disk.write_package(Package(f"{document}\n".encode()), chosen.report, NoFiles())
+    if wants_json:
+        print(document)
+    return exits.FAIL_ON if failed else exits.DONE
+
+
+def _place(output: Output, assets: Literal["copy", "reference"] | None) -> pipeline.Place:
+    """Beside standard output nothing can be put, so that files are referred to from the working folder."""
+    if output.path == "-":
+        return pipeline.Place(assets="reference")
+    return pipeline.Place(os.path.dirname(output.path) or ".", assets)
+
+
+def _write(delivery: Delivery, output: Output, result: Result) -> None:
+    if output.path == "-":
+        sys.stdout.buffer.write(result.package.main)
+    else:
+        delivery.put(result)
+
+
+def as_json(given: Input, output: Output, report: Report, losses: Iterable[Loss] | None) -> str:
+    """The document of `--report` and of `convert --json`."""
+    import json
+
+    document = {
+        "source": {"path": given.source.name, "format": given.format.name},
+        "target": {"path": output.path, "format": output.format.name},
+        "diagnostics": [diagnostic.as_json() for diagnostic in report],
+        "losses": [loss.as_json() for loss in losses or ()],
+    }
+    return json.dumps(document, indent=2, ensure_ascii=False)
+
+
+def is_reached(threshold: str | None, report: Report, losses: tuple[Loss, ...] | None) -> bool:
+    """Whether something at least as bad as the threshold happened; an error is worse than a loss, and that than a warning.
+
+    Where nothing could be measured, what the writer said it could not say counts as a loss.
+    """
+    if threshold is None:
+        return False
+    happened = {
+        "error": report.worst == Severity.ERROR,
+        "loss": any(loss.fate != "carried" for loss in losses or ()) or any(said.code == codes.NOT_SAID for said in report),
+        "warning": report.worst == Severity.WARNING,
+    }
+    return any(happened[level] for level in FAIL_ON[: FAIL_ON.index(threshold) + 1])

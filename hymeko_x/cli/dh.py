@@ -20,8 +20,8 @@ _EXACT = 1e-9
 _DUST = 1e-9  # in rad and m; --json has all digits
 
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """The verb's own words."""
+def dh_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `dh`."""
     parser.add_argument("input", metavar="FILE", help="a robot in any format")
     conventions = ("standard", "modified", "hayati")
     parser.add_argument("--convention", choices=conventions, default="standard", help="how the numbers are grouped (default standard)")
@@ -31,7 +31,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     input_arguments(parser)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run_dh(chosen: argparse.Namespace) -> int:
     """Print one table per chain: a row per joint between two constant transformations. Angles in rad, lengths in m."""
     from hymeko_x.verify import dh, model_of
 

@@ -1,4 +1,15 @@
-"""The exit codes. Scripts rely on them."""
+"""The exit codes, on which scripts rely, and the guard: whatever happens inside a verb ends here, as one code and one message."""
+
+from __future__ import annotations
+
+import os
+import sys
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from hymeko_x.diagnostics import Diagnostic
 
 DONE = 0
 FAILED = 1
@@ -12,3 +23,55 @@ TABLE = (
     "exit: 0 done; 1 input could not be read or output not written; 2 usage; 3 --fail-on reached;\n"
     "      4 a difference was found; 70 a bug of ours"
 )
+
+
+class UsageError(Exception):
+    """Options and arguments on the command line do not fit together."""
+
+
+def guarded(verb: str, body: Callable[[], int]) -> int:
+    """Run a verb's body; return its exit code, or that of what went wrong. HYMEKO_X_DEBUG shows the traceback of a bug."""
+    from hymeko_x import codes
+    from hymeko_x.cli.terminal import show
+    from hymeko_x.diagnostics import Refusal
+
+    try:
+        return body()
+    except Refusal as refusal:
+        show([refusal.diagnostic])
+        return BUG if refusal.diagnostic.code == codes.BUG else FAILED
+    except UsageError as error:
+        print(f"hymeko-x {verb}: {error}", file=sys.stderr)
+        return USAGE
+    except BrokenPipeError:
+        return _reader_left()
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except Exception as error:
+        if os.environ.get("HYMEKO_X_DEBUG"):
+            raise
+        show([_bug(error)])
+        return BUG
+
+
+def _reader_left() -> int:
+    """The program that read our output has closed the pipe, which is no failure. Python must not flush into it at exit."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return DONE
+
+
+def _bug(error: Exception) -> Diagnostic:
+    import traceback
+
+    from hymeko_x import codes
+    from hymeko_x.diagnostics import Diagnostic, Severity
+
+    frames = traceback.extract_tb(error.__traceback__)
+    places = [f"{os.path.relpath(frame.filename, _our_folder())}:{frame.lineno}" for frame in frames if _our_folder() in frame.filename]
+    place = places[-1] if places else "an unknown place"
+    message = f"{type(error).__name__} at {place}: {error}".rstrip(": ")
+    return Diagnostic(codes.BUG, Severity.ERROR, message, hint="HYMEKO_X_DEBUG=1 shows the traceback; please report it with the input")
+
+
+def _our_folder() -> str:
+    return os.path.dirname(os.path.dirname(os.path.abspath(__file__)))

@@ -1,36 +1,42 @@
-"""`hymeko-x info FILE`: what is in a file."""
+"""`hymeko-x info`, `check`, `formats` and `explain`: what is in a file, whether it is sane, what can be read, and what a code means."""
 
 from __future__ import annotations
 
+import argparse
 import json
+import textwrap
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from hymeko_x import formats
 from hymeko_x.cli import exits
+from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, read_input
 from hymeko_x.cli.terminal import show
-from hymeko_x.diagnostics import Report
+from hymeko_x.codes import CODES
+from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import WORLD
 
 if TYPE_CHECKING:
-    import argparse
-
     from hymeko_x.cli.inputs import Input
     from hymeko_x.ir.mechanism import Id, Mechanism
 
+PROFILES = ("kinematics", "simulation", "display")
 COORDINATES = {parts.DofKind.BALL: 3, parts.DofKind.FREE: 6}
 """Degrees of freedom of the dofs that have more than one."""
 
+# ---- info --------------------------------------------------------------------------------------------------------------
 
-def arguments(parser: argparse.ArgumentParser) -> None:
-    """The verb's own words."""
+
+def info_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `info`."""
     parser.add_argument("input", metavar="FILE", help="the robot to look at; - is standard input")
     parser.add_argument("--json", action="store_true", help="print JSON")
     input_arguments(parser)
 
 
-def run(chosen: argparse.Namespace) -> int:
+def run_info(chosen: argparse.Namespace) -> int:
     """Print what is in the file."""
     report = Report()
     given = read_input(chosen.input, chosen, report)
@@ -91,3 +97,111 @@ def _text(value: object) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{count} {name}" if isinstance(count, int) else f"{name} ({count})" for name, count in value.items()) or "none"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+# ---- check -------------------------------------------------------------------------------------------------------------
+
+
+def check_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `check`."""
+    parser.add_argument("input", metavar="FILE", help="the robot to check; - is standard input")
+    parser.add_argument("--profile", action="append", choices=PROFILES, help="what it is for (repeatable; default: everything)")
+    parser.add_argument("--links", type=_count, metavar="N", help="how many links there should be")
+    parser.add_argument("--joints", type=_count, metavar="N", help="how many joints there should be")
+    parser.add_argument(
+        "--fail-on", choices=("error", "warning"), default="error", help="exit 3 when one of these was found (default error)"
+    )
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    input_arguments(parser)
+
+
+def run_check(chosen: argparse.Namespace) -> int:
+    """Print what is wrong; exit 3 when it is bad enough."""
+    from hymeko_x.validation import Declared, Profile, validate
+
+    report = Report()
+    given = read_input(chosen.input, chosen, report)
+    profiles = [Profile(word) for word in chosen.profile or PROFILES]
+    validate(given.mechanism, given.source.files, report, profiles, Declared(chosen.links, chosen.joints))
+    failed = report.worst in ((Severity.ERROR,) if chosen.fail_on == "error" else (Severity.ERROR, Severity.WARNING))
+    if chosen.json:
+        print(json.dumps(_check_json(given, report, passed=not failed), indent=2, ensure_ascii=False))
+    else:
+        show(report)
+        print(_summary(report))
+    return exits.FAIL_ON if failed else exits.DONE
+
+
+def _check_json(given: Input, report: Report, *, passed: bool) -> dict[str, object]:
+    """The document of `--json`; diagnostics have the keys of `convert --report`."""
+    source = {"path": given.source.name, "format": given.format.name}
+    return {"source": source, "passed": passed, "diagnostics": [diagnostic.as_json() for diagnostic in report]}
+
+
+def _summary(report: Report) -> str:
+    """How many of each severity there are."""
+    counts = {severity: sum(d.severity is severity for d in report) for severity in (Severity.ERROR, Severity.WARNING)}
+    if not any(counts.values()):
+        return "nothing is wrong"
+    return ", ".join(f"{count} {severity.value}{'s' if count != 1 else ''}" for severity, count in counts.items() if count)
+
+
+def _count(text: str) -> int:
+    if not text.isascii() or not text.isdigit():
+        raise argparse.ArgumentTypeError(f"expected a number, found '{text}'")
+    return int(text)
+
+
+# ---- formats and codes -------------------------------------------------------------------------------------------------
+
+
+def formats_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `formats`."""
+    parser.add_argument("--json", action="store_true", help="print JSON")
+
+
+def run_formats(chosen: argparse.Namespace) -> int:
+    """Print one line per format."""
+    rows = [
+        {
+            "name": row.name,
+            "title": row.title,
+            "suffixes": row.suffixes,
+            "read": row.frontend is not None,
+            "write": row.backend is not None,
+            "verify": row.reference is not None,
+        }
+        for row in formats.FORMATS
+    ]
+    if chosen.json:
+        print(json.dumps(rows, indent=2))
+        return exits.DONE
+    print(f"{'format':<8} {'read':<5} {'write':<6} {'verify':<7} {'suffixes':<18} title")
+    for row in formats.FORMATS:
+        can_read, can_write, can_verify = ("yes" if module else "no" for module in (row.frontend, row.backend, row.reference))
+        print(f"{row.name:<8} {can_read:<5} {can_write:<6} {can_verify:<7} {' '.join(row.suffixes):<18} {row.title}")
+    return exits.DONE
+
+
+def explain_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `explain`."""
+    parser.add_argument("code", nargs="?", metavar="CODE", help="a code such as HX044; without it all codes are listed")
+
+
+def run_explain(chosen: argparse.Namespace) -> int:
+    """Print the explanation of one code, or the titles of all."""
+    if chosen.code is None:
+        for code in sorted(CODES.values(), key=lambda code: code.id):
+            print(f"{code.id}  {code.title}")
+        return exits.DONE
+    found = CODES.get(_canonical(chosen.code))
+    if found is None:
+        raise UsageError(f"there is no code '{chosen.code}'; `hymeko-x explain` lists all")
+    print(f"{found.id}: {found.title}\n\n{textwrap.fill(found.explanation, 100)}")
+    return exits.DONE
+
+
+def _canonical(text: str) -> str:
+    """`hx44`, `44` and `HX044` are the same code."""
+    digits = text.strip().upper().removeprefix("HX")
+    return f"HX{digits.zfill(3)}"

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles, search_path
-from hymeko_x.cli.guard import UsageError
+from hymeko_x.cli.exits import UsageError
 from hymeko_x.source import Source
 
 if TYPE_CHECKING:

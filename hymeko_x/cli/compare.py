@@ -1,0 +1,232 @@
+"""`hymeko-x diff`, `verify` and `roundtrip`: robots compared by this program, and by the formats' own engines."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x import api, formats
+from hymeko_x.assets.resolve import search_path
+from hymeko_x.cli import exits
+from hymeko_x.cli.exits import UsageError
+from hymeko_x.cli.inputs import input_arguments, read_input
+from hymeko_x.cli.terminal import is_coloured, paint, show
+from hymeko_x.compare.diff import Tolerance, diff
+from hymeko_x.diagnostics import Report
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.cli.inputs import Input
+    from hymeko_x.compare.diff import Difference
+    from hymeko_x.formats import Format
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.verify.verdict import Check, Verdict
+
+CODES = {"same": exits.DONE, "different": exits.DIFFERENT, "not comparable": exits.FAILED}
+"""The exit code of each verdict."""
+_COLOURS = {"same": "32", "different": "31", "not comparable": "33"}
+
+# ---- diff --------------------------------------------------------------------------------------------------------------
+
+
+def diff_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `diff`."""
+    parser.add_argument("a", metavar="A", help="a robot in any format; - is standard input")
+    parser.add_argument("b", metavar="B", help="the robot to compare it with")
+    parser.add_argument("--tolerance", type=float, default=1e-12, metavar="T", help="numbers this close are equal (default 1e-12)")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    input_arguments(parser)
+
+
+def run_diff(chosen: argparse.Namespace) -> int:
+    """Print one line per difference; exit 4 if there is any."""
+    report = Report()
+    a, b = (read_input(path, chosen, report) for path in (chosen.a, chosen.b))
+    found = diff(a.mechanism, b.mechanism, Tolerance(chosen.tolerance, chosen.tolerance))
+    show(report)
+    print(json.dumps(_differences_json(a, b, found), indent=2, ensure_ascii=False)) if chosen.json else print_lines(found)
+    return exits.DIFFERENT if found else exits.DONE
+
+
+def print_lines(found: tuple[Difference, ...]) -> None:
+    """One line per difference."""
+    for difference in found:
+        print(difference)
+
+
+def _differences_json(a: Input, b: Input, found: tuple[Difference, ...]) -> dict[str, object]:
+    rows = [{"element": str(row.element), "field": row.field, "before": row.before, "after": row.after} for row in found]
+    names = {key: {"path": given.source.name, "format": given.format.name} for key, given in (("a", a), ("b", b))}
+    return {**names, "differences": rows}
+
+
+# ---- verify ------------------------------------------------------------------------------------------------------------
+
+
+def verify_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `verify`."""
+    parser.add_argument("a", metavar="A", help="a robot in any format")
+    parser.add_argument("b", metavar="B", help="the robot to compare it with")
+    engine_arguments(parser)
+    parser.add_argument("--match", choices=("name", "structure"), default="name", help="how to find each body's counterpart (default name)")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    input_arguments(parser)
+
+
+def engine_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of every verb that verifies."""
+    parser.add_argument("--samples", type=_samples, default=100, metavar="N", help="random configurations to compare at (default 100)")
+    parser.add_argument("--no-meshes", dest="meshes", action="store_false", help="do not read mesh files, which takes most of the time")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="where the random numbers start (default 0)")
+
+
+def run_verify(chosen: argparse.Namespace) -> int:
+    """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared."""
+    verdict = verdict_of(chosen.a, chosen.b, chosen, structure=chosen.match == "structure")
+    print(json.dumps(verdict.as_json(), indent=2, ensure_ascii=False) if chosen.json else "\n".join(verdict_lines(verdict)))
+    return CODES[verdict.verdict]
+
+
+def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = False) -> Verdict:
+    """The verdict about two files, with the options of :func:`engine_arguments` and of every verb that reads a robot."""
+    from hymeko_x.verify import verify
+
+    return verify(
+        a,
+        b,
+        samples=chosen.samples,
+        seed=chosen.seed,
+        structure=structure,
+        meshes=chosen.meshes,
+        packages=dict(chosen.package),
+        search_path=search_path(os.environ),
+        arguments=dict(chosen.arg),
+        variants=dict(chosen.variant),
+    )
+
+
+def verdict_lines(verdict: Verdict, *, coloured: bool | None = None, brief: bool = False) -> Iterator[str]:
+    """The verdict as text: the answer, a table of the checks (of those that failed, if ``brief``), and what was not compared."""
+    colour = is_coloured(sys.stdout) if coloured is None else coloured
+    yield _painted(_COLOURS[verdict.verdict], verdict.verdict, colour) + (f": {verdict.reason}" if verdict.reason else "")
+    if verdict.failed if brief else verdict.checks:
+        yield f"  {verdict.engines[0]}  |  {verdict.engines[1]}"
+        yield f"  {'':4} {'quantity':<32} {'worst':>9} {'allowed':>9} {'unit':<10} at"
+    for check in verdict.failed if brief else verdict.checks:
+        yield _line(check, colour)
+    for note in () if brief else verdict.not_compared:
+        yield f"  note: {note}"
+
+
+def _line(check: Check, colour: bool) -> str:
+    mark = _painted("32", "ok  ", colour) if check.passed else _painted("31", "FAIL", colour)
+    return f"  {mark} {check.quantity:<32} {check.worst:>9.3g} {check.allowed:>9.3g} {check.unit:<10} {check.at}".rstrip()
+
+
+def _painted(style: str, text: str, colour: bool) -> str:
+    return paint(style, text) if colour else text
+
+
+def _samples(text: str) -> int:
+    if not text.isascii() or not text.isdigit():
+        raise argparse.ArgumentTypeError(f"expected a number of configurations, found '{text}'")
+    return int(text)
+
+
+# ---- roundtrip ---------------------------------------------------------------------------------------------------------
+
+_TOLERANCE = Tolerance(1e-12, 1e-12)
+
+
+class Leg(NamedTuple):
+    """One conversion: into which format, how large the file is, what got lost on the way, and what the engines say."""
+
+    format: str
+    bytes: int
+    losses: int | None
+    differences: int
+    verdict: Verdict
+
+
+def roundtrip_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `roundtrip`."""
+    parser.add_argument("input", metavar="FILE", help="a robot in any format")
+    parser.add_argument("--through", default="all", metavar="F[,F...]", help="the formats on the way, in order (default: all others)")
+    parser.add_argument("--keep", metavar="DIR", help="keep the files of every leg in this folder")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    engine_arguments(parser)
+    input_arguments(parser)
+
+
+def run_roundtrip(chosen: argparse.Namespace) -> int:
+    """Print a row per leg; exit 4 when an engine sees another robot, 1 when one cannot tell."""
+    report = Report()
+    given = read_input(chosen.input, chosen, report)
+    stops = [*_stops(chosen.through, given.format), given.format]
+    show(report)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(chosen.keep or temporary)
+        folder.mkdir(parents=True, exist_ok=True)
+        legs = list(_legs(chosen, given.mechanism, stops, folder))
+    size = os.path.getsize(chosen.input)
+    if chosen.json:
+        print(json.dumps(_legs_json(chosen.input, given.format.name, size, legs), indent=2, ensure_ascii=False))
+    else:
+        print("\n".join(leg_lines(chosen.input, given.format.name, size, legs)))
+    verdicts = {leg.verdict.verdict for leg in legs}
+    if "different" in verdicts:
+        return exits.DIFFERENT
+    return exits.FAILED if "not comparable" in verdicts else exits.DONE
+
+
+def _stops(words: str, own: Format) -> list[Format]:
+    """The formats on the way. `all` are those that can be both written and read, except the file's own."""
+    if words == "all":
+        return [format for format in formats.FORMATS if format.backend and format.frontend and format.name != own.name]
+    stops = [formats.by_name(word) for word in words.split(",") if word]
+    if not stops:
+        raise UsageError("--through wants at least one format")
+    return stops
+
+
+def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], folder: Path) -> Iterator[Leg]:
+    """Converts from leg to leg; compares each result with the original, by our own eyes and by the engines'."""
+    packages = dict(chosen.package)
+    before = chosen.input
+    for number, format in enumerate(stops, start=1):
+        after = folder / f"leg{number}" / f"robot{format.suffixes[0]}"
+        after.parent.mkdir(exist_ok=True)
+        result = api.convert(before, after, to_format=format.name, packages=packages)
+        back = api.load(after, format.name, packages=packages)
+        losses = None if result.losses is None else len(result.losses)
+        differences = len(diff(original, back, _TOLERANCE))
+        yield Leg(format.name, after.stat().st_size, losses, differences, verdict_of(chosen.input, str(after), chosen))
+        before = str(after)
+
+
+def leg_lines(path: str, format: str, size: int, legs: list[Leg]) -> Iterator[str]:
+    """A table: the file, then one row per leg, with the checks that failed below it."""
+    yield f"  {'leg':<4} {'format':<8} {'bytes':>9} {'losses':>7} {'differs':>8}  verdict"
+    yield f"  {0:<4} {format:<8} {size:>9} {'':>7} {'':>8}  {path}"
+    for number, leg in enumerate(legs, start=1):
+        losses = "-" if leg.losses is None else str(leg.losses)
+        yield f"  {number:<4} {leg.format:<8} {leg.bytes:>9} {losses:>7} {leg.differences:>8}  {leg.verdict.verdict}"
+        if leg.verdict.reason:
+            yield f"       {leg.verdict.reason}"
+        for check in leg.verdict.failed:
+            yield f"       {check.quantity}: {check.worst:.3g} {check.unit} at {check.at}"
+
+
+def _legs_json(path: str, format: str, size: int, legs: list[Leg]) -> dict[str, object]:
+    """The document of `--json`: the file, and every leg with its verdict."""
+    rows = [
+        {"format": leg.format, "bytes": leg.bytes, "losses": leg.losses, "differences": leg.differences, **leg.verdict.as_json()}
+        for leg in legs
+    ]
+    return {"source": {"path": path, "format": format, "bytes": size}, "legs": rows}
