@@ -159,6 +159,5 @@ def _folders(packages: Mapping[str, Place] | None) -> dict[str, Path]:
 
 
 def _files_of(robot: Mechanism, packages: Mapping[str, Place] | None) -> Files:
-    """The files beside the one that the robot was read from, as its elements remember it; the working folder if none does."""
-    origin = next(iter(robot.origins.values()), None)
-    return DiskFiles(Path(origin.file).parent if origin else Path(), _folders(packages))
+    """The files beside the one that the robot was read from; those of the working folder if it was made by a program."""
+    return DiskFiles(Path(robot.source.file).parent, _folders(packages))

@@ -46,7 +46,7 @@ class Reader(Protocol):
 class Writer(Protocol):
     """What every backend has."""
 
-    def __call__(self, mechanism: Mechanism, report: Report) -> Package:
+    def __call__(self, mechanism: Mechanism, options: Options, report: Report) -> Package:
         """The files that describe the mechanism, which must be legal for the format."""
         ...
 
@@ -161,8 +161,8 @@ def _written(
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
     mechanism = _explicit(with_stored_meshes(mechanism, format, files, report), format, files, report)
     legal = legalize(mechanism, format.name, options, report)
-    packed, new, copies = pack(legal, format, files, place.assets, report, out_dir=place.folder)
-    package = backend(packed, report)
+    packed, new, copies = pack(legal, format, files, place.assets, report, out_dir=place.folder, within=options.within)
+    package = backend(packed, options, report)
     enclose = _offered(format, "enclose")
     if enclose is not None and (new or copies):
         return enclose(package, {**new, **dict(_contents(copies, files))}), packed
@@ -184,7 +184,7 @@ def _explicit(mechanism: Mechanism, format: Format, files: Files, report: Report
 
     def printed() -> tuple[Mechanism, bytes]:
         legal = legalize(mechanism, native.name, Options(), Report())
-        return legal, writer(native)(legal, Report()).main
+        return legal, writer(native)(legal, Options(), Report()).main
 
     completed: Mechanism = formats.loaded(native.completes)(mechanism, printed, files, report)
     return completed

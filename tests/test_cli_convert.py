@@ -140,7 +140,7 @@ def test_a_loss_is_measured_by_reading_the_result_back(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lossy = Package(ARM.replace('effort="10"', 'effort="9"').encode())
-    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: lossy)
+    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
     assert main(["convert", "arm.urdf", "lossy.urdf", "--json"]) == exits.DONE
     said = capsys.readouterr()
     assert json.loads(said.out)["losses"] == [
@@ -164,7 +164,7 @@ def test_a_long_value_is_shown_in_one_short_line() -> None:
 
 
 def test_what_our_own_reader_refuses_is_a_bug_and_not_written(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: Package(b"<html/>"))
+    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: Package(b"<html/>"))
     assert main(["convert", "arm.urdf", "broken.urdf"]) == exits.BUG
     assert not (folder / "broken.urdf").exists()
 
@@ -187,7 +187,7 @@ def test_fail_on_stops_at_its_level_and_at_worse(
         (folder / "arm.urdf").write_text(WARNED)
     if lost:
         lossy = Package((folder / "arm.urdf").read_text().replace('effort="10"', 'effort="9"').encode())
-        monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: lossy)
+        monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
     (folder / "out.urdf").write_text("before")
     assert main(["convert", "arm.urdf", "out.urdf", "--pure", "--fail-on", limit, "--report", "report.json"]) == expected
     assert ((folder / "out.urdf").read_text() == "before") == (expected == exits.FAIL_ON)
@@ -327,10 +327,10 @@ def test_what_vanishes_is_dropped_and_what_changes_is_approximated(folder: Path,
     lossy = Package(
         ARM.replace('<link name="tip">', '<link name="tip"><visual><geometry><sphere radius="1"/></geometry></visual>').encode()
     )
-    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: lossy)
+    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
     assert [loss.fate for loss in hx.convert("arm.urdf", "more.urdf", pure=True).losses or ()] == ["approximated"]
     (folder / "arm.urdf").write_bytes(lossy.main)
-    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, report: Package(ARM.encode()))
+    monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: Package(ARM.encode()))
     assert [loss.fate for loss in hx.convert("arm.urdf", "less.urdf", pure=True).losses or ()] == ["dropped"]
 
 

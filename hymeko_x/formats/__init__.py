@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any, Literal
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.frozen import frozen
-from hymeko_x.ir.mechanism import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -40,7 +39,7 @@ class Format:
     frontend: str | None = None
     """The module with ``read(source, report)``."""
     backend: str | None = None
-    """The module with ``write(mechanism, report)``."""
+    """The module with ``write(mechanism, options, report)``."""
     rules: str | None = None
     """The module with the rewriting rules in order: ``RULES``, and ``NATIVE`` for what came from this format."""
     roots: tuple[str, ...] = ()
@@ -248,8 +247,7 @@ def families() -> tuple[Format, ...]:
 
 def native_format(mechanism: Mechanism) -> Format | None:
     """The format whose engine gives a mechanism more than its parts hold, if it came from there; see :attr:`Format.completes`."""
-    own = mechanism.notations.get(ROOT, {})
-    return next((format for format in FORMATS if format.completes and format.name in own), None)
+    return next((format for format in FORMATS if format.completes and format.name == mechanism.source.format), None)
 
 
 def loaded(name: str) -> Any:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from hymeko_x.diagnostics import Origin
-    from hymeko_x.ir.mechanism import Extra, Id, RobotEdge
+    from hymeko_x.ir.mechanism import Extra, Id, Provenance, RobotEdge
     from hymeko_x.ir.parts import Material, Texture, VertexPart
 
 
@@ -62,7 +62,7 @@ class Builder:
         self.vertices[key] = texture
         self.edges[self.names.take("layer", material.name)] = layer_edge(key, material)
 
-    def build(self, name: str) -> Mechanism:
+    def build(self, name: str, source: Provenance) -> Mechanism:
         """The mechanism of everything collected."""
         return Mechanism(
             name=name,
@@ -72,6 +72,7 @@ class Builder:
             notations=self.notations,
             stereotypes=self.stereotypes,
             layout=tuple(self.layout),
+            source=source,
         )
 
     def added_to(self, mechanism: Mechanism, without: Iterable[Id] = ()) -> Mechanism:

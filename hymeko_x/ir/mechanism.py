@@ -96,6 +96,18 @@ class Extra:
     index: int = field(default=0, compare=False)
 
 
+class Provenance(NamedTuple):
+    """Where a mechanism came from: the format whose extras, notations and default classes it has, and the file that was read.
+
+    ``version`` is given where the format needs one to be understood; then texts and residues keep format and version. All empty:
+    the mechanism was made by a program.
+    """
+
+    format: str = ""
+    version: str = ""
+    file: str = ""
+
+
 class StoredLook(NamedTuple):
     """What some triangles of a mesh show: a material, with its image if it has one."""
 
@@ -119,7 +131,7 @@ class Mechanism:
     it; ``stereotypes`` the classes, macros and templates that elements were made from; ``layout`` the order in
     which the author wrote the elements (of any kind), as far as known; ``places`` by uri how the file that carried the
     mechanism calls a mesh or an image, which may lie there and no longer where the uri says; ``stored`` what
-    this file itself has of a mesh by its uri, which stands in where there is no such file.
+    this file itself has of a mesh by its uri, which stands in where there is no such file; ``source`` where all of it came from.
     """
 
     name: str
@@ -131,6 +143,7 @@ class Mechanism:
     layout: tuple[Id, ...] = field(default=(), compare=False)
     places: Mapping[str, str] = field(default_factory=dict, compare=False)
     stored: Mapping[str, StoredMesh] = field(default_factory=dict, compare=False)
+    source: Provenance = field(default=Provenance(), compare=False)
 
     __hash__ = None  # type: ignore[assignment]
 

@@ -9,6 +9,7 @@ from hymeko_x.compare.leaves import TURN, leaves_between
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import ROOT, Id
+from hymeko_x.ir.notations import kept_notations
 from hymeko_x.ir.parts import Body
 from hymeko_x.residue import Addition, Change, Removal, Residue, Sides
 from hymeko_x.residue.align import aligned
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from hymeko_x.compare.leaves import Leaf, Leaves
     from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.residue import Bridge, Run
+
+    Notations = Mapping[Id, Mapping[str, str]]
 
 _NAMED = frozenset({"body", "joint", "frame", "material", "actuator", "sensor", "camera", "light", "tendon"})
 """Kinds of elements that people give names to."""
@@ -111,11 +114,12 @@ def _layout(image: Mechanism, source: Mechanism) -> tuple[tuple[Id, ...] | None,
 
 def sides_between(image: Mechanism, source: Mechanism) -> Sides:
     """What stands beside the graph."""
-    used = {name for table in source.notations.values() for name in table}
-    forgotten = {name for table in image.notations.values() for name in table} - used
+    written, noted = kept_notations(source), kept_notations(image)
+    used = {name for table in written.values() for name in table}
+    forgotten = {name for table in noted.values() for name in table} - used
     extras = tuple(_extras(image, source))
     return Sides(
-        tuple(_notations(image, source, forgotten)),
+        tuple(_notations(noted, written, forgotten)),
         tuple(sorted(forgotten)),
         tuple(_stereotypes(image, source)) if source.stereotypes else (),
         bool(image.stereotypes) and not source.stereotypes,
@@ -124,12 +128,12 @@ def sides_between(image: Mechanism, source: Mechanism) -> Sides:
     )
 
 
-def _notations(image: Mechanism, source: Mechanism, forgotten: set[str]) -> Iterator[tuple[Id, str, str | None]]:
-    for key, table in source.notations.items():
-        mine = image.notations.get(key, {})
+def _notations(image: Notations, source: Notations, forgotten: set[str]) -> Iterator[tuple[Id, str, str | None]]:
+    for key, table in source.items():
+        mine = image.get(key, {})
         yield from ((key, name, text) for name, text in table.items() if mine.get(name) != text)
-    for key, table in image.notations.items():
-        theirs = source.notations.get(key, {})
+    for key, table in image.items():
+        theirs = source.get(key, {})
         yield from ((key, name, None) for name in table if name not in theirs and name not in forgotten)
 
 

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 from hymeko_x import codes
 from hymeko_x.compare.leaves import TURN
+from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.notations import kept_notations, take_provenance
 from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Texture
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.bridge import cross
@@ -300,12 +302,14 @@ def _path_text(path: Path) -> str:
 def _with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mechanism:
     sides = residue.sides
     there = {ROOT, *mechanism.graph.vertices, *mechanism.graph.edges}
-    notations = {key: {name: text for name, text in table.items() if name not in sides.forgotten} for key, table in image.notations.items()}
+    noted = kept_notations(image).items()
+    notations = {key: {name: text for name, text in table.items() if name not in sides.forgotten} for key, table in noted}
     for key, name, text in sides.notations:
         if text is None:
             notations.get(key, {}).pop(name, None)
         elif key in there:
             notations.setdefault(key, {})[name] = text
+    source = take_provenance(notations, FOREIGN, image.source)
     stereotypes = {} if sides.is_plain else {**image.stereotypes, **dict(sides.stereotypes)}
     layout = image.layout if residue.layout is None else laid_out(image.layout, residue.layout, set(residue.unplaced))
     return replace(
@@ -314,6 +318,7 @@ def _with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mec
         stereotypes={key: names for key, names in stereotypes.items() if names and key in there},
         extras=_extras(residue, image, there),
         layout=tuple(key for key in layout if key in there),
+        source=source,
     )
 
 

@@ -13,10 +13,9 @@ from hymeko_x.ir.parts import Actuator, Coupling, DofKind, Drive
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotEdge
     from hymeko_x.ir.parts import Dof, Parameters
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 MUJOCO_KINDS = frozenset(
     (
@@ -43,33 +42,32 @@ _FULL_EFFORT_AT = 0.1
 """The error (rad or m; for velocities a part of the limit) at which a servo asks for all of the effort limit."""
 
 
-def choose_actuators(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def choose_actuators(mechanism: Mechanism, context: Context) -> Mechanism:
     """Actuators as the options ask. By default those of kinds that MJCF has (a URDF transmission is none)."""
     present = dict(mechanism.vertices(Actuator))
-    if options.actuators is None:
+    if context.options.actuators is None:
         return _without(mechanism, [key for key, actuator in present.items() if actuator.kind not in MUJOCO_KINDS])
     vertices: dict[Id, Actuator] = {}
     edges: dict[Id, RobotEdge] = {}
-    if options.actuators != "none":
+    if context.options.actuators != "none":
         names = Names()
         for view, name, dof in _driven_dofs(mechanism):
             key = names.take("actuator", name)
-            vertices[key] = Actuator(options.actuators, _parameters(options.actuators, dof))
+            vertices[key] = Actuator(context.options.actuators, _parameters(context.options.actuators, dof))
             role = dof.name or "" if len(view.joint.dofs) > 1 else ""
             edges[names.take("drive", name)] = Edge(Drive(), (Arc(key, 1), Arc(view.id, -1, None, role)))
     if present == vertices:
         return mechanism
     replaced = [key for key, actuator in present.items() if actuator.kind in MUJOCO_KINDS]
     if replaced:
-        what = "left out" if options.actuators == "none" else f"replaced by one {options.actuators} per driven dof"
-        report.note(codes.REWRITTEN, f"{len(replaced)} actuators of the source are {what}, as asked", element=str(replaced[0]))
+        what = "left out" if context.options.actuators == "none" else f"replaced by one {context.options.actuators} per driven dof"
+        context.report.note(codes.REWRITTEN, f"{len(replaced)} actuators of the source are {what}, as asked", element=str(replaced[0]))
     bare = _without(mechanism, list(present))
     return bare.with_graph(bare.graph.replace(vertices=vertices, edges=edges))
 
 
-def drop_idle_actuators(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def drop_idle_actuators(mechanism: Mechanism, context: Context) -> Mechanism:
     """An actuator that drives nothing is left out: MuJoCo refuses it."""
-    del options
     driving: set[Id] = set()
     pointless: set[Id] = set()
     for _, _, arcs in mechanism.edges(Drive):
@@ -78,7 +76,7 @@ def drop_idle_actuators(mechanism: Mechanism, options: Options, report: Report) 
     idle = [key for key, _ in mechanism.vertices(Actuator) if key not in driving]
     for key in idle:
         hint = "a '-' arc of its drive leads to what it drives" if key in pointless else ""
-        report.warn(codes.NOT_SAID, f"{key} drives nothing, and is left out", mechanism.origin(key), element=str(key), hint=hint)
+        context.report.warn(codes.NOT_SAID, f"{key} drives nothing, and is left out", mechanism.origin(key), element=str(key), hint=hint)
     return _without(mechanism, idle)
 
 

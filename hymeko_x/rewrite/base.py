@@ -11,14 +11,13 @@ from hymeko_x.ir.parts import Body, Dof, DofKind, Joint, World
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 _WORLD_LINK = Id("body", WORLD.name)
 
 
-def put_world_link_into_world(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def put_world_link_into_world(mechanism: Mechanism, context: Context) -> Mechanism:
     """A root link called ``world`` that says nothing about its mass is the world; any other body of that name is renamed."""
-    del options
     body = mechanism.graph.vertices.get(_WORLD_LINK)
     if not isinstance(body, Body):
         return mechanism
@@ -26,7 +25,7 @@ def put_world_link_into_world(mechanism: Mechanism, options: Options, report: Re
         return rename(_with_world(mechanism), {_WORLD_LINK: WORLD})
     new = names_in_use(mechanism).take("body", "world_link")
     why = "has a mass" if not _massless(body) else "is not the root"
-    report.warn(
+    context.report.warn(
         codes.RENAMED,
         f"link 'world' {why}, so it is not the world itself, which alone may have this name; it is written as '{new.name}'",
         mechanism.origin(_WORLD_LINK),
@@ -35,15 +34,15 @@ def put_world_link_into_world(mechanism: Mechanism, options: Options, report: Re
     return rename(mechanism, {_WORLD_LINK: new})
 
 
-def choose_base(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def choose_base(mechanism: Mechanism, context: Context) -> Mechanism:
     """An open base gets a free joint where the user wants it to float; else it stays fixed where it is, which is said once."""
     above = mechanism.parent_joint
     open_bases = [root for root in mechanism.roots if root not in above]
-    if options.base == "free":
-        return _floating(mechanism, open_bases, report)
-    if options.base is None:
+    if context.options.base == "free":
+        return _floating(mechanism, open_bases, context.report)
+    if context.options.base is None:
         for root in open_bases:
-            report.note(
+            context.report.note(
                 codes.REWRITTEN,
                 f"{root} hangs on nothing; it is written as fixed to the world",
                 mechanism.origin(root),

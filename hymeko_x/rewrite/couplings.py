@@ -10,20 +10,18 @@ from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Coupling, DofKind, Joint
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 _HIGHEST_POWER = 4
 _SCALAR = (DofKind.HINGE, DofKind.SLIDE)
 
 
-def make_couplings_scalar(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def make_couplings_scalar(mechanism: Mechanism, context: Context) -> Mechanism:
     """Couplings that cannot be a polynomial of one scalar dof are left out; so are those that lead nowhere.
 
     A leader that is fixed stays: its coordinate is 0, and the follower is held at the polynomial's constant.
     """
-    del options
     gone: list[Id] = []
     for key, _, arcs in mechanism.edges(Coupling):
         if any(arc.target.kind == "tendon" for arc in arcs):
@@ -31,11 +29,11 @@ def make_couplings_scalar(mechanism: Mechanism, options: Options, report: Report
         reason = _unsayable(mechanism, arcs)
         if reason is not None:
             gone.append(key)
-            report.warn(codes.NOT_SAID, f"{key} is left out: {reason}", mechanism.origin(key), element=str(key))
+            context.report.warn(codes.NOT_SAID, f"{key} is left out: {reason}", mechanism.origin(key), element=str(key))
             continue
         held = next((arc.target for arc in arcs if arc.sign < 0 and _is_fixed(mechanism, arc.target)), None)
         if held is not None:
-            report.note(
+            context.report.note(
                 codes.REWRITTEN,
                 f"{key} follows {held}, which is fixed; the follower is held at the constant of the relation",
                 mechanism.origin(key),

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.values import Tensor, Vec3
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 LEAST = 1e-10
 """The mass in kg and the principal moment in kg m^2 that a massless moving body gets.
@@ -42,9 +42,8 @@ _NOTHING: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 # ---- rules ---------------------------------------------------------------------------------------------------------------
 
 
-def make_tensors_physical(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def make_tensors_physical(mechanism: Mechanism, context: Context) -> Mechanism:
     """No negative mass, and principal moments A, B, C >= 0 with A + B >= C in any order, by the smallest change."""
-    del options
     if engine_mends_inertias(mechanism):
         return mechanism
     changed: dict[Id, Body] = {}
@@ -53,25 +52,24 @@ def make_tensors_physical(mechanism: Mechanism, options: Options, report: Report
             continue
         inertial = body.inertial
         if inertial.mass is not None and inertial.mass < 0.0:
-            _say(mechanism, report, key, f"mass {inertial.mass!r} is negative; 0 is written")
+            _say(mechanism, context.report, key, f"mass {inertial.mass!r} is negative; 0 is written")
             inertial = replace(inertial, mass=0.0)
         tensor = physical(inertial.tensor or _NOTHING)
         if inertial.tensor is not None and tensor != inertial.tensor:
             words = f"{_flaw(inertial.tensor)}: {numbers_text(inertial.tensor)} becomes {numbers_text(tensor)}"
-            _say(mechanism, report, key, words, serious=math.dist(tensor, inertial.tensor) > _ROUNDING)
+            _say(mechanism, context.report, key, words, serious=math.dist(tensor, inertial.tensor) > _ROUNDING)
             inertial = replace(inertial, tensor=tensor, written=None)
         if inertial is not body.inertial:
             changed[key] = replace(body, inertial=inertial)
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 
-def give_moving_bodies_mass(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def give_moving_bodies_mass(mechanism: Mechanism, context: Context) -> Mechanism:
     """A body that moves gets the least mass and inertia when neither it nor a body fixed to it has both.
 
     Source: MuJoCo's compiler, which looks for one body with mass and all principal moments among the moving body and
     what is welded to it, and refuses the model otherwise.
     """
-    del options
     changed: dict[Id, Body] = {}
     for key in moving_bodies(mechanism):
         if any(_is_sound(mechanism.vertex(body, Body)) for body in welded_to(mechanism, key)):
@@ -80,7 +78,7 @@ def give_moving_bodies_mass(mechanism: Mechanism, options: Options, report: Repo
         new = _least_inertial(body.inertial)
         changed[key] = replace(body, inertial=new)
         old = "no mass" if body.inertial is None else f"mass {body.inertial.mass!r} and inertia {_words(body.inertial.tensor)}"
-        _say(mechanism, report, key, f"moves and has {old}; mass {new.mass!r} and inertia {_words(new.tensor)} are written")
+        _say(mechanism, context.report, key, f"moves and has {old}; mass {new.mass!r} and inertia {_words(new.tensor)} are written")
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 

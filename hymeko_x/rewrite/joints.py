@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 VELOCITIES = {DofKind.HINGE: 1, DofKind.SLIDE: 1, DofKind.SCREW: 1, DofKind.BALL: 3, DofKind.FREE: 6}
 _MOST_VELOCITIES = 6
@@ -33,9 +33,8 @@ Place = tuple[Id, str]
 # ---- rules ---------------------------------------------------------------------------------------------------------------
 
 
-def expand_screws(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def expand_screws(mechanism: Mechanism, context: Context) -> Mechanism:
     """A screw becomes a hinge and a slide along the same axis that is coupled to it by the pitch."""
-    del options
     screws = [view for view in mechanism.joints.values() if any(dof.kind is DofKind.SCREW for dof in view.joint.dofs)]
     if not screws:
         return mechanism
@@ -53,7 +52,7 @@ def expand_screws(mechanism: Mechanism, options: Options, report: Report) -> Mec
             slide = Dof(DofKind.SLIDE, dof.axis, anchor=dof.anchor, name=f"{name}_slide")
             dofs += [replace(dof, kind=DofKind.HINGE, pitch=0.0, name=name), slide]
             edges[names.take("coupling", usable_name(f"{name}_screw"))] = _screw(view.id, name, f"{name}_slide", dof)
-            report.note(
+            context.report.note(
                 codes.REWRITTEN,
                 f"{view.id} is a screw; it is written as hinge '{name}' and slide '{name}_slide', coupled by the pitch",
                 mechanism.origin(view.id),
@@ -63,9 +62,8 @@ def expand_screws(mechanism: Mechanism, options: Options, report: Report) -> Mec
     return _with_edges(mechanism, edges, moved)
 
 
-def lower_inner_free_joints(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def lower_inner_free_joints(mechanism: Mechanism, context: Context) -> Mechanism:
     """A free joint that is not the only one above a child of the world becomes three slides and a ball."""
-    del options
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.joints.values():
         dofs = view.joint.dofs
@@ -75,7 +73,7 @@ def lower_inner_free_joints(mechanism: Mechanism, options: Options, report: Repo
         for dof in dofs:
             new += _three_slides_and_ball(dof) if dof.kind is DofKind.FREE else [dof]
         edges[view.id] = _with_dofs(mechanism, view.id, tuple(new))
-        report.note(
+        context.report.note(
             codes.REWRITTEN,
             f"{view.id} floats below {view.parent}, where only a child of the world may; it is written as three slides and a ball",
             mechanism.origin(view.id),
@@ -84,9 +82,8 @@ def lower_inner_free_joints(mechanism: Mechanism, options: Options, report: Repo
     return _with_edges(mechanism, edges, {})
 
 
-def name_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def name_dofs(mechanism: Mechanism, context: Context) -> Mechanism:
     """Every dof gets a name of its own: the joint's where it is the only one, else that with what moves (``_TX``, ``_RZ``)."""
-    del options
     edges: dict[Id, RobotEdge] = {}
     moved: dict[Place, Place] = {}
     alone = {_only_name(view) for view in mechanism.joints.values() if len(view.joint.dofs) == 1}
@@ -98,7 +95,7 @@ def name_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechani
             wanted = dof.name or f"{view.id.name}{_suffix(dof, dofs)}"
             name = _unused(wanted, seen) if len(dofs) == 1 else _unused(wanted, alone, seen)
             if wanted != name:
-                _warn_of_name(mechanism, view.id, wanted, name, report)
+                _warn_of_name(mechanism, view.id, wanted, name, context.report)
             seen.add(name)
             if len(dofs) > 1 or wanted != name:
                 dof = replace(dof, name=name)
@@ -109,9 +106,8 @@ def name_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechani
     return _with_edges(mechanism, edges, moved)
 
 
-def name_dofs_once(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def name_dofs_once(mechanism: Mechanism, context: Context) -> Mechanism:
     """A name that two dofs have, as edits may leave it, stays with the first one. Dofs without a name stay without."""
-    del options
     named = [(view, number, name) for view in mechanism.joints.values() for number, name in enumerate(_said_names(mechanism, view)) if name]
     taken = {name for _, _, name in named}
     if len(taken) == len(named):
@@ -124,7 +120,7 @@ def name_dofs_once(mechanism: Mechanism, options: Options, report: Report) -> Me
             seen.add(wanted)
             continue
         name = _unused(wanted, taken)
-        _warn_of_name(mechanism, view.id, wanted, name, report)
+        _warn_of_name(mechanism, view.id, wanted, name, context.report)
         taken.add(name)
         changed.setdefault(view.id, list(view.joint.dofs))[number] = replace(view.joint.dofs[number], name=name)
         _remember(moved, view, number, (view.id, name))
@@ -139,9 +135,8 @@ def _said_names(mechanism: Mechanism, view: JointView) -> list[str | None]:
     return [dof.name for dof in view.joint.dofs]
 
 
-def split_overfull_joints(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def split_overfull_joints(mechanism: Mechanism, context: Context) -> Mechanism:
     """Dofs that cannot sit on one body (more than six, or a rotation below a ball) are spread over bodies in between."""
-    del options
     overfull = [view for view in mechanism.joints.values() if len(_legal_groups(view.joint.dofs)) > 1]
     if not overfull:
         return mechanism
@@ -160,7 +155,7 @@ def split_overfull_joints(mechanism: Mechanism, options: Options, report: Report
             moved |= {(view.id, dof.name or ""): (joint, dof.name or "") for dof in group}
             above, pose = body, IDENTITY
         edges[view.id] = joint_edge(Joint(groups[-1]), above, view.child, pose, view.child_pose)
-        report.note(
+        context.report.note(
             codes.REWRITTEN,
             f"the dofs of {view.id} cannot all sit on one body; {len(groups) - 1} body in between carries the first ones",
             mechanism.origin(view.id),

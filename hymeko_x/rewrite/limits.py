@@ -11,9 +11,8 @@ from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.parts import Dof, DofKind, Joint, Limits
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 FAR = 1e10
 """Stands for "no bound" on the other side of a one-sided limit, in rad or m."""
@@ -24,15 +23,14 @@ Said = list[tuple[bool, str]]
 """What was changed: whether it deserves a warning, and the words."""
 
 
-def make_limits_intervals(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def make_limits_intervals(mechanism: Mechanism, context: Context) -> Mechanism:
     """Every dof has either no position limits or lower < upper, and either no effort limit or a positive one."""
-    del options
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.joints.values():
         said: Said = []
         dofs = tuple(_legal_dof(dof, said) for dof in view.joint.dofs)
         for serious, words in said:
-            say = report.warn if serious else report.note
+            say = context.report.warn if serious else context.report.note
             say(codes.REWRITTEN, f"{view.id}: {words}", mechanism.origin(view.id), element=str(view.id))
         if dofs != view.joint.dofs:
             edges[view.id] = Edge(Joint(dofs), mechanism.graph.edges[view.id].arcs)

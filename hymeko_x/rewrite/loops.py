@@ -13,17 +13,15 @@ from hymeko_x.ir.parts import Body, DofKind, Frame, Joint, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, add, compose, scaled
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 _APART = 0.1
 """Distance in m of the two points on a hinge's axis that are held together."""
 
 
-def open_second_parents(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def open_second_parents(mechanism: Mechanism, context: Context) -> Mechanism:
     """A joint that leads to a body which another joint holds already, or that closes a cycle, becomes closures."""
-    del options
     extra = [view for view in mechanism.joints.values() if mechanism.parent_joint[view.child] != view]
     extra += _closing_cycles(mechanism)
     if not extra:
@@ -33,16 +31,15 @@ def open_second_parents(mechanism: Mechanism, options: Options, report: Report) 
     for view in extra:
         closures = _closures(view, Loop())
         words = "it is written as a closure of the loop" if closures else "a loop cannot be closed by such a joint, which is left out"
-        say = report.note if closures else report.warn
+        say = context.report.note if closures else context.report.warn
         code = codes.REWRITTEN if closures else codes.NOT_SAID
         say(code, f"{view.id} holds {view.child}, which has another parent; {words}", mechanism.origin(view.id), element=str(view.id))
         edges |= {names.take("loop", view.id.name): closure for closure in closures}
     return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=[view.id for view in extra]))
 
 
-def close_by_points(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def close_by_points(mechanism: Mechanism, context: Context) -> Mechanism:
     """A loop that a joint closes becomes welds and points that stay together: a hinge is two points on its axis."""
-    del options
     joints = [(key, loop, arcs) for key, loop, arcs in mechanism.edges(Loop) if loop.kind == "joint" and len(arcs) == 2]
     if not joints:
         return mechanism
@@ -53,19 +50,18 @@ def close_by_points(mechanism: Mechanism, options: Options, report: Report) -> M
         closures = _closures(view, loop)
         if not closures:
             said = f"{key} has dofs for which there is no closure; it is left out"
-            report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
+            context.report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
         for number, closure in enumerate(closures):
             edges[key if number == 0 else names.take("loop", key.name)] = closure
     gone = [key for key, _, _ in joints if key not in edges]
     return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=gone))
 
 
-def anchor_closures(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def anchor_closures(mechanism: Mechanism, _context: Context) -> Mechanism:
     """The points that a ``connect`` holds together become frames on their bodies, so that both are said exactly.
 
     Nothing is lost and nothing is said: the closure is the same one.
     """
-    del options, report
     loose = [(key, loop, arcs) for key, loop, arcs in mechanism.edges(Loop) if loop.kind == "connect" and not _is_anchored(arcs)]
     if not loose:
         return mechanism

@@ -10,10 +10,9 @@ from hymeko_x import codes
 from hymeko_x.ir.names import names_in_use, rename
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import Mesh, Texture
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 _NOT_XML = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
@@ -23,12 +22,11 @@ def usable_name(name: str) -> str:
     return _NOT_XML.sub("_", name)
 
 
-def make_names_usable(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def make_names_usable(mechanism: Mechanism, context: Context) -> Mechanism:
     """Empty names become the kind of the element (of the mechanism: robot), characters that XML forbids become ``_``."""
-    del options
     if not mechanism.name:
         mechanism = replace(mechanism, name="robot")
-        report.note(codes.RENAMED, "the robot has no name; it is written as 'robot'")
+        context.report.note(codes.RENAMED, "the robot has no name; it is written as 'robot'")
     keys = (*mechanism.graph.vertices, *mechanism.graph.edges)
     said = [key.name for key in keys]
     if all(said) and not _NOT_XML.search("".join(said)):
@@ -40,15 +38,14 @@ def make_names_usable(mechanism: Mechanism, options: Options, report: Report) ->
         new = names.take(key.kind, usable_name(key.name) or key.kind)
         renamed[key] = new
         found = "is empty" if not key.name else f"{key.name!r} has characters that XML cannot hold"
-        report.warn(
+        context.report.warn(
             codes.RENAMED, f"the name of a {key.kind} {found}; it is written as '{new.name}'", mechanism.origin(key), element=str(new)
         )
     return rename(mechanism, renamed)
 
 
-def name_assets_once(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def name_assets_once(mechanism: Mechanism, context: Context) -> Mechanism:
     """Meshes and textures are written under the name that their author gave them, or else their id's, each name once per kind."""
-    del options
     taken: set[tuple[str, str]] = set()
     changed: dict[Id, Mesh | Texture] = {}
     for key, part in mechanism.assets():
@@ -60,7 +57,7 @@ def name_assets_once(mechanism: Mechanism, options: Options, report: Report) -> 
         taken.add((key.kind, name))
         if name != wanted:
             changed[key] = replace(part, name=name)
-            report.note(
+            context.report.note(
                 codes.RENAMED, f"another {key.kind} is called '{wanted}' already; this one is written as '{name}'", mechanism.origin(key)
             )
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 
 _MENDS = ("balanceinertia", "boundinertia")
@@ -25,7 +25,7 @@ _MENDS = ("balanceinertia", "boundinertia")
 
 def is_native(mechanism: Mechanism) -> bool:
     """Whether a mechanism came from MJCF: directly, through HyMeKo text, or carried by another file."""
-    return mechanism.notation(ROOT, "mjcf") is not None
+    return mechanism.source.format == "mjcf"
 
 
 def engine_mends_inertias(mechanism: Mechanism) -> bool:
@@ -54,24 +54,22 @@ def is_shape_of_mujoco(mechanism: Mechanism, shape: Id) -> bool:
     return is_native(mechanism) and (said or mechanism.notation(shape, "@type") is not None)
 
 
-def drop_shapes_of_mujoco(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def drop_shapes_of_mujoco(mechanism: Mechanism, context: Context) -> Mechanism:
     """Height fields, distance functions, and primitives that MuJoCo fits to meshes have no word elsewhere."""
-    del options
     if not is_native(mechanism):
         return mechanism
     gone = [view.id for view in mechanism.every_shape() if isinstance(view.shape.geometry, NoShape)]
     for key in gone:
         said = f"{key} has a geometry that only MuJoCo knows; it is left out"
-        report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
+        context.report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 
 _FOVY = math.radians(45.0)
 
 
-def say_what_cameras_see(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def say_what_cameras_see(mechanism: Mechanism, _context: Context) -> Mechanism:
     """A camera in MJCF that says nothing of its lens sees 45 degrees from top to bottom; elsewhere that is not understood."""
-    del options, report
     if not is_native(mechanism):
         return mechanism
     cameras = {key: replace(camera, fovy=_FOVY) for key, camera in mechanism.vertices(Camera) if _has_usual_lens(camera)}
@@ -90,9 +88,8 @@ _KEY = re.compile(r"<key\b[^>]*?/>|<key\b.*?</key>", re.DOTALL)
 _NUMBERS = re.compile(r'\b(qpos|qvel|ctrl)="([^"]*)"')
 
 
-def drop_stale_keyframes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
     """Keyframes that go along verbatim fit as long as nobody adds or removes a joint or an actuator; MuJoCo refuses others."""
-    del options
     own = mechanism.extras.get(ROOT, ())
     if any("<flex" in extra.text or "<composite" in extra.text for extra in own) or not any(_is_keyframes(extra) for extra in own):
         return mechanism  # soft bodies have coordinates of their own, which are not counted here
@@ -102,7 +99,7 @@ def drop_stale_keyframes(mechanism: Mechanism, options: Options, report: Report)
         "qvel": sum(_COORDINATES.get(kind, (1, 1))[1] for kind in kinds),
         "ctrl": sum(1 for _ in mechanism.vertices(Actuator)),
     }
-    kept = tuple(_with_fitting_keys(extra, counts, report) if _is_keyframes(extra) else extra for extra in own)
+    kept = tuple(_with_fitting_keys(extra, counts, context.report) if _is_keyframes(extra) else extra for extra in own)
     return mechanism if kept == own else replace(mechanism, extras={**mechanism.extras, ROOT: kept})
 
 

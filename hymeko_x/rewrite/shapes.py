@@ -11,18 +11,16 @@ from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Geometry, MeshS
 from hymeko_x.rewrite.native import is_shape_of_mujoco
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 THINNEST = 1e-6
 """The length in m that stands for a length of zero."""
 _NO_LENGTH = 1e-12
 
 
-def drop_empty_shapes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def drop_empty_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
     """A shape without a geometry, or of a mesh that is not there, is left out; what came from MJCF has geometries of its own."""
-    del options
     gone = []
     for view in mechanism.every_shape():
         lost = isinstance(view.shape.geometry, MeshShape) and view.mesh not in mechanism.graph.vertices
@@ -30,20 +28,19 @@ def drop_empty_shapes(mechanism: Mechanism, options: Options, report: Report) ->
             continue
         gone.append(view.id)
         what = "has no mesh" if lost else "has no geometry that the target knows"
-        report.note(codes.NOT_SAID, f"{view.id} {what}; it is left out", mechanism.origin(view.id), element=str(view.id))
+        context.report.note(codes.NOT_SAID, f"{view.id} {what}; it is left out", mechanism.origin(view.id), element=str(view.id))
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 
-def make_sizes_positive(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def make_sizes_positive(mechanism: Mechanism, context: Context) -> Mechanism:
     """Lengths of zero become very small ones, negative lengths lose their sign."""
-    del options
     changed: dict[Id, RobotEdge] = {}
     for key, shape, arcs in mechanism.edges(Shape):
         geometry = _sized(shape.geometry)
         if geometry == shape.geometry:
             continue
         changed[key] = replace(mechanism.graph.edges[key], data=replace(shape, geometry=geometry), arcs=arcs)
-        report.warn(
+        context.report.warn(
             codes.REWRITTEN,
             f"{key} has the size {_words(shape.geometry)}; {_words(geometry)} is written",
             mechanism.origin(key),
@@ -52,9 +49,8 @@ def make_sizes_positive(mechanism: Mechanism, options: Options, report: Report) 
     return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism
 
 
-def keep_planes_static(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def keep_planes_static(mechanism: Mechanism, context: Context) -> Mechanism:
     """A plane on a body that can move becomes a thin box; an infinite one is left out."""
-    del options
     if not any(isinstance(shape.geometry, Plane) for _, shape, _ in mechanism.edges(Shape)):
         return mechanism
     static = _static_bodies(mechanism)
@@ -65,21 +61,20 @@ def keep_planes_static(mechanism: Mechanism, options: Options, report: Report) -
             continue
         if not all(shape.geometry.half_size):
             gone.append(key)
-            report.warn(
+            context.report.warn(
                 codes.NOT_SAID, f"{key} is an infinite plane on a body that moves; it is left out", mechanism.origin(key), element=str(key)
             )
             continue
         x, y = shape.geometry.half_size
         changed[key] = replace(mechanism.graph.edges[key], data=replace(shape, geometry=Box((2.0 * x, 2.0 * y, THINNEST))))
-        report.note(
+        context.report.note(
             codes.REWRITTEN, f"{key} is a plane on a body that moves; it is written as a thin box", mechanism.origin(key), element=str(key)
         )
     return mechanism.with_graph(mechanism.graph.replace(edges=changed, without=gone)) if changed or gone else mechanism
 
 
-def name_shapes_once(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def name_shapes_once(mechanism: Mechanism, context: Context) -> Mechanism:
     """The first shape of a name keeps it, later ones are written without a name."""
-    del options
     seen: set[str] = set()
     changed: dict[Id, RobotEdge] = {}
     for key, shape, _ in mechanism.edges(Shape):
@@ -90,7 +85,7 @@ def name_shapes_once(mechanism: Mechanism, options: Options, report: Report) -> 
             continue
         changed[key] = replace(mechanism.graph.edges[key], data=replace(shape, name=None))
         if shape.name:
-            report.note(
+            context.report.note(
                 codes.RENAMED,
                 f"another shape is called '{shape.name}' already; this one is written without a name",
                 mechanism.origin(key),

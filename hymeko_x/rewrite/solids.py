@@ -14,11 +14,10 @@ from hymeko_x.rewrite.native import is_native
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.parts import Geometry
     from hymeko_x.ir.values import Tensor, Vec3
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 UNSAID_NOTATION = "urdf.tensor"
 UNSAID = "unsaid"
@@ -28,13 +27,12 @@ _Solid = tuple[float, "Vec3"]
 """The volume in m^3 of a primitive, and its principal moments in m^2 per kg of mass."""
 
 
-def fill_tensors(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
     """A body with a mass and no tensor gets that of its shapes: of those that collide, else of those that are seen.
 
     The centre of mass stays as it is. MJCF means zero where it says nothing, and URDF no inertial at all: those stay,
     and so does what has no solid, of which the notation says so: a plane that becomes a thin box later is none.
     """
-    del options
     if is_native(mechanism):
         return mechanism
     changed: dict[Id, Body] = {}
@@ -50,7 +48,7 @@ def fill_tensors(mechanism: Mechanism, options: Options, report: Report) -> Mech
         xx, yy, zz, xy, xz, yz = (inertial.mass * value for value in unit)
         changed[key] = replace(body, inertial=replace(inertial, tensor=(xx, yy, zz, xy, xz, yz)))
         said = f"{key} has a mass and no inertia tensor; that of its geometry is written"
-        report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
+        context.report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
     if unsaid:
         mechanism = replace(mechanism, notations={**mechanism.notations, **unsaid})
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism

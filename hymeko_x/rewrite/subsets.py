@@ -16,18 +16,16 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge, ShapeView, SubsetView
     from hymeko_x.ir.names import Names
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
     _Table = tuple[NDArray[Any], NDArray[Any]]
     """The corners of triangles (n x 3), and the table that they are rows of."""
 
 
-def split_subsets(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def split_subsets(mechanism: Mechanism, context: Context) -> Mechanism:
     """What of a mesh shows a material of its own becomes a shape and a mesh for the eye; what collides stays whole."""
-    del options
     if not mechanism.subsets:
         return mechanism
     split = _Splitting(mechanism, names_in_use(mechanism))
@@ -39,13 +37,13 @@ def split_subsets(mechanism: Mechanism, options: Options, report: Report) -> Mec
         pieces = [] if view is None or view.shape.role is Role.COLLISION else list(_pieces(mechanism, view, subsets))
         if view is None or view.mesh is None or not pieces:
             said = f"{key} shows other materials on triangles that are not there to be seen; they are left out"
-            report.note(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
+            context.report.note(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
             continue
         split.show(view, view.mesh, pieces)
         users[view.mesh] -= view.shape.role is Role.VISUAL
         gone += [] if users[view.mesh] else [view.mesh]
         said = f"{key} shows {len(pieces)} materials; a visual of its own is written for each"
-        report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
+        context.report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
     return mechanism.with_graph(mechanism.graph.replace(vertices=split.meshes, edges=split.edges, without=gone))
 
 
@@ -132,9 +130,8 @@ def _of(rows: NDArray[Any], table: NDArray[Any], faces: tuple[int, ...]) -> tupl
     return tuple(table[used].ravel().tolist()), tuple(index.ravel().tolist())
 
 
-def part_meshes_by_looks(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def part_meshes_by_looks(mechanism: Mechanism, _context: Context) -> Mechanism:
     """A mesh that two shapes show in different materials becomes a mesh for each, since the file of a mesh has its materials."""
-    del options, report
     if not mechanism.subsets:
         return mechanism
     names = names_in_use(mechanism)

@@ -12,21 +12,19 @@ from hymeko_x.ir.tendons import wrong_path
 from hymeko_x.rewrite.limits import interval
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 
-def drop_odd_tendons(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def drop_odd_tendons(mechanism: Mechanism, context: Context) -> Mechanism:
     """A tendon whose path nobody can follow is left out, with what acts on it."""
-    del options
     placed = {view.thing for views in mechanism.mounts.values() for view in views}
     gone: set[Id] = set()
     for key, tendon, arcs in mechanism.edges(Tendon):
         wrong = wrong_path(replace(tendon, armature=0.0), arcs, mechanism.graph.edges) or _nowhere(mechanism, arcs, placed)
         if wrong is not None:
             gone.add(key)
-            report.warn(codes.NOT_SAID, f"{key} is left out: its path {wrong}", mechanism.origin(key), element=str(key))
+            context.report.warn(codes.NOT_SAID, f"{key} is left out: its path {wrong}", mechanism.origin(key), element=str(key))
     if not gone:
         return mechanism
     hanging = [key for key, edge in mechanism.graph.edges.items() if _hangs_on(edge, gone)]
@@ -47,9 +45,8 @@ def _hangs_on(edge: RobotEdge, gone: set[Id]) -> bool:
     return isinstance(edge.data, Coupling | Drive | Sense) and any(arc.target in gone for arc in edge.arcs)
 
 
-def make_tendons_sound(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def make_tendons_sound(mechanism: Mechanism, context: Context) -> Mechanism:
     """Limits become closed intervals; a cable around a shape has no armature."""
-    del options
     changed: dict[Id, RobotEdge] = {}
     for key, tendon, arcs in mechanism.edges(Tendon):
         said: list[tuple[bool, str]] = []
@@ -59,16 +56,15 @@ def make_tendons_sound(mechanism: Mechanism, options: Options, report: Report) -
             said.append((True, f"armature {tendon.armature!r} is left out: it is negative, or the cable leads around a shape"))
             sound = replace(sound, armature=0.0)
         for serious, text in said:
-            say = report.warn if serious else report.note
+            say = context.report.warn if serious else context.report.note
             say(codes.REWRITTEN, f"{key}: {text}", mechanism.origin(key), element=str(key))
         if sound != tendon:
             changed[key] = Edge(sound, arcs)
     return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism
 
 
-def name_wrapped_shapes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def name_wrapped_shapes(mechanism: Mechanism, _context: Context) -> Mechanism:
     """A shape around which a tendon leads has a name that no other shape has."""
-    del options, report
     wrapped = [arc.target for _, _, arcs in mechanism.edges(Tendon) for arc in arcs if arc.target.kind == "shape"]
     taken = {shape.name for _, shape, _ in mechanism.edges(Shape) if shape.name} if wrapped else set()
     changed: dict[Id, RobotEdge] = {}

@@ -19,10 +19,9 @@ from hymeko_x.ir.values import IDENTITY, ZERO, Pose, X, Y, Z, add, compose, inve
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
     from hymeko_x.ir.names import Names
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 TYPE_NOTATION = "urdf.type"
 """The notation of a joint whose type a URDF file said in a word of its own (``spherical``): it is written so again."""
@@ -33,12 +32,11 @@ _SINGLE = (DofKind.HINGE, DofKind.SLIDE)
 # ---- base and root -----------------------------------------------------------------------------------------------------------
 
 
-def hold_or_free_open_bases(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def hold_or_free_open_bases(mechanism: Mechanism, context: Context) -> Mechanism:
     """Where the user says what the base does, each open base gets a fixed or a free joint to the world."""
-    del report
-    if options.base is None:
+    if context.options.base is None:
         return mechanism
-    joint = Joint((Dof(DofKind.FREE),)) if options.base == "free" else Joint()
+    joint = Joint((Dof(DofKind.FREE),)) if context.options.base == "free" else Joint()
     names = names_in_use(mechanism)
     open_bases = [root for root in mechanism.roots if root not in mechanism.parent_joint and not stands_for_world(root, mechanism)]
     edges = {names.take("joint", f"{root.name}_base"): joint_edge(joint, WORLD, root) for root in open_bases}
@@ -50,12 +48,11 @@ def stands_for_world(root: Id, mechanism: Mechanism) -> bool:
     return root.name.partition("#")[0] == WORLD.name and mechanism.vertex(root, Body).inertial is None
 
 
-def make_world_a_link(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def make_world_a_link(mechanism: Mechanism, _context: Context) -> Mechanism:
     """The world, if anything hangs on it, is a link called ``world`` without mass: URDF's usual way to fix a base.
 
     So is the world of a mechanism without bodies: URDF wants a link. A link that stands for the world already needs no other.
     """
-    del options, report
     mechanism = _without_held_worlds(mechanism)
     there, alone = WORLD in mechanism.graph.vertices, not any(True for _ in mechanism.vertices(Body))
     used = any(WORLD in [arc.target for arc in edge.arcs] for edge in mechanism.graph.edges.values())
@@ -76,9 +73,8 @@ def _without_held_worlds(mechanism: Mechanism) -> Mechanism:
     return mechanism.with_graph(mechanism.graph.replace(without=idle)) if idle else mechanism
 
 
-def join_roots(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def join_roots(mechanism: Mechanism, context: Context) -> Mechanism:
     """Several trees are fixed to one root: the world's link if it is a root, else a new link without mass."""
-    del options
     roots = mechanism.roots
     if len(roots) < 2:
         return mechanism
@@ -88,7 +84,7 @@ def join_roots(mechanism: Mechanism, options: Options, report: Report) -> Mechan
     hung = [other for other in roots if other != root]
     edges = {names.take("joint", f"{other.name}_base"): joint_edge(Joint(), root, other) for other in hung}
     said = ", ".join(f"'{other.name}'" for other in hung[:5]) + (", ..." if len(hung) > 5 else "")
-    report.warn(
+    context.report.warn(
         codes.REWRITTEN,
         f"URDF has one root, and {len(roots)} links have no parent; fixed to link '{root.name}': {said}",
         element=str(root),
@@ -118,9 +114,8 @@ class _Chains:
     moved: dict[tuple[Id, int], Id]
 
 
-def chain_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def chain_dofs(mechanism: Mechanism, context: Context) -> Mechanism:
     """Each joint that URDF cannot say becomes a chain of joints with one dof; balls become three hinges about x, y and z."""
-    del options
     unsayable = [view for view in mechanism.joints.values() if not _is_sayable(view, mechanism)]
     if not unsayable:
         return mechanism
@@ -129,7 +124,7 @@ def chain_dofs(mechanism: Mechanism, options: Options, report: Report) -> Mechan
         count = _add_chain(view, chains)
         if count:
             said = f"{view.id} has dofs or a frame that URDF has no word for; it is written as a chain of {count + 1} joints"
-            report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
+            context.report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
     edges = dict(_following(mechanism, chains.moved)) | chains.edges
     old = {view.id for view in unsayable}
     return mechanism.with_graph(mechanism.graph.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges)))

@@ -14,11 +14,10 @@ from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, MeshShape
 from hymeko_x.ir.values import Pose, compose
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import RobotEdge
     from hymeko_x.ir.names import Names
     from hymeko_x.ir.parts import Geometry
-    from hymeko_x.rewrite import Options
+    from hymeko_x.rewrite.context import Context
 
 STYLE_NOTATION = "urdf.style"
 CAPSULE_WORD = "capsule"
@@ -32,9 +31,8 @@ _RINGS = 12
 Piece = tuple["Geometry", Pose]
 
 
-def split_shared_shapes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def split_shared_shapes(mechanism: Mechanism, _context: Context) -> Mechanism:
     """A shape that is seen and collides becomes a visual and a collision."""
-    del options, report
     shared = [view for view in mechanism.every_shape() if view.shape.role is Role.BOTH]
     if not shared:
         return mechanism
@@ -46,22 +44,20 @@ def split_shared_shapes(mechanism: Mechanism, options: Options, report: Report) 
     return mechanism.with_graph(mechanism.graph.replace(edges=edges))
 
 
-def prefer_own_colours(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def prefer_own_colours(mechanism: Mechanism, context: Context) -> Mechanism:
     """A shape with a colour of its own beside a material keeps the colour, which is the one that is seen."""
-    del options
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.every_shape():
         if view.shape.rgba is None or view.material is None:
             continue
         edges[view.id] = shape_edge(view.shape, view.body, view.pose, view.mesh)
         said = f"{view.id} has a colour of its own and {view.material}; only its colour is written"
-        report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
+        context.report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
     return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
 
 
-def approximate_shapes(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def approximate_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
     """Capsules become a cylinder and two spheres, planes thin boxes, ellipsoids stretched sphere meshes."""
-    del options
     keeps_capsules = CAPSULE_WORD in (mechanism.notation(ROOT, STYLE_NOTATION) or "").split()
     unsayable = (Ellipsoid, Plane) if keeps_capsules else (Ellipsoid, Plane, Capsule)
     found = [view for view in mechanism.every_shape() if isinstance(view.shape.geometry, unsayable)]
@@ -79,7 +75,7 @@ def approximate_shapes(mechanism: Mechanism, options: Options, report: Report) -
             edges |= _pieces(view, names)
         kind = type(geometry).__name__.lower()
         said = f"{view.id} is {'an' if kind[0] in 'aeiou' else 'a'} {kind}, for which URDF has no word; it is written as {_INSTEAD[kind]}"
-        report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
+        context.report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
     return mechanism.with_graph(mechanism.graph.replace(vertices=meshes, edges=edges))
 
 

@@ -21,6 +21,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.ir.mechanism import Id, Mechanism, file_stem, layer_edge, shape_edge
 from hymeko_x.ir.parts import Material, Mesh, MeshShape, Role, Shape, Texture
 from hymeko_x.ir.values import IDENTITY
+from hymeko_x.rewrite.context import Options
 from tests.meshes.test_mesh import BOX, STL, dae
 from tests.robots import MemoryFiles, body, chain
 
@@ -60,7 +61,7 @@ def uris(mechanism: Mechanism) -> list[str | None]:
 
 def compiles(mechanism: Mechanism, files: dict[str, bytes]) -> mujoco.MjModel:
     result, new, copies, _ = packed(mechanism, files)
-    text = mjcf.write(result, Report()).main.decode()
+    text = mjcf.write(result, Options(), Report()).main.decode()
     return mujoco.MjModel.from_xml_string(text, assets={**new, **{name: files[path] for name, path in copies.items()}})
 
 

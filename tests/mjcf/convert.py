@@ -47,7 +47,7 @@ def convert(source: Source, options: Options = FIXED) -> Converted:
     legal = legalize(mechanism, "mjcf", options, report)
     packed, files, copies = pack(legal, formats.MJCF, source.files, None, report)
     assets = files | {name: source.files.read(path) for name, path in copies.items()}
-    return Converted(mechanism, legal, mjcf.write(packed, report).main.decode(), assets, report)
+    return Converted(mechanism, legal, mjcf.write(packed, options, report).main.decode(), assets, report)
 
 
 def convert_text(text: str, files: dict[str, bytes] | None = None, options: Options = FIXED) -> Converted:

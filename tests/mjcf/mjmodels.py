@@ -16,6 +16,7 @@ from hymeko_x.backends import mjcf as mjcf_out
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends import hymeko as hymeko_in
 from hymeko_x.frontends import mjcf as mjcf_in
+from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
 
 if TYPE_CHECKING:
@@ -85,12 +86,12 @@ def read_text(text: str, report: Report | None = None) -> Mechanism:
 
 def write(mechanism: Mechanism) -> str:
     """The mechanism as MJCF."""
-    return mjcf_out.write(mechanism, Report()).main.decode()
+    return mjcf_out.write(mechanism, Options(), Report()).main.decode()
 
 
 def through_hymeko(mechanism: Mechanism) -> Mechanism:
     """What is left of a mechanism after a visit to HyMeKo text."""
-    text = hymeko_out.write(mechanism, Report()).main
+    text = hymeko_out.write(mechanism, Options(), Report()).main
     return hymeko_in.read(Source("robot.hymeko", text), Report())
 
 

@@ -9,6 +9,7 @@ from mjmodels import read_text, write
 
 from hymeko_x.backends import hymeko
 from hymeko_x.diagnostics import Report
+from hymeko_x.rewrite.context import Options
 from tests.pace import assert_at_most
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ def converting(content: str) -> Callable[[], object]:
     def work() -> None:
         robot = read_text(text)
         write(robot)
-        hymeko.write(robot, Report())
+        hymeko.write(robot, Options(), Report())
 
     return work
 

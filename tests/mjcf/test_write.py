@@ -60,7 +60,7 @@ from tests.robots import SOLID, body, chain, hinge, joint
 
 def printed(mechanism: Mechanism, options: Options = Options(base="fixed")) -> str:  # noqa: B008 - a frozen value
     report = Report()
-    return mjcf.write(legalize(mechanism, "mjcf", options, report), report).main.decode()
+    return mjcf.write(legalize(mechanism, "mjcf", options, report), options, report).main.decode()
 
 
 def compiled(mechanism: Mechanism, options: Options = Options(base="fixed")) -> mujoco.MjModel:  # noqa: B008 - a frozen value

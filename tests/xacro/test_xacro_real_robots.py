@@ -94,7 +94,7 @@ def test_the_urdf_of_a_real_robot_is_its_expansion(robot: Path) -> None:
     source = disk.open_source(str(robot))
     mechanism = read(source, Report())
     assert diff(mechanism, urdf_in.read(replace(source, data=expand(source, Report()).text), Report())) == ()
-    assert members(urdf.write(mechanism, Report()).main) == members(expand(source, Report()).text)
+    assert members(urdf.write(mechanism, Options(), Report()).main) == members(expand(source, Report()).text)
 
 
 @pytest.mark.robots("xacro")

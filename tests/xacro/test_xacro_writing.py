@@ -56,8 +56,8 @@ def elements(document: minidom.Document) -> object:
 
 def check(mechanism: Mechanism) -> str:
     """The xacro of a mechanism, which expands to its URDF."""
-    text = backend.write(mechanism, Report()).main
-    assert elements(library(text)) == elements(minidom.parseString(urdf.write(mechanism, Report()).main))
+    text = backend.write(mechanism, Options(), Report()).main
+    assert elements(library(text)) == elements(minidom.parseString(urdf.write(mechanism, Options(), Report()).main))
     return text.decode()
 
 
@@ -84,7 +84,7 @@ def test_left_and_right_are_calls_of_one_macro() -> None:
 
 
 def test_comments_stay_and_headings_go() -> None:
-    back = read(Source("r.xacro", backend.write(load(PAIR), Report()).main), Report())
+    back = read(Source("r.xacro", backend.write(load(PAIR), Options(), Report()).main), Report())
     assert diff(load(PAIR), back) == ()
     assert [extra.text for extras in back.extras.values() for extra in extras if extra.format == "comment"] == ["the base"]
 
@@ -184,8 +184,8 @@ def test_xacro_is_shorter_than_urdf(real_robot: RealRobots) -> None:
     for file in catalog.development_files("urdf"):
         path = real_robot(file)
         mechanism = load(path.read_bytes())
-        ours = characters(backend.write(mechanism, Report()).main)
-        ratio = ours / characters(urdf.write(mechanism, Report()).main)
+        ours = characters(backend.write(mechanism, Options(), Report()).main)
+        ratio = ours / characters(urdf.write(mechanism, Options(), Report()).main)
         ratios.append(ratio)
         if any(word in file.id for word in LIMBED):
             limbs.append(ratio)

@@ -20,9 +20,9 @@ from hymeko_x.backends.hymeko.templates import Instance, templates
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
+from hymeko_x.ir.notations import kept_notations
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, Ref, Stereotype
-from hymeko_x.rewrite import WITHIN
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from hymeko_x.backends.hymeko.templates import Piece
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Mechanism
+    from hymeko_x.rewrite.context import Options
 
 _MOST_TRIES = 4
 """How often assemblies are chosen anew because names in them would hide others, before there are none."""
@@ -40,7 +41,7 @@ _PLAIN = frozenset({"datum", "relation"})
 _ORDER = ("world", "material", "texture", "layer", "mesh", "body", "joint", "frame", "camera", "light", "sensor", "mount")
 
 
-def write(mechanism: Mechanism, report: Report) -> Package:
+def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The text as the only file of a package; other files stay where they are and are referred to."""
     return Package(print_document(document(mechanism)).encode("utf-8"))
 
@@ -94,7 +95,7 @@ def _settings(context: Context, plain: bool) -> list[Item]:
         items.append(Node("units", (Field("angle"), Field("rad"))))
     if context.files:
         items.append(Field("files", context.files))
-    notations = {key: text for key, text in context.mechanism.notations.get(ROOT, {}).items() if key not in ("hymeko.root", WITHIN)}
+    notations = {key: text for key, text in kept_notations(context.mechanism).get(ROOT, {}).items() if key != "hymeko.root"}
     if notations:
         items.extend(written_items(notations, flags=False))
     items.extend(foreign_items(_in_place(context.mechanism)[1], at_root=True))

@@ -25,11 +25,12 @@ from hymeko_x.xml.text import escaped
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.rewrite.context import Options
 
 
-def write(mechanism: Mechanism, report: Report) -> Package:
+def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The MJCF of the mechanism. Files that it refers to are not part of it: `assets.pack` returns them."""
-    del report
+    del options, report
     if is_native(mechanism):
         from hymeko_x.backends.mjcf.native import write_native
 

@@ -19,7 +19,7 @@ from hymeko_x.rewrite.subsets import split_subsets
 from hymeko_x.rewrite.tendons import drop_odd_tendons, make_tendons_sound, name_wrapped_shapes
 
 if TYPE_CHECKING:
-    from hymeko_x.rewrite import Rule
+    from hymeko_x.rewrite.context import Rule
 
 RULES: tuple[Rule, ...] = (
     make_names_usable,

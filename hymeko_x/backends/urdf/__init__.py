@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.rewrite.context import Options
 
 
 class Draft(NamedTuple):
@@ -44,25 +45,25 @@ class Draft(NamedTuple):
     meshes: dict[str, bytes]
 
 
-def write(mechanism: Mechanism, report: Report) -> Package:
+def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The URDF file of a mechanism. Meshes are referred to by their uris as they are.
 
     Raises: Refusal with HX104 for a joint or a shape that URDF cannot say; legalising beforehand rewrites those.
     """
     del report  # printing takes no decisions, so there is nothing to say
-    made = draft(mechanism)
+    made = draft(mechanism, options.within)
     made.root.children += [element if isinstance(element, str) else ready(element, 1) for element in made.elements]
     lines = ['<?xml version="1.0"?>', *made.before, *render(made.root), *made.after, ""]
     return Package("\n".join(lines).encode(), made.meshes)
 
 
-def draft(mechanism: Mechanism) -> Draft:
-    """The elements of the URDF file of a mechanism. Each at top level knows whose it is.
+def draft(mechanism: Mechanism, within: str = "") -> Draft:
+    """The elements of the URDF file of a mechanism. Each at top level knows whose it is. Files beside it are in the folder ``within``.
 
     Raises: Refusal with HX104 as :func:`write`.
     """
     root = _root_tag(mechanism)
-    sheet = Sheet(mechanism, _declared(root))
+    sheet = Sheet(mechanism, _declared(root), within)
     extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.FORMAT, COMMENT)]
     meshes = contents_of(mechanism, sheet.mesh_files, sheet.textures)
     return Draft(root, _merged(extras, sheet), _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)

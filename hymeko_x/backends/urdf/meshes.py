@@ -7,10 +7,8 @@ import re
 from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Material, Mesh, Role
 from hymeko_x.ir.values import number_text, numbers_text
-from hymeko_x.rewrite import WITHIN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -32,9 +30,11 @@ class _Look(NamedTuple):
     faces: tuple[int, ...] | None = None
 
 
-def files_of_meshes(mechanism: Mechanism) -> dict[Id, str]:
-    """The relative path of every mesh that carries its points, made of what is harmless in its name. Equal points share a file."""
-    within = mechanism.notation(ROOT, WITHIN) or ""
+def files_of_meshes(mechanism: Mechanism, within: str) -> dict[Id, str]:
+    """The relative path, below the folder ``within``, of every mesh that has its points, made of what is harmless in its name.
+
+    Equal points share a file.
+    """
     found: dict[Id, str] = {}
     taken: set[str] = set()
     known: dict[object, str] = {}

@@ -13,7 +13,7 @@ from hymeko_x.rewrite.urdf import chain_dofs, hold_or_free_open_bases, join_root
 from hymeko_x.rewrite.urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
 
 if TYPE_CHECKING:
-    from hymeko_x.rewrite import Rule
+    from hymeko_x.rewrite.context import Rule
 
 RULES: tuple[Rule, ...] = (
     make_names_usable,

@@ -28,9 +28,10 @@ _RECENT = 256
 class Sheet:
     """A mechanism to be printed, with its style and the look-ups that printing needs; all of them linear to build."""
 
-    def __init__(self, mechanism: Mechanism, declared: Mapping[str, str]) -> None:
+    def __init__(self, mechanism: Mechanism, declared: Mapping[str, str], within: str) -> None:
         self.mechanism = mechanism
         self.declared = declared
+        self.within = within
         self.style = frozenset((mechanism.notation(ROOT, words.STYLE) or "").split())
         self._chosen = dict(word.split("=", 1) for word in self.style if "=" in word)
         self._defined_before: set[Id] = set()
@@ -98,7 +99,7 @@ class Sheet:
     @cached_property
     def mesh_files(self) -> Mapping[Id, str]:
         """Where the meshes go that carry their points and have no file."""
-        return files_of_meshes(self.mechanism)
+        return files_of_meshes(self.mechanism, self.within)
 
     # ---- joints ----------------------------------------------------------------------------------------------------------
 

@@ -23,14 +23,13 @@ from hymeko_x.backends.usd.shapes import write_shapes
 from hymeko_x.backends.usd.sheet import UsdSheet, apply, author, valid_name
 from hymeko_x.backends.usd.tendons import write_tendons
 from hymeko_x.formats import usd as words
-from hymeko_x.formats.usd import LAYOUT, POINTS
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.rewrite import WITHIN
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.rewrite.context import Options
 
 __all__ = ["carry_residue", "write"]
 
@@ -51,33 +50,27 @@ _SECTIONS = (
 )
 
 
-def write(mechanism: Mechanism, report: Report) -> Package:
+def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The mechanism as USD text. Textures are not part of it: `assets.pack` returns them."""
-    layers = write_layers(mechanism, report, ".usda")
-    beside = mechanism.notation(ROOT, POINTS)
-    if beside is not None and len(layers) == 1:
-        layers |= set_points_aside(layers[""], _within(mechanism) + beside)
+    layers = write_layers(mechanism, options, report, ".usda")
+    if options.beside and len(layers) == 1:
+        layers |= set_points_aside(layers[""], f"{options.within}{options.beside}_meshes.usdc")
     written = {name: encoded(layer) if name.endswith(".usdc") else layer.ExportToString().encode() for name, layer in layers.items()}
     return Package(written.pop(""), written)
 
 
-def write_layers(mechanism: Mechanism, report: Report, suffix: str) -> dict[str, Any]:
+def write_layers(mechanism: Mechanism, options: Options, report: Report, suffix: str) -> dict[str, Any]:
     """The layers of the stage by file name, the one to open under an empty name."""
-    layer = write_layer(mechanism, report)
-    if mechanism.notation(ROOT, LAYOUT) != "layered":
+    layer = write_layer(mechanism, options, report)
+    if options.layout != "layered":
         return {"": layer}
-    return split(layer, f"{_within(mechanism)}{valid_name(mechanism.name)}_payload", suffix)
+    return split(layer, f"{options.within}{valid_name(mechanism.name)}_payload", suffix)
 
 
-def _within(mechanism: Mechanism) -> str:
-    """The folder that holds every file beside the stage."""
-    return mechanism.notation(ROOT, WITHIN) or ""
-
-
-def write_layer(mechanism: Mechanism, report: Report) -> Any:
+def write_layer(mechanism: Mechanism, options: Options, report: Report) -> Any:
     """The mechanism as one layer in memory."""
     layer = Sdf.Layer.CreateAnonymous(".usda")
-    sheet = UsdSheet(mechanism, layer, _root(mechanism))
+    sheet = UsdSheet(mechanism, layer, _root(mechanism), is_nested=bool(options.nested))
     with Sdf.ChangeBlock():
         _write_stage(sheet)
         for section in _SECTIONS:

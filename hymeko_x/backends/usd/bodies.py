@@ -10,8 +10,7 @@ from pxr import Gf, Vt
 from hymeko_x.backends.usd.shapes import gprim_of, gprim_pose
 from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
 from hymeko_x.formats import usd as words
-from hymeko_x.formats.usd import NESTED
-from hymeko_x.ir.mechanism import ROOT, WORLD
+from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Mesh
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle, unit_quat
 from hymeko_x.xml.tree import read_numbers
@@ -32,17 +31,16 @@ def write_bodies(sheet: UsdSheet) -> None:
     """
     poses = world_poses(sheet.mechanism)
     note_body_shapes(sheet)
-    is_nested = sheet.mechanism.notation(ROOT, NESTED) == "true"
     placed: set[Any] = set()
-    for key in _parents_first(sheet.mechanism) if is_nested else [key for key, _ in sheet.mechanism.vertices(Body)]:
-        spec = _place_nested(sheet, key) if is_nested else sheet.add_prim(key, sheet.root, "Xform")
+    for key in _parents_first(sheet.mechanism) if sheet.is_nested else [key for key, _ in sheet.mechanism.vertices(Body)]:
+        spec = _place_nested(sheet, key) if sheet.is_nested else sheet.add_prim(key, sheet.root, "Xform")
         placed.add(spec.path)
         _write_body(sheet, spec, key)
     for key, _ in sheet.mechanism.vertices(Body):
         path = sheet.paths[key]
         spec = sheet.prims[path]
         pose = _noted_pose(sheet.mechanism, key) or poses.get(key, IDENTITY)
-        above = _parent_body(sheet.mechanism, key) if is_nested else None
+        above = _parent_body(sheet.mechanism, key) if sheet.is_nested else None
         if above is not None:
             seen = compose(inverse(_noted_pose(sheet.mechanism, above) or poses.get(above, IDENTITY)), pose)
             transform(spec, seen, sheet.body_scales.get(key), within=sheet.body_scales.get(above))

@@ -20,13 +20,14 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.rewrite.context import Options
 
 _MAIN = "stage.usdc"
 
 
-def write(mechanism: Mechanism, report: Report) -> Package:
+def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The mechanism as a package, which passes through a temporary file like a crate. Its first file is the one to open."""
-    crate = write_crate(mechanism, report)
+    crate = write_crate(mechanism, options, report)
     return Package(zipped({_MAIN: crate.main, **crate.files}))
 
 

@@ -12,11 +12,12 @@ from hymeko_x.source import Package
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.rewrite.context import Options
 
 __all__ = ["carry_residue", "write"]
 
 
-def write(mechanism: Mechanism, report: Report) -> Package:
+def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The mechanism as a crate file. Textures are not part of it: `assets.pack` returns them."""
-    crates = {name: encoded(layer) for name, layer in write_layers(mechanism, report, ".usdc").items()}
+    crates = {name: encoded(layer) for name, layer in write_layers(mechanism, options, report, ".usdc").items()}
     return Package(crates.pop(""), crates)

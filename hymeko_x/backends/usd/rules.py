@@ -1,4 +1,4 @@
-"""The rules that make a mechanism representable in USD: the layout of the stage, loops, and collision groups that still hold."""
+"""The rules that make a mechanism representable in USD: loops, and collision groups that still hold."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.formats.usd import LAYOUT, NESTED, POINTS
 from hymeko_x.formats.usd.contacts import GROUP, GROUPED, GROUPS, pairs_digest
 from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Contact, Loop
@@ -16,41 +15,24 @@ from hymeko_x.rewrite.native import say_what_cameras_see
 from hymeko_x.rewrite.urdf import hold_or_free_open_bases
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Mechanism
-    from hymeko_x.rewrite import Options, Rule
-
-
-def choose_layout(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
-    """Note the options about the layout of a stage; without them it stays as it was. Meshes go beside it if they can."""
-    del report
-    own = dict(mechanism.notations.get(ROOT, {}))
-    wanted = dict(own)
-    if options.layout is not None:
-        wanted[LAYOUT] = options.layout
-    if options.nested is not None:
-        wanted[NESTED] = "true" if options.nested else "false"
-    if options.beside:
-        wanted[POINTS] = f"{options.beside}_meshes.usdc"
-    return replace(mechanism, notations={**mechanism.notations, ROOT: wanted}) if wanted != own else mechanism
+    from hymeko_x.rewrite.context import Context, Rule
 
 
 # ---- what UsdPhysics has no joint for --------------------------------------------------------------------------------------------
 
 
-def drop_loops_without_bodies(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def drop_loops_without_bodies(mechanism: Mechanism, context: Context) -> Mechanism:
     """A closure of the world with itself holds nothing; a joint of UsdPhysics needs a body."""
-    del options
     frames = {view.thing: view.body for views in mechanism.mounts.values() for view in views}
     gone = [key for key, _, arcs in mechanism.edges(Loop) if all(frames.get(arc.target, arc.target) == WORLD for arc in arcs)]
     for key in gone:
-        report.warn(codes.NOT_SAID, f"{key} is left out: it joins no body", mechanism.origin(key), element=str(key))
+        context.report.warn(codes.NOT_SAID, f"{key} is left out: it joins no body", mechanism.origin(key), element=str(key))
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 
-def drop_stale_groups(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+def drop_stale_groups(mechanism: Mechanism, context: Context) -> Mechanism:
     """Collision groups that say something else than the exclusions leave; what is excluded now is written in pairs."""
-    del options
     noted = mechanism.notation(ROOT, GROUPS)
     if noted is None:
         return mechanism
@@ -58,7 +40,7 @@ def drop_stale_groups(mechanism: Mechanism, options: Options, report: Report) ->
     if pairs_digest((arcs[0].target, arcs[-1].target) for _, arcs in marked) == noted:
         return mechanism
     message = "exclusions have changed, so that the collision groups that said them are left out; what is excluded now is said in pairs"
-    report.note(codes.REWRITTEN, message)
+    context.report.note(codes.REWRITTEN, message)
     gone = (GROUPS, GROUPED)
     notations = {key: {name: text for name, text in own.items() if name not in gone} for key, own in mechanism.notations.items()}
     extras = {key: tuple(extra for extra in found if not _is_group(extra)) for key, found in mechanism.extras.items()}
@@ -76,5 +58,4 @@ RULES: tuple[Rule, ...] = (
     drop_loops_without_bodies,
     drop_stale_groups,
     say_what_cameras_see,
-    choose_layout,
 )

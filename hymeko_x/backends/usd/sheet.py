@@ -115,11 +115,13 @@ class UsdSheet:
 
     ``element_paths`` are the paths of prims that represent elements, ``group_paths`` of those that contain them. ``body_shapes``
     is the shape of each body whose own prim is its geometry, ``body_scales`` the scale of such a prim.
+    ``is_nested``: whether each body is inside of its parent.
     """
 
     mechanism: Mechanism
     layer: Any
     root: Any
+    is_nested: bool = False
     paths: dict[Id, Any] = field(default_factory=dict)
     dofs: dict[tuple[Id, int], tuple[Any, str]] = field(default_factory=dict)
     element_paths: set[Any] = field(default_factory=set)

@@ -18,28 +18,26 @@ from hymeko_x.backends.xacro.remarks import placed
 from hymeko_x.factor import factor
 from hymeko_x.formats import carrier
 from hymeko_x.formats.xacro import macros_file
-from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.rewrite import WITHIN
-from hymeko_x.rewrite.xacro import SPLIT
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.rewrite.context import Options
 
 
-def write(mechanism: Mechanism, report: Report) -> Package:
+def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The xacro file of a mechanism that is legal for URDF.
 
     Raises: Refusal with HX104 for what URDF cannot say.
     """
     del report  # printing takes no decisions, so there is nothing to say
-    draft = urdf.draft(mechanism)
+    draft = urdf.draft(mechanism, options.within)
     forms, remarks = top_level(draft.elements, mechanism)
     factored = factor(forms, DIALECT)
-    if not factored.macros or mechanism.notation(ROOT, SPLIT) is None:
+    if not factored.macros or not options.split:
         return Package(print_file(draft, factored, placed(factored, remarks)).encode(), draft.meshes)
-    beside = f"{mechanism.notation(ROOT, WITHIN) or ''}{macros_file(mechanism.name)}"
+    beside = f"{options.within}{macros_file(mechanism.name)}"
     main = print_file(draft, factored, placed(factored, remarks), beside)
     return Package(main.encode(), {**draft.meshes, beside: print_macros(draft, factored, placed(factored, remarks)).encode()})
 

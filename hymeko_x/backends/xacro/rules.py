@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.urdf.rules import RULES as URDF
-from hymeko_x.rewrite.xacro import choose_files
 
 if TYPE_CHECKING:
-    from hymeko_x.rewrite import Rule
+    from hymeko_x.rewrite.context import Rule
 
-RULES: tuple[Rule, ...] = (*URDF, choose_files)
+RULES: tuple[Rule, ...] = URDF

@@ -98,12 +98,3 @@ def single(value: float) -> float:
         if _pack(short) == packed:
             return short
     return float(f"{value:.9g}")
-
-
-LAYOUT = "usd.layout"
-"""The notation of the mechanism that says ``layered`` where the stage has a file for each of its aspects."""
-NESTED = "usd.nested"
-"""The notation of the mechanism that says ``true`` where each body is inside of its parent."""
-
-POINTS = "usd.points"
-"""The notation of the mechanism that names the crate file which holds what is too long for a text."""

@@ -21,7 +21,8 @@ from hymeko_x.frontends.hymeko.infer import infer_kinds
 from hymeko_x.frontends.hymeko.joints import read_dofs, read_joint, read_limits, unit_axis
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc
-from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id
+from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Provenance
+from hymeko_x.ir.notations import take_provenance
 from hymeko_x.language.errors import with_excerpt
 from hymeko_x.language.expansion import Element, Expanded, expand
 from hymeko_x.language.foreign import SECTION_COMMENT
@@ -75,12 +76,13 @@ def build(expanded: Expanded, file: str, report: Report) -> Mechanism:
     elements = [item for item in expanded.items if isinstance(item, Element) and not _is_about_the_whole(item.node)]
     kinds = infer_kinds(expanded, elements)
     _read_settings(build, expanded, kinds)
+    build.source = take_provenance(build.notations, FOREIGN, Provenance("hymeko", file=file))
     declared = _declare(build, expanded, kinds)
     for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _WITH_SHAPES):
         _read_element(build, key, element)
     if expanded.root and expanded.root != expanded.name:
         build.notations.setdefault(ROOT, {})["hymeko.root"] = expanded.root
-    return build.build(expanded.name)
+    return build.build(expanded.name, build.source)
 
 
 # ---- settings and statements of the root -------------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.mechanism import KINDS, ROOT, WORLD, Id
+from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Provenance
 from hymeko_x.ir.parts import EdgePart, Weight, World
 from hymeko_x.language.syntax import ArcItem, QuotedName, is_list
 from hymeko_x.language.templates import standard_templates
@@ -32,6 +32,7 @@ class Build(Builder):
     """The elements of a text so far, and which names exist of which kind."""
 
     context: Context
+    source: Provenance = field(default=Provenance())
     files: str = ""
     kinds: dict[str, list[str]] = field(default_factory=dict)
     directions: dict[str, Vec3] = field(default_factory=dict)
@@ -46,7 +47,7 @@ class Build(Builder):
         key = self.reserve(kind, element.name, element.node)
         self.layout.append(key)
         own = tuple(name for name in element.types if name not in standard_templates())
-        if own and "mjcf" not in self.notations.get(ROOT, ()):  # whose classes are said apart
+        if own and not self.source.version:  # whose classes are said apart
             self.stereotypes[key] = own
         return key
 

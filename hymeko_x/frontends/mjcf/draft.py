@@ -12,7 +12,7 @@ from hymeko_x.formats.mjcf.classes import merge
 from hymeko_x.formats.mjcf.codec import BadAttribute, plan_of
 from hymeko_x.formats.mjcf.tree import COMMENT, verbatim
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import ROOT, Extra, Id
+from hymeko_x.ir.mechanism import ROOT, Extra, Id, Provenance
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
@@ -194,8 +194,7 @@ class Draft(Builder):
 
     def finish(self, name: str) -> Mechanism:
         """The finished mechanism."""
-        self.note_root(words.NAME, words.VERSION)
-        return self.build(name)
+        return self.build(name, Provenance(words.NAME, words.VERSION, self.file))
 
 
 def _say_the_same(a: str | None, b: str | None) -> bool:

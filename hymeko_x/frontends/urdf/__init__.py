@@ -51,7 +51,7 @@ def read(source: Source, report: Report) -> Mechanism:
     finish_materials(draft)
     check_structure(root, draft)
     _check_templates(root, draft)
-    return carrier.with_residue(draft.finish(name, _around(document)), carried)
+    return carrier.with_residue(draft.finish(name, _around(document), source.name), carried)
 
 
 def _whole_text(node: Node) -> str:

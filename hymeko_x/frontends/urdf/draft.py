@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.mechanism import ROOT, Provenance
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
 from hymeko_x.xml.tree import read_numbers, take_numbers
 
@@ -89,8 +89,8 @@ class Draft(Builder):
                     )
         node.let_go()
 
-    def finish(self, name: str, around: list[Extra]) -> Mechanism:
-        """The finished mechanism; ``around`` is what stood before and after the root element."""
+    def finish(self, name: str, around: list[Extra], file: str) -> Mechanism:
+        """The finished mechanism; ``around`` is what stood before and after the root element, ``file`` where it stood."""
         self._settle_choices()
         if self.style:
             self.note(ROOT, words.STYLE, " ".join(sorted(self.style)))
@@ -98,7 +98,7 @@ class Draft(Builder):
             self.add_extras(key, *extras)
         self.add_extras(ROOT, *around)
         self.layout.extend(self.leftovers.layout)
-        return self.build(name)
+        return self.build(name, Provenance(words.FORMAT, file=file))
 
 
 def take_name(node: Node, kind: str, known: dict[str, Id], draft: Draft) -> Id:

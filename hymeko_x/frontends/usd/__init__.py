@@ -30,7 +30,7 @@ from hymeko_x.frontends.usd.stage import Scene, open_scene
 from hymeko_x.frontends.usd.tendons import read_tendons
 from hymeko_x.frontends.usd.transforms import check_ops
 from hymeko_x.frontends.usd.trees import build_trees, note_poses
-from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism, Provenance
 from hymeko_x.ir.parts import Texture
 
 if TYPE_CHECKING:
@@ -158,7 +158,7 @@ def _finished(scene: Scene, builder: UsdBuilder) -> Mechanism:
         builder.note(ROOT, words.ROOT_PRIM, str(root.GetPath()))
     if not builder.bodies:
         builder.report.error(codes.MISSING_PART, "the stage has no rigid bodies; the result has no bodies", Origin(builder.source.name))
-    return replace(builder.build(name), places=dict(_packed_images(builder)))
+    return replace(builder.build(name, Provenance(words.FORMAT, file=builder.source.name)), places=dict(_packed_images(builder)))
 
 
 def _packed_images(builder: UsdBuilder) -> Iterator[tuple[str, str]]:

@@ -12,7 +12,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.frontends import urdf
 from hymeko_x.frontends.xacro.expand import expand
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.mechanism import ROOT, Provenance
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.xacro.expand import Expansion
@@ -56,7 +56,8 @@ def read(source: Source, report: Report) -> Mechanism:
     lines = {key: origin.line for key, origin in mechanism.origins.items()}
     origins = {key: expansion.origin(line) for key, line in lines.items()}
     macros = {key: (macro,) for key, line in lines.items() if (macro := expansion.macro(line))}
-    return replace(mechanism, origins={ROOT: expansion.root_origin, **origins}, stereotypes=macros)
+    provenance = Provenance("xacro", file=source.name)
+    return replace(mechanism, origins={ROOT: expansion.root_origin, **origins}, stereotypes=macros, source=provenance)
 
 
 def _check_is_urdf(expansion: Expansion) -> None:

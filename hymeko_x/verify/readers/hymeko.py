@@ -13,6 +13,7 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.frontends import hymeko
 from hymeko_x.frontends.mjcf.weigh import weigh
 from hymeko_x.ir.parts import Body
+from hymeko_x.rewrite.context import Options
 from hymeko_x.rewrite.native import is_native
 from hymeko_x.source import Source
 from hymeko_x.verify.readers.mechanism import from_mechanism
@@ -42,4 +43,4 @@ def read(path: Path, places: Places) -> KinematicModel:
 
 def _weighed(mechanism: Mechanism, files: Files) -> Mechanism:
     """What came from MJCF, with what only MuJoCo knows."""
-    return weigh(mechanism, lambda: (mechanism, mjcf.write(mechanism, Report()).main), files, Report())
+    return weigh(mechanism, lambda: (mechanism, mjcf.write(mechanism, Options(), Report()).main), files, Report())
