@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, refuse
 from hymeko_x.xml.text import NAME, attributes_text, comment_markup, escaped
-from hymeko_x.xml.tree import COMMENT, FOLLOWING, PRECEDING
+from hymeko_x.xml.tree import COMMENT_NODE
+from hymeko_x.xml.unread import COMMENT, FOLLOWING, PRECEDING
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.ir.mechanism import Extra, Id
+    from hymeko_x.xml.tree import Node
 
 _INDENTS = tuple("  " * depth for depth in range(41))
 """Elements in more than 40 others are not indented further, so that the text stays linear in their number."""
@@ -155,3 +157,24 @@ def render(tag: Tag, depth: int = 0) -> list[str]:
 def ready(tag: Tag, depth: int) -> str:
     """A tag as ready text for another tag at this depth: its lines, of which the first one is not indented."""
     return "\n".join(render(tag, depth))[2 * depth :]
+
+
+def markup(node: Node) -> str:
+    """A node with everything in it as one line of XML; of a comment its text in comment signs."""
+    pieces: list[str] = []
+    stack: list[Node | str] = [node]
+    while stack:
+        item = stack.pop()
+        if isinstance(item, str):
+            pieces.append(item)
+        elif item.tag == COMMENT_NODE:
+            pieces.append(f"<!--{item.text}-->")
+        else:
+            start = item.tag + attributes_text(item.attributes)
+            if item.children or item.text:
+                pieces.append(f"<{start}>{escaped((item.text or '').strip())}")
+                stack.append(f"</{item.tag}>")
+                stack.extend(reversed(item.children))
+            else:
+                pieces.append(f"<{start}/>")
+    return "".join(pieces)

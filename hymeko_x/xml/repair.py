@@ -11,14 +11,15 @@ from lxml import etree
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.xml.parse import Builder, Document
+from hymeko_x.xml.tree import TreeBuilder
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.source import Source
+    from hymeko_x.xml.tree import Document
 
 
-def read_again(source: Source, report: Report, error: expat.ExpatError) -> Document:
+def read_again(source: Source, report: Report, error: expat.ExpatError, *, comments: bool, deepest: int | None) -> Document:
     """The second try on repaired text, repair by repair; then the third with libxml2's recovery."""
     if not source.data.strip(b"\0 \t\r\n\xef\xbb\xbf"):
         raise refuse(codes.NOT_XML, "the file is empty", Origin(source.name)) from error
@@ -32,17 +33,19 @@ def read_again(source: Source, report: Report, error: expat.ExpatError) -> Docum
             continue
         repairs += [said] if said else []
         try:
-            document = Builder(source.name, text.encode(), report).document()
+            document = TreeBuilder(source.name, text.encode(), report, comments=comments, deepest=deepest).document()
         except expat.ExpatError as next_error:
             still = next_error
             continue
         for said in repairs:
             report.warn(codes.REPAIRED_XML, said, place)
         return document
-    return _recover(source, text, repairs, report, still)
+    return _recover(source, text, repairs, report, still, comments=comments, deepest=deepest)
 
 
-def _recover(source: Source, text: str, repairs: list[str], report: Report, error: expat.ExpatError) -> Document:
+def _recover(
+    source: Source, text: str, repairs: list[str], report: Report, error: expat.ExpatError, *, comments: bool, deepest: int | None
+) -> Document:
     place = _place(source, error)
     parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True, strip_cdata=False, recover=True)
     try:
@@ -60,7 +63,7 @@ def _recover(source: Source, text: str, repairs: list[str], report: Report, erro
     data = b"\n".join(etree.tostring(node, encoding="utf-8", with_tail=False) for node in around if not _is_declaration(node))
     lines = iter([element.sourceline for element in root.iter("*")])
     try:
-        return Builder(source.name, data, report, lines).document()
+        return TreeBuilder(source.name, data, report, lines, comments=comments, deepest=deepest).document()
     except expat.ExpatError as worse:
         raise refuse(codes.NOT_XML, f"not XML: {expat.errors.messages[error.code]}", place) from worse
 
@@ -141,7 +144,7 @@ def without_declaration(text: str) -> tuple[str, str]:
     version = re.search(r"""version\s*=\s*["']([^"']*)""", found[0])
     said = ""
     if version is None or version[1] not in ("1.0", "1.1"):
-        said = f"the XML declaration says version '{version[1] if version else ''}'; read as 1.0"
+        said = f"the version in the XML declaration is '{version[1] if version else ''}'; read as 1.0"
     elif found.start() > 0:
         said = "the XML declaration does not stand at the start; read as if it did"
     blank = re.sub(r"[^\n]", " ", found[0])

@@ -1,20 +1,20 @@
-"""XML elements that remember what was asked for, so that what nobody asked for can be kept.
+"""The one tree of XML: nodes with their positions, from which a reader takes what it understands; what stays is unread.
 
-A frontend takes attributes, children and text out of a :class:`Node`; what it never took becomes an :class:`Extra` by
-:class:`Leftovers`. No list of known tags decides what survives.
+Nothing recurses, so that depth costs nothing.
 """
 
 from __future__ import annotations
 
 import math
 import re
+import sys
 from functools import lru_cache
 from typing import TYPE_CHECKING
+from xml.parsers import expat
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import Origin
-from hymeko_x.ir.mechanism import ROOT, Extra
-from hymeko_x.xml.text import escaped
+from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator
@@ -22,47 +22,36 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id
 
-COMMENT = "comment"
-"""The format of an extra that is a comment."""
 COMMENT_NODE = "#comment"
 INSTRUCTION_NODE = "#instruction"
-"""The tags of the nodes of comments and processing instructions, which no element can have."""
-PRECEDING = "preceding"
-FOLLOWING = "following"
-"""The paths of what stands before and after the root element."""
-
-
-KNOWN_PREFIXES = {
-    "xacro": "http://www.ros.org/wiki/xacro",
-    "drake": "http://drake.mit.edu",
-    "gz": "http://gazebosim.org/schema",
-}
-"""What an undeclared prefix stands for; others become ``urn:prefix``."""
+"""The tags of comments and processing instructions, which no element can have; their content is ``text``."""
+MAX_DEPTH = 2048
 
 
 class Node:
     """An XML element whose attributes, children and text are taken out one by one.
 
     ``owner`` is the element of the mechanism that the node became; a node without one belongs to its parent's.
-    ``start`` and ``end`` are where the element starts, and where its end tag does, in the bytes of the file.
+    ``start`` and ``end`` are where the element starts, and where its end tag does, in the bytes of the file. ``text_index`` is the number
+    of children before its text.
     """
 
-    __slots__ = ("attributes", "end", "file", "kids", "line", "owner", "parent", "start", "tag", "taken", "text", "text_index")
+    __slots__ = ("attributes", "children", "end", "file", "line", "owner", "parent", "start", "tag", "taken", "text", "text_index")
 
-    end: int
-    text_index: int
-
-    def __init__(self, tag: str, attributes: dict[str, str], parent: Node | None, file: str, line: int, start: int) -> None:
+    def __init__(
+        self, tag: str, attributes: dict[str, str], parent: Node | None = None, file: str = "", line: int | None = None, start: int = 0
+    ) -> None:
         self.tag = tag
         self.attributes = attributes
         self.parent = parent
         self.file = file
         self.line = line
-        self.start = start
-        self.kids: list[Node] | tuple[()] = ()
+        self.start = self.end = start
+        self.children: list[Node] = []
         self.taken = False
         self.owner: Id | None = None
         self.text: str | None = None
+        self.text_index = 0
 
     @property
     def origin(self) -> Origin:
@@ -71,13 +60,13 @@ class Node:
 
     @property
     def subject(self) -> str:
-        """What the node belongs to, in the words of its file: ``joint 'elbow'``; the root element if to nothing else."""
+        """The element that the node belongs to, in the words of its file: ``joint 'elbow'``; the root element if there is none."""
         node = self._owning()
         return f"<{node.tag}>" if node.owner is None else f"{node.tag} '{node.owner.name}'"
 
     @property
-    def about(self) -> str:
-        """The element of the mechanism that the node belongs to, in words; empty for the mechanism itself."""
+    def element(self) -> str:
+        """The element of the mechanism that the node belongs to, for a diagnostic; empty for the mechanism itself."""
         owner = self._owning().owner
         return "" if owner is None else str(owner)
 
@@ -92,12 +81,13 @@ class Node:
             node = node.parent
         return node
 
-    def adopt(self, kid: Node) -> None:
-        """Put a node behind the children; most elements never have one, and do without a list."""
-        if self.kids:
-            self.kids.append(kid)
-        else:
-            self.kids = [kid]
+    def walk(self) -> Iterator[Node]:
+        """The node and everything in it, in document order."""
+        stack = [self]
+        while stack:
+            node = stack.pop()
+            yield node
+            stack.extend(reversed(node.children))
 
     # ---- taking ----------------------------------------------------------------------------------------------------------
 
@@ -105,227 +95,196 @@ class Node:
         """The value of an attribute, or None when there is none."""
         return self.attributes.pop(attribute, None)
 
-    def child(self, tag: str) -> Node | None:
-        """The first child of this name that was not taken yet, or None."""
-        for kid in self.kids:
-            if kid.tag == tag and not kid.taken:
-                kid.taken = True
-                return kid
+    def take_child(self, tag: str) -> Node | None:
+        """The first unread child of this name, or None."""
+        for child in self.children:
+            if child.tag == tag and not child.taken:
+                child.taken = True
+                return child
         return None
 
-    def child_among(self, tags: Container[str]) -> Node | None:
-        """The first child that was not taken yet and has one of these names, or None."""
-        for kid in self.kids:
-            if kid.tag in tags and not kid.taken:
-                kid.taken = True
-                return kid
+    def take_child_among(self, tags: Container[str]) -> Node | None:
+        """The first unread child that has one of these names, or None."""
+        for child in self.children:
+            if child.tag in tags and not child.taken:
+                child.taken = True
+                return child
         return None
 
-    def children(self, tag: str) -> Iterator[Node]:
-        """All children of this name that were not taken yet, one after the other."""
-        for kid in self.kids:
-            if kid.tag == tag and not kid.taken:
-                kid.taken = True
-                yield kid
+    def take_children(self, tag: str) -> Iterator[Node]:
+        """All unread children of this name, one after the other."""
+        for child in self.children:
+            if child.tag == tag and not child.taken:
+                child.taken = True
+                yield child
 
     def take_whole(self, tag: str) -> None:
-        """Take the first child of this name with all that is in it, without reading it."""
-        child = self.child(tag)
+        """Take the first child of this name with everything in it, without reading it."""
+        child = self.take_child(tag)
         if child is not None:
-            child.attributes, child.kids, child.text = {}, (), None
+            child.attributes, child.children, child.text = {}, [], None
 
-    def words(self) -> str:
-        """The text of the element, stripped; none, and nothing taken, where elements stand between the words."""
-        if self.kids:
+    def take_text(self) -> str:
+        """The text of the element, stripped; none, and nothing taken, where there are elements between the words."""
+        if self.children:
             return ""
         text = (self.text or "").strip()
         self.text = None
         return text
 
-    def put_back(self, child: Node) -> None:
-        """Undo the taking of a child: it becomes an extra as a whole, in the words of the file."""
+    def leave(self, child: Node) -> None:
+        """Undo the taking of a child: it becomes an extra as a whole, as written."""
         child.taken = False
 
-    def let_go(self) -> None:
-        """Take the element apart: nodes that know each other would wait for the collector of cycles, and a large robot has millions."""
+    def detach(self, *tags: str) -> list[Node]:
+        """Remove the children with one of these names from the tree, in order: for readers that keep what the tree still contains."""
+        found = [child for child in self.children if child.tag in tags]
+        if found:
+            self.children = [child for child in self.children if child.tag not in tags]
+        return found
+
+    def release(self) -> None:
+        """Break the tree up: nodes that refer to each other would wait for the collector of cycles, and a large robot has millions."""
         stack = [self]
         while stack:
-            member = stack.pop()
-            stack.extend([kid for kid in member.kids if kid.kids])
-            member.kids = ()
+            node = stack.pop()
+            stack.extend([child for child in node.children if child.children])
+            node.children = []
 
     # ---- looking without taking ------------------------------------------------------------------------------------------
 
     def has(self, tag: str) -> bool:
-        """Whether a child of this name is left."""
-        return any(kid.tag == tag and not kid.taken for kid in self.kids)
+        """Whether a child of this name is unread."""
+        return any(child.tag == tag and not child.taken for child in self.children)
 
     def has_among(self, tags: Container[str]) -> bool:
-        """Whether a child with one of these names is left."""
-        return any(kid.tag in tags and not kid.taken for kid in self.kids)
+        """Whether a child with one of these names is unread."""
+        return any(child.tag in tags and not child.taken for child in self.children)
 
-    def took(self, tag: str) -> bool:
+    def has_taken(self, tag: str) -> bool:
         """Whether a child of this name was taken."""
-        return any(kid.tag == tag and kid.taken for kid in self.kids)
+        return any(child.tag == tag and child.taken for child in self.children)
 
-    def left(self) -> list[Node]:
-        """The child elements that are left."""
-        return [kid for kid in self.kids if not kid.taken and kid.is_element]
-
-
-# ---- what is left ------------------------------------------------------------------------------------------------------------
+    def unread_children(self) -> list[Node]:
+        """The child elements that are unread."""
+        return [child for child in self.children if not child.taken and child.is_element]
 
 
-class Leftovers:
-    """Collects what nobody took out of a file, whose bytes are ``data`` in UTF-8, element by element."""
+# ---- building ----------------------------------------------------------------------------------------------------------------
 
-    def __init__(self, root: Node, data: bytes, format_name: str, report: Report) -> None:
-        self._root = root
-        self._report = report
+
+@frozen
+class Document:
+    """A read file: its root, the comments and processing instructions around it, and the text that was read, in UTF-8."""
+
+    root: Node
+    preceding: tuple[Node, ...]
+    following: tuple[Node, ...]
+    data: bytes
+
+
+_WORDS = re.compile(rb">\s*+[^<]")
+"""What follows a tag, or a sign in an attribute, and is no tag; possessive, so that one pass finds it."""
+
+
+def _has_text(data: bytes) -> bool:
+    """Whether there is anything but blanks between elements; in doubt, as in UTF-16, there is."""
+    return b"<![CDATA[" in data or _WORDS.search(data) is not None
+
+
+class TreeBuilder:
+    """Makes a tree of what expat finds.
+
+    ``comments`` keeps comments and instructions at every depth, not only around the root and in it. ``deepest`` bounds the nesting.
+    ``lines`` are the line numbers of the elements where those of the text are others.
+    """
+
+    def __init__(
+        self,
+        file: str,
+        data: bytes,
+        report: Report,
+        lines: Iterator[int] | None = None,
+        *,
+        comments: bool = False,
+        deepest: int | None = MAX_DEPTH,
+    ) -> None:
+        self._file = file
         self._data = data
-        self._format = format_name
-        self._found: dict[Id, list[Extra]] = {}
-        self._owners: dict[int, Id] = {}
+        self._report = report
+        self._lines = lines
+        self._comments = comments
+        self._deepest = deepest
+        self._open = [Node("#outside", {}, None, file, 1)]
+        parser = expat.ParserCreate()
+        parser.buffer_text = True
+        parser.XmlDeclHandler = self._declaration
+        parser.StartDoctypeDeclHandler = self._doctype
+        parser.EntityDeclHandler = self._entity
+        parser.CommentHandler = lambda text: self._aside(COMMENT_NODE, text.strip())
+        parser.ProcessingInstructionHandler = lambda target, text: self._aside(INSTRUCTION_NODE, f"{target} {text}".strip())
+        self._parser = parser
 
-    def verbatim(self, node: Node) -> str:
-        """The element as the file has it, with the namespace declarations that it needs from further up."""
-        self._declare_prefixes(node)
-        end = node.end
-        closed_itself = not node.kids and node.text is None and self._data[end - 2 : end] == b"/>"
-        if not closed_itself:
-            end = self._data.index(b">", end) + 1
-        text = self._data[node.start : end].decode().replace("\r\n", "\n").replace("\r", "\n")
-        return _with_declarations(text, node)
+    def document(self) -> Document:
+        """The finished document. Raises: ExpatError where the text is not well-formed."""
+        self._handle_elements()
+        self._parser.Parse(self._data, True)
+        around = self._open[0].children
+        place = next(place for place, node in enumerate(around) if node.is_element)
+        root = around[place]
+        root.parent = None
+        return Document(root, tuple(around[:place]), tuple(around[place + 1 :]), self._data)
 
-    def _declare_prefixes(self, node: Node) -> None:
-        """Declare at the root the prefixes in an element that are declared nowhere."""
-        stack = [node]
-        while stack:
-            member = stack.pop()
-            self._declare_prefix(member, member.tag)
-            for name in member.attributes:
-                self._declare_prefix(member, name)
-            stack.extend(reversed(member.kids))
+    def _handle_elements(self) -> None:
+        """The handlers of elements and text, which are called for every element: closures are quicker than methods."""
+        parser, file, lines, stack, make = self._parser, self._file, self._lines, self._open, Node
+        most = (self._deepest or sys.maxsize - 1) + 1
 
-    def _declare_prefix(self, node: Node, name: str) -> None:
-        prefix, colon, _ = name.partition(":")
-        if not colon or prefix in ("xml", "xmlns"):
-            return
-        above: Node | None = node
-        while above is not None and f"xmlns:{prefix}" not in above.attributes:
-            above = above.parent
-        if above is None:
-            self._root.attributes[f"xmlns:{prefix}"] = KNOWN_PREFIXES.get(prefix, f"urn:{prefix}")
-            said = f"undeclared prefix '{prefix}'; read as if the root declared it"
-            self._report.warn(codes.REPAIRED_XML, said, node.origin)
+        def start(tag: str, attributes: dict[str, str]) -> None:
+            around = stack[-1]
+            line = parser.CurrentLineNumber if lines is None else next(lines)
+            node = make(tag, attributes, around, file, line, parser.CurrentByteIndex)
+            around.children.append(node)
+            stack.append(node)
+            if len(stack) > most:
+                raise refuse(codes.TOO_LARGE, f"the elements are nested more than {most - 1} deep", Origin(file, line))
 
-    def close(self, node: Node) -> list[Node]:
-        """Collect what is left in a child of the root. Returns its nodes in which child elements were left."""
-        if node.owner is not None:
-            self._owners[node.start] = node.owner
-        with_left_kids = []
-        stack = [node]
-        while stack:
-            member = stack.pop()
-            if member.attributes or member.text is not None:
-                self._keep(member)
-            kept = False
-            for kid in member.kids:
-                if kid.taken:
-                    stack.append(kid)
-                elif not kept and kid.is_element:
-                    kept = True
-                    self._keep_kids(member)
-                    with_left_kids.append(member)
-        return with_left_kids
+        def end(tag: str) -> None:
+            stack.pop().end = parser.CurrentByteIndex
 
-    def _keep(self, node: Node) -> None:
-        owner, path = _place_below_owner(node)
-        found = self._found.setdefault(owner, [])
-        for name in list(node.attributes):
-            self._declare_prefix(node, name)
-        for name in sorted(node.attributes):
-            found.append(Extra(self._format, _below(path, f"@{name}"), node.attributes[name]))
-        if node.text is not None:
-            found.append(Extra(self._format, _below(path, "text()"), node.text.strip(), node.text_index))
+        def characters(text: str) -> None:
+            node = stack[-1]
+            if node.text is not None:
+                node.text += text
+            elif not text.isspace():
+                node.text = text
+                node.text_index = len(node.children)
 
-    def _keep_kids(self, node: Node) -> None:
-        owner, path = _place_below_owner(node)
-        found = self._found.setdefault(owner, [])
-        elements = [kid for kid in node.kids if kid.is_element]
-        found += [Extra(self._format, path, self.verbatim(kid), place) for place, kid in enumerate(elements) if not kid.taken]
+        parser.StartElementHandler = start
+        parser.EndElementHandler = end
+        if _has_text(self._data):  # else there is nothing but blanks, of which a file has thousands
+            parser.CharacterDataHandler = characters
 
-    def finish(self) -> dict[Id, tuple[Extra, ...]]:
-        """Everything that was left, by element. The root's comments, and its namespaces (``@xmlns:drake``), are among it.
+    def _aside(self, tag: str, text: str) -> None:
+        if self._comments or len(self._open) < 3:
+            around = self._open[-1]
+            node = Node(tag, {}, around, self._file, self._parser.CurrentLineNumber, self._parser.CurrentByteIndex)
+            node.text = text
+            around.children.append(node)
 
-        Nobody looks at the file's elements again.
-        """
-        own = self._found.setdefault(ROOT, [])
-        for place, kid in enumerate(self._root.kids):
-            if not kid.is_element:
-                own.append(outer_extra(self._format, "", kid, place))
-            elif not kid.taken:
-                own.append(Extra(self._format, "", self.verbatim(kid), place))
-        self._keep(self._root)  # last, since prefixes may have been declared at the root
-        self._root.let_go()
-        return {owner: tuple(sorted(extras, key=_by_place)) for owner, extras in self._found.items() if extras}
+    def _declaration(self, version: str, encoding: str | None, standalone: int) -> None:
+        del encoding, standalone
+        if version not in ("1.0", "1.1"):
+            self._report.warn(codes.REPAIRED_XML, f"the version in the XML declaration is '{version}'; read as 1.0", self._here())
 
-    @property
-    def layout(self) -> tuple[Id, ...]:
-        """The elements that children of the root became, in the order of the file."""
-        return tuple(self._owners[place] for place in sorted(self._owners))
+    def _doctype(self, name: str, *_: object) -> None:
+        self._report.warn(codes.REPAIRED_XML, f"'<!DOCTYPE {name}>' is left out: robot files have no document type", self._here())
 
+    def _entity(self, *_: object) -> None:
+        raise refuse(codes.ENTITIES, "the file defines XML entities, which are never expanded", self._here())
 
-def _by_place(extra: Extra) -> tuple[bool, str, int]:
-    """What stands deeper comes first, then the element's own content; each in the order of the file."""
-    return extra.path == "", extra.path, extra.index
-
-
-def outer_extra(format_name: str, path: str, node: Node, index: int) -> Extra:
-    """A comment, which is the same in every format and is kept without its signs, or a processing instruction as it is."""
-    text = node.text or ""
-    if node.tag == COMMENT_NODE:
-        return Extra(COMMENT, path, text.strip(), index)
-    return Extra(format_name, path, f"<?{text}?>", index)
-
-
-def _place_below_owner(node: Node) -> tuple[Id, str]:
-    """Whose the node is, and the path from that element to it; repeated steps are numbered: ``joint[2]``."""
-    path = ""
-    while node.owner is None and node.parent is not None:
-        path = _below(_step(node, node.parent), path) if path else _step(node, node.parent)
-        node = node.parent
-    return node.owner or ROOT, path
-
-
-def _step(node: Node, parent: Node) -> str:
-    number = 1
-    for kid in parent.kids:
-        if kid is node:
-            break
-        number += kid.tag == node.tag and kid.taken
-    return node.tag if number == 1 else f"{node.tag}[{number}]"
-
-
-def _below(path: str, step: str) -> str:
-    return f"{path}/{step}" if path else step
-
-
-def _with_declarations(text: str, node: Node) -> str:
-    """The text of an element with the declarations of those prefixes that it uses and does not declare."""
-    added: dict[str, str] = {}
-    above = node.parent
-    while above is not None:
-        for name, uri in above.attributes.items():
-            if name.startswith("xmlns:") and f"{name[6:]}:" in text and f"{name}=" not in text:
-                added.setdefault(name, uri)
-        above = above.parent
-    if not added:
-        return text
-    name_end = re.match(r"<[^\s/>]+", text)
-    assert name_end is not None
-    declarations = "".join(f' {name}="{escaped(uri)}"' for name, uri in added.items())
-    return text[: name_end.end()] + declarations + text[name_end.end() :]
+    def _here(self) -> Origin:
+        return Origin(self._file, self._parser.CurrentLineNumber)
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------
@@ -344,43 +303,3 @@ def read_numbers(text: str) -> tuple[float, ...] | None:
     if "_" in text or not text.isascii():
         return None
     return numbers if math.isfinite(sum(numbers)) or all(map(math.isfinite, numbers)) else None
-
-
-def take_numbers(node: Node, attribute: str, count: int, report: Report, *, instead: str) -> tuple[float, ...] | None:
-    """The ``count`` numbers of an attribute; None when it is missing or bad.
-
-    A bad one is reported and not taken, so that it becomes an extra and is written back as it was; ``instead`` says
-    what the caller uses (``0 is used``).
-    """
-    text = node.attributes.get(attribute)
-    if text is None:
-        return None
-    numbers = read_numbers(text)
-    if numbers is not None and len(numbers) == count:
-        del node.attributes[attribute]
-        return numbers
-    _report_bad(node, attribute, text, count, report, instead)
-    return None
-
-
-def take_number(node: Node, attribute: str, report: Report, *, instead: str) -> float | None:
-    """The one number of an attribute; None when it is missing or bad. See :func:`take_numbers`."""
-    numbers = take_numbers(node, attribute, 1, report, instead=instead)
-    return None if numbers is None else numbers[0]
-
-
-def _report_bad(node: Node, attribute: str, text: str, count: int, report: Report, instead: str) -> None:
-    expected = "one finite number" if count == 1 else f"{count} finite numbers separated by blanks"
-    left_over = "${" in text or "$(" in text
-    report.error(
-        codes.LEFTOVER_TEMPLATE if left_over else codes.BAD_NUMBER,
-        f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', expected {expected}; {instead}, and the text is kept as written",
-        node.origin,
-        element=node.about,
-        hint="expand the file with xacro first" if left_over else "",
-    )
-
-
-def shortened(text: str, limit: int = 60) -> str:
-    """A text for a message: at most ``limit`` characters."""
-    return text if len(text) <= limit else text[: limit - 3] + "..."

@@ -19,7 +19,7 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
     "an XML version that does not exist": (
         f'<?xml version="0.0" ?>\n{robot(LINK)}',
         [
-            "1: warning[HX005]: the XML declaration says version '0.0'; read as 1.0",
+            "1: warning[HX005]: the version in the XML declaration is '0.0'; read as 1.0",
         ],
     ),
     "an XML declaration behind a comment": (

@@ -89,7 +89,7 @@ class Text:
         while stack:
             node, row = stack.pop()
             if node.tag == COMMENT:
-                row.append(f"<!-- {node.words} -->")
+                row.append(f"<!-- {node.text} -->")
             else:
                 tag = Tag(node.tag, node.attributes)
                 row.append(tag)

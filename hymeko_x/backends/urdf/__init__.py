@@ -22,7 +22,7 @@ from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 from hymeko_x.xml.printing import Tag, foreign_text, put_back, ready, render
 from hymeko_x.xml.text import escaped
-from hymeko_x.xml.tree import COMMENT, FOLLOWING, PRECEDING
+from hymeko_x.xml.unread import COMMENT, FOLLOWING, PRECEDING
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

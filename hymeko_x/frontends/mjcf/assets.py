@@ -20,15 +20,15 @@ if TYPE_CHECKING:
 def read_assets(sections: list[Element], draft: Draft) -> None:
     """Textures first, since materials refer to them."""
     for section in sections:
-        for element in section.take_children("texture"):
+        for element in section.detach("texture"):
             read_texture(element, draft)
     meshes = len(draft.vertices)
     for section in sections:
-        for element in section.take_children("mesh"):
+        for element in section.detach("mesh"):
             read_mesh(element, draft)
     _note_order([key.name for key in list(draft.vertices)[meshes:]], draft)
     for section in sections:
-        for element in section.take_children("material"):
+        for element in section.detach("material"):
             read_material(element, draft)
         for element in section.children:
             draft.keep_at_root(element, "asset")
@@ -122,7 +122,7 @@ def read_material(element: Element, draft: Draft) -> None:
         _put(element, texture, key, "rgb", draft)
     elif len([child for child in element.children if child.tag == "layer"]) == 1:
         draft.note(key, "layers", "yes")
-    for layer in element.take_children("layer"):
+    for layer in element.detach("layer"):
         _put(layer, layer.attributes.get("texture", ""), key, layer.attributes.get("role", "rgb"), draft)
     draft.keep(element, key)
 

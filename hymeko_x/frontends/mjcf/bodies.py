@@ -100,7 +100,7 @@ def _check_mocap(element: Element, spot: Spot) -> None:
 def _read_inertial(element: Element, key: Id, draft: Draft) -> Inertial | None:
     if draft.settings.inertia_from_geoms:
         return None
-    found = element.take_children("inertial")
+    found = element.detach("inertial")
     if not found:
         return None
     node = found[0]

@@ -10,10 +10,11 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import merge
 from hymeko_x.formats.mjcf.codec import BadAttribute, plan_of
-from hymeko_x.formats.mjcf.tree import COMMENT, verbatim
+from hymeko_x.formats.mjcf.tree import verbatim
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import ROOT, Extra, Id, Provenance
+from hymeko_x.ir.mechanism import ROOT, Id, Provenance
 from hymeko_x.xml.tree import read_numbers
+from hymeko_x.xml.unread import extra_of, unread_extras
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -170,19 +171,11 @@ class Draft(Builder):
 
     def keep(self, element: Element, key: Id, path: str = "") -> None:
         """Everything that is left of an element goes along with what it became."""
-        if not (element.attributes or element.children or element.words):
-            return
-        step = f"{path}/" if path else ""
-        found = self.extras.setdefault(key, [])
-        found += [Extra(words.NAME, f"{step}@{name}", text) for name, text in element.attributes.items()]
-        if element.words:
-            found.append(Extra(words.NAME, f"{step}text()", element.words.strip()))
-        for index, child in enumerate(element.children):
-            found.append(_extra(child, path, index))
+        self.add_extras(key, *unread_extras(element, path, words.NAME, verbatim))
 
     def keep_at_root(self, element: Element, path: str = "") -> None:
         """An element that has no word in the IR, as it is."""
-        self.add_extras(ROOT, _extra(element, path, self.place))
+        self.add_extras(ROOT, extra_of(element, path, self.place, words.NAME, verbatim))
         self.place += not path
 
     def keep_rest(self, root: Element) -> None:
@@ -203,9 +196,3 @@ def _say_the_same(a: str | None, b: str | None) -> bool:
         return True
     numbers = None if a is None or b is None else read_numbers(a)
     return bool(numbers) and b is not None and numbers == read_numbers(b)
-
-
-def _extra(child: Element, path: str, index: int) -> Extra:
-    if child.tag == COMMENT:
-        return Extra("comment", path, child.words, index)
-    return Extra(words.NAME, path, verbatim(child), index)

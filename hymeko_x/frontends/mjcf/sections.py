@@ -28,5 +28,5 @@ def read_settings(root: Element) -> Settings:
 
 def keep_sections(root: Element, draft: Draft) -> None:
     """Everything at top level that has no word in the IR and that others refer to, and comments, in order."""
-    for child in root.take_children(COMMENT, *ASIDE):
+    for child in root.detach(COMMENT, *ASIDE):
         draft.keep_at_root(child)

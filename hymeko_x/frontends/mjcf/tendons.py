@@ -52,7 +52,7 @@ def _read_tendon(element: Element, draft: Draft) -> None:
         _take_parameters(element, base),
     )
     arcs: list[RobotArc] = []
-    for step in element.take_children("joint", "site", "geom", PULLEY):
+    for step in element.detach("joint", "site", "geom", PULLEY):
         arcs += _path(step, key, draft)
     _check_path(element, tendon, arcs, draft)
     draft.edges[key] = Edge(tendon, tuple(arcs))

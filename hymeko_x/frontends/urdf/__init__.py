@@ -19,14 +19,13 @@ from hymeko_x.frontends.urdf.materials import finish_materials, read_robot_mater
 from hymeko_x.frontends.urdf.structure import check_structure
 from hymeko_x.frontends.urdf.transmissions import read_transmission
 from hymeko_x.xml.parse import parse
-from hymeko_x.xml.tree import FOLLOWING, PRECEDING, Leftovers, outer_extra
+from hymeko_x.xml.unread import FOLLOWING, PRECEDING, Unread, extra_of
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.source import Source
-    from hymeko_x.xml.parse import Document
-    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.tree import Document, Node
 
 
 def read(source: Source, report: Report) -> Mechanism:
@@ -37,16 +36,16 @@ def read(source: Source, report: Report) -> Mechanism:
     document = parse(source, report)
     root = document.root
     _check_root(root)
-    draft = Draft(report, Leftovers(root, document.data, words.FORMAT, report))
+    draft = Draft(report, Unread(root, document.data, words.FORMAT, report))
     name = _read_name(root, source, draft)
-    carried = [_whole_text(node) for node in root.children(carrier.XML_TAG)]
+    carried = [_whole_text(node) for node in root.take_children(carrier.XML_TAG)]
     _read_version(root, draft)
-    for node in root.children("material"):
+    for node in root.take_children("material"):
         read_robot_material(root, node, draft)
-    for node in root.children("link"):
+    for node in root.take_children("link"):
         read_link(node, draft)
     read_joints(root, draft)
-    for node in root.children("transmission"):
+    for node in root.take_children("transmission"):
         read_transmission(node, draft)
     finish_materials(draft)
     check_structure(root, draft)
@@ -57,7 +56,7 @@ def read(source: Source, report: Report) -> Mechanism:
 def _whole_text(node: Node) -> str:
     """The text of an element with nothing else in it."""
     node.attributes.clear()
-    return node.words()
+    return node.take_text()
 
 
 def _check_root(root: Node) -> None:
@@ -93,7 +92,7 @@ def _read_version(root: Node, draft: Draft) -> None:
 def _check_templates(root: Node, draft: Draft) -> None:
     """Say it once when the file was meant for xacro: templates in names, or xacro's elements."""
     named = next((key.name for key in (*draft.vertices, *draft.edges) if "${" in key.name or "$(" in key.name), None)
-    tag = next((node.tag for node in root.kids if node.tag.startswith("xacro:")), None)
+    tag = next((node.tag for node in root.children if node.tag.startswith("xacro:")), None)
     if named is None and tag is None:
         return
     found = f"the name '{named}'" if named is not None else f"<{tag}>"
@@ -107,5 +106,5 @@ def _check_templates(root: Node, draft: Draft) -> None:
 
 def _around(document: Document) -> list[Extra]:
     """What stands before and after the root element."""
-    before = [outer_extra(words.FORMAT, PRECEDING, node, place) for place, node in enumerate(document.preceding)]
-    return before + [outer_extra(words.FORMAT, FOLLOWING, node, place) for place, node in enumerate(document.following)]
+    before = [extra_of(node, PRECEDING, place, words.FORMAT) for place, node in enumerate(document.preceding)]
+    return before + [extra_of(node, FOLLOWING, place, words.FORMAT) for place, node in enumerate(document.following)]

@@ -11,14 +11,15 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import ROOT, Provenance
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
-from hymeko_x.xml.tree import read_numbers, take_numbers
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin, Report
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.ir.parts import Rgba
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.xml.tree import Leftovers, Node
+    from hymeko_x.xml.tree import Node
+    from hymeko_x.xml.unread import Unread
 
 
 @dataclass(slots=True)
@@ -44,7 +45,7 @@ class Draft(Builder):
     """A URDF robot so far; ``links`` and ``joints`` by the names in the file, first one wins."""
 
     report: Report
-    leftovers: Leftovers
+    unread: Unread
     links: dict[str, Id] = field(default_factory=dict)
     joints: dict[str, Id] = field(default_factory=dict)
     meshes: dict[tuple[str, tuple[float, ...]], Id] = field(default_factory=dict)
@@ -77,27 +78,27 @@ class Draft(Builder):
 
     def close(self, node: Node) -> None:
         """Collect what is left in a top-level element, and say what stands there twice."""
-        for member in self.leftovers.close(node):
-            for kid in member.left():
-                if kid.tag in words.SINGLE and member.took(kid.tag):
+        for member in self.unread.close(node):
+            for kid in member.unread_children():
+                if kid.tag in words.SINGLE and member.has_taken(kid.tag):
                     said = f"{member.subject}: <{member.tag}> holds <{kid.tag}> more than once"
                     self.report.warn(
                         codes.REPEATED,
                         f"{said}; the first one counts, the others are kept as written",
                         member.origin,
-                        element=member.about,
+                        element=member.element,
                     )
-        node.let_go()
+        node.release()
 
     def finish(self, name: str, around: list[Extra], file: str) -> Mechanism:
         """The finished mechanism; ``around`` is what stood before and after the root element, ``file`` where it stood."""
         self._settle_choices()
         if self.style:
             self.note(ROOT, words.STYLE, " ".join(sorted(self.style)))
-        for key, extras in self.leftovers.finish().items():
+        for key, extras in self.unread.finish().items():
             self.add_extras(key, *extras)
         self.add_extras(ROOT, *around)
-        self.layout.extend(self.leftovers.layout)
+        self.layout.extend(self.unread.layout)
         return self.build(name, Provenance(words.FORMAT, file=file))
 
 
@@ -124,7 +125,7 @@ def read_origin(node: Node, style: str, draft: Draft, *, turned: bool = True) ->
 
     ``turned`` false: there is nothing that could be turned, so that the angles stay what was written.
     """
-    origin = node.child("origin")
+    origin = node.take_child("origin")
     if origin is None:
         return IDENTITY
     xyz = _take_vector(origin, "xyz", draft)
@@ -148,3 +149,46 @@ def _turned(origin: Node, xyz: Vec3, draft: Draft) -> Pose:
 def _take_vector(origin: Node, name: str, draft: Draft) -> Vec3:
     numbers: Any = take_numbers(origin, name, 3, draft.report, instead="0 0 0 is used")
     return numbers or ZERO
+
+
+# ---- numbers -------------------------------------------------------------------------------------------------------------------
+
+
+def take_numbers(node: Node, attribute: str, count: int, report: Report, *, instead: str) -> tuple[float, ...] | None:
+    """The ``count`` numbers of an attribute; None when it is missing or bad.
+
+    A bad one is reported and not taken, so that it becomes an extra and is written back as it was; ``instead`` says
+    what the caller uses (``0 is used``).
+    """
+    text = node.attributes.get(attribute)
+    if text is None:
+        return None
+    numbers = read_numbers(text)
+    if numbers is not None and len(numbers) == count:
+        del node.attributes[attribute]
+        return numbers
+    _report_bad(node, attribute, text, count, report, instead)
+    return None
+
+
+def take_number(node: Node, attribute: str, report: Report, *, instead: str) -> float | None:
+    """The one number of an attribute; None when it is missing or bad. See :func:`take_numbers`."""
+    numbers = take_numbers(node, attribute, 1, report, instead=instead)
+    return None if numbers is None else numbers[0]
+
+
+def _report_bad(node: Node, attribute: str, text: str, count: int, report: Report, instead: str) -> None:
+    expected = "one finite number" if count == 1 else f"{count} finite numbers separated by blanks"
+    left_over = "${" in text or "$(" in text
+    report.error(
+        codes.LEFTOVER_TEMPLATE if left_over else codes.BAD_NUMBER,
+        f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', expected {expected}; {instead}, and the text is kept as written",
+        node.origin,
+        element=node.element,
+        hint="expand the file with xacro first" if left_over else "",
+    )
+
+
+def shortened(text: str, limit: int = 60) -> str:
+    """A text for a message: at most ``limit`` characters."""
+    return text if len(text) <= limit else text[: limit - 3] + "..."

@@ -41,9 +41,9 @@ def _take_usual(fixed: list[Node], tag: str) -> str:
 
 def _text(node: Node, tag: str) -> str:
     """The first such child as text, if it has nothing but attributes; empty otherwise."""
-    for kid in node.kids:
+    for kid in node.children:
         if kid.tag == tag and not kid.taken:
-            return "" if kid.kids or kid.text is not None else f"<{tag}{attributes_text(kid.attributes)}/>"
+            return "" if kid.children or kid.text is not None else f"<{tag}{attributes_text(kid.attributes)}/>"
     return ""
 
 

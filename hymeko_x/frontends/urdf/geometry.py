@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
+from hymeko_x.frontends.urdf.draft import take_numbers
 from hymeko_x.ir.mechanism import file_stem
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
-from hymeko_x.xml.tree import read_numbers, take_numbers
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -25,31 +26,31 @@ _NO_GEOMETRY = "the shape has no geometry"
 
 def read_geometry(shape: Node, draft: Draft) -> tuple[Geometry, Id | None]:
     """What a visual or collision looks like, and its mesh. What nobody understands is no shape, and an extra."""
-    node = shape.child("geometry")
+    node = shape.take_child("geometry")
     if node is None:
         _say(shape, f"<{shape.tag}> has no <geometry>", draft)
         return NoShape(), None
-    found = node.child_among(_READERS)
+    found = node.take_child_among(_READERS)
     if found is None:
-        tags = ", ".join(f"<{kid.tag}>" for kid in node.left())
+        tags = ", ".join(f"<{kid.tag}>" for kid in node.unread_children())
         known = ", ".join(f"<{tag}>" for tag in _READERS)
         _say(node, f"<geometry> holds {tags or 'nothing'}, expected one of {known}", draft)
         return NoShape(), None
     if node.has_among(_READERS):
         said = f"{node.subject}: <geometry> holds more than one shape; the first one counts, the others are kept as written"
-        draft.report.warn(codes.REPEATED, said, node.origin, element=node.about)
+        draft.report.warn(codes.REPEATED, said, node.origin, element=node.element)
     if found.tag == "mesh":
         return MeshShape(), _read_mesh(found, draft)
     geometry = _READERS[found.tag](found, draft)
     if geometry is None:
-        node.put_back(found)
+        node.leave(found)
         return NoShape(), None
     return geometry, None
 
 
 def _say(node: Node, what: str, draft: Draft) -> None:
     said = f"{node.subject}: {what}; {_NO_GEOMETRY}"
-    draft.report.warn(codes.MISSING_PART, said, node.origin, element=node.about)
+    draft.report.warn(codes.MISSING_PART, said, node.origin, element=node.element)
 
 
 # ---- one reader per geometry; None when its numbers cannot be read -----------------------------------------------------------
@@ -84,7 +85,7 @@ def _sized(node: Node, attribute: str, count: int, draft: Draft) -> tuple[float,
     if attribute in node.attributes:
         return take_numbers(node, attribute, count, draft.report, instead=_NO_GEOMETRY)
     said = f"{node.subject}: <{node.tag}> has no {attribute}; {_NO_GEOMETRY}, and the text is kept as written"
-    draft.report.error(codes.MISSING_ATTRIBUTE, said, node.origin, element=node.about)
+    draft.report.error(codes.MISSING_ATTRIBUTE, said, node.origin, element=node.element)
     return None
 
 
@@ -111,7 +112,7 @@ def _read_mesh(node: Node, draft: Draft) -> Id:
     uri = node.take("filename")
     if uri is None:
         said = f"{node.subject}: <mesh> has no filename; it stays empty"
-        draft.report.error(codes.MISSING_ATTRIBUTE, said, node.origin, element=node.about)
+        draft.report.error(codes.MISSING_ATTRIBUTE, said, node.origin, element=node.element)
         uri = ""
     scale = _read_scale(node, draft)
     known = draft.meshes.get((uri, scale))
@@ -129,7 +130,7 @@ def _read_scale(node: Node, draft: Draft) -> Vec3:
     if one is not None and len(one) == 1:
         node.take("scale")
         said = f"{node.subject}: <mesh scale> is one number; read as the same in all directions (urdfdom drops such a shape)"
-        draft.report.warn(codes.BAD_NUMBER, said, node.origin, element=node.about)
+        draft.report.warn(codes.BAD_NUMBER, said, node.origin, element=node.element)
         return (one[0], one[0], one[0])
     found = take_numbers(node, "scale", 3, draft.report, instead="1 1 1 is used")
     if found == (1.0, 1.0, 1.0):

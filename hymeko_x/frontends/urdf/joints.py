@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.frontends.urdf.draft import read_origin, take_name
+from hymeko_x.frontends.urdf.draft import read_origin, shortened, take_name, take_number, take_numbers
 from hymeko_x.frontends.urdf.fixed import gather_meaningless
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
 from hymeko_x.ir.values import Written, X, plane_axes, unit
-from hymeko_x.xml.tree import read_numbers, shortened, take_number, take_numbers
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.formats.urdf import JointType
@@ -27,9 +27,9 @@ _SINGLE = ((DofKind.HINGE,), (DofKind.SLIDE,))
 def read_joints(root: Node, draft: Draft) -> None:
     """Add all joints; a joint without two ends stays outside of the tree, as it was written."""
     waiting = []
-    for node in root.children("joint"):
+    for node in root.take_children("joint"):
         if not _has_ends(node, draft):
-            root.put_back(node)
+            root.leave(node)
             continue
         joint = _read_joint(node, draft)
         if node.has("mimic") or not joint.dofs:
@@ -68,7 +68,7 @@ def _has_ends(node: Node, draft: Draft) -> bool:
 
 
 def _names_link(joint: Node, tag: str) -> bool:
-    for kid in joint.kids:
+    for kid in joint.children:
         if kid.tag == tag:
             return "link" in kid.attributes
     return False
@@ -76,13 +76,13 @@ def _names_link(joint: Node, tag: str) -> bool:
 
 def _read_end(joint: Node, tag: str, draft: Draft) -> Id:
     """The link that a joint names; one that is not defined is added, empty, so that the joint keeps its place."""
-    node = joint.child(tag)
+    node = joint.take_child(tag)
     name = (node.take("link") if node is not None else None) or ""
     known = draft.links.get(name)
     if known is not None:
         return known
     said = f"{joint.subject}: <{tag} link> is '{name}', which is not defined; an empty link of this name was added"
-    draft.report.error(codes.UNDEFINED_REFERENCE, said, joint.origin, element=joint.about)
+    draft.report.error(codes.UNDEFINED_REFERENCE, said, joint.origin, element=joint.element)
     key = draft.links[name] = draft.names.take("body", name)
     draft.vertices[key] = Body()
     draft.origins[key] = joint.origin
@@ -100,7 +100,7 @@ def _read_type(node: Node, draft: Draft) -> str:
         codes.MISSING_ATTRIBUTE if word is None else codes.UNKNOWN_WORD,
         f"{node.subject} {said}; read as fixed; known: {known}",
         node.origin,
-        element=node.about,
+        element=node.element,
     )
     return "fixed"
 
@@ -138,20 +138,20 @@ def _read_dof(node: Node, kind: DofKind, known: JointType, draft: Draft) -> Dof:
 
 def _read_axis(joint: Node, draft: Draft) -> tuple[Vec3, Written | None]:
     """The unit axis in the joint frame, and the numbers as written where they are others."""
-    node = joint.child("axis")
+    node = joint.take_child("axis")
     if node is None:
         return X, None
     text = node.attributes.get("xyz", "1 0 0")
     if _has_no_direction(text):
         said = f"{joint.subject}: <axis xyz> is '{shortened(text)}', which has no direction; 1 0 0 is used, and the text is kept as written"
-        draft.report.error(codes.ZERO_AXIS, said, node.origin, element=joint.about)
+        draft.report.error(codes.ZERO_AXIS, said, node.origin, element=joint.element)
         return X, None
     x, y, z = numbers = take_numbers(node, "xyz", 3, draft.report, instead="1 0 0 is used") or X
     axis = unit((x, y, z))
     if axis == (x, y, z):
         return axis, None
     said = f"{joint.subject}: the axis was normalised; its numbers are kept for writing URDF again"
-    draft.report.note(codes.NOT_UNIT, said, node.origin, element=joint.about)
+    draft.report.note(codes.NOT_UNIT, said, node.origin, element=joint.element)
     return axis, Written("axis", numbers)
 
 
@@ -162,7 +162,7 @@ def _has_no_direction(text: str) -> bool:
 
 
 def _read_dynamics(joint: Node, draft: Draft) -> tuple[float, float]:
-    node = joint.child("dynamics")
+    node = joint.take_child("dynamics")
     if node is None:
         return 0.0, 0.0
     damping, friction = (_or_zero(node, name, draft) for name in ("damping", "friction"))
@@ -181,12 +181,12 @@ def _or_zero(node: Node, name: str, draft: Draft) -> float:
 
 def _read_limits(joint: Node, draft: Draft) -> Limits:
     """The limits of a joint that URDF wants to have some. Without lower or upper they are 0, as the standard says."""
-    node = joint.child("limit")
+    node = joint.take_child("limit")
     if node is None:
         said = (
             f"{joint.subject} has no <limit>; read as unlimited, and written with the largest numbers (urdfdom refuses the file as it is)"
         )
-        draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.about)
+        draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.element)
         return UNLIMITED
     missing = [name for name in ("effort", "velocity") if name not in node.attributes]
     limits = _rates(node, _bound(node, "lower", draft), _bound(node, "upper", draft), draft)
@@ -196,12 +196,12 @@ def _read_limits(joint: Node, draft: Draft) -> Limits:
 
 def _read_open_limits(joint: Node, draft: Draft) -> Limits:
     """The effort and velocity of a continuous joint; its lower and upper mean nothing and become extras."""
-    node = joint.child("limit")
+    node = joint.take_child("limit")
     if node is None:
         return UNLIMITED
     limits = _rates(node, None, None, draft)
     if limits == UNLIMITED:
-        joint.put_back(node)
+        joint.leave(node)
     return limits
 
 
@@ -233,37 +233,37 @@ def _limited(value: float | None) -> float | None:
 def _check_limits(joint: Node, node: Node, limits: Limits, missing: list[str], draft: Draft) -> None:
     if missing:
         said = f"{joint.subject}: <limit> has no {' and no '.join(missing)}; read as unlimited (urdfdom refuses the file as it is)"
-        draft.report.warn(codes.MISSING_LIMIT, said, node.origin, element=joint.about)
+        draft.report.warn(codes.MISSING_LIMIT, said, node.origin, element=joint.element)
     if limits.lower is not None and limits.upper is not None and limits.lower > limits.upper:
         said = f"{joint.subject}: the lower limit is above the upper one; both are kept"
-        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.about)
+        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.element)
     if (limits.effort or 0.0) < 0.0 or (limits.velocity or 0.0) < 0.0:
         said = f"{joint.subject}: the limit of effort or velocity is negative; it is kept"
-        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.about)
+        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.element)
 
 
 # ---- safety and calibration ------------------------------------------------------------------------------------------------------
 
 
 def _read_safety(joint: Node, draft: Draft) -> Safety | None:
-    node = joint.child("safety_controller")
+    node = joint.take_child("safety_controller")
     if node is None:
         return None
     names = ("k_velocity", "k_position", "soft_lower_limit", "soft_upper_limit")
     if "k_velocity" not in node.attributes:
         said = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
-        draft.report.warn(codes.MISSING_ATTRIBUTE, said, node.origin, element=joint.about)
+        draft.report.warn(codes.MISSING_ATTRIBUTE, said, node.origin, element=joint.element)
     return Safety(*(_or_zero(node, name, draft) for name in names))
 
 
 def _read_calibration(joint: Node, draft: Draft) -> Calibration | None:
-    node = joint.child("calibration")
+    node = joint.take_child("calibration")
     if node is None:
         return None
     names = ("rising", "falling", "reference_position")
     found = Calibration(*(take_number(node, name, draft.report, instead="nothing is used") for name in names))
     if found == Calibration():
-        joint.put_back(node)
+        joint.leave(node)
         return None
     return found
 
@@ -275,15 +275,15 @@ def _read_mimic(joint: Node, draft: Draft) -> None:
     """<mimic> as a coupling: q = offset + multiplier * q_leader. One that cannot work stays as it was written."""
     if not joint.has("mimic") or joint.owner is None:
         return
-    node = joint.child("mimic")
+    node = joint.take_child("mimic")
     assert node is not None
     leader = draft.joints.get(node.attributes.get("joint", ""))
     problem = _mimic_problem(joint.owner, leader, node, draft)
     if problem or leader is None:
         draft.report.warn(
-            codes.UNDEFINED_REFERENCE, f"{joint.subject} {problem}; the <mimic> is kept as written", node.origin, element=joint.about
+            codes.UNDEFINED_REFERENCE, f"{joint.subject} {problem}; the <mimic> is kept as written", node.origin, element=joint.element
         )
-        joint.put_back(node)
+        joint.leave(node)
         return
     node.take("joint")
     multiplier = take_number(node, "multiplier", draft.report, instead="1 is used")

@@ -6,14 +6,13 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.frontends.urdf.draft import read_origin, take_name
+from hymeko_x.frontends.urdf.draft import read_origin, take_name, take_number
 from hymeko_x.frontends.urdf.geometry import read_geometry
 from hymeko_x.frontends.urdf.materials import read_shape_material
 from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Shape
 from hymeko_x.ir.values import rotate_tensor
 from hymeko_x.rewrite.solids import UNSAID, UNSAID_NOTATION
-from hymeko_x.xml.tree import take_number
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.urdf.draft import Draft
@@ -34,7 +33,7 @@ def read_link(node: Node, draft: Draft) -> None:
     if inertial is not None and inertial.tensor is None:
         draft.note(key, UNSAID_NOTATION, UNSAID)
     for tag, role in words.ROLES.items():
-        for shape in node.children(tag):
+        for shape in node.take_children(tag):
             _read_shape(shape, role, key, draft)
     draft.close(node)
 
@@ -53,7 +52,7 @@ def _read_shape(node: Node, role: Role, body: Id, draft: Draft) -> None:
 
 def _read_inertial(link: Node, draft: Draft) -> Inertial | None:
     """Mass, centre of mass and tensor, turned from the axes of its <origin> into those of the body; None without one."""
-    node = link.child("inertial")
+    node = link.take_child("inertial")
     if node is None:
         return None
     mass = _read_mass(node, draft)
@@ -65,19 +64,19 @@ def _read_inertial(link: Node, draft: Draft) -> Inertial | None:
 
 
 def _read_mass(inertial: Node, draft: Draft) -> float | None:
-    node = inertial.child("mass")
+    node = inertial.take_child("mass")
     if node is None:
         _say_missing(inertial, "mass", "its mass is unspecified", draft)
         return None
     mass = take_number(node, "value", draft.report, instead="the mass is unspecified")
     if mass is None and "value" not in node.attributes:
         _say_missing(node, "value", "the mass is unspecified", draft)
-        inertial.put_back(node)
+        inertial.leave(node)
     return mass
 
 
 def _read_tensor(inertial: Node, draft: Draft) -> Tensor | None:
-    node = inertial.child("inertia")
+    node = inertial.take_child("inertia")
     if node is None:
         _say_missing(inertial, "inertia", "its tensor is unspecified (urdfdom then drops the mass as well)", draft)
         return None
@@ -97,5 +96,5 @@ def _say_missing(node: Node, what: str, instead: str, draft: Draft) -> None:
         codes.MISSING_ATTRIBUTE if attribute else codes.MISSING_PART,
         f"{node.subject}: <{node.tag}> has no {what if attribute else f'<{what}>'}; {instead}",
         node.origin,
-        element=node.about,
+        element=node.element,
     )

@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import Defined
-from hymeko_x.frontends.urdf.draft import Looks
+from hymeko_x.frontends.urdf.draft import Looks, take_numbers
 from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
 from hymeko_x.ir.parts import Material, Texture
-from hymeko_x.xml.tree import take_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,14 +32,14 @@ def read_robot_material(root: Node, node: Node, draft: Draft) -> None:
     if not name:
         said = "a <material> of robot level has no name, so that nobody can use it; it is kept as written"
         draft.report.warn(codes.BAD_NAME, said, node.origin)
-        root.put_back(node)
+        root.leave(node)
         return
     node.owner = Id("material", name)
     looks = _resolve(node, name, _read_looks(node, draft), draft)
     if looks.at_robot:
         said = f"the material '{name}' is defined twice at robot level, in the same way; the second one is kept as written"
         draft.report.warn(codes.DUPLICATE_NAME, said, node.origin, element=str(looks.id))
-        root.put_back(node)
+        root.leave(node)
         return
     looks.at_robot = True
     node.take("name")
@@ -50,7 +49,7 @@ def read_robot_material(root: Node, node: Node, draft: Draft) -> None:
 
 def read_shape_material(shape: Node, draft: Draft) -> tuple[Rgba | None, Id | None]:
     """The colour of a shape's unnamed material, or the id of its named one."""
-    node = shape.child("material")
+    node = shape.take_child("material")
     if node is None:
         return None, None
     name = node.attributes.get("name")
@@ -72,11 +71,11 @@ def _use(node: Node, name: str, draft: Draft) -> Id:
 def _read_unnamed(shape: Node, node: Node, draft: Draft) -> tuple[Rgba | None, Id | None]:
     rgba, texture = _read_looks(node, draft)
     if (rgba, texture) == (None, None):
-        shape.put_back(node)
+        shape.leave(node)
         return None, None
     if node.take("name") is None:
         said = f"{shape.subject}: <material> has no name; its looks are the shape's own (urdfdom drops such a visual)"
-        draft.report.warn(codes.BAD_NAME, said, node.origin, element=shape.about)
+        draft.report.warn(codes.BAD_NAME, said, node.origin, element=shape.element)
     if texture is None:
         return rgba, None
     key = draft.names.take("material", str(shape.owner and shape.owner.name))
@@ -86,16 +85,16 @@ def _read_unnamed(shape: Node, node: Node, draft: Draft) -> tuple[Rgba | None, I
 
 def _read_looks(node: Node, draft: Draft) -> Said:
     rgba = texture = None
-    color = node.child("color")
+    color = node.take_child("color")
     if color is not None:
         rgba = take_numbers(color, "rgba", 4, draft.report, instead="no colour is used")
         if rgba is None and "rgba" not in color.attributes:
-            node.put_back(color)
-    image = node.child("texture")
+            node.leave(color)
+    image = node.take_child("texture")
     if image is not None:
         texture = image.take("filename")
         if not texture:
-            node.put_back(image)
+            node.leave(image)
     if rgba is None:
         return None, texture or None
     r, g, b, a = rgba

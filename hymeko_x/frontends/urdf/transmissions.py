@@ -28,8 +28,8 @@ def read_transmission(node: Node, draft: Draft) -> None:
     """Add a transmission with its actuators."""
     key = take_name(node, "drive", draft.drives, draft)
     kind = _read_kind(node, key, draft)
-    joints = [joint for joint in node.children("joint") if _is_known(node, joint, draft)]
-    actuators = [actuator for actuator in node.children("actuator") if _is_named(node, actuator, draft)]
+    joints = [joint for joint in node.take_children("joint") if _is_known(node, joint, draft)]
+    actuators = [actuator for actuator in node.take_children("actuator") if _is_named(node, actuator, draft)]
     if len(joints) == len(actuators) == 1:
         by_actuator, by_joint = _simple_reductions(node, key, actuators[0], joints[0], draft)
         arcs = [_actuator_arc(actuators[0], by_actuator, draft), _joint_arc(joints[0], by_joint, draft)]
@@ -43,8 +43,8 @@ def read_transmission(node: Node, draft: Draft) -> None:
 
 def _read_kind(node: Node, key: Id, draft: Draft) -> str:
     """The transmission's type: a child with text (ROS 1), or an attribute (PR2)."""
-    child = node.child("type")
-    kind = child.words() if child is not None else node.take("type")
+    child = node.take_child("type")
+    kind = child.take_text() if child is not None else node.take("type")
     if kind is not None:
         draft.choose(key, words.TYPE_AS, "child" if child is not None else "attribute")
     return kind or ""
@@ -56,8 +56,8 @@ def _is_known(transmission: Node, joint: Node, draft: Draft) -> bool:
     if name in draft.joints:
         return True
     said = f"{transmission.subject} names joint '{name}', which is not defined; the reference is kept as written"
-    draft.report.warn(codes.UNDEFINED_REFERENCE, said, joint.origin, element=transmission.about)
-    transmission.put_back(joint)
+    draft.report.warn(codes.UNDEFINED_REFERENCE, said, joint.origin, element=transmission.element)
+    transmission.leave(joint)
     return False
 
 
@@ -65,8 +65,8 @@ def _is_named(transmission: Node, actuator: Node, draft: Draft) -> bool:
     if actuator.attributes.get("name"):
         return True
     said = f"{transmission.subject} has an <actuator> without a name; it is kept as written"
-    draft.report.warn(codes.BAD_NAME, said, actuator.origin, element=transmission.about)
-    transmission.put_back(actuator)
+    draft.report.warn(codes.BAD_NAME, said, actuator.origin, element=transmission.element)
+    transmission.leave(actuator)
     return False
 
 
@@ -75,12 +75,12 @@ def _is_named(transmission: Node, actuator: Node, draft: Draft) -> bool:
 
 def _take_reduction(node: Node) -> float | None:
     """The number in <mechanicalReduction>; one that cannot be read stays as it was written."""
-    child = node.child(_REDUCTION)
+    child = node.take_child(_REDUCTION)
     if child is None:
         return None
-    numbers = read_numbers(child.words())
+    numbers = read_numbers(child.take_text())
     if numbers is None or len(numbers) != 1:
-        node.put_back(child)
+        node.leave(child)
         return None
     return numbers[0]
 
@@ -128,18 +128,18 @@ def _joint_arc(node: Node, weight: float | None, draft: Draft) -> RobotArc:
 
 
 def _take_role(node: Node) -> str:
-    child = node.child("role")
-    return "" if child is None else child.words()
+    child = node.take_child("role")
+    return "" if child is None else child.take_text()
 
 
 def _take_parameters(node: Node) -> Parameters:
     """What an element says in children that hold nothing but text, in their order; numbers become numbers."""
     found: list[tuple[str, float | str | tuple[float, ...]]] = []
-    for kid in node.left():
-        if kid.kids or kid.attributes or kid.text is None:
+    for kid in node.unread_children():
+        if kid.children or kid.attributes or kid.text is None:
             continue
         kid.taken = True
-        text = kid.words()
+        text = kid.take_text()
         numbers = read_numbers(text)
         found.append((kid.tag, numbers[0] if numbers is not None and len(numbers) == 1 else text))
     return tuple(found)

@@ -1,0 +1,176 @@
+"""What a reader has left in a tree becomes extras: attributes, text and elements that no frontend took.
+
+No list of known tags decides what survives.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.ir.mechanism import ROOT, Extra
+from hymeko_x.xml.text import attributes_text
+from hymeko_x.xml.tree import COMMENT_NODE, INSTRUCTION_NODE
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Id
+    from hymeko_x.xml.tree import Node
+
+COMMENT = "comment"
+"""The format of an extra that is a comment: it is the same in every format, and kept without its signs."""
+PRECEDING = "preceding"
+FOLLOWING = "following"
+"""The paths of what stands before and after the root element."""
+
+KNOWN_PREFIXES = {
+    "xacro": "http://www.ros.org/wiki/xacro",
+    "drake": "http://drake.mit.edu",
+    "gz": "http://gazebosim.org/schema",
+}
+"""What an undeclared prefix stands for; others become ``urn:prefix``."""
+
+
+def unread_extras(node: Node, path: str, format_name: str, verbatim: Callable[[Node], str]) -> Iterator[Extra]:
+    """Everything in a node that is unread, as extras; ``path`` leads to the node, and ``verbatim`` gives the text of an element."""
+    for name, value in node.attributes.items():
+        yield Extra(format_name, _below(path, f"@{name}"), value)
+    if node.text is not None:
+        yield Extra(format_name, _below(path, "text()"), node.text.strip(), node.text_index)
+    for index, child in enumerate(node.children):
+        if not child.taken:
+            yield extra_of(child, path, index, format_name, verbatim)
+
+
+def extra_of(node: Node, path: str, index: int, format_name: str, verbatim: Callable[[Node], str] = str) -> Extra:
+    """A comment, a processing instruction or an element as an extra."""
+    if node.tag == COMMENT_NODE:
+        return Extra(COMMENT, path, node.text or "", index)
+    return Extra(format_name, path, f"<?{node.text}?>" if node.tag == INSTRUCTION_NODE else verbatim(node), index)
+
+
+class Unread:
+    """Collects what is unread in a file, whose bytes are ``data`` in UTF-8, element by element; elements keep their text to the byte."""
+
+    def __init__(self, root: Node, data: bytes, format_name: str, report: Report) -> None:
+        self._root = root
+        self._report = report
+        self._data = data
+        self._format = format_name
+        self._found: dict[Id, list[Extra]] = {}
+        self._owners: dict[int, Id] = {}
+
+    def close(self, node: Node) -> list[Node]:
+        """Collect what is unread in a child of the root. Returns its nodes in which child elements are unread."""
+        if node.owner is not None:
+            self._owners[node.start] = node.owner
+        with_unread_children = []
+        stack = [node]
+        while stack:
+            member = stack.pop()
+            read = [child for child in member.children if child.taken]
+            stack += read
+            if len(read) < len(member.children):
+                with_unread_children.append(member)
+            if member.attributes or member.text is not None or len(read) < len(member.children):
+                self._keep(member)
+        return with_unread_children
+
+    def _keep(self, node: Node) -> None:
+        for name in list(node.attributes):
+            self._declare_prefix(node, name)
+        owner, path = _place_below_owner(node)
+        self._found.setdefault(owner, []).extend(unread_extras(node, path, self._format, self.verbatim))
+
+    def finish(self) -> dict[Id, tuple[Extra, ...]]:
+        """Everything that is unread, by element. The root's comments, and its namespaces (``@xmlns:drake``), are among it.
+
+        The tree is of no use afterwards.
+        """
+        for child in self._root.unread_children():
+            self._declare_prefixes(child)
+        self._keep(self._root)
+        self._root.release()
+        return {owner: tuple(sorted(extras, key=_by_place)) for owner, extras in self._found.items() if extras}
+
+    @property
+    def layout(self) -> tuple[Id, ...]:
+        """The elements that children of the root became, in the order of the file."""
+        return tuple(self._owners[place] for place in sorted(self._owners))
+
+    # ---- text of elements ------------------------------------------------------------------------------------------------
+
+    def verbatim(self, node: Node) -> str:
+        """The element as the file has it, with the namespace declarations that it needs from further up."""
+        self._declare_prefixes(node)
+        end = node.end
+        closed_itself = not node.children and node.text is None and self._data[end - 2 : end] == b"/>"
+        if not closed_itself:
+            end = self._data.index(b">", end) + 1
+        text = self._data[node.start : end].decode().replace("\r\n", "\n").replace("\r", "\n")
+        return _with_declarations(text, node)
+
+    def _declare_prefixes(self, node: Node) -> None:
+        """Declare at the root the prefixes in an element that are declared nowhere."""
+        for member in node.walk():
+            self._declare_prefix(member, member.tag)
+            for name in member.attributes:
+                self._declare_prefix(member, name)
+
+    def _declare_prefix(self, node: Node, name: str) -> None:
+        prefix, colon, _ = name.partition(":")
+        if not colon or prefix in ("xml", "xmlns"):
+            return
+        above: Node | None = node
+        while above is not None and f"xmlns:{prefix}" not in above.attributes:
+            above = above.parent
+        if above is None:
+            self._root.attributes[f"xmlns:{prefix}"] = KNOWN_PREFIXES.get(prefix, f"urn:{prefix}")
+            message = f"undeclared prefix '{prefix}'; read as if the root declared it"
+            self._report.warn(codes.REPAIRED_XML, message, node.origin)
+
+
+def _by_place(extra: Extra) -> tuple[bool, str, int]:
+    """Deeper extras come first, then the element's own content; each in the order of the file."""
+    return extra.path == "", extra.path, extra.index
+
+
+def _place_below_owner(node: Node) -> tuple[Id, str]:
+    """Whose the node is, and the path from that element to it; repeated steps are numbered: ``joint[2]``."""
+    path = ""
+    while node.owner is None and node.parent is not None:
+        path = _below(_step(node, node.parent), path) if path else _step(node, node.parent)
+        node = node.parent
+    return node.owner or ROOT, path
+
+
+def _step(node: Node, parent: Node) -> str:
+    number = 1
+    for child in parent.children:
+        if child is node:
+            break
+        number += child.tag == node.tag and child.taken
+    return node.tag if number == 1 else f"{node.tag}[{number}]"
+
+
+def _below(path: str, step: str) -> str:
+    return f"{path}/{step}" if path else step
+
+
+def _with_declarations(text: str, node: Node) -> str:
+    """The text of an element with the declarations of those prefixes that it uses and does not declare."""
+    added: dict[str, str] = {}
+    above = node.parent
+    while above is not None:
+        for name, uri in above.attributes.items():
+            if name.startswith("xmlns:") and f"{name[6:]}:" in text and f"{name}=" not in text:
+                added.setdefault(name, uri)
+        above = above.parent
+    if not added:
+        return text
+    name_end = re.match(r"<[^\s/>]+", text)
+    assert name_end is not None
+    return text[: name_end.end()] + attributes_text(added) + text[name_end.end() :]
