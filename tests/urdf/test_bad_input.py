@@ -291,7 +291,7 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
             '<link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial><inertial/></link>'
         ),
         [
-            "2: warning[HX047]: link 'a': <link> holds <inertial> more than once; the first one counts, the others are kept as written",
+            "2: warning[HX047]: link 'a': <link> contains <inertial> more than once; the first one counts, the others are kept as written",
         ],
     ),
     "a visual without geometry": (
@@ -303,13 +303,13 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
     "an unknown geometry": (
         robot(visual("<geometry><cone/></geometry>")),
         [
-            "2: warning[HX045]: visual 'a/visual': <geometry> holds <cone>, expected one of <mesh>, <box>, <cylinder>, <sphere>, <capsule>; the shape has no geometry",
+            "2: warning[HX045]: visual 'a/visual': <geometry> contains <cone>, expected one of <mesh>, <box>, <cylinder>, <sphere>, <capsule>; the shape has no geometry",
         ],
     ),
     "two geometries": (
         robot(visual('<geometry><box size="1 1 1"/><sphere radius="1"/></geometry>')),
         [
-            "2: warning[HX047]: visual 'a/visual': <geometry> holds more than one shape; the first one counts, the others are kept as written",
+            "2: warning[HX047]: visual 'a/visual': <geometry> contains more than one shape; the first one counts, the others are kept as written",
         ],
     ),
     "a box of two numbers": (
@@ -345,13 +345,13 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
     "a material that is not defined": (
         robot(visual(f'{SPHERE}<material name="red"/>')),
         [
-            "2: warning[HX040]: the material 'red' is not defined anywhere; it has no looks (urdfdom shows a default grey)",
+            "2: warning[HX040]: the material 'red' is not defined anywhere; it has no appearance (urdfdom shows a default grey)",
         ],
     ),
-    "a material with two looks": (
+    "a material with two appearances": (
         robot(f"{RED}\n{visual(SPHERE + RED.replace('1 0 0 1', '0 0 1 1'))}"),
         [
-            "3: warning[HX046]: the material 'red' is defined again with other looks (before: robot.urdf:2); both are kept, this one as 'red#2'",
+            "3: warning[HX046]: the material 'red' is defined again with another appearance (before: robot.urdf:2); both are kept, this one as 'red#2'",
         ],
     ),
     "a material twice": (
@@ -360,16 +360,16 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
             "3: warning[HX023]: the material 'red' is defined twice at robot level, in the same way; the second one is kept as written",
         ],
     ),
-    "a material that nobody can use": (
+    "a material without a name": (
         robot('<material><color rgba="1 0 0 1"/></material>' + LINK),
         [
-            "2: warning[HX022]: a <material> of robot level has no name, so that nobody can use it; it is kept as written",
+            "2: warning[HX022]: a <material> of robot level has no name, so that no visual can refer to it; it is kept as written",
         ],
     ),
     "a visual with an unnamed material": (
         robot(visual(f'{SPHERE}<material><color rgba="1 0 0 1"/></material>')),
         [
-            "2: warning[HX022]: visual 'a/visual': <material> has no name; its looks are the shape's own (urdfdom drops such a visual)",
+            "2: warning[HX022]: visual 'a/visual': <material> has no name; the appearance is the shape's own (urdfdom drops such a visual)",
         ],
     ),
     "a colour of three numbers": (

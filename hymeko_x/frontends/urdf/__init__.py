@@ -1,6 +1,6 @@
-"""URDF in. Everything in a file becomes typed parts of a mechanism, or an extra, or a diagnostic with its place.
+"""The URDF frontend. Everything in a file becomes typed parts of a mechanism, or an extra, or a diagnostic with its origin.
 
-Source: URDF 1.0 as urdfdom reads it; docs/mapping/urdf.md says what becomes what.
+Source: URDF 1.0 as urdfdom reads it; docs/mapping/urdf.md says the mapping.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
-from hymeko_x.frontends.urdf.draft import Draft
+from hymeko_x.frontends.urdf.builder import UrdfBuilder
 from hymeko_x.frontends.urdf.joints import read_joints
 from hymeko_x.frontends.urdf.links import read_link
 from hymeko_x.frontends.urdf.materials import finish_materials, read_robot_material
@@ -36,21 +36,21 @@ def read(source: Source, report: Report) -> Mechanism:
     document = parse(source, report)
     root = document.root
     _check_root(root)
-    draft = Draft(report, Unread(root, document.data, words.FORMAT, report))
-    name = _read_name(root, source, draft)
+    builder = UrdfBuilder(report, Unread(root, document.data, words.FORMAT, report))
+    name = _read_name(root, source, builder)
     carried = [_whole_text(node) for node in root.take_children(carrier.XML_TAG)]
-    _read_version(root, draft)
+    _read_version(root, builder)
     for node in root.take_children("material"):
-        read_robot_material(root, node, draft)
+        read_robot_material(root, node, builder)
     for node in root.take_children("link"):
-        read_link(node, draft)
-    read_joints(root, draft)
+        read_link(node, builder)
+    read_joints(root, builder)
     for node in root.take_children("transmission"):
-        read_transmission(node, draft)
-    finish_materials(draft)
-    check_structure(root, draft)
-    _check_templates(root, draft)
-    return carrier.with_residue(draft.finish(name, _around(document), source.name), carried)
+        read_transmission(node, builder)
+    finish_materials(builder)
+    check_structure(root, builder)
+    _check_templates(root, builder)
+    return carrier.with_residue(builder.finish(name, _around(document), source.name), carried)
 
 
 def _whole_text(node: Node) -> str:
@@ -66,37 +66,37 @@ def _check_root(root: Node) -> None:
     raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <robot>", root.origin, hint=known.get(root.tag, ""))
 
 
-def _read_name(root: Node, source: Source, draft: Draft) -> str:
+def _read_name(root: Node, source: Source, builder: UrdfBuilder) -> str:
     name = root.take("name")
     if name:
         return name
     stem = PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
-    draft.report.error(codes.BAD_NAME, f"the robot has no name; it is called '{stem}' after its file", root.origin)
+    builder.report.error(codes.BAD_NAME, f"the robot has no name; it is called '{stem}' after its file", root.origin)
     return stem
 
 
-def _read_version(root: Node, draft: Draft) -> None:
+def _read_version(root: Node, builder: UrdfBuilder) -> None:
     version = root.attributes.get("version")
     if version is None:
         return
     if version not in words.VERSIONS:
-        said = f"<robot version> is '{version}', known are {', '.join(words.VERSIONS)}; read as 1.0, and the text is kept as written"
-        draft.report.warn(codes.UNKNOWN_WORD, said, root.origin)
+        message = f"<robot version> is '{version}', known are {', '.join(words.VERSIONS)}; read as 1.0, and the text is kept as written"
+        builder.report.warn(codes.UNKNOWN_WORD, message, root.origin)
         return
     if version == "1.0":
         root.take("version")
-        draft.style.add(words.STYLE_VERSION)
-    draft.version = version
+        builder.style.add(words.STYLE_VERSION)
+    builder.version = version
 
 
-def _check_templates(root: Node, draft: Draft) -> None:
-    """Say it once when the file was meant for xacro: templates in names, or xacro's elements."""
-    named = next((key.name for key in (*draft.vertices, *draft.edges) if "${" in key.name or "$(" in key.name), None)
+def _check_templates(root: Node, builder: UrdfBuilder) -> None:
+    """Report once that the file was meant for xacro: templates in names, or xacro's elements."""
+    name = next((key.name for key in (*builder.vertices, *builder.edges) if "${" in key.name or "$(" in key.name), None)
     tag = next((node.tag for node in root.children if node.tag.startswith("xacro:")), None)
-    if named is None and tag is None:
+    if name is None and tag is None:
         return
-    found = f"the name '{named}'" if named is not None else f"<{tag}>"
-    draft.report.warn(
+    found = f"the name '{name}'" if name is not None else f"<{tag}>"
+    builder.report.warn(
         codes.LEFTOVER_TEMPLATE,
         f"{found} is text for xacro; it is kept as it is",
         root.origin,
@@ -105,6 +105,6 @@ def _check_templates(root: Node, draft: Draft) -> None:
 
 
 def _around(document: Document) -> list[Extra]:
-    """What stands before and after the root element."""
+    """The comments and instructions before and after the root element."""
     before = [extra_of(node, PRECEDING, place, words.FORMAT) for place, node in enumerate(document.preceding)]
     return before + [extra_of(node, FOLLOWING, place, words.FORMAT) for place, node in enumerate(document.following)]

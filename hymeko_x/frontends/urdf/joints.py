@@ -1,22 +1,23 @@
-"""Joints: their two ends, dofs, limits and dynamics, and <mimic> as a coupling."""
+"""<joint>: its two ends, dofs, limits and dynamics, <mimic> as a coupling, and what exporters write into fixed joints."""
 
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.frontends.urdf.draft import read_origin, shortened, take_name, take_number, take_numbers
-from hymeko_x.frontends.urdf.fixed import gather_meaningless
-from hymeko_x.ir.mechanism import coupling_edge, joint_edge
+from hymeko_x.frontends.urdf.builder import read_origin, shortened, take_name, take_number, take_numbers
+from hymeko_x.ir.mechanism import ROOT, coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
 from hymeko_x.ir.values import Written, X, plane_axes, unit
+from hymeko_x.xml.text import attributes_text
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.formats.urdf import JointType
-    from hymeko_x.frontends.urdf.draft import Draft
+    from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.values import Vec3
     from hymeko_x.xml.tree import Node
@@ -24,134 +25,129 @@ if TYPE_CHECKING:
 _SINGLE = ((DofKind.HINGE,), (DofKind.SLIDE,))
 
 
-def read_joints(root: Node, draft: Draft) -> None:
+def read_joints(root: Node, builder: UrdfBuilder) -> None:
     """Add all joints; a joint without two ends stays outside of the tree, as it was written."""
     waiting = []
     for node in root.take_children("joint"):
-        if not _has_ends(node, draft):
+        if not _has_ends(node, builder):
             root.leave(node)
             continue
-        joint = _read_joint(node, draft)
+        joint = _read_joint(node, builder)
         if node.has("mimic") or not joint.dofs:
             waiting.append(node)
         else:
-            draft.close(node)
+            builder.close(node)
     for node in waiting:
-        _read_mimic(node, draft)
-    gather_meaningless(waiting, draft)
+        _read_mimic(node, builder)
+    _note_meaningless(waiting, builder)
     for node in waiting:
-        draft.close(node)
+        builder.close(node)
 
 
-def _read_joint(node: Node, draft: Draft) -> Joint:
-    key = take_name(node, "joint", draft.joints, draft)
-    parent, child = _read_end(node, "parent", draft), _read_end(node, "child", draft)
-    word = _read_type(node, draft)
-    pose = read_origin(node, words.STYLE_JOINT_ORIGIN, draft)
-    joint = Joint(_read_dofs(node, word, draft))
+def _read_joint(node: Node, builder: UrdfBuilder) -> Joint:
+    key = take_name(node, "joint", builder.joints, builder)
+    parent, child = _read_end(node, "parent", builder), _read_end(node, "child", builder)
+    word = _read_type(node, builder)
+    pose = read_origin(node, words.STYLE_JOINT_ORIGIN, builder)
+    joint = Joint(_read_dofs(node, word, builder))
     if word != words.default_type(joint):
-        draft.note(key, words.TYPE, word)
-    draft.edges[key] = joint_edge(joint, parent, child, pose)
+        builder.note(key, words.TYPE, word)
+    builder.edges[key] = joint_edge(joint, parent, child, pose)
     return joint
 
 
 # ---- ends and type -----------------------------------------------------------------------------------------------------------
 
 
-def _has_ends(node: Node, draft: Draft) -> bool:
+def _has_ends(node: Node, builder: UrdfBuilder) -> bool:
     missing = [f"<{tag} link>" for tag in ("parent", "child") if not _names_link(node, tag)]
     if missing:
         name = node.attributes.get("name", "")
-        said = f"joint '{name}' has no {' and no '.join(missing)}; it is kept as written and is not part of the tree"
-        draft.report.error(codes.MISSING_PART, said, node.origin, element=f"joint '{name}'")
+        message = f"joint '{name}' has no {' and no '.join(missing)}; it is kept as written and is not part of the tree"
+        builder.report.error(codes.MISSING_PART, message, node.origin, element=f"joint '{name}'")
     return not missing
 
 
 def _names_link(joint: Node, tag: str) -> bool:
-    for kid in joint.children:
-        if kid.tag == tag:
-            return "link" in kid.attributes
-    return False
+    return next(("link" in child.attributes for child in joint.children if child.tag == tag), False)
 
 
-def _read_end(joint: Node, tag: str, draft: Draft) -> Id:
+def _read_end(joint: Node, tag: str, builder: UrdfBuilder) -> Id:
     """The link that a joint names; one that is not defined is added, empty, so that the joint keeps its place."""
     node = joint.take_child(tag)
     name = (node.take("link") if node is not None else None) or ""
-    known = draft.links.get(name)
+    known = builder.links.get(name)
     if known is not None:
         return known
-    said = f"{joint.subject}: <{tag} link> is '{name}', which is not defined; an empty link of this name was added"
-    draft.report.error(codes.UNDEFINED_REFERENCE, said, joint.origin, element=joint.element)
-    key = draft.links[name] = draft.names.take("body", name)
-    draft.vertices[key] = Body()
-    draft.origins[key] = joint.origin
+    message = f"{joint.subject}: <{tag} link> is '{name}', which is not defined; an empty link of this name was added"
+    builder.error(codes.UNDEFINED_REFERENCE, joint, message)
+    key = builder.links[name] = builder.names.take("body", name)
+    builder.vertices[key] = Body()
+    builder.origins[key] = joint.origin
     return key
 
 
-def _read_type(node: Node, draft: Draft) -> str:
+def _read_type(node: Node, builder: UrdfBuilder) -> str:
     word = node.attributes.get("type")
     if word is not None and word in words.JOINT_TYPES:
         node.take("type")
         return word
     known = ", ".join(words.JOINT_TYPES)
-    said = "has no type" if word is None else f"has type '{word}', which is kept as written"
-    draft.report.error(
-        codes.MISSING_ATTRIBUTE if word is None else codes.UNKNOWN_WORD,
-        f"{node.subject} {said}; read as fixed; known: {known}",
-        node.origin,
-        element=node.element,
-    )
+    message = "has no type" if word is None else f"has type '{word}', which is kept as written"
+    code = codes.MISSING_ATTRIBUTE if word is None else codes.UNKNOWN_WORD
+    builder.error(code, node, f"{node.subject} {message}; read as fixed; known: {known}")
     return "fixed"
 
 
 # ---- dofs --------------------------------------------------------------------------------------------------------------------
 
 
-def _read_dofs(node: Node, word: str, draft: Draft) -> tuple[Dof, ...]:
-    """The dofs of a joint. What means nothing for its type (the axis of a fixed joint) is left to become an extra."""
+def _read_dofs(node: Node, word: str, builder: UrdfBuilder) -> tuple[Dof, ...]:
+    """The dofs of a joint. Elements without a meaning for its type (the axis of a fixed joint) become extras."""
     kinds = words.JOINT_TYPES[word].dofs
     if kinds in _SINGLE:
-        return (_read_dof(node, kinds[0], words.JOINT_TYPES[word], draft),)
+        return (_read_dof(node, kinds[0], words.JOINT_TYPES[word], builder),)
     if word == "planar":
-        normal, written = _read_axis(node, draft)
+        normal, written = _read_axis(node, builder)
         x, y = plane_axes(normal)
         return (Dof(DofKind.SLIDE, x), Dof(DofKind.SLIDE, y), Dof(DofKind.HINGE, normal, written=written))
     return tuple(Dof(kind) for kind in kinds)
 
 
-def _read_dof(node: Node, kind: DofKind, known: JointType, draft: Draft) -> Dof:
-    axis, written = _read_axis(node, draft)
-    limits = _read_limits(node, draft) if known.bounded else _read_open_limits(node, draft)
-    damping, friction = _read_dynamics(node, draft)
+def _read_dof(node: Node, kind: DofKind, known: JointType, builder: UrdfBuilder) -> Dof:
+    axis, written = _read_axis(node, builder)
+    limits = _read_limits(node, builder) if known.bounded else _read_open_limits(node, builder)
+    damping, friction = _read_dynamics(node, builder)
     return Dof(
         kind,
         axis,
         limits,
         damping,
         friction,
-        safety=_read_safety(node, draft),
-        calibration=_read_calibration(node, draft),
+        safety=_read_safety(node, builder),
+        calibration=_read_calibration(node, builder),
         written=written,
     )
 
 
-def _read_axis(joint: Node, draft: Draft) -> tuple[Vec3, Written | None]:
+def _read_axis(joint: Node, builder: UrdfBuilder) -> tuple[Vec3, Written | None]:
     """The unit axis in the joint frame, and the numbers as written where they are others."""
     node = joint.take_child("axis")
     if node is None:
         return X, None
     text = node.attributes.get("xyz", "1 0 0")
     if _has_no_direction(text):
-        said = f"{joint.subject}: <axis xyz> is '{shortened(text)}', which has no direction; 1 0 0 is used, and the text is kept as written"
-        draft.report.error(codes.ZERO_AXIS, said, node.origin, element=joint.element)
+        message = (
+            f"{joint.subject}: <axis xyz> is '{shortened(text)}', which has no direction; 1 0 0 is used, and the text is kept as written"
+        )
+        builder.error(codes.ZERO_AXIS, node, message)
         return X, None
-    x, y, z = numbers = take_numbers(node, "xyz", 3, draft.report, instead="1 0 0 is used") or X
+    x, y, z = numbers = take_numbers(node, "xyz", 3, builder, instead="1 0 0 is used") or X
     axis = unit((x, y, z))
     if axis == (x, y, z):
         return axis, None
-    said = f"{joint.subject}: the axis was normalised; its numbers are kept for writing URDF again"
-    draft.report.note(codes.NOT_UNIT, said, node.origin, element=joint.element)
+    message = f"{joint.subject}: the axis was normalised; its numbers are kept for writing URDF again"
+    builder.report.note(codes.NOT_UNIT, message, node.origin, element=joint.element)
     return axis, Written("axis", numbers)
 
 
@@ -161,107 +157,107 @@ def _has_no_direction(text: str) -> bool:
     return bool(numbers) and not 1e-300 <= math.hypot(*(numbers or ())) < math.inf
 
 
-def _read_dynamics(joint: Node, draft: Draft) -> tuple[float, float]:
+def _read_dynamics(joint: Node, builder: UrdfBuilder) -> tuple[float, float]:
     node = joint.take_child("dynamics")
     if node is None:
         return 0.0, 0.0
-    damping, friction = (_or_zero(node, name, draft) for name in ("damping", "friction"))
+    damping, friction = (_or_zero(node, name, builder) for name in ("damping", "friction"))
     if damping == friction == 0.0:
-        draft.style.add(words.STYLE_DYNAMICS)
+        builder.style.add(words.STYLE_DYNAMICS)
     return damping, friction
 
 
-def _or_zero(node: Node, name: str, draft: Draft) -> float:
-    value = take_number(node, name, draft.report, instead="0 is used")
+def _or_zero(node: Node, name: str, builder: UrdfBuilder) -> float:
+    value = take_number(node, name, builder, instead="0 is used")
     return 0.0 if value is None else value
 
 
 # ---- limits ------------------------------------------------------------------------------------------------------------------
 
 
-def _read_limits(joint: Node, draft: Draft) -> Limits:
-    """The limits of a joint that URDF wants to have some. Without lower or upper they are 0, as the standard says."""
+def _read_limits(joint: Node, builder: UrdfBuilder) -> Limits:
+    """The limits of a joint for which URDF requires them. Without lower or upper they are 0, by the standard."""
     node = joint.take_child("limit")
     if node is None:
-        said = (
+        message = (
             f"{joint.subject} has no <limit>; read as unlimited, and written with the largest numbers (urdfdom refuses the file as it is)"
         )
-        draft.report.warn(codes.MISSING_LIMIT, said, joint.origin, element=joint.element)
+        builder.warn(codes.MISSING_LIMIT, joint, message)
         return UNLIMITED
     missing = [name for name in ("effort", "velocity") if name not in node.attributes]
-    limits = _rates(node, _bound(node, "lower", draft), _bound(node, "upper", draft), draft)
-    _check_limits(joint, node, limits, missing, draft)
+    limits = _rates(node, _bound(node, "lower", builder), _bound(node, "upper", builder), builder)
+    _check_limits(joint, node, limits, missing, builder)
     return limits
 
 
-def _read_open_limits(joint: Node, draft: Draft) -> Limits:
+def _read_open_limits(joint: Node, builder: UrdfBuilder) -> Limits:
     """The effort and velocity of a continuous joint; its lower and upper mean nothing and become extras."""
     node = joint.take_child("limit")
     if node is None:
         return UNLIMITED
-    limits = _rates(node, None, None, draft)
+    limits = _rates(node, None, None, builder)
     if limits == UNLIMITED:
         joint.leave(node)
     return limits
 
 
-def _bound(node: Node, name: str, draft: Draft) -> float | None:
+def _bound(node: Node, name: str, builder: UrdfBuilder) -> float | None:
     if name not in node.attributes:
         return 0.0
-    return _limited(take_number(node, name, draft.report, instead="unlimited is used"))
+    return _limited(take_number(node, name, builder, instead="unlimited is used"))
 
 
-def _rates(node: Node, lower: float | None, upper: float | None, draft: Draft) -> Limits:
+def _rates(node: Node, lower: float | None, upper: float | None, builder: UrdfBuilder) -> Limits:
     return Limits(
         lower,
         upper,
-        _rate(node, "velocity", draft),
-        _rate(node, "effort", draft),
-        _rate(node, "acceleration", draft),
-        _rate(node, "jerk", draft),
+        _rate(node, "velocity", builder),
+        _rate(node, "effort", builder),
+        _rate(node, "acceleration", builder),
+        _rate(node, "jerk", builder),
     )
 
 
-def _rate(node: Node, name: str, draft: Draft) -> float | None:
-    return _limited(take_number(node, name, draft.report, instead="unlimited is used"))
+def _rate(node: Node, name: str, builder: UrdfBuilder) -> float | None:
+    return _limited(take_number(node, name, builder, instead="unlimited is used"))
 
 
 def _limited(value: float | None) -> float | None:
     return None if value is None or abs(value) >= words.NO_LIMIT else value
 
 
-def _check_limits(joint: Node, node: Node, limits: Limits, missing: list[str], draft: Draft) -> None:
+def _check_limits(joint: Node, node: Node, limits: Limits, missing: list[str], builder: UrdfBuilder) -> None:
     if missing:
-        said = f"{joint.subject}: <limit> has no {' and no '.join(missing)}; read as unlimited (urdfdom refuses the file as it is)"
-        draft.report.warn(codes.MISSING_LIMIT, said, node.origin, element=joint.element)
+        message = f"{joint.subject}: <limit> has no {' and no '.join(missing)}; read as unlimited (urdfdom refuses the file as it is)"
+        builder.warn(codes.MISSING_LIMIT, node, message)
     if limits.lower is not None and limits.upper is not None and limits.lower > limits.upper:
-        said = f"{joint.subject}: the lower limit is above the upper one; both are kept"
-        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.element)
+        message = f"{joint.subject}: the lower limit is above the upper one; both are kept"
+        builder.warn(codes.BAD_LIMIT, node, message)
     if (limits.effort or 0.0) < 0.0 or (limits.velocity or 0.0) < 0.0:
-        said = f"{joint.subject}: the limit of effort or velocity is negative; it is kept"
-        draft.report.warn(codes.BAD_LIMIT, said, node.origin, element=joint.element)
+        message = f"{joint.subject}: the limit of effort or velocity is negative; it is kept"
+        builder.warn(codes.BAD_LIMIT, node, message)
 
 
 # ---- safety and calibration ------------------------------------------------------------------------------------------------------
 
 
-def _read_safety(joint: Node, draft: Draft) -> Safety | None:
+def _read_safety(joint: Node, builder: UrdfBuilder) -> Safety | None:
     node = joint.take_child("safety_controller")
     if node is None:
         return None
     names = ("k_velocity", "k_position", "soft_lower_limit", "soft_upper_limit")
     if "k_velocity" not in node.attributes:
-        said = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
-        draft.report.warn(codes.MISSING_ATTRIBUTE, said, node.origin, element=joint.element)
-    return Safety(*(_or_zero(node, name, draft) for name in names))
+        message = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
+        builder.warn(codes.MISSING_ATTRIBUTE, node, message)
+    return Safety(*(_or_zero(node, name, builder) for name in names))
 
 
-def _read_calibration(joint: Node, draft: Draft) -> Calibration | None:
+def _read_calibration(joint: Node, builder: UrdfBuilder) -> Calibration | None:
     node = joint.take_child("calibration")
     if node is None:
         return None
     names = ("rising", "falling", "reference_position")
-    found = Calibration(*(take_number(node, name, draft.report, instead="nothing is used") for name in names))
+    found = Calibration(*(take_number(node, name, builder, instead="nothing is used") for name in names))
     if found == Calibration():
         joint.leave(node)
         return None
@@ -271,29 +267,27 @@ def _read_calibration(joint: Node, draft: Draft) -> Calibration | None:
 # ---- mimic ---------------------------------------------------------------------------------------------------------------------
 
 
-def _read_mimic(joint: Node, draft: Draft) -> None:
+def _read_mimic(joint: Node, builder: UrdfBuilder) -> None:
     """<mimic> as a coupling: q = offset + multiplier * q_leader. One that cannot work stays as it was written."""
     if not joint.has("mimic") or joint.owner is None:
         return
     node = joint.take_child("mimic")
     assert node is not None
-    leader = draft.joints.get(node.attributes.get("joint", ""))
-    problem = _mimic_problem(joint.owner, leader, node, draft)
+    leader = builder.joints.get(node.attributes.get("joint", ""))
+    problem = _mimic_problem(joint.owner, leader, node, builder)
     if problem or leader is None:
-        draft.report.warn(
-            codes.UNDEFINED_REFERENCE, f"{joint.subject} {problem}; the <mimic> is kept as written", node.origin, element=joint.element
-        )
+        builder.warn(codes.UNDEFINED_REFERENCE, node, f"{joint.subject} {problem}; the <mimic> is kept as written")
         joint.leave(node)
         return
     node.take("joint")
-    multiplier = take_number(node, "multiplier", draft.report, instead="1 is used")
-    coefficients = (_or_zero(node, "offset", draft), 1.0 if multiplier is None else multiplier)
-    key = draft.names.take("coupling", joint.owner.name)
-    draft.edges[key] = coupling_edge(joint.owner, ((leader, coefficients),))
-    draft.origins[key] = node.origin
+    multiplier = take_number(node, "multiplier", builder, instead="1 is used")
+    coefficients = (_or_zero(node, "offset", builder), 1.0 if multiplier is None else multiplier)
+    key = builder.names.take("coupling", joint.owner.name)
+    builder.edges[key] = coupling_edge(joint.owner, ((leader, coefficients),))
+    builder.origins[key] = node.origin
 
 
-def _mimic_problem(follower: Id, leader: Id | None, node: Node, draft: Draft) -> str:
+def _mimic_problem(follower: Id, leader: Id | None, node: Node, builder: UrdfBuilder) -> str:
     """Why a joint cannot mimic another one, or nothing."""
     name = node.attributes.get("joint")
     if name is None:
@@ -302,8 +296,43 @@ def _mimic_problem(follower: Id, leader: Id | None, node: Node, draft: Draft) ->
         return f"mimics '{name}', which is not a joint of this robot"
     if leader == follower:
         return "mimics itself"
-    for key, said in ((follower, "is fixed and cannot mimic"), (leader, f"mimics '{name}', which is fixed")):
-        joint = draft.edges[key].data
-        if isinstance(joint, Joint) and not joint.dofs:
-            return said
-    return ""
+    if _is_fixed(follower, builder):
+        return "is fixed and cannot mimic"
+    return f"mimics '{name}', which is fixed" if _is_fixed(leader, builder) else ""
+
+
+def _is_fixed(key: Id | None, builder: UrdfBuilder) -> bool:
+    joint = builder.edges[key].data if key is not None else None
+    return isinstance(joint, Joint) and not joint.dofs
+
+
+# ---- fixed joints ------------------------------------------------------------------------------------------------------------
+
+
+def _note_meaningless(joints: list[Node], builder: UrdfBuilder) -> None:
+    """Note the meaningless elements that at least half of the fixed joints, and at least two, have alike; others stay extras."""
+    fixed = [node for node in joints if _is_fixed(node.owner, builder)]
+    usual = [text for tag in words.MEANINGLESS_IF_FIXED if (text := _take_usual(fixed, tag))]
+    if usual:
+        builder.note(ROOT, words.FIXED, "".join(usual))
+
+
+def _take_usual(fixed: list[Node], tag: str) -> str:
+    """The most frequent text of this child, taken out of the joints that have it; empty when it is not frequent enough."""
+    texts = [(node, _text(node, tag)) for node in fixed]
+    votes = Counter(text for _, text in texts if text)
+    text, count = votes.most_common(1)[0] if votes else ("", 0)
+    if count < 2 or 2 * count < len(fixed):
+        return ""
+    for node, own in texts:
+        if own == text:
+            node.take_whole(tag)
+    return text
+
+
+def _text(node: Node, tag: str) -> str:
+    """The first such child as text, if it has nothing but attributes; empty otherwise."""
+    child = next((child for child in node.children if child.tag == tag and not child.taken), None)
+    if child is None or child.children or child.text is not None:
+        return ""
+    return f"<{tag}{attributes_text(child.attributes)}/>"

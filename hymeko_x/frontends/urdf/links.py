@@ -1,100 +1,209 @@
-"""Links: a body with its inertial, its visuals and its collisions."""
+"""<link>: a body with its inertial, and visuals and collisions with their geometry."""
 
 from __future__ import annotations
 
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.frontends.urdf.draft import read_origin, take_name, take_number
-from hymeko_x.frontends.urdf.geometry import read_geometry
+from hymeko_x.frontends.urdf.builder import read_origin, take_name, take_number, take_numbers
 from hymeko_x.frontends.urdf.materials import read_shape_material
-from hymeko_x.ir.mechanism import shape_edge
-from hymeko_x.ir.parts import Body, Inertial, InertialWritten, Shape
+from hymeko_x.ir.mechanism import file_stem, shape_edge
+from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Inertial, InertialWritten, Mesh, MeshShape, NoShape, Shape, Sphere
 from hymeko_x.ir.values import rotate_tensor
 from hymeko_x.rewrite.solids import UNSAID, UNSAID_NOTATION
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.urdf.draft import Draft
+    from collections.abc import Callable, Mapping
+
+    from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.mechanism import Id
-    from hymeko_x.ir.parts import Role
-    from hymeko_x.ir.values import Tensor
+    from hymeko_x.ir.parts import Geometry, Role
+    from hymeko_x.ir.values import Tensor, Vec3
     from hymeko_x.xml.tree import Node
 
 _ORIGIN_STYLES = {"visual": words.STYLE_VISUAL_ORIGIN, "collision": words.STYLE_COLLISION_ORIGIN}
+_NO_GEOMETRY = "the shape has no geometry"
 _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
-def read_link(node: Node, draft: Draft) -> None:
+def read_link(node: Node, builder: UrdfBuilder) -> None:
     """Add a link with its shapes: visuals first, then collisions, each in their order."""
-    key = take_name(node, "body", draft.links, draft)
-    inertial = _read_inertial(node, draft)
-    draft.vertices[key] = Body(inertial)
+    key = take_name(node, "body", builder.links, builder)
+    inertial = _read_inertial(node, builder)
+    builder.vertices[key] = Body(inertial)
     if inertial is not None and inertial.tensor is None:
-        draft.note(key, UNSAID_NOTATION, UNSAID)
+        builder.note(key, UNSAID_NOTATION, UNSAID)
     for tag, role in words.ROLES.items():
         for shape in node.take_children(tag):
-            _read_shape(shape, role, key, draft)
-    draft.close(node)
+            _read_shape(shape, role, key, builder)
+    builder.close(node)
 
 
-def _read_shape(node: Node, role: Role, body: Id, draft: Draft) -> None:
-    key = draft.own(node, "shape", f"{body.name}/{node.tag}")
+def _read_shape(node: Node, role: Role, body: Id, builder: UrdfBuilder) -> None:
+    key = builder.own(node, "shape", f"{body.name}/{node.tag}")
     name = node.take("name")
-    pose = read_origin(node, _ORIGIN_STYLES[node.tag], draft)
-    geometry, mesh = read_geometry(node, draft)
-    rgba, material = read_shape_material(node, draft)
-    draft.edges[key] = shape_edge(Shape(geometry, role, name, rgba), body, pose, mesh, material)
+    pose = read_origin(node, _ORIGIN_STYLES[node.tag], builder)
+    geometry, mesh = _read_geometry(node, builder)
+    rgba, material = read_shape_material(node, builder)
+    builder.edges[key] = shape_edge(Shape(geometry, role, name, rgba), body, pose, mesh, material)
 
 
 # ---- inertia -------------------------------------------------------------------------------------------------------------------
 
 
-def _read_inertial(link: Node, draft: Draft) -> Inertial | None:
+def _read_inertial(link: Node, builder: UrdfBuilder) -> Inertial | None:
     """Mass, centre of mass and tensor, turned from the axes of its <origin> into those of the body; None without one."""
     node = link.take_child("inertial")
     if node is None:
         return None
-    mass = _read_mass(node, draft)
-    tensor = _read_tensor(node, draft)
-    frame = read_origin(node, words.STYLE_INERTIAL_ORIGIN, draft, turned=tensor is not None)
+    mass = _read_mass(node, builder)
+    tensor = _read_tensor(node, builder)
+    frame = read_origin(node, words.STYLE_INERTIAL_ORIGIN, builder, turned=tensor is not None)
     if frame.written is None or tensor is None:
         return Inertial(mass, frame.xyz, tensor)
     return Inertial(mass, frame.xyz, rotate_tensor(frame.quat, tensor), InertialWritten(frame, tensor))
 
 
-def _read_mass(inertial: Node, draft: Draft) -> float | None:
+def _read_mass(inertial: Node, builder: UrdfBuilder) -> float | None:
     node = inertial.take_child("mass")
     if node is None:
-        _say_missing(inertial, "mass", "its mass is unspecified", draft)
+        _warn_missing(inertial, "mass", "its mass is unspecified", builder)
         return None
-    mass = take_number(node, "value", draft.report, instead="the mass is unspecified")
+    mass = take_number(node, "value", builder, instead="the mass is unspecified")
     if mass is None and "value" not in node.attributes:
-        _say_missing(node, "value", "the mass is unspecified", draft)
+        _warn_missing(node, "value", "the mass is unspecified", builder)
         inertial.leave(node)
     return mass
 
 
-def _read_tensor(inertial: Node, draft: Draft) -> Tensor | None:
+def _read_tensor(inertial: Node, builder: UrdfBuilder) -> Tensor | None:
     node = inertial.take_child("inertia")
     if node is None:
-        _say_missing(inertial, "inertia", "its tensor is unspecified (urdfdom then drops the mass as well)", draft)
+        _warn_missing(inertial, "inertia", "its tensor is unspecified (urdfdom then drops the mass as well)", builder)
         return None
     values = []
     for name in _TENSOR:
-        value = take_number(node, name, draft.report, instead="0 is used")
+        value = take_number(node, name, builder, instead="0 is used")
         if value is None and name not in node.attributes:
-            _say_missing(node, name, "0 is used", draft)
+            _warn_missing(node, name, "0 is used", builder)
         values.append(0.0 if value is None else value)
     xx, yy, zz, xy, xz, yz = values
     return (xx, yy, zz, xy, xz, yz)
 
 
-def _say_missing(node: Node, what: str, instead: str, draft: Draft) -> None:
+def _warn_missing(node: Node, missing: str, instead: str, builder: UrdfBuilder) -> None:
     attribute = node.tag in ("mass", "inertia")
-    draft.report.warn(
-        codes.MISSING_ATTRIBUTE if attribute else codes.MISSING_PART,
-        f"{node.subject}: <{node.tag}> has no {what if attribute else f'<{what}>'}; {instead}",
-        node.origin,
-        element=node.element,
-    )
+    code = codes.MISSING_ATTRIBUTE if attribute else codes.MISSING_PART
+    builder.warn(code, node, f"{node.subject}: <{node.tag}> has no {missing if attribute else f'<{missing}>'}; {instead}")
+
+
+# ---- geometry ----------------------------------------------------------------------------------------------------------------
+
+
+def _read_geometry(shape: Node, builder: UrdfBuilder) -> tuple[Geometry, Id | None]:
+    """The geometry of a visual or collision, and its mesh. An unknown one is no shape, and an extra."""
+    node = shape.take_child("geometry")
+    if node is None:
+        _warn_empty(shape, f"<{shape.tag}> has no <geometry>", builder)
+        return NoShape(), None
+    found = node.take_child_among(_GEOMETRIES)
+    if found is None:
+        tags = ", ".join(f"<{child.tag}>" for child in node.unread_children())
+        known = ", ".join(f"<{tag}>" for tag in _GEOMETRIES)
+        _warn_empty(node, f"<geometry> contains {tags or 'nothing'}, expected one of {known}", builder)
+        return NoShape(), None
+    if node.has_among(_GEOMETRIES):
+        message = f"{node.subject}: <geometry> contains more than one shape; the first one counts, the others are kept as written"
+        builder.warn(codes.REPEATED, node, message)
+    if found.tag == "mesh":
+        return MeshShape(), _read_mesh(found, builder)
+    geometry = _READERS[found.tag](found, builder)
+    if geometry is None:
+        node.leave(found)
+        return NoShape(), None
+    return geometry, None
+
+
+def _warn_empty(node: Node, problem: str, builder: UrdfBuilder) -> None:
+    message = f"{node.subject}: {problem}; {_NO_GEOMETRY}"
+    builder.warn(codes.MISSING_PART, node, message)
+
+
+# ---- one reader per geometry; None when its numbers cannot be read -----------------------------------------------------------
+
+
+def _read_box(node: Node, builder: UrdfBuilder) -> Geometry | None:
+    size = _sized(node, "size", 3, builder)
+    if size is None:
+        return None
+    x, y, z = size
+    return Box((x, y, z))
+
+
+def _read_sphere(node: Node, builder: UrdfBuilder) -> Geometry | None:
+    radius = _sized(node, "radius", 1, builder)
+    return None if radius is None else Sphere(radius[0])
+
+
+def _read_cylinder(node: Node, builder: UrdfBuilder) -> Geometry | None:
+    radius, length = _sized(node, "radius", 1, builder), _sized(node, "length", 1, builder)
+    return None if radius is None or length is None else Cylinder(radius[0], length[0])
+
+
+def _read_capsule(node: Node, builder: UrdfBuilder) -> Geometry | None:
+    radius, length = _sized(node, "radius", 1, builder), _sized(node, "length", 1, builder)
+    builder.style.add(words.STYLE_CAPSULE)
+    return None if radius is None or length is None else Capsule(radius[0], length[0])
+
+
+def _sized(node: Node, attribute: str, count: int, builder: UrdfBuilder) -> tuple[float, ...] | None:
+    """Numbers without which there is no geometry."""
+    if attribute in node.attributes:
+        return take_numbers(node, attribute, count, builder, instead=_NO_GEOMETRY)
+    message = f"{node.subject}: <{node.tag}> has no {attribute}; {_NO_GEOMETRY}, and the text is kept as written"
+    builder.error(codes.MISSING_ATTRIBUTE, node, message)
+    return None
+
+
+_READERS: Mapping[str, Callable[[Node, UrdfBuilder], Geometry | None]] = MappingProxyType(
+    {"box": _read_box, "cylinder": _read_cylinder, "sphere": _read_sphere, "capsule": _read_capsule}
+)
+_GEOMETRIES = ("mesh", *_READERS)
+
+
+# ---- meshes ----------------------------------------------------------------------------------------------------------------------
+
+
+def _read_mesh(node: Node, builder: UrdfBuilder) -> Id:
+    """The mesh vertex of a file and scale; shapes that use the same ones share it."""
+    uri = node.take("filename")
+    if uri is None:
+        message = f"{node.subject}: <mesh> has no filename; it stays empty"
+        builder.error(codes.MISSING_ATTRIBUTE, node, message)
+        uri = ""
+    scale = _read_scale(node, builder)
+    known = builder.meshes.get((uri, scale))
+    if known is not None:
+        return known
+    key = builder.names.take("mesh", file_stem(uri) or "mesh")
+    builder.vertices[key] = Mesh(uri or None, scale)
+    builder.origins[key] = node.origin
+    builder.meshes[uri, scale] = key
+    return key
+
+
+def _read_scale(node: Node, builder: UrdfBuilder) -> Vec3:
+    one = read_numbers(node.attributes.get("scale", ""))
+    if one is not None and len(one) == 1:
+        node.take("scale")
+        message = f"{node.subject}: <mesh scale> is one number; read as the same in all directions (urdfdom drops such a shape)"
+        builder.warn(codes.BAD_NUMBER, node, message)
+        return (one[0], one[0], one[0])
+    found = take_numbers(node, "scale", 3, builder, instead="1 1 1 is used")
+    if found == (1.0, 1.0, 1.0):
+        builder.style.add(words.STYLE_SCALE)
+    x, y, z = found or (1.0, 1.0, 1.0)
+    return (x, y, z)

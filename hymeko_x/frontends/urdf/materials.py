@@ -1,6 +1,6 @@
 """Materials: global by name, defined at robot level or inside a visual, or a colour without a name.
 
-A colour in a visual's unnamed material is the shape's own colour. A second definition of a name with other looks is
+A colour in a visual's unnamed material is the shape's own colour. A second definition of a name with another appearance is
 a material of its own, since readers disagree: urdfdom keeps the first one, MuJoCo the one inside each visual.
 """
 
@@ -12,42 +12,43 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import Defined
-from hymeko_x.frontends.urdf.draft import Looks, take_numbers
+from hymeko_x.frontends.urdf.builder import Definition, take_numbers
 from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
 from hymeko_x.ir.parts import Material, Texture
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.frontends.urdf.draft import Draft
+    from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.parts import Rgba
     from hymeko_x.xml.tree import Node
 
-Said = tuple["Rgba | None", "str | None"]
+Appearance = tuple["Rgba | None", "str | None"]
+"""The colour and the texture file of a <material>."""
 
 
-def read_robot_material(root: Node, node: Node, draft: Draft) -> None:
-    """Add a material of robot level; one that nobody can use, or that says the same again, stays as it was written."""
+def read_robot_material(root: Node, node: Node, builder: UrdfBuilder) -> None:
+    """Add a material of robot level; one without a name, or one that is defined again alike, stays as it was written."""
     name = node.attributes.get("name")
     if not name:
-        said = "a <material> of robot level has no name, so that nobody can use it; it is kept as written"
-        draft.report.warn(codes.BAD_NAME, said, node.origin)
+        message = "a <material> of robot level has no name, so that no visual can refer to it; it is kept as written"
+        builder.warn(codes.BAD_NAME, node, message)
         root.leave(node)
         return
     node.owner = Id("material", name)
-    looks = _resolve(node, name, _read_looks(node, draft), draft)
-    if looks.at_robot:
-        said = f"the material '{name}' is defined twice at robot level, in the same way; the second one is kept as written"
-        draft.report.warn(codes.DUPLICATE_NAME, said, node.origin, element=str(looks.id))
+    definition = _resolve(node, name, _read_appearance(node, builder), builder)
+    if definition.at_robot:
+        message = f"the material '{name}' is defined twice at robot level, in the same way; the second one is kept as written"
+        builder.report.warn(codes.DUPLICATE_NAME, message, node.origin, element=str(definition.id))
         root.leave(node)
         return
-    looks.at_robot = True
+    definition.at_robot = True
     node.take("name")
-    node.owner = looks.id
-    draft.close(node)
+    node.owner = definition.id
+    builder.close(node)
 
 
-def read_shape_material(shape: Node, draft: Draft) -> tuple[Rgba | None, Id | None]:
+def read_shape_material(shape: Node, builder: UrdfBuilder) -> tuple[Rgba | None, Id | None]:
     """The colour of a shape's unnamed material, or the id of its named one."""
     node = shape.take_child("material")
     if node is None:
@@ -55,39 +56,39 @@ def read_shape_material(shape: Node, draft: Draft) -> tuple[Rgba | None, Id | No
     name = node.attributes.get("name")
     if name:
         node.take("name")
-        return None, _use(node, name, draft)
-    return _read_unnamed(shape, node, draft)
+        return None, _use(node, name, builder)
+    return _read_unnamed(shape, node, builder)
 
 
-def _use(node: Node, name: str, draft: Draft) -> Id:
-    said = _read_looks(node, draft)
-    looks = _resolve(node, name, said, draft)
-    looks.uses += 1
-    looks.inline += said != (None, None)
-    looks.first_use = looks.first_use or node.origin
-    return looks.id
+def _use(node: Node, name: str, builder: UrdfBuilder) -> Id:
+    appearance = _read_appearance(node, builder)
+    definition = _resolve(node, name, appearance, builder)
+    definition.uses += 1
+    definition.inline += appearance != (None, None)
+    definition.first_use = definition.first_use or node.origin
+    return definition.id
 
 
-def _read_unnamed(shape: Node, node: Node, draft: Draft) -> tuple[Rgba | None, Id | None]:
-    rgba, texture = _read_looks(node, draft)
+def _read_unnamed(shape: Node, node: Node, builder: UrdfBuilder) -> tuple[Rgba | None, Id | None]:
+    rgba, texture = _read_appearance(node, builder)
     if (rgba, texture) == (None, None):
         shape.leave(node)
         return None, None
     if node.take("name") is None:
-        said = f"{shape.subject}: <material> has no name; its looks are the shape's own (urdfdom drops such a visual)"
-        draft.report.warn(codes.BAD_NAME, said, node.origin, element=shape.element)
+        message = f"{shape.subject}: <material> has no name; the appearance is the shape's own (urdfdom drops such a visual)"
+        builder.warn(codes.BAD_NAME, node, message)
     if texture is None:
         return rgba, None
-    key = draft.names.take("material", str(shape.owner and shape.owner.name))
-    _add(Looks(key, rgba, texture, first_use=node.origin), None, draft)
+    key = builder.names.take("material", str(shape.owner and shape.owner.name))
+    _add(Definition(key, rgba, texture, first_use=node.origin), None, builder)
     return None, key
 
 
-def _read_looks(node: Node, draft: Draft) -> Said:
+def _read_appearance(node: Node, builder: UrdfBuilder) -> Appearance:
     rgba = texture = None
     color = node.take_child("color")
     if color is not None:
-        rgba = take_numbers(color, "rgba", 4, draft.report, instead="no colour is used")
+        rgba = take_numbers(color, "rgba", 4, builder, instead="no colour is used")
         if rgba is None and "rgba" not in color.attributes:
             node.leave(color)
     image = node.take_child("texture")
@@ -101,25 +102,25 @@ def _read_looks(node: Node, draft: Draft) -> Said:
     return (r, g, b, a), texture or None
 
 
-def _resolve(node: Node, name: str, said: Said, draft: Draft) -> Looks:
-    """The material of this name with these looks: the first one if nothing was said, a new one if other looks were."""
-    variants = draft.materials.setdefault(name, [])
+def _resolve(node: Node, name: str, appearance: Appearance, builder: UrdfBuilder) -> Definition:
+    """The definition of this name with this appearance: the first one if it has none, a new one if it has another."""
+    variants = builder.materials.setdefault(name, [])
     if not variants:
-        variants.append(Looks(_material_id(name, node, draft)))
+        variants.append(Definition(_material_id(name, node, builder)))
     first = variants[0]
-    if said == (None, None):
+    if appearance == (None, None):
         return first
-    if not first.known:
-        first.rgba, first.texture = said
+    if first.is_empty:
+        first.rgba, first.texture = appearance
         return first
-    same = next((looks for looks in variants if (looks.rgba, looks.texture) == said), None)
+    same = next((definition for definition in variants if (definition.rgba, definition.texture) == appearance), None)
     if same is not None:
         return same
-    other = Looks(_material_id(name, node, draft), *said)
+    other = Definition(_material_id(name, node, builder), *appearance)
     variants.append(other)
-    draft.report.warn(
+    builder.report.warn(
         codes.MATERIAL_REDEFINED,
-        f"the material '{name}' is defined again with other looks (before: {draft.origins[first.id]}); "
+        f"the material '{name}' is defined again with another appearance (before: {builder.origins[first.id]}); "
         f"both are kept, this one as '{other.id.name}'",
         node.origin,
         element=str(other.id),
@@ -127,59 +128,59 @@ def _resolve(node: Node, name: str, said: Said, draft: Draft) -> Looks:
     return other
 
 
-def _material_id(name: str, node: Node, draft: Draft) -> Id:
-    key = draft.names.take("material", name)
-    draft.origins[key] = node.origin
+def _material_id(name: str, node: Node, builder: UrdfBuilder) -> Id:
+    key = builder.names.take("material", name)
+    builder.origins[key] = node.origin
     return key
 
 
 # ---- at the end --------------------------------------------------------------------------------------------------------------
 
 
-def finish_materials(draft: Draft) -> None:
+def finish_materials(builder: UrdfBuilder) -> None:
     """Add the materials, and note where most of them are defined and which ones elsewhere."""
-    for name, variants in draft.materials.items():
-        for looks in variants:
-            _add(looks, name, draft)
-            if not looks.known and not looks.at_robot:
-                said = f"the material '{name}' is not defined anywhere; it has no looks (urdfdom shows a default grey)"
-                draft.report.warn(codes.UNDEFINED_REFERENCE, said, looks.first_use, element=str(looks.id))
-    _note_places(draft)
+    for name, variants in builder.materials.items():
+        for definition in variants:
+            _add(definition, name, builder)
+            if definition.is_empty and not definition.at_robot:
+                message = f"the material '{name}' is not defined anywhere; it has no appearance (urdfdom shows a default grey)"
+                builder.report.warn(codes.UNDEFINED_REFERENCE, message, definition.first_use, element=str(definition.id))
+    _note_places(builder)
 
 
-def _add(looks: Looks, name: str | None, draft: Draft) -> None:
-    draft.vertices[looks.id] = Material(name, looks.rgba)
-    if looks.texture is None:
+def _add(definition: Definition, name: str | None, builder: UrdfBuilder) -> None:
+    builder.vertices[definition.id] = Material(name, definition.rgba)
+    if definition.texture is None:
         return
-    texture = draft.textures.get(looks.texture)
+    texture = builder.textures.get(definition.texture)
     if texture is None:
-        texture = draft.names.take("texture", file_stem(looks.texture) or "texture")
-        draft.textures[looks.texture] = texture
-        draft.vertices[texture] = Texture(looks.texture)
-    draft.edges[draft.names.take("layer", looks.id.name)] = layer_edge(texture, looks.id)
+        texture = builder.names.take("texture", file_stem(definition.texture) or "texture")
+        builder.textures[definition.texture] = texture
+        builder.vertices[texture] = Texture(definition.texture)
+    builder.edges[builder.names.take("layer", definition.id.name)] = layer_edge(texture, definition.id)
 
 
-def _note_places(draft: Draft) -> None:
+def _note_places(builder: UrdfBuilder) -> None:
     """Where each material is defined: of the places that suit it, the one that suits most."""
-    places = dict(_places(draft))
+    places = dict(_places(builder))
     votes = Counter(place for suiting in places.values() for place in suiting)
     for key, suiting in places.items():
-        draft.choose(key, words.DEFINED, max(suiting, key=lambda place: votes[place]).value)
+        builder.choose(key, words.DEFINED, max(suiting, key=lambda place: votes[place]).value)
 
 
-def _places(draft: Draft) -> Iterator[tuple[Id, tuple[Defined, ...]]]:
-    for variants in draft.materials.values():
-        for number, looks in enumerate(variants):
-            if number == 0 and looks.known:
-                yield looks.id, _suiting(looks)
-            elif looks.at_robot:
-                draft.note(looks.id, words.notation(words.DEFINED), Defined.ROBOT.value)
+def _places(builder: UrdfBuilder) -> Iterator[tuple[Id, tuple[Defined, ...]]]:
+    for variants in builder.materials.values():
+        for number, definition in enumerate(variants):
+            if number == 0 and not definition.is_empty:
+                yield definition.id, _suiting(definition)
+            elif definition.at_robot:
+                builder.note(definition.id, words.notation(words.DEFINED), Defined.ROBOT.value)
 
 
-def _suiting(looks: Looks) -> tuple[Defined, ...]:
+def _suiting(definition: Definition) -> tuple[Defined, ...]:
     """The places that write at least the definitions that the file has."""
-    if looks.at_robot:
-        return (Defined.BOTH,) if looks.inline else (Defined.ROBOT, Defined.BOTH) if not looks.uses else (Defined.ROBOT,)
-    if looks.inline > 1:
+    if definition.at_robot:
+        return (Defined.BOTH,) if definition.inline else (Defined.ROBOT, Defined.BOTH) if not definition.uses else (Defined.ROBOT,)
+    if definition.inline > 1:
         return (Defined.INLINE,)
-    return (Defined.INLINE, Defined.FIRST) if looks.uses == 1 else (Defined.FIRST,)
+    return (Defined.INLINE, Defined.FIRST) if definition.uses == 1 else (Defined.FIRST,)

@@ -1,4 +1,4 @@
-"""A mechanism in the making: what the readers of links, joints, materials and transmissions add to."""
+"""The builder of a URDF robot, and the readers of what several elements contain: names, poses and numbers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Origin, Report
+    from hymeko_x.diagnostics import Code, Origin, Report
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.ir.parts import Rgba
     from hymeko_x.ir.values import Vec3
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(slots=True)
-class Looks:
+class Definition:
     """A material as far as it is known: colour, texture, and where in the file it is defined and used."""
 
     id: Id
@@ -35,13 +35,13 @@ class Looks:
     first_use: Origin | None = None
 
     @property
-    def known(self) -> bool:
-        """Whether anything was said about it."""
-        return self.rgba is not None or self.texture is not None
+    def is_empty(self) -> bool:
+        """Whether it has neither colour nor texture."""
+        return self.rgba is None and self.texture is None
 
 
 @dataclass(slots=True)
-class Draft(Builder):
+class UrdfBuilder(Builder):
     """A URDF robot so far; ``links`` and ``joints`` by the names in the file, first one wins."""
 
     report: Report
@@ -50,7 +50,7 @@ class Draft(Builder):
     joints: dict[str, Id] = field(default_factory=dict)
     meshes: dict[tuple[str, tuple[float, ...]], Id] = field(default_factory=dict)
     textures: dict[str, Id] = field(default_factory=dict)
-    materials: dict[str, list[Looks]] = field(default_factory=dict)
+    materials: dict[str, list[Definition]] = field(default_factory=dict)
     actuators: dict[str, Id] = field(default_factory=dict)
     drives: dict[str, Id] = field(default_factory=dict)
     choices: dict[str, dict[Id, str]] = field(default_factory=dict)
@@ -58,16 +58,24 @@ class Draft(Builder):
     version: str = "1.0"
 
     def own(self, node: Node, kind: str, name: str) -> Id:
-        """A fresh id for a node, which owns from now on what nobody takes out of it."""
+        """A fresh id for a node, whose unread content belongs to it from now on."""
         node.owner = key = self.fresh(kind, name, node.origin)
         return key
 
+    def warn(self, code: Code, node: Node, message: str) -> None:
+        """Report something odd about a node, and how it is read."""
+        self.report.warn(code, message, node.origin, element=node.element)
+
+    def error(self, code: Code, node: Node, message: str) -> None:
+        """Report something wrong about a node, and what is used instead."""
+        self.report.error(code, message, node.origin, element=node.element)
+
     def choose(self, key: Id, choice: str, value: str) -> None:
-        """Keep which of several ways of writing the author took, where most elements do it alike."""
+        """Keep which of several ways of writing the author chose, where most elements of a file choose alike."""
         self.choices.setdefault(choice, {})[key] = value
 
     def _settle_choices(self) -> None:
-        """The usual way becomes a word of the style, the others are noted at their elements."""
+        """The usual choice becomes a word of the style, the others are noted at their elements."""
         for choice, made in self.choices.items():
             usual = Counter(made.values()).most_common(1)[0][0]
             if usual != words.DEFAULT_CHOICES[choice]:
@@ -77,21 +85,16 @@ class Draft(Builder):
                     self.note(key, words.notation(choice), value)
 
     def close(self, node: Node) -> None:
-        """Collect what is left in a top-level element, and say what stands there twice."""
+        """Collect what is unread in a top-level element, and report children that it may have only once."""
         for member in self.unread.close(node):
-            for kid in member.unread_children():
-                if kid.tag in words.SINGLE and member.has_taken(kid.tag):
-                    said = f"{member.subject}: <{member.tag}> holds <{kid.tag}> more than once"
-                    self.report.warn(
-                        codes.REPEATED,
-                        f"{said}; the first one counts, the others are kept as written",
-                        member.origin,
-                        element=member.element,
-                    )
+            for child in member.unread_children():
+                if child.tag in words.SINGLE and member.has_taken(child.tag):
+                    message = f"{member.subject}: <{member.tag}> contains <{child.tag}> more than once"
+                    self.warn(codes.REPEATED, member, f"{message}; the first one counts, the others are kept as written")
         node.release()
 
     def finish(self, name: str, around: list[Extra], file: str) -> Mechanism:
-        """The finished mechanism; ``around`` is what stood before and after the root element, ``file`` where it stood."""
+        """The finished mechanism; ``around`` are the extras from before and after the root element, and ``file`` is its name."""
         self._settle_choices()
         if self.style:
             self.note(ROOT, words.STYLE, " ".join(sorted(self.style)))
@@ -102,63 +105,63 @@ class Draft(Builder):
         return self.build(name, Provenance(words.FORMAT, file=file))
 
 
-def take_name(node: Node, kind: str, known: dict[str, Id], draft: Draft) -> Id:
-    """The id of a link, joint or transmission from its name; says so when the name is missing or taken."""
+def take_name(node: Node, kind: str, known: dict[str, Id], builder: UrdfBuilder) -> Id:
+    """The id of a link, joint or transmission from its name; a name that is missing or taken is reported."""
     name = node.take("name")
     if not name:
-        said = f"has no name; it is called '{node.tag}'" if name is None else "has an empty name"
-        draft.report.error(codes.BAD_NAME, f"a <{node.tag}> {said}", node.origin)
-    key = draft.own(node, kind, node.tag if name is None else name)
+        problem = f"has no name; it is called '{node.tag}'" if name is None else "has an empty name"
+        builder.error(codes.BAD_NAME, node, f"a <{node.tag}> {problem}")
+    key = builder.own(node, kind, node.tag if name is None else name)
     first = known.setdefault(key.name if name is None else name, key)
     if name is not None and first != key:
-        draft.report.error(
-            codes.DUPLICATE_NAME,
-            f"there are two <{node.tag}> called '{name}' (the other one: {draft.origins[first]}); this one is called '{key.name}'",
-            node.origin,
-            element=str(key),
-        )
+        other = builder.origins[first]
+        message = f"there are two <{node.tag}> called '{name}' (the other one: {other}); this one is called '{key.name}'"
+        builder.error(codes.DUPLICATE_NAME, node, message)
     return key
 
 
-def read_origin(node: Node, style: str, draft: Draft, *, turned: bool = True) -> Pose:
+# ---- poses -------------------------------------------------------------------------------------------------------------------
+
+
+def read_origin(node: Node, style: str, builder: UrdfBuilder, *, turned: bool = True) -> Pose:
     """The pose of a node's <origin>: position in m, fixed-axis roll-pitch-yaw in rad; the identity without one.
 
-    ``turned`` false: there is nothing that could be turned, so that the angles stay what was written.
+    ``turned`` false: there is nothing that could be turned, so that the angles stay as written.
     """
     origin = node.take_child("origin")
     if origin is None:
         return IDENTITY
-    xyz = _take_vector(origin, "xyz", draft)
+    xyz = _take_vector(origin, "xyz", builder)
     unturned = not turned and read_numbers(origin.attributes.get("rpy", "")) != ZERO
-    found = Pose(xyz) if unturned else _turned(origin, xyz, draft)
+    found = Pose(xyz) if unturned else _turned(origin, xyz, builder)
     if found.xyz == ZERO and found.written is None:
-        draft.style.add(style)
+        builder.style.add(style)
     return found
 
 
-def _turned(origin: Node, xyz: Vec3, draft: Draft) -> Pose:
-    rpy = _take_vector(origin, "rpy", draft)
-    if rpy == ZERO and draft.version != "1.0":
-        quat = take_numbers(origin, "quat_xyzw", 4, draft.report, instead="no rotation is used")
+def _turned(origin: Node, xyz: Vec3, builder: UrdfBuilder) -> Pose:
+    rpy = _take_vector(origin, "rpy", builder)
+    if rpy == ZERO and builder.version != "1.0":
+        quat = take_numbers(origin, "quat_xyzw", 4, builder, instead="no rotation is used")
         if quat is not None and any(quat):
             qx, qy, qz, qw = quat
             return pose(xyz, (qw, qx, qy, qz))
     return pose_from_rpy(xyz, rpy)
 
 
-def _take_vector(origin: Node, name: str, draft: Draft) -> Vec3:
-    numbers: Any = take_numbers(origin, name, 3, draft.report, instead="0 0 0 is used")
+def _take_vector(origin: Node, name: str, builder: UrdfBuilder) -> Vec3:
+    numbers: Any = take_numbers(origin, name, 3, builder, instead="0 0 0 is used")
     return numbers or ZERO
 
 
-# ---- numbers -------------------------------------------------------------------------------------------------------------------
+# ---- numbers -----------------------------------------------------------------------------------------------------------------
 
 
-def take_numbers(node: Node, attribute: str, count: int, report: Report, *, instead: str) -> tuple[float, ...] | None:
+def take_numbers(node: Node, attribute: str, count: int, builder: UrdfBuilder, *, instead: str) -> tuple[float, ...] | None:
     """The ``count`` numbers of an attribute; None when it is missing or bad.
 
-    A bad one is reported and not taken, so that it becomes an extra and is written back as it was; ``instead`` says
-    what the caller uses (``0 is used``).
+    A bad one is reported and not taken, so that it becomes an extra and is written back as it was; ``instead`` tells what
+    the caller uses (``0 is used``).
     """
     text = node.attributes.get(attribute)
     if text is None:
@@ -167,26 +170,22 @@ def take_numbers(node: Node, attribute: str, count: int, report: Report, *, inst
     if numbers is not None and len(numbers) == count:
         del node.attributes[attribute]
         return numbers
-    _report_bad(node, attribute, text, count, report, instead)
-    return None
-
-
-def take_number(node: Node, attribute: str, report: Report, *, instead: str) -> float | None:
-    """The one number of an attribute; None when it is missing or bad. See :func:`take_numbers`."""
-    numbers = take_numbers(node, attribute, 1, report, instead=instead)
-    return None if numbers is None else numbers[0]
-
-
-def _report_bad(node: Node, attribute: str, text: str, count: int, report: Report, instead: str) -> None:
     expected = "one finite number" if count == 1 else f"{count} finite numbers separated by blanks"
-    left_over = "${" in text or "$(" in text
-    report.error(
-        codes.LEFTOVER_TEMPLATE if left_over else codes.BAD_NUMBER,
+    is_template = "${" in text or "$(" in text
+    builder.report.error(
+        codes.LEFTOVER_TEMPLATE if is_template else codes.BAD_NUMBER,
         f"{node.subject}: <{node.tag} {attribute}> is '{shortened(text)}', expected {expected}; {instead}, and the text is kept as written",
         node.origin,
         element=node.element,
-        hint="expand the file with xacro first" if left_over else "",
+        hint="expand the file with xacro first" if is_template else "",
     )
+    return None
+
+
+def take_number(node: Node, attribute: str, builder: UrdfBuilder, *, instead: str) -> float | None:
+    """The one number of an attribute; None when it is missing or bad. See :func:`take_numbers`."""
+    numbers = take_numbers(node, attribute, 1, builder, instead=instead)
+    return None if numbers is None else numbers[0]
 
 
 def shortened(text: str, limit: int = 60) -> str:
