@@ -14,11 +14,11 @@ import os
 import re
 import sys
 import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 import mujoco
+from msgspec import Struct
 
 from hymeko_x.corpus.cache import cache_root
 from hymeko_x.diagnostics import Refusal
@@ -43,8 +43,7 @@ _CHECKSUM = re.compile("-[0-9a-f]{8}$")
 _EXPLAINED = (EQUAL, MISSING, "refused by both")
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(Struct, frozen=True):
     """What became of one file: the state of its direct way and of that through HyMeKo text, and why."""
 
     path: str

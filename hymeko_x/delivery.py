@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x import codes, disk, pipeline
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Report
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from hymeko_x.formats import Format
@@ -18,8 +19,7 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
 
 
-@frozen
-class Delivery:
+class Delivery(Struct, frozen=True):
     """A mechanism, and how and where its output goes; ``path`` is empty where only the main file is wanted."""
 
     mechanism: Mechanism

@@ -6,11 +6,10 @@ and uses the documented default; a stage that cannot raises :class:`Refusal`, wh
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct, field
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -32,8 +31,7 @@ class Severity(Enum):
 _RANKS = {Severity.NOTE: 0, Severity.WARNING: 1, Severity.ERROR: 2}
 
 
-@frozen
-class Code:
+class Code(Struct, frozen=True):
     """A stable name for one kind of statement.
 
     ``id`` is ``HX`` and three digits: 0xx reading, 1xx loss and rewriting, 2xx assets, 3xx verification,
@@ -45,8 +43,7 @@ class Code:
     explanation: str
 
 
-@frozen
-class Origin:
+class Origin(Struct, frozen=True):
     """A place in an input: the file as the user named it, and one-based line and column (None = unknown)."""
 
     file: str
@@ -57,8 +54,7 @@ class Origin:
         return ":".join(str(part) for part in (self.file, self.line, self.column) if part is not None)
 
 
-@frozen
-class Diagnostic:
+class Diagnostic(Struct, frozen=True):
     """One statement. ``element`` is what it is about (``joint 'elbow'``), ``hint`` what the user can do.
 
     ``excerpt`` holds ready lines to show below the message, such as a source line and its caret.
@@ -93,8 +89,7 @@ class Diagnostic:
         }
 
 
-@dataclass(slots=True)
-class Report:
+class Report(Struct):
     """The diagnostics of one run, in the order in which they were made. The only thing that a stage may append to."""
 
     diagnostics: list[Diagnostic] = field(default_factory=list)

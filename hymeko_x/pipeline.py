@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import replace
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, Protocol
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
@@ -15,7 +17,6 @@ from hymeko_x.compare.leaves import leaves_again, leaves_between
 from hymeko_x.compare.ledger import losses_between
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.carrier import taken_off
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.residue.align import aligned
 from hymeko_x.residue.bridge import other_words
@@ -59,8 +60,7 @@ class Carrier(Protocol):
         ...
 
 
-@frozen
-class Place:
+class Place(Struct, frozen=True):
     """Where the output goes: its ``folder``, and whether files go beside it or are referred to (None = the format's own way)."""
 
     folder: str = "."
@@ -71,8 +71,7 @@ HERE = Place()
 """The working folder."""
 
 
-@frozen
-class Result:
+class Result(Struct, frozen=True):
     """What a conversion made. ``losses`` is None when the target cannot be read back, so that nothing was measured.
 
     ``bare`` is the main file before anything was put in for it to carry; None when it carries nothing.

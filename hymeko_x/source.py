@@ -7,10 +7,9 @@ Nothing here touches a disk. The shell gives a frontend a :class:`Source` whose 
 from __future__ import annotations
 
 import posixpath
-from dataclasses import field
 from typing import TYPE_CHECKING, Protocol
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct, field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,8 +42,7 @@ class NoFiles:
         raise FileNotFoundError(path)
 
 
-@frozen
-class Source:
+class Source(Struct, frozen=True):
     """One input: its name as the user typed it (used in messages), its bytes, and the files around it.
 
     ``arguments`` are the user's values for a format that takes some (xacro's NAME:=VALUE), ``environment`` the
@@ -60,8 +58,7 @@ class Source:
     variants: Mapping[str, str] = field(default_factory=dict)
 
 
-@frozen
-class Package:
+class Package(Struct, frozen=True):
     """One output: the main file's bytes and the files beside it, by relative path with forward slashes.
 
     ``copies`` names files that are to be copied as they are: relative path -> path in the source's ``files``.
@@ -72,12 +69,11 @@ class Package:
     copies: Mapping[str, str] = field(default_factory=dict)
 
 
-@frozen
-class PackageFiles:
+class PackageFiles(Struct, frozen=True):
     """The files of a package that has not been written yet; a :class:`Files`."""
 
     package: Package
-    behind: Files = field(repr=False)
+    behind: Files
 
     def find(self, uri: str) -> str | None:
         """The normalised relative name if the package has it."""
@@ -91,12 +87,11 @@ class PackageFiles:
         return self.behind.read(self.package.copies.get(path, path))
 
 
-@frozen
-class PlacedFiles:
+class PlacedFiles(Struct, frozen=True):
     """The files of a mechanism that another file carried: what is not where it was lies where that file has it."""
 
     places: Mapping[str, str]
-    behind: Files = field(repr=False)
+    behind: Files
 
     def find(self, uri: str) -> str | None:
         """The path of a file, first by its own name."""

@@ -7,8 +7,9 @@ import filecmp
 import os
 import stat
 from contextlib import suppress
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -17,8 +18,7 @@ Move = tuple["Path", "Path"]
 """A temporary file, and the place for which it is meant."""
 
 
-@dataclass(slots=True)
-class Staging:
+class Staging(Struct):
     """Temporary siblings of some files, and the folders that were made for them."""
 
     moves: list[Move] = field(default_factory=list)

@@ -11,8 +11,9 @@ import math
 from enum import Enum
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from hymeko_x import codes
-from hymeko_x.frozen import frozen
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView
 from hymeko_x.rewrite.inertia import principal_moments
@@ -36,8 +37,7 @@ class Profile(Enum):
     DISPLAY = "display"
 
 
-@frozen
-class Declared:
+class Declared(Struct, frozen=True):
     """How many links and joints the robot's author says that there are; None = not said."""
 
     links: int | None = None

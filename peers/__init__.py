@@ -9,9 +9,10 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -20,8 +21,7 @@ ROOT = Path(__file__).parents[1] / ".peers"
 _DRIVERS = Path(__file__).parent / "drivers"
 
 
-@dataclass(frozen=True, slots=True)
-class Peer:
+class Peer(Struct, frozen=True):
     """A program: what the package index calls it and needs beside it, and the driver that runs in its environment.
 
     One without requirements runs in our environment, which has it.

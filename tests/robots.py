@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from msgspec import Struct, field
 
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, RobotEdge, joint_edge
@@ -12,8 +12,7 @@ from hymeko_x.ir.values import IDENTITY, Pose
 SOLID = Inertial(1.0, (0.0, 0.0, 0.1), (0.1, 0.1, 0.1, 0.0, 0.0, 0.0))
 
 
-@dataclass
-class MemoryFiles:
+class MemoryFiles(Struct):
     """Files by path; a uri is its own path. A :class:`hymeko_x.source.Files`."""
 
     content: dict[str, bytes] = field(default_factory=dict)

@@ -213,7 +213,7 @@ def test_an_output_that_cannot_be_written_is_exit_1(folder: Path, capsys: pytest
 
 
 def test_a_format_that_can_only_be_written_is_refused_as_input(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from dataclasses import replace
+    from msgspec.structs import replace
 
     from hymeko_x import formats
 

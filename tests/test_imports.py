@@ -12,7 +12,6 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LAYERS = (
-    ("frozen",),
     ("collector", "diagnostics", "codes", "source", "staging"),
     ("ir",),
     ("xml", "meshes"),

@@ -6,12 +6,12 @@ import os
 import shutil
 import sys
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 from typing import Literal
 
 import pytest
+from msgspec import Struct
 
 import hymeko_x as hx
 from hymeko_x import disk, formats, pipeline
@@ -43,8 +43,7 @@ PIXEL = bytes.fromhex(
 )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Way:
+class Way(Struct, frozen=True):
     """A source, and how it is written."""
 
     source: str
@@ -83,8 +82,7 @@ NATIVE = (
 )
 
 
-@dataclass(frozen=True)
-class Written:
+class Written(Struct, frozen=True):
     """What is to be written, and the same with its files below a folder."""
 
     package: Package

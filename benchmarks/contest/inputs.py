@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from benchmarks.robots import robots
 from benchmarks.speed import without_meshes
@@ -18,8 +19,7 @@ REAL = {"urdf": ("panda.urdf", "Panda"), "mjcf": ("panda_free_base.xml", "Panda"
 SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "usd": ".usda"}
 
 
-@dataclass(frozen=True, slots=True)
-class Input:
+class Input(Struct, frozen=True):
     """A file, what it is called in the results, and how many links it has, which is 0 for a real robot."""
 
     name: str

@@ -7,8 +7,9 @@ import statistics
 import subprocess
 import sys
 from contextlib import ExitStack
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct, field
 
 from benchmarks import process
 from benchmarks.contest.inputs import SUFFIXES
@@ -31,8 +32,7 @@ ENOUGH = 5.0
 """After so many seconds of work on one robot a program is not asked again; what takes longer is measured once, without warming up."""
 
 
-@dataclass(slots=True)
-class _Runner:
+class _Runner(Struct):
     """An entrant at work on a way."""
 
     way: Way

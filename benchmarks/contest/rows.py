@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import csv
 import io
-from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
+from msgspec.structs import asdict
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -23,8 +25,7 @@ TEXT = "text"
 """Processor time of reading or printing so many megabytes of text."""
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+class Row(Struct, frozen=True):
     """Medians; ``seconds`` is None when there is no result, and ``reason`` says why."""
 
     way: str
@@ -40,7 +41,7 @@ class Row:
 def as_csv(rows: Sequence[Row]) -> str:
     """The rows as text; numbers have as many digits as mean something."""
     out = io.StringIO()
-    writer = csv.DictWriter(out, [field.name for field in fields(Row)], lineterminator="\n")
+    writer = csv.DictWriter(out, Row.__struct_fields__, lineterminator="\n")
     writer.writeheader()
     for row in rows:
         writer.writerow({**asdict(row), "seconds": _written(row.seconds), "megabytes": _written(row.megabytes)})

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from importlib.metadata import version
+
+from msgspec import Struct
 
 from peers import (
     CYBERWAVE,
@@ -21,8 +22,7 @@ from peers import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Entrant:
+class Entrant(Struct, frozen=True):
     """A program on a way; ``measure`` asks ours for the ledger and the residue as well."""
 
     peer: Peer
@@ -50,8 +50,7 @@ class Entrant:
         return version(self.peer.name)
 
 
-@dataclass(frozen=True, slots=True)
-class Way:
+class Way(Struct, frozen=True):
     """From a format to another one, or to nothing when files are only loaded. The first entrant is the measure of all."""
 
     source: str

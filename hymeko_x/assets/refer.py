@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import posixpath
 import re
-from dataclasses import replace
 from enum import Enum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
+
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.assets.shelf import Shelf, read_file, suffix_of

@@ -10,13 +10,15 @@ import io
 import os
 import re
 import zipfile
-from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cached_property
 from itertools import chain, islice
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -32,8 +34,7 @@ _PACKED = re.compile(r"(.+\.usdz)\[([^\[\]]+)\]", re.IGNORECASE | re.DOTALL)
 _PACKAGE_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
 
-@dataclass(frozen=True)
-class DiskFiles:
+class DiskFiles(Struct, frozen=True, dict=True):
     """The files around a description in ``base``; a :class:`hymeko_x.source.Files`.
 
     ``packages`` are the user's own NAME=DIR, ``search_path`` the folders in which packages stand (ROS_PACKAGE_PATH,

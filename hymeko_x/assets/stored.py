@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
+
+from msgspec import field
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.assets.refer import is_of_package
@@ -20,7 +22,6 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
 
 
-@dataclass(slots=True)
 class _Standing(Builder):
     """What stands in for files; equal looks share a material."""
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import replace
 from enum import Enum
 from functools import cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from hymeko_x.compare.leaves import TURN, leaves_between, leaves_of
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
@@ -46,8 +47,7 @@ class Difference(NamedTuple):
         return f"{place}: {self.before} -> {self.after}"
 
 
-@frozen
-class Tolerance:
+class Tolerance(Struct, frozen=True):
     """How far numbers may be apart: |a - b| <= absolute + relative * max(|a|, |b|); rotations by their angle in rad."""
 
     absolute: float = 0.0

@@ -5,9 +5,10 @@ The ledger and the residue are made from the same leaves, which are looked for o
 
 from __future__ import annotations
 
-from dataclasses import MISSING
 from math import copysign
 from typing import TYPE_CHECKING, NamedTuple
+
+from msgspec import NODEFAULT
 
 from hymeko_x.ir.fields import identical, layout_of
 from hymeko_x.ir.graph import Edge
@@ -28,7 +29,7 @@ TURN = "turn"
 
 
 class Leaf(NamedTuple):
-    """Two values that are not the same, the field's default (MISSING if none), and whether it is more than a notation."""
+    """Two values that are not the same, the field's default (NODEFAULT if none), and whether it is more than a notation."""
 
     path: Path
     before: object
@@ -68,7 +69,7 @@ def leaves_of(a: object, b: object) -> Leaves:
     """The leaves in which two values differ, in the order of their fields. Depth is that of the parts, which is small."""
     found: Leaves = []
     if a is not b:
-        _collect(a, b, (), MISSING, True, found)
+        _collect(a, b, (), NODEFAULT, True, found)
     return found
 
 
@@ -80,7 +81,7 @@ def _collect(a: object, b: object, path: Path, default: object, counts: bool, fo
         if kind is tuple and _are_alike(a, b):
             for place, (before, after) in enumerate(zip(a, b, strict=True)):  # type: ignore[call-overload]
                 if before is not after:
-                    _collect(before, after, (*path, place), MISSING, counts, found)
+                    _collect(before, after, (*path, place), NODEFAULT, counts, found)
         elif not identical(a, b):
             found.append(Leaf(path, a, b, default, counts))
     elif kind is Pose:
@@ -112,19 +113,19 @@ def _collect_fields(layout: Layout, a: object, b: object, path: Path, counts: bo
 def _collect_edge(a: RobotEdge, b: RobotEdge, path: Path, counts: bool, found: Leaves) -> None:
     """The same for two edges with as many arcs: nearly all lead to the same elements."""
     if a.data is not b.data:
-        _collect(a.data, b.data, (*path, "data"), MISSING, counts, found)
+        _collect(a.data, b.data, (*path, "data"), NODEFAULT, counts, found)
     for place, (x, y) in enumerate(zip(a.arcs, b.arcs, strict=True)):
         if x.target != y.target or x.sign != y.sign or x.role != y.role:
-            _collect(x, y, (*path, "arcs", place), MISSING, counts, found)
+            _collect(x, y, (*path, "arcs", place), NODEFAULT, counts, found)
         elif x.weight is not y.weight:
             _collect(x.weight, y.weight, (*path, "arcs", place, "weight"), None, counts, found)
 
 
 def _collect_pose(a: Pose, b: Pose, path: Path, counts: bool, found: Leaves) -> None:
     if not identical(a.xyz, b.xyz):
-        found.append(Leaf((*path, "xyz"), a.xyz, b.xyz, MISSING, counts))
+        found.append(Leaf((*path, "xyz"), a.xyz, b.xyz, NODEFAULT, counts))
     if not (identical(a.quat, b.quat) and identical(a.written, b.written)):
-        found.append(Leaf((*path, TURN), turn_of(a), turn_of(b), MISSING, counts))
+        found.append(Leaf((*path, TURN), turn_of(a), turn_of(b), NODEFAULT, counts))
 
 
 def _are_alike(a: object, b: object) -> bool:

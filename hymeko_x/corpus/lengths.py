@@ -5,8 +5,9 @@ from __future__ import annotations
 import gzip
 import re
 
+from msgspec import Struct
+
 from hymeko_x import formats
-from hymeko_x.frozen import frozen
 
 _XML_PARTS = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<[^<>\"']*(?:\"[^\"]*\"[^<>\"']*|'[^']*'[^<>\"']*)*>|[^<]+|<", re.DOTALL)
 _XML_TOKEN = re.compile(r"\"[^\"]*\"|'[^']*'|</|/>|<\?|\?>|<!|[<>=]|[^\s<>=\"'/?]+")
@@ -15,8 +16,7 @@ MOST_BYTES = 2**20
 """Longer texts hold the points of meshes, which says nothing about the language; of them only the bytes are counted."""
 
 
-@frozen
-class Lengths:
+class Lengths(Struct, frozen=True):
     """``characters`` are those that are no white space, ``code`` those of them that stand outside comments.
 
     Binary files, and texts beyond 1 MiB, have bytes only; the rest is None. ``gzip`` is the size at level 9, without name and time.

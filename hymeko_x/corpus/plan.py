@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct
+from msgspec.structs import asdict
+
 from hymeko_x import formats
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -15,16 +16,14 @@ READ, ENGINE, CONVERT, VERIFY = "read", "engine", "convert", "verify"
 """The steps of one file: our reader, the format's reference reader, and for each target a conversion and its verification."""
 
 
-@frozen
-class Limits:
+class Limits(Struct, frozen=True):
     """What one process may use: wall-clock seconds, and bytes of memory, of which MuJoCo reserves some that it never touches."""
 
     seconds: float = 180.0
     bytes: int = 5 * 2**30
 
 
-@frozen
-class Plan:
+class Plan(Struct, frozen=True):
     """``pairs`` are (source, target) formats; ``samples`` and ``meshes`` go to the verifier."""
 
     pairs: tuple[tuple[str, str], ...]

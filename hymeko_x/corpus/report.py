@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import io
-from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import asdict
 
 from hymeko_x.corpus import statistics
 from hymeko_x.corpus.figures import figures

@@ -6,10 +6,11 @@ are kept apart, so that the facts of two runs can be compared byte for byte.
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.frozen import frozen
+import msgspec
+from msgspec import Struct
+from msgspec.structs import replace
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -20,8 +21,7 @@ CRASHED, TIMED_OUT, OUT_OF_MEMORY, UNREAD = "crashed", "timed out", "out of memo
 """The answers of a step that did not; and of a conversion whose source could not be read."""
 
 
-@frozen
-class Robot:
+class Robot(Struct, frozen=True):
     """One file as it was found. ``engine`` says what the format's reference reader did, ``reader`` which one that was where it
     accepts the file; ``whole`` is False where other files of the format are included, so that the lengths are not those of
     the robot."""
@@ -48,8 +48,7 @@ class Robot:
     diagnostics: Mapping[str, int] | None = None
 
 
-@frozen
-class Leg:
+class Leg(Struct, frozen=True):
     """One conversion: the lengths of the result, what its format cannot say by kind, what was said by code, and the verdict.
 
     The lengths are those of the file without what it carries for the way back, which has ``residue`` bytes. Of the ``losses``,
@@ -78,8 +77,7 @@ class Leg:
     failed: Mapping[str, str] | None = None
 
 
-@frozen
-class Cost:
+class Cost(Struct, frozen=True):
     """One step: its wall-clock seconds, the processor's seconds, and the peak memory of its process in MB while it lasted."""
 
     key: str
@@ -89,8 +87,7 @@ class Cost:
     megabytes: float
 
 
-@frozen
-class Outcome:
+class Outcome(Struct, frozen=True):
     """Everything about one file."""
 
     robot: Robot
@@ -99,7 +96,7 @@ class Outcome:
 
     def as_json(self) -> dict[str, Any]:
         """The document of one part of a run's results."""
-        return asdict(self)
+        return msgspec.to_builtins(self)  # type: ignore[no-any-return]
 
 
 def outcome_from_json(document: Mapping[str, Any]) -> Outcome:

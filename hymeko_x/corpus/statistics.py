@@ -8,10 +8,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from hymeko_x import formats
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     import polars as pl
@@ -32,8 +32,7 @@ HYMEKO = formats.OWN.name
 _LONGEST_PLACE = 160
 
 
-@frozen
-class Shortness:
+class Shortness(Struct, frozen=True):
     """Whether HyMeKo is shorter than a format, for robots that were found in ``source``.
 
     ``reduction`` is in percent of the format's length: of the sums, and per robot as median with a bootstrap interval of 95 %.
@@ -135,8 +134,7 @@ def signed_rank(differences: Numbers) -> tuple[float, float]:
 # ---- pairs of formats ------------------------------------------------------------------------------------------------
 
 
-@frozen
-class PairRow:
+class PairRow(Struct, frozen=True):
     """What became of the robots of one format in another one. Counted are those that the source's reference reader accepts.
 
     ``same`` are converted and, as the engines see them, the same robot; ``exact`` those of them of which the target's own words

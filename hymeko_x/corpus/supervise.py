@@ -6,9 +6,10 @@ import json
 import signal
 import tempfile
 from concurrent.futures import TimeoutError as Late
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from msgspec.structs import replace
 
 from hymeko_x import formats
 from hymeko_x.corpus import rows

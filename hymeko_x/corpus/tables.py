@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import io
 from collections.abc import Mapping
-from dataclasses import asdict, fields
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from msgspec.structs import asdict
 
 from hymeko_x.corpus.rows import Cost, Leg, Robot
 
@@ -40,7 +41,7 @@ def tables_of(outcomes: Iterable[Outcome]) -> Tables:
         rows[0].append(_row(outcome.robot))
         rows[1].extend(map(_row, outcome.legs))
         rows[2].extend(map(_row, outcome.costs))
-    robots, legs, costs = (_frame(kind, found) for kind, found in zip((Robot, Leg, Cost), rows, strict=True))
+    robots, legs, costs = _frame(Robot, rows[0]), _frame(Leg, rows[1]), _frame(Cost, rows[2])
     return Tables(robots.sort("key"), legs.sort("key", "target"), costs.sort("key", "step"))
 
 
@@ -86,4 +87,4 @@ def _frame(kind: type[Robot | Leg | Cost], rows: list[dict[str, Any]]) -> pl.Dat
     types: dict[str, Any] = {"str": pl.String, "int": pl.Int64, "int | None": pl.Int64, "float": pl.Float64, "bool": pl.Boolean}
     types["Mapping[str, int] | None"] = pl.List(pl.Struct({"name": pl.String, "value": pl.Int64}))
     types["Mapping[str, str] | None"] = pl.List(pl.Struct({"name": pl.String, "value": pl.String}))
-    return pl.DataFrame(rows, schema={field.name: types[str(field.type)] for field in fields(kind)})
+    return pl.DataFrame(rows, schema={name: types[hint] for name, hint in kind.__annotations__.items()})

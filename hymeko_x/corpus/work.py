@@ -12,9 +12,11 @@ import shutil
 import time
 from collections import Counter
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct, field
+from msgspec.structs import asdict, replace
 
 from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.corpus.lengths import lengths
@@ -44,8 +46,7 @@ _PACKAGE = re.compile(rb"(?:package|model)://([^/\"'\s]+)")
 _INDEX = re.compile(r"\[[^\]]*\]")
 
 
-@dataclass(slots=True)
-class Desk:
+class Desk(Struct):
     """What the steps of one file share: the source as it was read, and the reference reader's model of it."""
 
     case: Case

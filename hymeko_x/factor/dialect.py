@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,8 +23,7 @@ def _leaf_name(tag: str, leaf: str) -> str:
     return tag if leaf in ("name", "value", "") else leaf
 
 
-@frozen
-class Dialect:
+class Dialect(Struct, frozen=True):
     """What things cost in a backend's text, in characters without white space, and how things are called there.
 
     ``element`` is what stands around tag and leaves of a form (``</>``: 3), ``block`` what children add to that, the tag

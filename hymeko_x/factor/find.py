@@ -10,8 +10,9 @@ import itertools
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from hymeko_x.factor.unify import unify
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterator
@@ -35,8 +36,7 @@ _MOST_PARAMETERS = 40
 _NUMERIC = frozenset("-.0123456789")
 
 
-@frozen
-class Family:
+class Family(Struct, frozen=True):
     """Runs that are instances of one macro, what they have in common, and how many characters the macro saves."""
 
     runs: tuple[Run, ...]

@@ -11,7 +11,7 @@ from heapq import nsmallest
 from itertools import combinations
 from typing import TYPE_CHECKING
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -31,8 +31,7 @@ _MOST = 32
 """Sets that are found in one group of things."""
 
 
-@frozen
-class Costs:
+class Costs(Struct, frozen=True):
     """In letters: what stands around a definition, around a field, and what saying its set costs a row; and what a set must save."""
 
     definition: int
@@ -41,8 +40,7 @@ class Costs:
     least: int
 
 
-@frozen
-class Shared:
+class Shared(Struct, frozen=True):
     """Fields that several rows share, the numbers of those rows, and the number of the set that it refines."""
 
     pairs: frozenset[Pair]

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from hymeko_x.factor.forms import Hole, Signed, joined
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -29,16 +29,14 @@ Signs = tuple[bool, ...]
 _MAGNITUDE = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
 
-@frozen
-class _Varying:
+class _Varying(Struct, frozen=True):
     """A place that differs: the whole values, and where that is possible what they are piece by piece."""
 
     values: Vector
     pieces: tuple[Piece | Vector, ...] = ()
 
 
-@dataclass(slots=True)
-class Unified:
+class Unified(Struct):
     """A family's common texts, one for each column, with holes numbered by parameter: ``parameters[n]`` goes into Hole(str(n))."""
 
     texts: list[Text]

@@ -7,15 +7,16 @@ its reader, its writer, and one row here.
 from __future__ import annotations
 
 import re
-from dataclasses import field, replace
 from importlib import import_module
 from os.path import splitext
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Literal
 
+from msgspec import Struct, field
+from msgspec.structs import replace
+
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,8 +26,7 @@ if TYPE_CHECKING:
 _XML_TOKENS = "hymeko_x.corpus.lengths:xml_tokens"
 
 
-@frozen
-class Format:
+class Format(Struct, frozen=True):
     """One format. Only name, title and suffixes are needed; without ``frontend`` it cannot be read, without ``backend`` not written."""
 
     name: str

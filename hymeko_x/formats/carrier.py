@@ -8,8 +8,9 @@ A frontend hands the text on as an extra of format ``residue``, which the pipeli
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.ir.mechanism import ROOT, Extra
 from hymeko_x.xml.text import escaped_lines

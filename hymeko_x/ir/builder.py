@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import Mechanism, layer_edge
@@ -17,8 +19,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Material, Texture, VertexPart
 
 
-@dataclass(slots=True, kw_only=True)
-class Builder:
+class Builder(Struct, kw_only=True):
     """Vertices, edges and side tables so far, as a :class:`Mechanism` has them. Frontends add their own state in subclasses.
 
     A rule that adds elements to a mechanism starts with ``Builder(names=names_in_use(mechanism))`` and ends with :meth:`added_to`.

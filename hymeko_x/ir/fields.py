@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass
 from functools import cache
 from math import copysign
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from hymeko_x.frozen import getter
+from msgspec import NODEFAULT, Struct
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,23 +34,49 @@ class Layout(NamedTuple):
     compared: Callable[[object], tuple[Any, ...]]
 
 
+class Noted(Struct, frozen=True):
+    """A value that also keeps how its author wrote it, or where: such fields are ``uncompared``."""
+
+    uncompared = ("written",)  # not annotated: it is no field
+
+    def __eq__(self, other: object) -> bool:
+        if other.__class__ is not self.__class__:
+            return NotImplemented
+        compared = layout_of(self.__class__).compared  # type: ignore[union-attr]
+        return compared(self) == compared(other)
+
+    __ne__ = object.__ne__  # the opposite of __eq__, which a Struct's own is not
+
+    def __hash__(self) -> int:
+        return hash(layout_of(self.__class__).compared(self))  # type: ignore[union-attr]
+
+
 def attributes_of(part: object) -> tuple[Attribute, ...]:
-    """The fields of a part, with their defaults (MISSING for those that have none)."""
+    """The fields of a part, with their defaults (NODEFAULT for those that have none)."""
     layout = layout_of(type(part))
     assert layout is not None, f"{type(part).__name__} is no part"
     return layout.attributes
 
 
 def _layout_of(kind: Any) -> Layout | None:
-    if not is_dataclass(kind):
+    if not issubclass(kind, Struct):
         return None
-    attributes = tuple(Attribute(f.name, f.default, f.compare) for f in fields(kind))
+    names, uncompared = kind.__struct_fields__, kind.uncompared if issubclass(kind, Noted) else ()
+    defaults = (*[NODEFAULT] * (len(names) - len(kind.__struct_defaults__)), *kind.__struct_defaults__)
+    attributes = tuple(Attribute(name, default, name not in uncompared) for name, default in zip(names, defaults, strict=True))
     counting = tuple(f for f in attributes if f.compare)
     return Layout(attributes, getter([f.name for f in attributes]), counting, getter([f.name for f in counting]))
 
 
+def getter(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
+    """A function that returns these attributes of an object, as a tuple however many there are."""
+    if len(names) > 1:
+        return attrgetter(*names)
+    return lambda value: tuple([getattr(value, name) for name in names])
+
+
 layout_of: Callable[[Any], Layout | None] = cache(_layout_of)
-"""The fields of a dataclass; None for every other type."""
+"""The fields of a part; None for every other type."""
 
 
 def identical(a: object, b: object) -> bool:

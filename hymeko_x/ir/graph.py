@@ -8,12 +8,12 @@ Sign +1 is an arc from the target into the edge (tail, ``+`` in the language), -
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Generic, NamedTuple, TypeVar
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct, field
+from msgspec.structs import force_setattr
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -27,8 +27,7 @@ W = TypeVar("W")
 T = TypeVar("T")
 
 
-@frozen
-class Arc(Generic[K, W]):
+class Arc(Struct, Generic[K, W], frozen=True):
     """One end of an edge: whom it points at, in which direction, with what weight and in which role."""
 
     target: K
@@ -37,8 +36,7 @@ class Arc(Generic[K, W]):
     role: str = ""
 
 
-@frozen
-class Edge(Generic[K, E, W]):
+class Edge(Struct, Generic[K, E, W], frozen=True):
     """A relation: what it means, and its arcs in order."""
 
     data: E
@@ -52,16 +50,15 @@ class Incidence(NamedTuple, Generic[K]):
     arc: int
 
 
-@dataclass(frozen=True)
-class Hypergraph(Generic[K, V, E, W]):
+class Hypergraph(Struct, Generic[K, V, E, W], frozen=True, dict=True):
     """Immutable; vertices and edges by key, both in insertion order, which is the order of every row and column."""
 
     vertices: Mapping[K, V] = field(default_factory=dict)
     edges: Mapping[K, Edge[K, E, W]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "vertices", MappingProxyType(dict(self.vertices)))
-        object.__setattr__(self, "edges", MappingProxyType(dict(self.edges)))
+        force_setattr(self, "vertices", MappingProxyType(dict(self.vertices)))
+        force_setattr(self, "edges", MappingProxyType(dict(self.edges)))
 
     def __eq__(self, other: object) -> bool:
         """Same vertices and same edges, in whatever order they were given."""
@@ -69,6 +66,7 @@ class Hypergraph(Generic[K, V, E, W]):
             return NotImplemented
         return dict(self.vertices) == dict(other.vertices) and dict(self.edges) == dict(other.edges)
 
+    __ne__ = object.__ne__  # the opposite of __eq__, which a Struct's own is not
     __hash__ = None  # type: ignore[assignment]
 
     def __contains__(self, key: object) -> bool:
@@ -114,8 +112,8 @@ class Hypergraph(Generic[K, V, E, W]):
         """
         gone = set(without)
         changed: Hypergraph[K, V, E, W] = Hypergraph()
-        object.__setattr__(changed, "vertices", _changed(self.vertices, vertices, gone))
-        object.__setattr__(changed, "edges", _changed(self.edges, edges, gone))
+        force_setattr(changed, "vertices", _changed(self.vertices, vertices, gone))
+        force_setattr(changed, "edges", _changed(self.edges, edges, gone))
         return changed
 
     # ---- the formalism's matrices (scipy.sparse) -----------------------------------------------------------------------------

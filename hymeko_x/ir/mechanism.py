@@ -5,14 +5,16 @@ Everything that a frontend returns and a backend takes. Ids are unique per kind,
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct, field
+from msgspec.structs import replace
+
 from hymeko_x.ir import parts
+from hymeko_x.ir.fields import Noted
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.values import IDENTITY, Pose
 
@@ -79,8 +81,7 @@ RobotEdge = Edge[Id, parts.EdgePart, parts.Weight]
 RobotGraph = Hypergraph[Id, parts.VertexPart, parts.EdgePart, parts.Weight]
 
 
-@frozen
-class Extra:
+class Extra(Noted, frozen=True):
     """Something that a format said about an element and that has no word in the IR, verbatim.
 
     ``path`` leads from the element's own node to where it stood: ``""`` is the node itself, ``limit`` its child of that
@@ -93,7 +94,9 @@ class Extra:
     format: str
     path: str
     text: str
-    index: int = field(default=0, compare=False)
+    index: int = 0
+
+    uncompared = ("index",)
 
 
 class Provenance(NamedTuple):
@@ -123,8 +126,7 @@ class StoredMesh(NamedTuple):
     looks: tuple[StoredLook, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
-class Mechanism:
+class Mechanism(Struct, frozen=True, eq=False, dict=True):
     """Name, graph and side tables. Equality looks at name, graph and extras; places and notations do not count.
 
     ``notations`` keeps, by element and key, how an author wrote what he wrote where the value itself cannot remember
@@ -137,14 +139,15 @@ class Mechanism:
     name: str
     graph: RobotGraph = field(default_factory=Hypergraph)
     extras: Mapping[Id, tuple[Extra, ...]] = field(default_factory=dict)
-    origins: Mapping[Id, Origin] = field(default_factory=dict, compare=False)
-    notations: Mapping[Id, Mapping[str, str]] = field(default_factory=dict, compare=False)
-    stereotypes: Mapping[Id, tuple[str, ...]] = field(default_factory=dict, compare=False)
-    layout: tuple[Id, ...] = field(default=(), compare=False)
-    places: Mapping[str, str] = field(default_factory=dict, compare=False)
-    stored: Mapping[str, StoredMesh] = field(default_factory=dict, compare=False)
-    source: Provenance = field(default=Provenance(), compare=False)
+    origins: Mapping[Id, Origin] = field(default_factory=dict)
+    notations: Mapping[Id, Mapping[str, str]] = field(default_factory=dict)
+    stereotypes: Mapping[Id, tuple[str, ...]] = field(default_factory=dict)
+    layout: tuple[Id, ...] = ()
+    places: Mapping[str, str] = field(default_factory=dict)
+    stored: Mapping[str, StoredMesh] = field(default_factory=dict)
+    source: Provenance = Provenance()
 
+    __ne__ = object.__ne__  # the opposite of __eq__, which a Struct's own is not
     __hash__ = None  # type: ignore[assignment]
 
     def __eq__(self, other: object) -> bool:

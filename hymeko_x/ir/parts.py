@@ -6,10 +6,11 @@ with which sign, weight and role, stands in the docstring of its part.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from enum import Enum
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
+
+from hymeko_x.ir.fields import Noted
 from hymeko_x.ir.values import ZERO, Pose, Tensor, Vec3, Written, X
 
 Rgba = tuple[float, float, float, float]
@@ -20,8 +21,7 @@ Parameters = tuple[tuple[str, "float | str | tuple[float, ...]"], ...]
 # ---- vertices: bodies ----------------------------------------------------------------------------------------------------
 
 
-@frozen
-class Inertial:
+class Inertial(Noted, frozen=True):
     """Mass in kg, centre of mass in m in the body frame, inertia tensor in kg m^2 about it in body axes. None = unspecified.
 
     ``written`` remembers the turned axes (``Pose.written`` style rotation) and the tensor as given in them.
@@ -30,31 +30,27 @@ class Inertial:
     mass: float | None = None
     com: Vec3 = ZERO
     tensor: Tensor | None = None
-    written: InertialWritten | None = field(default=None, compare=False)
+    written: InertialWritten | None = None
 
 
-@frozen
-class InertialWritten:
+class InertialWritten(Struct, frozen=True):
     """An inertia tensor as its author gave it: in the axes of ``frame`` (a pose at the centre of mass)."""
 
     frame: Pose
     tensor: Tensor
 
 
-@frozen
-class Body:
+class Body(Struct, frozen=True):
     """A rigid body. ``inertial`` None means that nothing was said about its mass."""
 
     inertial: Inertial | None = None
 
 
-@frozen
-class World:
+class World(Struct, frozen=True):
     """The inertial frame. Exactly one vertex, ``WORLD``, carries it; its shapes are the world's geometry."""
 
 
-@frozen
-class Frame:
+class Frame(Struct, frozen=True):
     """A named pose on a body (an MJCF site, an SDF frame): a :class:`Mount` says where. ``size`` in m is for display."""
 
     size: tuple[float, ...] = ()
@@ -63,8 +59,7 @@ class Frame:
 # ---- vertices: looks and assets --------------------------------------------------------------------------------------------
 
 
-@frozen
-class Material:
+class Material(Struct, frozen=True):
     """A surface. ``name`` is what the author called it (ids are unique, names need not be); None colours are unspecified."""
 
     name: str | None = None
@@ -77,16 +72,14 @@ class Material:
     roughness: float | None = None
 
 
-@frozen
-class Texture:
+class Texture(Struct, frozen=True):
     """An image, by uri as the source wrote it; a :class:`Layer` puts it on a material."""
 
     uri: str | None = None
     name: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Mesh:
+class Mesh(Struct, frozen=True):
     """A triangle mesh: a file by uri as the source wrote it, or inline data; ``scale`` applies to its points.
 
     ``vertices`` and ``faces`` are flat (3 numbers each); ``name`` is set where the format names its meshes. ``texcoords`` are
@@ -105,16 +98,14 @@ class Mesh:
 # ---- vertices: things on a mechanism -----------------------------------------------------------------------------------------
 
 
-@frozen
-class Actuator:
+class Actuator(Struct, frozen=True):
     """What drives: ``kind`` (motor, position, velocity, transmission, muscle, ...) and its parameters in order."""
 
     kind: str = "motor"
     parameters: Parameters = ()
 
 
-@frozen
-class Sensor:
+class Sensor(Struct, frozen=True):
     """What measures: ``kind`` (imu, force, jointpos, ...), update ``rate`` in Hz, and its parameters in order."""
 
     kind: str
@@ -122,8 +113,7 @@ class Sensor:
     parameters: Parameters = ()
 
 
-@frozen
-class Camera:
+class Camera(Struct, frozen=True):
     """A camera looking along its own -z, y up. ``fovy`` is the vertical field of view in rad."""
 
     fovy: float | None = None
@@ -131,8 +121,7 @@ class Camera:
     parameters: Parameters = ()
 
 
-@frozen
-class Light:
+class Light(Struct, frozen=True):
     """A light shining along its own -z. ``kind``: spot, directional, point, image."""
 
     kind: str = "spot"
@@ -140,8 +129,7 @@ class Light:
     parameters: Parameters = ()
 
 
-@frozen
-class PoseSet:
+class PoseSet(Struct, frozen=True):
     """A named configuration (keyframe, group state): a :class:`Stance` edge says the value of each joint. ``time`` in s."""
 
     group: str | None = None
@@ -152,38 +140,33 @@ class PoseSet:
 # ---- vertices: lumped elements of the dynamics dialect -----------------------------------------------------------------------
 
 
-@frozen
-class Spring:
+class Spring(Struct, frozen=True):
     """A lumped spring: ``stiffness`` in N/m or Nm/rad, ``rest`` length or angle."""
 
     stiffness: float
     rest: float = 0.0
 
 
-@frozen
-class Damper:
+class Damper(Struct, frozen=True):
     """A lumped damper: ``damping`` in Ns/m or Nms/rad."""
 
     damping: float
 
 
-@frozen
-class Mass:
+class Mass(Struct, frozen=True):
     """A lumped mass in kg, or moment of inertia in kg m^2."""
 
     mass: float
 
 
-@frozen
-class Port:
+class Port(Struct, frozen=True):
     """Where effort or flow enters from outside: ``kind`` is ground, effort or flow; ``value`` its constant part."""
 
     kind: str = "ground"
     value: float = 0.0
 
 
-@frozen
-class Datum:
+class Datum(Struct, frozen=True):
     """A vertex that only carries data: whatever a hypergraph says that no robot part means."""
 
     parameters: Parameters = ()
@@ -192,57 +175,49 @@ class Datum:
 # ---- edges: shapes and mounts --------------------------------------------------------------------------------------------------
 
 
-@frozen
-class Box:
+class Box(Struct, frozen=True):
     """Full edge lengths in m, centred."""
 
     size: Vec3
 
 
-@frozen
-class Sphere:
+class Sphere(Struct, frozen=True):
     """Radius in m, centred."""
 
     radius: float
 
 
-@frozen
-class Cylinder:
+class Cylinder(Struct, frozen=True):
     """Radius and full length in m along z, centred."""
 
     radius: float
     length: float
 
 
-@frozen
-class Capsule:
+class Capsule(Struct, frozen=True):
     """Radius and length in m along z without the caps, centred."""
 
     radius: float
     length: float
 
 
-@frozen
-class Ellipsoid:
+class Ellipsoid(Struct, frozen=True):
     """The three half axes in m, centred."""
 
     radii: Vec3
 
 
-@frozen
-class Plane:
+class Plane(Struct, frozen=True):
     """The xy plane with normal z; half extents in m for display, 0 = infinite."""
 
     half_size: tuple[float, float] = (0.0, 0.0)
 
 
-@frozen
-class MeshShape:
+class MeshShape(Struct, frozen=True):
     """The mesh that the shape's arc of role ``mesh`` points at."""
 
 
-@frozen
-class NoShape:
+class NoShape(Struct, frozen=True):
     """A geometry that the source left empty or wrote in a way that nobody understands; its text is an Extra."""
 
 
@@ -257,8 +232,7 @@ class Role(Enum):
     BOTH = "both"
 
 
-@frozen
-class Shape:
+class Shape(Struct, frozen=True):
     """A geometry on a body. Arcs: ``+ body`` weight Pose (shape frame in the body); ``~ mesh``; ``~ material`` (roles so named).
 
     ``name`` as its author gave it, not necessarily unique; ``rgba`` overrides the material; ``mass`` in kg and
@@ -274,20 +248,17 @@ class Shape:
     friction: tuple[float, ...] = ()
 
 
-@frozen
-class Mount:
+class Mount(Struct, frozen=True):
     """Where a frame, camera, light or sensor sits. Arcs: ``+ body`` weight Pose (its frame in the body), ``- thing``."""
 
 
-@frozen
-class Layer:
+class Layer(Struct, frozen=True):
     """A texture on a material. Arcs: ``+ texture``, ``- material``. ``use``: rgb, normal, occlusion, roughness, metallic, ..."""
 
     use: str = "rgb"
 
 
-@frozen
-class Subset:
+class Subset(Struct, frozen=True):
     """Triangles of a shape's mesh that show another material than the rest of it. Arcs: ``+ shape``, ``- material``.
 
     ``faces`` are the numbers of the triangles in the mesh, ascending.
@@ -309,8 +280,7 @@ class DofKind(Enum):
     FREE = "free"
 
 
-@frozen
-class Limits:
+class Limits(Struct, frozen=True):
     """Bounds of one dof in rad or m and s, N or Nm; None = unlimited."""
 
     lower: float | None = None
@@ -324,8 +294,7 @@ class Limits:
 UNLIMITED = Limits()
 
 
-@frozen
-class Safety:
+class Safety(Struct, frozen=True):
     """A soft-limit controller (URDF <safety_controller>): soft bounds in rad or m, gains in 1/s and Nms/rad or Ns/m."""
 
     k_velocity: float
@@ -334,8 +303,7 @@ class Safety:
     soft_upper: float = 0.0
 
 
-@frozen
-class Calibration:
+class Calibration(Struct, frozen=True):
     """Reference positions for homing (URDF <calibration>), in rad or m."""
 
     rising: float | None = None
@@ -343,8 +311,7 @@ class Calibration:
     reference: float | None = None
 
 
-@frozen
-class Dof:
+class Dof(Noted, frozen=True):
     """One degree of freedom of a joint, given in the joint frame.
 
     ``axis`` is unit (its notation in ``written``), ``anchor`` in m the point that a rotation keeps in place, ``ref`` the
@@ -367,11 +334,10 @@ class Dof:
     safety: Safety | None = None
     calibration: Calibration | None = None
     name: str | None = None
-    written: Written | None = field(default=None, compare=False)
+    written: Written | None = None
 
 
-@frozen
-class Joint:
+class Joint(Struct, frozen=True):
     """A connection in the tree with ordered dofs; none = fixed.
 
     Arcs: ``+ parent`` weight Pose P (joint frame in the parent), ``- child`` weight Pose C (joint frame in the child), so that
@@ -381,8 +347,7 @@ class Joint:
     dofs: tuple[Dof, ...] = ()
 
 
-@frozen
-class Coupling:
+class Coupling(Struct, frozen=True):
     """A joint or tendon that follows others. Arcs: ``+ follower`` weight (1,), ``- leader`` weight (c0, c1, ...).
 
     q_follower = sum over leaders of c0 + c1 q + c2 q^2 + ...; a dof of a joint with several is named by the arc's role.
@@ -391,8 +356,7 @@ class Coupling:
     active: bool = True
 
 
-@frozen
-class Loop:
+class Loop(Struct, frozen=True):
     """A closure of the tree. Arcs: ``~`` two or more bodies or frames, weight Pose (the closure's frame in each).
 
     ``kind``: connect (points coincide), weld (frames coincide), or joint: the dofs that stay free are ``dofs``.
@@ -404,8 +368,7 @@ class Loop:
     parameters: Parameters = ()
 
 
-@frozen
-class Tendon:
+class Tendon(Struct, frozen=True):
     """A cable or a linear combination. ``kind`` fixed: arcs ``+ joint`` weight (coefficient,).
 
     ``kind`` spatial: arcs in path order, ``~ frame`` (site), ``~ shape`` of role ``wrap`` with an optional arc of role
@@ -423,39 +386,33 @@ class Tendon:
     parameters: Parameters = ()
 
 
-@frozen
-class Drive:
+class Drive(Struct, frozen=True):
     """Who drives what. Arcs: ``+ actuator``, ``- joint | tendon | frame | body`` weight gear numbers."""
 
     kind: str = ""
     parameters: Parameters = ()
 
 
-@frozen
-class Sense:
+class Sense(Struct, frozen=True):
     """Who measures what. Arcs: ``+ body | frame | joint | ...``, ``- sensor``; a reference is an arc of role ``reference``."""
 
 
-@frozen
-class Stance:
+class Stance(Struct, frozen=True):
     """The values of a named configuration. Arcs: ``+ pose set``, ``~ joint`` weight its coordinates in rad or m."""
 
 
-@frozen
-class Contact:
+class Contact(Struct, frozen=True):
     """``kind`` pair (these shapes collide) or exclude (these bodies do not). Arcs: ``~`` the two shapes or bodies."""
 
     kind: str = "exclude"
     parameters: Parameters = ()
 
 
-@frozen
-class Constitutive:
+class Constitutive(Struct, frozen=True):
     """An n-ary relation of the dynamics dialect: ``+`` effort enters through this element, ``-`` it acts on that one."""
 
 
-@frozen
-class Relation:
+class Relation(Struct, frozen=True):
     """An edge of a plain hypergraph that means nothing in particular."""
 
     parameters: Parameters = ()

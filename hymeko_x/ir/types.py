@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import is_dataclass
 from functools import cache
 from math import hypot, isfinite
 from types import UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
+
+from msgspec import Struct
 
 from hymeko_x.ir import graph, mechanism, parts, values
 from hymeko_x.ir.fields import attributes_of
@@ -75,7 +76,7 @@ def fits(value: object, hint: Any) -> bool:
         return any(fits(value, choice) for choice in get_args(hint))
     if origin is tuple:
         return _fits_tuple(value, get_args(hint))
-    return isinstance(value, hint) and (not is_dataclass(value) or is_sound(value))
+    return isinstance(value, hint) and (not isinstance(value, Struct) or is_sound(value))
 
 
 def _fits_tuple(value: object, kinds: tuple[Any, ...]) -> bool:

@@ -8,13 +8,12 @@ format writes it back digit by digit; no comparison looks at it.
 from __future__ import annotations
 
 import math
-from dataclasses import field
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 from orjson import dumps
 
-from hymeko_x.frozen import frozen
+from hymeko_x.ir.fields import Noted
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -40,8 +39,7 @@ class Written(NamedTuple):
     numbers: tuple[float, ...]
 
 
-@frozen
-class Pose:
+class Pose(Noted, frozen=True):
     """A rigid transformation: position ``xyz`` in m and unit quaternion ``quat`` (w, x, y, z) of the rotation.
 
     Make it with :func:`pose` and its siblings, which normalise; two equal rotations then have equal numbers.
@@ -49,7 +47,7 @@ class Pose:
 
     xyz: Vec3 = ZERO
     quat: Quat = NO_ROTATION
-    written: Written | None = field(default=None, compare=False)
+    written: Written | None = None
 
 
 IDENTITY = Pose()

@@ -5,8 +5,9 @@ An element keeps the types that it was made from and the scope in which its refe
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
+
+from msgspec import Struct, field
 
 from hymeko_x.language.expressions import fill, fill_text
 from hymeko_x.language.syntax import ArcItem, Comment, Document, Field, Import, Item, Node, QuotedName
@@ -23,8 +24,7 @@ EACH = 20
 """How much more they may add for each element that the text has itself: a robot of 100,000 links may use as many types."""
 
 
-@dataclass(slots=True)
-class Scope:
+class Scope(Struct):
     """Where names are looked up: the elements of one assembly instance, inside those of its parent."""
 
     prefix: str = ""

@@ -6,10 +6,11 @@ A part is a list of its class and of what is not a default (``[Limits lower -1 u
 
 from __future__ import annotations
 
-from dataclasses import MISSING, is_dataclass
 from enum import Enum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
+
+from msgspec import NODEFAULT, Struct
 
 from hymeko_x.ir import parts, values
 from hymeko_x.ir.fields import NUMBERS, attributes_of, identical
@@ -26,7 +27,12 @@ if TYPE_CHECKING:
     from hymeko_x.language.syntax import Value
 
 _CLASSES: Mapping[str, type] = MappingProxyType(
-    {kind.__name__: kind for module in (parts, values) for kind in vars(module).values() if isinstance(kind, type) and is_dataclass(kind)}
+    {
+        kind.__name__: kind
+        for module in (parts, values)
+        for kind in vars(module).values()
+        if isinstance(kind, type) and kind.__module__ == module.__name__ and issubclass(kind, Struct)
+    }
     | {"Arc": Arc}
 )
 _WORDS: Mapping[str, object] = MappingProxyType(
@@ -72,7 +78,7 @@ def said(part: object) -> Iterator[tuple[str, Value]]:
     """The fields of a part that are not their defaults."""
     for item in attributes_of(part):
         value = getattr(part, item.name)
-        if item.default is MISSING or not identical(value, item.default):
+        if item.default is NODEFAULT or not identical(value, item.default):
             yield item.name, encoded(value)
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
+
 from hymeko_x.ir.parts import Mesh
 
 if TYPE_CHECKING:
@@ -44,8 +44,7 @@ class Table(NamedTuple):
     order: NDArray[np.intp] | None = None
 
 
-@frozen
-class Look:
+class Look(Struct, frozen=True):
     """A surface as a mesh file describes it: its name there, its colour, and the bytes of its image with the name of its file."""
 
     name: str
@@ -54,8 +53,7 @@ class Look:
     file: str = ""
 
 
-@frozen(eq=False)
-class Part:
+class Part(Struct, frozen=True, eq=False):
     """The triangles of a mesh file that have one look (None = the file says nothing about it).
 
     ``points`` is (n, 3) in m in the frame of the file, ``faces`` (m, 3) rows of ``points``, ``uv`` (k, 2) or None; ``corners``
@@ -76,8 +74,7 @@ class Painted(NamedTuple):
     looks: tuple[tuple[Look, NDArray[np.intp]], ...] = ()
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class FilledMesh(Mesh):
+class FilledMesh(Mesh, frozen=True, eq=False, kw_only=True):
     """A mesh on its way to a format that holds triangles itself, with those of its file; its own lists stay empty."""
 
     part: Part

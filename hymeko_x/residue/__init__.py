@@ -15,10 +15,9 @@ several dofs as a chain. They are not entries but a :class:`Bridge`, which is cr
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct, field
 
 if TYPE_CHECKING:
     from hymeko_x.compare.leaves import Path
@@ -42,8 +41,7 @@ class Join(NamedTuple):
     twin: Id
 
 
-@frozen
-class Bridge:
+class Bridge(Struct, frozen=True):
     """How the image says the same in other words.
 
     ``names``: source id by the image's. ``folds`` and ``joins``: what the image takes apart. ``frames``: pose of the source's
@@ -87,8 +85,7 @@ class Run(NamedTuple):
     elements: tuple[Id, ...]
 
 
-@frozen
-class Sides:
+class Sides(Struct, frozen=True):
     """The side tables of the source where they differ: None takes an entry away.
 
     ``forgotten`` are keys of notations that only the image uses; ``is_plain`` says that only the image has stereotypes.
@@ -103,8 +100,7 @@ class Sides:
     """Extras that only the image has, by digest."""
 
 
-@frozen
-class Residue:
+class Residue(Struct, frozen=True):
     """All of it. ``known`` are the digests by which renamed elements are found."""
 
     bridge: Bridge = field(default_factory=Bridge)

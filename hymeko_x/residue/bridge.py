@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.compare.diff import Difference
 from hymeko_x.ir.mechanism import WORLD, joint_edge, pose_weight

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.compare.leaves import TURN, leaves_between
 from hymeko_x.ir.fields import identical

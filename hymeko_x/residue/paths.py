@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING, is_dataclass, replace
 from enum import Enum
 from functools import lru_cache
 from hashlib import blake2b
 from typing import TYPE_CHECKING, Any
+
+from msgspec import NODEFAULT, Struct
+from msgspec.structs import replace
 
 from hymeko_x.compare.leaves import TURN, turn_of
 from hymeko_x.ir.fields import NUMBERS, attributes_of, layout_of
@@ -50,12 +52,12 @@ def put(part: Any, path: Path, value: object) -> Any:
 
 
 def default_at(part: object, path: Path) -> object:
-    """The default of the field at a path; MISSING where it has none."""
+    """The default of the field at a path; NODEFAULT where it has none."""
     *above, last = path
     owner = get(part, tuple(above))
-    if isinstance(owner, Pose) or not is_dataclass(owner):
-        return MISSING
-    return next((item.default for item in attributes_of(owner) if item.name == last), MISSING)
+    if isinstance(owner, Pose) or not isinstance(owner, Struct):
+        return NODEFAULT
+    return next((item.default for item in attributes_of(owner) if item.name == last), NODEFAULT)
 
 
 _LONG = 64
@@ -65,9 +67,9 @@ _LONG = 64
 # ---- digests -----------------------------------------------------------------------------------------------------------
 
 
-def guard_of(value: object, default: object = MISSING) -> str:
+def guard_of(value: object, default: object = NODEFAULT) -> str:
     """The digest of a value; empty for the default, which is what a format says that has no word for a field."""
-    return "" if default is not MISSING and value == default else digest(value)
+    return "" if default is not NODEFAULT and value == default else digest(value)
 
 
 _DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Literal
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
 
 
-@frozen
-class Options:
+class Options(Struct, frozen=True):
     """What the user chose for the output.
 
     ``base``: what becomes of an open base (None = the target's own default). ``actuators``: which kind to give every
@@ -34,8 +33,7 @@ class Options:
     within: str = ""
 
 
-@frozen
-class Context:
+class Context(Struct, frozen=True):
     """The circumstances of one rewriting: the user's options, and the report of what is changed."""
 
     options: Options

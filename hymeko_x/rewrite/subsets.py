@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.ir.mechanism import shape_edge
@@ -70,8 +72,7 @@ def _are_rows(rows: tuple[int, ...], table: tuple[float, ...], width: int) -> bo
     return is_whole and bool(rows) and min(rows) >= 0 and max(rows) < len(table) // width
 
 
-@dataclass(slots=True)
-class _Splitting:
+class _Splitting(Struct):
     """The shapes and meshes of the pieces; equal pieces of a mesh share one."""
 
     mechanism: Mechanism

@@ -6,8 +6,10 @@ joint's frame. So every link of the source is in the result, at the same place f
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, NamedTuple
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.ir.kinematics import dof_number
@@ -104,8 +106,7 @@ class _Step(NamedTuple):
     number: int
 
 
-@dataclass(slots=True)
-class _Chains:
+class _Chains(Struct):
     """The links and joints that chains are made of, and where the dofs of the old joints went."""
 
     names: Names

@@ -13,7 +13,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -25,8 +25,7 @@ _RAY = Path(sys.executable).with_name("ray")
 _PATIENCE = 60.0  # s, for the first node
 
 
-@frozen
-class Cluster:
+class Cluster(Struct, frozen=True):
     """Where it answers, and the process of each node; the first one is its head."""
 
     address: str

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from hypothesis import strategies as st
+from msgspec import Struct
 
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
@@ -51,8 +51,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
 
 
-@dataclass(frozen=True)
-class Knobs:
+class Knobs(Struct, frozen=True):
     """What mechanisms may have. Each knob takes something away; as they stand, everything that the IR can say is in.
 
     ``dof_kinds`` and ``most_dofs`` are of one joint; ``loose`` allows bodies without a joint above them beside the

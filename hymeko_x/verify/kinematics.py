@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import Array, Coupling, Dof, Index, Kind, KinematicModel
 from hymeko_x.verify.spatial import random_quats, rigid, rotation_about, rotation_from_quat
 
@@ -16,8 +16,7 @@ if TYPE_CHECKING:
 _POSES_AT_ONCE = 20_000  # bounds the memory of one batch to a few MB, however many samples are asked for
 
 
-@frozen(eq=False)
-class _Slot:
+class _Slot(Struct, frozen=True, eq=False):
     """The k-th dof of every body that has one, of one kind: which bodies, which columns, and the dofs' constants."""
 
     kind: Kind
@@ -29,8 +28,7 @@ class _Slot:
     pitches: Array
 
 
-@frozen(eq=False)
-class Kinematics:
+class Kinematics(Struct, frozen=True, eq=False):
     """A model prepared for batched forward kinematics. Make it with :func:`prepare`."""
 
     placements: Array

@@ -12,15 +12,14 @@ is when all dofs are at their refs. A coordinate vector q holds one number per h
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct, field
+from msgspec.structs import replace
 from numpy.typing import NDArray
-
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -83,8 +82,7 @@ class Feature(Enum):
     CURVES = "couplings that are no straight line of one leader"
 
 
-@frozen(eq=False)
-class Dof:
+class Dof(Struct, frozen=True, eq=False):
     """One degree of freedom. ``axis`` is unit, in the body's frame; bounds are infinite where there are none.
 
     ``effort`` is (lowest, highest) in N or Nm. Damping in Nms/rad or Ns/m, ``pitch`` of a screw in m/rad; ``nonlinear``
@@ -109,8 +107,7 @@ class Dof:
     nonlinear: tuple[float, ...] = ()
 
 
-@frozen(eq=False)
-class Joint:
+class Joint(Struct, frozen=True, eq=False):
     """The joint above a body. No dofs = fixed; ``open`` marks a root that its format leaves unattached (URDF's)."""
 
     name: str | None = None
@@ -139,8 +136,7 @@ class Role(Enum):
     BOTH = "both"
 
 
-@frozen(eq=False)
-class Surface:
+class Surface(Struct, frozen=True, eq=False):
     """The triangles of a mesh in its own frame after scaling: ``vertices`` (n, 3) in m and ``faces`` (m, 3).
 
     ``polygons``: whether its file has larger faces, which every reader splits in its own way.
@@ -151,8 +147,7 @@ class Surface:
     polygons: bool = False
 
 
-@frozen
-class MeshFile:
+class MeshFile(Struct, frozen=True):
     """A mesh that is read only when it is compared: ``path`` is None when the file was not found."""
 
     uri: str
@@ -160,8 +155,7 @@ class MeshFile:
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
 
 
-@frozen(eq=False)
-class Shape:
+class Shape(Struct, frozen=True, eq=False):
     """A geometry on a body: ``pose`` in the body frame; ``size`` in m.
 
     Sizes: box full lengths (3), sphere radius, cylinder and capsule radius and length along z (without caps), ellipsoid
@@ -176,8 +170,7 @@ class Shape:
     mesh: Surface | MeshFile | None = None
 
 
-@frozen(eq=False)
-class Body:
+class Body(Struct, frozen=True, eq=False):
     """A rigid body: mass in kg, centre of mass in m and tensor about it in kg m^2, both in body axes.
 
     ``parent`` is the index of the body at the other end of ``joint``. ``weighed`` is False where
@@ -196,8 +189,7 @@ class Body:
     shaped: bool = True
 
 
-@frozen
-class Coupling:
+class Coupling(Struct, frozen=True):
     """A scalar dof that follows: q = constant + sum over leaders of c1 q + c2 q^2 + ... in absolute coordinates.
 
     ``follower`` and the leaders are indices into the model's dofs.
@@ -214,8 +206,7 @@ class Coupling:
         return len(self.leaders) < 2 and not any(any(coefficients[1:]) for _, coefficients in self.leaders)
 
 
-@frozen(eq=False)
-class Loop:
+class Loop(Struct, frozen=True, eq=False):
     """A closure: frame ``pose_a`` on body a meets ``pose_b`` on body b.
 
     ``kind``: ``connect`` (origins coincide), ``weld`` (frames coincide), ``hinge`` (origins and z axes), ``slide``
@@ -243,8 +234,7 @@ def point_of(numbers: Array) -> Point:
     return x, y, z
 
 
-@frozen
-class Step:
+class Step(Struct, frozen=True):
     """One step of a path. ``on``: the dof of a joint, the body of everything else but a pulley, as indices into the model.
 
     ``number``: the coefficient of a joint, the divisor of a pulley, the radius of a shape in m. ``point`` is where a site is,
@@ -258,8 +248,7 @@ class Step:
     axis: Point | None = None
 
 
-@frozen
-class Spring:
+class Spring(Struct, frozen=True):
     """The lengths between which a tendon pulls and pushes nothing.
 
     ``between`` is None where an engine has yet to compute them from the pose at rest; ``at_rest``: whether they are the length there.
@@ -272,8 +261,7 @@ class Spring:
 RELAXED = Spring()
 
 
-@frozen
-class Tendon:
+class Tendon(Struct, frozen=True):
     """A cable through points and around shapes, or a weighted sum of joint coordinates.
 
     ``mechanics``: stiffness, damping, friction, armature. ``limits`` are its least and greatest length, ``force`` the least and
@@ -290,8 +278,7 @@ class Tendon:
     curves: tuple[float, ...] | None = None
 
 
-@frozen
-class Part:
+class Part(Struct, frozen=True):
     """Something that is compared word by word and number by number: an actuator or a coupling of tendons, and what it acts on."""
 
     name: str | None
@@ -299,8 +286,7 @@ class Part:
     numbers: tuple[float, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class KinematicModel:
+class KinematicModel(Struct, frozen=True, eq=False, dict=True):
     """One robot as one engine sees it. ``bodies[0]`` is the world; a parent always comes before its children.
 
     ``precision`` is the relative accuracy of its numbers (double or float32); ``trusted`` is False when the reader is

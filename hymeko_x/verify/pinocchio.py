@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio as pin
+from msgspec import Struct
 
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import WORLD, Array, Body, Dof, Index, Kind, KinematicModel
 
 if TYPE_CHECKING:
@@ -23,8 +23,7 @@ GRAVITY = (0.0, 0.0, -9.81)
 _VELOCITIES = {Kind.HINGE: 1, Kind.SLIDE: 1, Kind.SCREW: 1, Kind.BALL: 3, Kind.FREE: 6}
 
 
-@frozen(eq=False)
-class PinModel:
+class PinModel(Struct, frozen=True, eq=False):
     """One tree of a model in Pinocchio.
 
     ``frames`` holds the frame of each body and ``joints`` the joint of each dof; bodies on the floor have no joints.

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from typing import Literal
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
 
 Answer = Literal["same", "different", "not comparable"]
 Json = dict[str, "str | float | bool | list[str] | list[dict[str, str | float | bool | None]] | None"]
 
 
-@frozen
-class Check:
+class Check(Struct, frozen=True):
     """One quantity: its worst difference in its unit, where that is, and how much is allowed."""
 
     quantity: str
@@ -38,8 +37,7 @@ class Check:
         }
 
 
-@frozen
-class Verdict:
+class Verdict(Struct, frozen=True):
     """The answer. ``engines`` are the two readers; ``reason`` says why robots are not comparable."""
 
     engines: tuple[str, str]

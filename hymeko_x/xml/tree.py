@@ -12,9 +12,10 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
+from msgspec import Struct
+
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterator
@@ -173,8 +174,7 @@ class Node:
 # ---- building ----------------------------------------------------------------------------------------------------------------
 
 
-@frozen
-class Document:
+class Document(Struct, frozen=True):
     """A read file: its root, the comments and processing instructions around it, and the text that was read, in UTF-8."""
 
     root: Node

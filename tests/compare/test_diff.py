@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import fields, is_dataclass, replace
 from enum import Enum
 
 import pytest
 from hypothesis import HealthCheck, given, settings
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x.compare.diff import Difference, Tolerance, diff
 from hymeko_x.ir import parts
+from hymeko_x.ir.fields import attributes_of
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import KINDS, ROOT, Extra, Id, Mechanism, RobotEdge
 from hymeko_x.ir.values import Pose, pose_from_rpy, quat_about
@@ -101,10 +103,10 @@ def changed(value: object) -> Iterator[tuple[str, object]]:
         case Pose():
             yield "xyz", replace(value, xyz=(9.0, *value.xyz[1:]))
             yield "rotation", replace(value, quat=quat_about((1.0, 0.0, 0.0), 0.001))
-        case _ if is_dataclass(value):
-            for item in fields(value):
+        case Struct():
+            for item in attributes_of(value):
                 if item.compare:
-                    yield from _changed_field(value, item.name, optional="None" in str(item.type))
+                    yield from _changed_field(value, item.name, optional="None" in type(value).__annotations__[item.name])
 
 
 def _changed_field(value: object, name: str, *, optional: bool) -> Iterator[tuple[str, object]]:
@@ -119,7 +121,7 @@ def test_the_samples_cover_every_part_and_leave_no_field_at_none() -> None:
     assert {type(part) for part in FULL} == set(KINDS)
     assert {type(geometry) for geometry in GEOMETRIES} == set(parts.Geometry.__args__)  # type: ignore[attr-defined]
     for part in (*FULL, DOF, LIMITS):
-        for item in fields(part):
+        for item in attributes_of(part):
             assert getattr(part, item.name) is not None or not item.compare, f"{type(part).__name__}.{item.name}"
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import MISSING
+from msgspec import NODEFAULT
 
 from hymeko_x.compare.leaves import Leaf, leaves_again, leaves_between, leaves_of
 from hymeko_x.ir.graph import Hypergraph
@@ -33,7 +33,7 @@ def test_the_leaves_of_an_edge_are_in_its_data_and_on_its_arcs() -> None:
     b = joint_edge(Joint((Dof(),)), A, B, Pose((0.0, 0.0, 2.0)))
     assert leaves_of(a, b) == [
         Leaf(("data", "dofs", 0, "limits", "velocity"), 1.0, None, None, True),
-        Leaf(("arcs", 0, "weight", "xyz"), (0.0, 0.0, 1.0), (0.0, 0.0, 2.0), MISSING, True),
+        Leaf(("arcs", 0, "weight", "xyz"), (0.0, 0.0, 1.0), (0.0, 0.0, 2.0), NODEFAULT, True),
     ]
 
 

@@ -8,8 +8,9 @@ import signal
 import sys
 import time
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
+
+from msgspec.structs import asdict
 
 from hymeko_x.corpus.cases import Case
 from hymeko_x.corpus.limits import set_limits

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import hashlib
 import subprocess
 import sys
@@ -10,6 +9,7 @@ import zipfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import msgspec
 import pytest
 
 from hymeko_x import codes
@@ -103,8 +103,8 @@ def test_a_large_package_is_narrowed_to_the_folders_with_robots() -> None:
 def test_another_wheel_gets_another_folder() -> None:
     package = catalog.load()[0]
     assert package.folder.startswith("example_robot_data-6.0.0-")
-    assert dataclasses.replace(package, sha256="0" * 64).folder != package.folder
-    assert dataclasses.replace(package, only=("a/",)).folder != package.folder
+    assert msgspec.structs.replace(package, sha256="0" * 64).folder != package.folder
+    assert msgspec.structs.replace(package, only=("a/",)).folder != package.folder
 
 
 # ---- fetching ------------------------------------------------------------------------------------------------------------
@@ -133,7 +133,7 @@ def test_a_package_that_is_there_is_not_downloaded_again(index: Path, tmp_path: 
 
 
 def test_a_wrong_checksum_leaves_nothing_in_the_cache(index: Path, tmp_path: Path) -> None:
-    package = dataclasses.replace(make_wheel(index, ROBOT), sha256="ab" * 32)
+    package = msgspec.structs.replace(make_wheel(index, ROBOT), sha256="ab" * 32)
     with pytest.raises(Refusal, match="the catalogue wants abababababababab...") as refusal:
         cache.fetch(package, tmp_path / "cache")
     assert refusal.value.diagnostic.code == codes.PACKAGE_DAMAGED
@@ -154,7 +154,7 @@ def test_what_a_killed_run_left_behind_does_not_disturb_the_next_one(index: Path
 def test_a_package_that_the_index_does_not_have_is_refused_in_pips_words(index: Path, tmp_path: Path) -> None:
     package = make_wheel(index, ROBOT)
     with pytest.raises(Refusal) as refusal:
-        cache.fetch(dataclasses.replace(package, version="9.9.9"), tmp_path / "cache")
+        cache.fetch(msgspec.structs.replace(package, version="9.9.9"), tmp_path / "cache")
     assert refusal.value.diagnostic.code == codes.PACKAGE_UNAVAILABLE
     assert (
         refusal.value.diagnostic.message == "toy_robots==9.9.9 cannot be downloaded: No matching distribution found for toy_robots==9.9.9"

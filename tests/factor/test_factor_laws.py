@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from msgspec.structs import replace
 
 from hymeko_x.factor import Dialect, factor
 from hymeko_x.factor.forms import Call, Element, Factored, Hole, Item, Macro, Parameter, Piece, Signed, Text, expand

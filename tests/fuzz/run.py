@@ -5,9 +5,10 @@ from __future__ import annotations
 import multiprocessing
 import os
 import time
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct, field
 
 from tests.fuzz.cases import SECONDS, Finding, data_of, limit_memory, run, warm_up
 
@@ -22,16 +23,14 @@ MEMORY_DISK = "/dev/shm"
 """Where the temporary files of readers cost nothing, on systems that have it."""
 
 
-@dataclass
-class Tally:
+class Tally(Struct):
     """How many cases were run, and the first case of every kind of finding."""
 
     cases: int = 0
     kinds: dict[str, int] = field(default_factory=dict)
 
 
-@dataclass(frozen=True)
-class Task:
+class Task(Struct, frozen=True):
     """Which cases: a format, what to write them as, the first number, and how many cases or seconds there are."""
 
     format: str

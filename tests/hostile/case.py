@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -12,8 +13,7 @@ if TYPE_CHECKING:
     Content = bytes | str | Callable[[], bytes]
 
 
-@dataclass(frozen=True)
-class Case:
+class Case(Struct, frozen=True):
     """``files`` are laid into an empty folder ``in``, ``prepare`` does the rest; then ``words`` are run there.
 
     The command ends with the exit code ``code`` and says ``codes``, and no error with another code. It takes no longer
@@ -27,7 +27,7 @@ class Case:
     codes: tuple[str, ...] = ()
     seconds: float = 15.0
     leaves: tuple[str, ...] = ()
-    prepare: Callable[[Path], None] | None = field(default=None, repr=False)
+    prepare: Callable[[Path], None] | None = None
 
 
 def reading(name: str, content: Content, *codes: str, code: int = 1, seconds: float = 15.0, **files: Content) -> Case:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
 from itertools import pairwise
 
 import pytest
+from msgspec.structs import replace
 
 from hymeko_x.diagnostics import Origin
 from hymeko_x.ir import parts
@@ -174,7 +174,7 @@ def test_an_id_is_shown_with_its_kind() -> None:
 
 
 def test_another_graph_changes_nothing_else() -> None:
-    named = {field.name: object() for field in fields(Mechanism) if field.name != "graph"}
+    named = {name: object() for name in Mechanism.__struct_fields__ if name != "graph"}
     full = replace(Mechanism("r"), **named)  # type: ignore[arg-type]
     changed = full.with_graph(full.graph.replace(vertices={Id("body", "b"): parts.Body()}))
     assert {name: getattr(changed, name) for name in named} == named

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 import yourdfpy
+from msgspec import Struct
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
@@ -20,8 +20,7 @@ from hymeko_x.ir.mechanism import Mechanism
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class Twins:
+class Twins(Struct, frozen=True):
     """One robot as MuJoCo compiles its MJCF, without merging bodies, and as Pinocchio and yourdfpy read its URDF."""
 
     model: Any

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import mujoco
 import numpy as np
 import pinocchio as pin
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from hymeko_x import formats
@@ -23,8 +23,7 @@ from tests.robots import MemoryFiles
 FIXED = Options(base="fixed")
 
 
-@dataclass(frozen=True)
-class Converted:
+class Converted(Struct, frozen=True):
     """All stages of one conversion."""
 
     source: Mechanism

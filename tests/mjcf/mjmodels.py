@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import os
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import mujoco
 import numpy as np
+from msgspec import Struct
 from mujoco.introspect import structs
 
 from hymeko_x.backends import hymeko as hymeko_out
@@ -58,8 +58,7 @@ def _equal(a: object, b: object) -> bool:
     return a == b
 
 
-@dataclass(frozen=True)
-class Folder:
+class Folder(Struct, frozen=True):
     """The files beside a model."""
 
     path: Path

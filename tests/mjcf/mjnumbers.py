@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
+
+from msgspec import Struct
 
 from hymeko_x.formats.mjcf.schema import _ATTRIBUTES, attributes_of
 from hymeko_x.formats.mjcf.types import REQUIRED, Kind, kinds_of
@@ -115,8 +116,7 @@ _ALONG = {
 """What some attributes need beside them; None: what must not be there."""
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(Struct, frozen=True):
     """An attribute that holds numbers: the place of its element in the schema, its name, and what it may be."""
 
     path: str

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, is_dataclass
-
 import pytest
 from hypothesis import HealthCheck, assume, given, reject, settings
+from msgspec import Struct
 
 import hymeko_x as hx
 from hymeko_x import codes
@@ -68,6 +67,11 @@ def test_the_text_is_a_fixed_point(source: Mechanism, image: Mechanism) -> None:
 
 
 def test_the_types_of_every_part_are_known() -> None:
-    kinds = [kind for module in (parts, values) for kind in vars(module).values() if isinstance(kind, type) and is_dataclass(kind)]
-    assert [kind for kind in (*kinds, Edge, Arc) if set(hints_of(kind)) != {item.name for item in fields(kind)}] == []
+    kinds = [
+        kind
+        for module in (parts, values)
+        for kind in vars(module).values()
+        if isinstance(kind, type) and issubclass(kind, Struct) and kind.__module__ == module.__name__
+    ]
+    assert [kind for kind in (*kinds, Edge, Arc) if set(hints_of(kind)) != {*kind.__struct_fields__}] == []
     assert settled(parts.Camera, "resolution", (640.0, 480.0)) == (640, 480)

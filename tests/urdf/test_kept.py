@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import pytest
+from msgspec.structs import replace
 
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.ir.mechanism import ROOT, Extra, Id

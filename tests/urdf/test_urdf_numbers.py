@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
 from xml.sax.saxutils import quoteattr
 
 import pytest
+from msgspec import Struct
 
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
@@ -20,8 +20,7 @@ LAST_BITS = Tolerance(absolute=2e-14)
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
-@dataclass(frozen=True)
-class Place:
+class Place(Struct, frozen=True):
     """An attribute that holds ``count`` numbers, and a robot that has it on its second line, as ``VALUE``."""
 
     attribute: str

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import random
-from dataclasses import replace
 
 import pytest
+from msgspec.structs import replace
 
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.graph import Hypergraph

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from msgspec import Struct, field
 from pxr import Gf, Usd, UsdGeom, UsdPhysics
 
 from hymeko_x import formats, pipeline
@@ -21,8 +21,7 @@ from hymeko_x.source import NoFiles, Source
 HEADER = '#usda 1.0\n(\n    defaultPrim = "robot"\n    metersPerUnit = 1\n    kilogramsPerUnit = 1\n    upAxis = "Z"\n)\n'
 
 
-@dataclass(frozen=True)
-class Texts:
+class Texts(Struct, frozen=True):
     """Files by name, from a dictionary."""
 
     files: Mapping[str, str | bytes] = field(default_factory=dict)
@@ -64,8 +63,7 @@ def again(mechanism: Mechanism) -> Mechanism:
 # ---- UsdPhysics' own parser ------------------------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True)
-class Parsed:
+class Parsed(Struct, frozen=True):
     """What the parser sees: numbers by prim path, lengths in the units of the stage."""
 
     bodies: dict[str, tuple[float, ...]]

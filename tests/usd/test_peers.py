@@ -6,12 +6,12 @@ Robots are compared without meshes, which change neither names nor motion and ta
 from __future__ import annotations
 
 import os
-from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
 import pytest
 from lxml import etree
+from msgspec.structs import replace
 
 import hymeko_x as hx
 from hymeko_x.corpus import cache, catalog

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 
 from hypothesis import strategies as st
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotEdge, ShapeView, coupling_edge, joint_edge, shape_edge
@@ -16,8 +17,7 @@ from hymeko_x.verify.model import Feature
 POSITION, ROTATION = "forward kinematics, position", "forward kinematics, rotation"
 
 
-@dataclass(frozen=True)
-class Change:
+class Change(Struct, frozen=True):
     """The changed robot, and the names one of which a failed check of this quantity has to say; ``feature`` where not all formats can."""
 
     robot: Mechanism

@@ -6,11 +6,11 @@ And it does not cry wolf: a robot is the same as itself written in another order
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 from lxml import etree
+from msgspec import Struct
 
 from hymeko_x.verify import verify
 from tests.verify.robots import ARM_MJCF, ARM_URDF, RIG_MJCF
@@ -21,8 +21,7 @@ POSITION, ROTATION = "forward kinematics, position", "forward kinematics, rotati
 ROBOTS = {"arm.urdf": ("urdf", ARM_URDF), "arm.xml": ("mjcf", ARM_MJCF), "rig.xml": ("mjcf", RIG_MJCF)}
 
 
-@dataclass(frozen=True)
-class Planted:
+class Planted(Struct, frozen=True):
     """One planted change: an XPath to an attribute (set to ``to``) or an element (removed, or replaced), and who must see it where."""
 
     what: str

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
+from msgspec import Struct
 from pxr import Gf, Sdf, Usd, UsdPhysics
 
 from hymeko_x.verify import model_of, verify
@@ -23,8 +23,7 @@ POSITION, ROTATION = "forward kinematics, position", "forward kinematics, rotati
 TURNED = Gf.Quatf(0.9238795, 0.0, 0.3826834, 0.0)
 
 
-@dataclass(frozen=True)
-class Planted:
+class Planted(Struct, frozen=True):
     """One attribute of one prim set to another value, and who must see it where."""
 
     what: str

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import io
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 import xacro
 from lxml import etree
+from msgspec.structs import replace
 from xacro import substitution_args
 
 from hymeko_x import disk, formats, pipeline

@@ -6,7 +6,6 @@ import contextlib
 import io
 import re
 import statistics
-from dataclasses import replace
 from pathlib import Path
 from xml.dom import minidom
 
@@ -15,6 +14,7 @@ import xacro
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from lxml import etree
+from msgspec.structs import replace
 
 import hymeko_x as hx
 from hymeko_x import disk, formats, pipeline

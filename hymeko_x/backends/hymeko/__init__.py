@@ -5,8 +5,9 @@ Elements stand in the order in which their author wrote them (``Mechanism.layout
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.backends.hymeko.angles import shortest
 from hymeko_x.backends.hymeko.assemblies import assemblies, pieces_of

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
+
 from hymeko_x.ir import parts
 from hymeko_x.ir.values import Pose, number_text
 from hymeko_x.language.syntax import Quantity
@@ -24,8 +25,7 @@ TURNING = frozenset({parts.DofKind.HINGE, parts.DofKind.BALL, parts.DofKind.SCRE
 """The dofs whose coordinates are angles."""
 
 
-@frozen
-class Angles:
+class Angles(Struct, frozen=True):
     """How plain angles are written: in degrees or in radians."""
 
     degrees: bool

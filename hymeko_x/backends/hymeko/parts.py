@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import MISSING, dataclass, field, fields
 from typing import TYPE_CHECKING, cast
+
+from msgspec import NODEFAULT, Struct, field
 
 from hymeko_x.backends.hymeko.foreign import foreign_items
 from hymeko_x.formats.hymeko import (
@@ -22,6 +23,7 @@ from hymeko_x.formats.hymeko import (
 )
 from hymeko_x.formats.hymeko.attached import TEXTURE, attached_key
 from hymeko_x.ir import parts
+from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import NO_ROTATION, Pose
 from hymeko_x.language.markup import value_of_text
@@ -43,8 +45,7 @@ _SETTINGS = FOREIGN | _FLAGS | {"extra", "class", CHILD_CLASS, "written"}
 _SPANS = frozenset({"limit", "limits", "range"}) | {word.word for word in LIMIT_WORDS}
 
 
-@dataclass(frozen=True)
-class Context:
+class Context(Struct, frozen=True):
     """What the printers need to know: the mechanism, the files' common prefix, and what is said in place.
 
     ``inline``: meshes and colours that are defined where a shape uses them, with the shape that uses them first;
@@ -164,7 +165,7 @@ def word_fields(part: object, words: Iterable[Word], angles: Angles, motion: str
     found: list[Item] = []
     for word in words:
         value = getattr(part, word.attribute)
-        if value == defaults.get(word.attribute, MISSING):
+        if value == defaults.get(word.attribute, NODEFAULT):
             continue
         dimension = motion if word.dimension == "motion" else word.dimension
         if word.form == "rgba" and value[3] == 1.0:
@@ -185,7 +186,9 @@ def limit_items(limits: parts.Limits, angles: Angles, motion: str) -> list[Item]
 
 
 def _defaults(part: type) -> dict[str, object]:
-    return {item.name: item.default for item in fields(part)}
+    layout = layout_of(part)
+    assert layout is not None
+    return {item.name: item.default for item in layout.attributes}
 
 
 def value_of(value: object) -> Value:

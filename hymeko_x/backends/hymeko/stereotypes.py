@@ -11,6 +11,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
+from msgspec import Struct
+
 from hymeko_x.backends.hymeko.parts import value_of
 from hymeko_x.factor.sets import candidates, common_words
 from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
@@ -101,8 +103,7 @@ class _Carrier:
         self.pairs = [(unit.slot, unit.text) for unit in left]
 
 
-@dataclass(slots=True)
-class _Definition:
+class _Definition(Struct):
     """A stereotype: its units in order, and the type that it refines."""
 
     name: str
@@ -110,8 +111,7 @@ class _Definition:
     base: tuple[Stereotype, ...]
 
 
-@dataclass(slots=True)
-class _Names:
+class _Names(Struct):
     """Names that are taken."""
 
     taken: set[str]

@@ -6,9 +6,10 @@ mesh and texture a relative path; nothing is decided here.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import count
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.backends.mjcf.assets import write_assets
 from hymeko_x.backends.mjcf.bodies import write_worldbody

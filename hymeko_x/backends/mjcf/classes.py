@@ -8,10 +8,11 @@ shapes for the eye share into ``visual``; sets that only some share become class
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from operator import itemgetter
 from types import MappingProxyType
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from hymeko_x.factor.sets import Costs, common_words, share
 from hymeko_x.formats.mjcf import CLASSES, MAIN
@@ -40,8 +41,7 @@ _COSTS = Costs(_DEFINITION, _AROUND, len('class="knee"'), 1)
 _REFINING = Costs(_DEFINITION, _AROUND, len("_black"), 1)
 
 
-@dataclass(slots=True)
-class Class:
+class Class(Struct):
     """A default class: its name, the tag and the attributes that it is about, and the name of the class around it."""
 
     name: str
@@ -50,8 +50,7 @@ class Class:
     around: str
 
 
-@dataclass(slots=True)
-class Defaults:
+class Defaults(Struct):
     """The classes found, those that refine another one behind it, and the names that are taken."""
 
     classes: list[Class] = field(default_factory=list)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import posixpath
 import re
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge
 from hymeko_x.ir.names import names_in_use
@@ -44,16 +45,14 @@ _File = tuple[str, bytes]
 """A file as it was found: its path and its content."""
 
 
-@frozen
-class _Piece:
+class _Piece(Struct, frozen=True):
     """What one mesh vertex becomes: a file, the look that it brings along, and whether it is a mere surface."""
 
     mesh: Id
     look: Id | None
 
 
-@dataclass(slots=True, kw_only=True)
-class _Packing(Builder):
+class _Packing(Builder, kw_only=True):
     """One run: what it reads from, and what it adds to the mechanism."""
 
     mechanism: Mechanism

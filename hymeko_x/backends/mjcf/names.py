@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
+
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.parts import Mesh, Texture
 
@@ -15,8 +16,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Dof
 
 
-@frozen
-class Printed:
+class Printed(Struct, frozen=True):
     """Printed names by id, for the kinds whose elements carry a name of their own; all others print their id's name."""
 
     assets: Mapping[Id, str]

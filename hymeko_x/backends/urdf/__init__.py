@@ -6,8 +6,9 @@ mechanism carries as extras stands again where it stood. docs/mapping/urdf.md sa
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
+
+from msgspec.structs import replace
 
 from hymeko_x.backends.urdf.joints import joint_tag
 from hymeko_x.backends.urdf.links import link_tag

@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import tempfile
 import time
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
 from pxr import Sdf
 
 from hymeko_x.backends.usd.crate import write as write_crate

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
+
+from msgspec import field
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.assets.refer import Keep, keep_references
@@ -29,8 +31,7 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
 
 
-@dataclass(slots=True, kw_only=True)
-class _Packing(Builder):
+class _Packing(Builder, kw_only=True):
     """One run: what it reads from, and what it adds to the mechanism. ``known`` are the files that were read, by uri."""
 
     mechanism: Mechanism

@@ -81,7 +81,7 @@ def write_joint(sheet: UsdSheet, view: JointView) -> None:
 
 def opposite(dof: Dof) -> Dof:
     """The dof as its child sees it."""
-    from dataclasses import replace
+    from msgspec.structs import replace
 
     if dof.kind in (DofKind.BALL, DofKind.FREE):
         return dof

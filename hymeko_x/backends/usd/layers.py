@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import posixpath
 import tempfile
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from msgspec.structs import replace
 from pxr import Sdf, Tf
 
 from hymeko_x.formats import carrier

@@ -7,9 +7,9 @@ each property once.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct, field
 from pxr import Gf, Sdf, Vt
 
 from hymeko_x.formats import usd as words
@@ -38,8 +38,7 @@ _UNIFORM = frozenset(
 )
 
 
-@dataclass(slots=True, eq=False)
-class Prim:
+class Prim(Struct, eq=False):
     """A prim in the making: its type, metadata, API schemas, attributes (type and value), and the targets of its relationships.
 
     ``connections`` lead an attribute to that whose value it takes; ``interpolation`` are the attributes with values
@@ -109,8 +108,7 @@ _INVALID = re.compile(r"\W")
 RESET = "!resetXformStack!"
 
 
-@dataclass(slots=True)
-class UsdSheet:
+class UsdSheet(Struct):
     """The open layer. ``paths`` are the paths of the prims of elements by id, ``dofs`` the prim and axis of each dof of a joint.
 
     ``element_paths`` are the paths of prims that represent elements, ``group_paths`` of those that contain them. ``body_shapes``

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct, field
 from pxr import Gf, Vt
 
 from hymeko_x.backends.usd.sheet import T, point, prim_of, put
@@ -35,8 +35,7 @@ def write_tendons(sheet: UsdSheet) -> None:
 # ---- paths -----------------------------------------------------------------------------------------------------------------------
 
 
-@dataclass(slots=True)
-class _Places:
+class _Places(Struct):
     """Prims in the order in which they come first, and which of them each step is."""
 
     prims: dict[Any, int] = field(default_factory=dict)
@@ -46,8 +45,7 @@ class _Places:
         self.indices.append(self.prims.setdefault(prim, len(self.prims)))
 
 
-@dataclass(slots=True)
-class _Path:
+class _Path(Struct):
     """The steps of a path without its pulleys, each with its coefficient, the site beside it, and the part that it is in."""
 
     steps: _Places = field(default_factory=_Places)

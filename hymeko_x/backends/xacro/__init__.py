@@ -7,8 +7,9 @@ what is written how.
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.backends import urdf
 from hymeko_x.backends.xacro.dialect import DIALECT

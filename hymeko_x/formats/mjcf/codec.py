@@ -7,13 +7,13 @@ MuJoCo makes of them, so that two ways of saying the same can be told from two w
 from __future__ import annotations
 
 import math
-from dataclasses import field
 from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct, field
+
 from hymeko_x.formats.mjcf.classes import ANY_TURN, TURNS
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.values import (
     NO_ROTATION,
     ZERO,
@@ -44,8 +44,7 @@ class BadAttribute(Exception):
         self.expected = expected
 
 
-@frozen
-class Settings:
+class Settings(Struct, frozen=True):
     """What <compiler> says about the meaning of numbers and file names."""
 
     degree: bool = True
@@ -62,8 +61,7 @@ def _unknown(value: Any, said: Mapping[str, str], settings: Settings) -> bool:
     return False
 
 
-@frozen(eq=False)
-class Group:
+class Group(Struct, frozen=True, eq=False):
     """Attributes that make one value. Each is equal to itself alone.
 
     ``needs``: attributes of other groups on which their meaning depends. ``exact``: what is written always says the same.
@@ -85,8 +83,7 @@ Asked = tuple[Group, tuple[str, ...]]
 """A group, and those of its attributes that an element says itself."""
 
 
-@frozen
-class Plan:
+class Plan(Struct, frozen=True):
     """How to read all groups of an element without asking each of them: most elements say few of their attributes.
 
     ``silent`` are the values of the groups of which the element itself says nothing, only ``base``, which its class gives;

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x.formats.mjcf.classes import ANY_TURN, TURNS
 from hymeko_x.formats.mjcf.codec import (
@@ -29,7 +31,6 @@ from hymeko_x.formats.mjcf.codec import (
     write_turn,
     written_turn,
 )
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.parts import (
     Box,
     Capsule,
@@ -72,8 +73,7 @@ GRID = 0.05
 _MARK = 0.005
 
 
-@frozen
-class Place:
+class Place(Struct, frozen=True):
     """What a geom is and where: its geometry, its pose, and the distance of a plane's grid lines in m."""
 
     geometry: Geometry

@@ -9,8 +9,9 @@ from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from hymeko_x.formats.mjcf.schema import attributes_of
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -162,8 +163,7 @@ fullinertia diaginertia: body/inertial
 """
 
 
-@frozen
-class Kind:
+class Kind(Struct, frozen=True):
     """What a value is: ``least`` to ``most`` numbers (``whole`` or not), or one of ``words`` (``several``: some of them)."""
 
     least: int = 0

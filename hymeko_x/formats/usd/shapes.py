@@ -10,7 +10,8 @@ from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
+
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Plane, Role, Sphere
 from hymeko_x.ir.values import NO_ROTATION, Quat, Vec3, X, Y, quat_about
 
@@ -44,8 +45,7 @@ _AXIAL = ("Cylinder", "Capsule", "Plane")
 _WRITTEN = re.compile(r"(\w+) ([XYZ]) ([^;]+); (.+)")
 
 
-@frozen
-class Gprim:
+class Gprim(Struct, frozen=True):
     """A primitive as a prim says it: type, sizes and axis, and the scale (in m per unit) of the space that they are in."""
 
     kind: str

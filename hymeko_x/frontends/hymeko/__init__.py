@@ -6,8 +6,9 @@ in a ``graph`` they are plain; in an untyped root they are what their place in t
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, TypeGuard, cast
+
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, refuse

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from math import isfinite
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
+
+from msgspec import Struct, field
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
@@ -29,8 +30,7 @@ DEFAULT_UNITS: Mapping[str, float] = MappingProxyType({"length": 1.0, "angle": u
 """Plain numbers are metres, kilograms, seconds and, as published, degrees."""
 
 
-@dataclass(slots=True)
-class Context:
+class Context(Struct):
     """What a reader needs besides the block: file name, report, and the factors of plain numbers by dimension."""
 
     file: str

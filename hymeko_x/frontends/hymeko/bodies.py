@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, cast
+
+from msgspec.structs import replace
 
 from hymeko_x.formats.hymeko import SHAPE_WORDS
 from hymeko_x.formats.hymeko.attached import attached_edge

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
+
+from msgspec import field
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
@@ -27,7 +28,6 @@ _ALL_KINDS = tuple(KINDS.values())
 _SIGNS = {"+": 1, "<-": 1, "-": -1, "->": -1, "~": 0, "<>": 0}
 
 
-@dataclass(slots=True)
 class Build(Builder):
     """The elements of a text so far, and which names exist of which kind."""
 

@@ -8,6 +8,8 @@ from math import isinf
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from msgspec import Struct
+
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.mjcf.classes import ANY_TURN
@@ -16,7 +18,6 @@ from hymeko_x.formats.mjcf.tree import COMMENT
 from hymeko_x.formats.mjcf.types import EXCLUSIVE, FILLED, REQUIRED, kinds_of
 from hymeko_x.frontends.mjcf.references import Reference, references_at, references_of
 from hymeko_x.frontends.mjcf.rules import complaint, rules_of
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import file_stem
 from hymeko_x.ir.values import number_text
 from hymeko_x.xml.tree import read_numbers
@@ -54,8 +55,7 @@ _NAMED_APART: Mapping[str, str] = MappingProxyType(
 """Elements of which the IR has no part, and those that share their names with such: what their names must not be twice among."""
 
 
-@frozen
-class Words:
+class Words(Struct, frozen=True):
     """The ``names`` of elements of which the IR has no part, by kind, with their places; ``references`` that have no arc; all ``tags``."""
 
     names: Mapping[tuple[str, str], Origin]
@@ -63,8 +63,7 @@ class Words:
     tags: frozenset[str]
 
 
-@frozen
-class _Place:
+class _Place(Struct, frozen=True):
     """What is known of the elements of a place of the schema.
 
     ``filled`` are the numbers that may not be empty, ``named`` the kind that the elements' names must not be twice among.

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
+
+from msgspec import field
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
@@ -29,7 +30,6 @@ if TYPE_CHECKING:
 Values = dict[str, Any]
 
 
-@dataclass(slots=True)
 class Draft(Builder):
     """An MJCF model so far. ``named``: elements by MJCF's own kinds and names."""
 

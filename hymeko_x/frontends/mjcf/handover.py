@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import contextlib
 import posixpath
-from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
@@ -27,8 +29,7 @@ _HOLDERS = ("mesh", "texture", "hfield", "skin", "flexcomp")
 _NAMED_BY_FILE = ("mesh", "texture", "hfield")
 
 
-@dataclass(slots=True)
-class Handover:
+class Handover(Struct):
     """What MuJoCo is given beside the main model: ``models`` and ``assets`` by their names there.
 
     ``uris`` are the paths of the files from the main model, ``tokens`` the way back, ``said`` how the main model itself calls its own ones.

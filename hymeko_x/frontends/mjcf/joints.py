@@ -60,7 +60,7 @@ def _read_dof(element: Element, spot: Spot, key: Id, prefix: str, draft: Draft) 
 
 
 def _named(dof: Dof, name: str) -> Dof:
-    from dataclasses import replace
+    from msgspec.structs import replace
 
     return replace(dof, name=name)
 

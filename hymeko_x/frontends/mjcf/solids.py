@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import replace
 
 from hymeko_x.formats.mjcf.words import NAME
 from hymeko_x.ir.mechanism import file_stem, shape_edge

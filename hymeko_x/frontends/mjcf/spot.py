@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct
+
 from hymeko_x.ir.values import IDENTITY, Pose, compose
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
 
 
-@frozen
-class Spot:
+class Spot(Struct, frozen=True):
     """The body of an element, the <frame> around it (its number, empty for none) with its pose in the body, and the childclass.
 
     ``stem``: the nearest name above, after which nameless bodies are called; so their names do not grow with depth.

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct, field
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
@@ -22,8 +23,7 @@ if TYPE_CHECKING:
     from hymeko_x.xml.unread import Unread
 
 
-@dataclass(slots=True)
-class Definition:
+class Definition(Struct):
     """A material as far as it is known: colour, texture, and where in the file it is defined and used."""
 
     id: Id
@@ -40,7 +40,6 @@ class Definition:
         return self.rgba is None and self.texture is None
 
 
-@dataclass(slots=True)
 class UrdfBuilder(Builder):
     """A URDF robot so far; ``links`` and ``joints`` by the names in the file, first one wins."""
 

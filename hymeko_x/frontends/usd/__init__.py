@@ -6,9 +6,10 @@ what becomes what.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import PurePath
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin

@@ -6,13 +6,14 @@ Source: UsdPhysics, "Rigid Body Mass": explicit mass before density before the m
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.materials import bound_to
 from hymeko_x.frontends.usd.transforms import numbers_of, rotation_of
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Inertial, InertialWritten, MeshShape, Role, Shape, Sphere
 from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Tensor, Vec3, apply, rotate_tensor
 
@@ -152,8 +153,7 @@ def _completed(stated: Inertial, solid: Solid) -> Inertial:
 # ---- solids of density 1 ---------------------------------------------------------------------------------------------------------
 
 
-@frozen
-class Solid:
+class Solid(Struct, frozen=True):
     """Mass in kg, centre of mass in m and tensor in kg m^2 about it, in the axes of the body."""
 
     mass: float

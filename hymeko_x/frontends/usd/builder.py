@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
+
+from msgspec import field
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
@@ -35,8 +37,7 @@ ORIGINAL_NAME = "cyberwave:name"
 """Where cyberwave-robot-format keeps what a prim could not be called."""
 
 
-@dataclass(slots=True)
-class UsdBuilder(Builder):
+class UsdBuilder(Builder, dict=True):
     """A robot of a stage so far.
 
     ``bodies`` and ``elements`` lead from a prim's path to its body and to all elements that were read from it; ``taken`` holds,
@@ -46,15 +47,16 @@ class UsdBuilder(Builder):
     source: Source
     report: Report
     scene: Scene
-    transforms: Transforms = field(init=False)
     bodies: dict[str, Id] = field(default_factory=dict)
     elements: dict[str, list[Id]] = field(default_factory=dict)
     read_names: dict[str, set[str]] = field(default_factory=dict)
     meshes: dict[str, Id] = field(default_factory=dict)
     materials: dict[str, Id] = field(default_factory=dict)
 
-    def __post_init__(self) -> None:
-        self.transforms = Transforms(self.scene)
+    @cached_property
+    def transforms(self) -> Transforms:
+        """The transforms of the prims in the scene."""
+        return Transforms(self.scene)
 
     def prim_at(self, path: str) -> Prim:
         """The prim at a path that something was read from."""

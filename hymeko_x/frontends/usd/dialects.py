@@ -9,8 +9,9 @@ cyberwave-robot-format repeats everything in ``cyberwave:`` attributes, in SI un
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.frontends.usd.bodies import BODY, body_at
 from hymeko_x.frontends.usd.joints import End, ReadJoint

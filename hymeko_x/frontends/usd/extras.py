@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct
 from pxr import Gf, Sdf, Usd, UsdGeom
 
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.transforms import decomposed, matrix_of
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import ROOT, Extra
 
 if TYPE_CHECKING:
@@ -52,8 +52,7 @@ def _home(key: Id, path: str, builder: UsdBuilder) -> str:
     return noted.split()[0] if " " in noted else path
 
 
-@frozen
-class _Unread:
+class _Unread(Struct, frozen=True):
     """What was not read of a prim: whether its type was not, its schemas, metadata and properties, and where it stands now."""
 
     has_type: bool

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.bodies import body_at
 from hymeko_x.frontends.usd.transforms import rotation_of
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
 from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, compose, inverse, rotate, rotation_angle, unit
@@ -35,16 +36,14 @@ TYPES = (
 )
 
 
-@frozen
-class End:
+class End(Struct, frozen=True):
     """One side of a joint: the body (or the world) and the joint's frame in it."""
 
     body: Id
     pose: Pose
 
 
-@frozen
-class ReadJoint:
+class ReadJoint(Struct, frozen=True):
     """A joint as its prim says it, not yet part of a tree: ``ends`` are those of body0 and body1.
 
     ``merged`` are the prims of its dofs where it was made of several joints.

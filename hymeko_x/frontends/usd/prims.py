@@ -6,10 +6,10 @@ and values are asked for only where somebody wants them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct, field
 from pxr import Gf, Sdf, Tf, Usd, Vt
 
 from hymeko_x.formats.usd import PREFIX
@@ -53,8 +53,7 @@ _TYPES_OF = MappingProxyType(
 """The types that the rows of UsdGeom's schemas may have; one that is said to be anything else has no value for us."""
 
 
-@dataclass(slots=True, eq=False)
-class Prim:
+class Prim(Struct, eq=False):
     """A prim: its path, name, type and API schemas (also those that no plugin knows), and what it says.
 
     ``properties`` are the names of all that it says, ``types`` the types of those that are attributes; ``said`` is what the prim
@@ -139,8 +138,7 @@ class Prim:
             prim = prim.parent
 
 
-@dataclass(slots=True, eq=False)
-class Layer:
+class Layer(Struct, eq=False):
     """All prims of a layer by path, those above first. ``has_unknown_types``: some attribute has a type that USD does not know.
 
     ``stage`` is set when the layer is opened as one.
@@ -185,8 +183,7 @@ def read_layer(layer: Any, most: int) -> Layer | None:
     return found
 
 
-@dataclass(slots=True)
-class _Names:
+class _Names(Struct):
     """One copy of each name, and whether USD knows the types that have occurred."""
 
     known: dict[str, str] = field(default_factory=dict)

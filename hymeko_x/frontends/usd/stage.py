@@ -8,13 +8,13 @@ import tempfile
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.frontends.usd.layers import _UP, _gather, _words, check_paths, check_size, drop_unknown_types, lay_out
 from hymeko_x.frontends.usd.prims import read_layer
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -29,8 +29,7 @@ _MOST_UNIT = 1e12
 MOST_NESTED_INSTANCES = 32
 
 
-@frozen
-class Scene:
+class Scene(Struct, frozen=True):
     """An open stage in its own units; ``world`` turns its world into metres with z up; ``folder`` is where its layers lie.
 
     ``layer`` says all of it by itself, and ``prims`` is what it says, by path.

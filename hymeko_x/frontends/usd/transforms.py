@@ -6,10 +6,10 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
 from pxr import Gf, UsdGeom
 
 from hymeko_x import codes
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, Quat, Vec3, cross, scaled, unit_quat
 
 if TYPE_CHECKING:
@@ -23,8 +23,7 @@ _UNIT = 1e-6
 """Scales this close to one another, or to 1, are rounding errors of single-precision rotations."""
 
 
-@frozen
-class Transform:
+class Transform(Struct, frozen=True):
     """A rigid pose in m and the scale along its axes; ``sheared`` when the matrix says more than that."""
 
     pose: Pose

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.joints import DISTANCE, merge_parallel

@@ -5,8 +5,9 @@ Source: the xacro language as the library `xacro` evaluates it; docs/mapping/xac
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse

@@ -14,16 +14,17 @@ import sys
 import threading
 from bisect import bisect_right
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Protocol, cast, runtime_checkable
 
+from msgspec import Struct
+from msgspec.structs import replace
+
 from hymeko_x import codes
 from hymeko_x.diagnostics import Diagnostic, Origin, refuse
 from hymeko_x.frontends.xacro import wording
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -38,8 +39,7 @@ MOST_BYTES = 2**30
 MOST_SOURCE = 2**28
 
 
-@frozen
-class Limits:
+class Limits(Struct, frozen=True):
     """What an expansion may use: a hundred times what a real robot needs, and some 25,000 links of macros."""
 
     cpu_seconds: int = 20
@@ -67,8 +67,7 @@ class Packages(Protocol):
         ...
 
 
-@dataclass(frozen=True)
-class Expansion:
+class Expansion(Struct, frozen=True, dict=True):
     """The URDF that a xacro file stands for, and where its elements were written.
 
     ``name`` is what the text is called while it is read. On ``lines`` (rising) of the text elements start, which stand

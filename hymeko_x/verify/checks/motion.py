@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec.structs import replace
 
 from hymeko_x.verify.checks.pair import POSITION, ROTATION, Pair, counted, worst
 from hymeko_x.verify.kinematics import prepare

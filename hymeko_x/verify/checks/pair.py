@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct, field
 
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.dh import zero_poses
 from hymeko_x.verify.kinematics import bounds, draw, follow, prepare
 from hymeko_x.verify.meshes import Meshes
@@ -25,8 +24,7 @@ POSITION, ROTATION = 1e-9, 1e-9
 MASS_MATRIX = 1e-8
 
 
-@dataclass(frozen=True, eq=False)
-class Pair:
+class Pair(Struct, frozen=True, eq=False, dict=True):
     """Two robots, their match, the same configurations (n, width) in the coordinates of each, and notes for the verdict.
 
     ``meshes`` reads the mesh files that are compared, each once; ``mesh_distances`` is what was found of meshes already.
@@ -162,8 +160,7 @@ def _turn_alike(a: KinematicModel, b: KinematicModel, turned: Sequence[Turned], 
         ball.q[:, ball.column : ball.column + 4] = quat_from_rotation(np.swapaxes(at_rest, 1, 2) @ wanted)
 
 
-@frozen(eq=False)
-class _Side:
+class _Side(Struct, frozen=True, eq=False):
     """One robot's dofs of a joint that turns every way: from the body ``top`` to the body ``below``."""
 
     model: KinematicModel

@@ -7,12 +7,12 @@ and points, because one file on one side may be several on the other.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.checks.pair import Pair, counted, worst
 from hymeko_x.verify.meshes import EMPTY, measures, used
 from hymeko_x.verify.model import WORLD, Array, Feature, Index, MeshFile, Role, Shape
@@ -34,8 +34,7 @@ _INFINITE = ("plane", "hfield", "none")
 _ROLES = {Feature.COLLISIONS: ("collision", (Role.COLLISION, Role.BOTH)), Feature.VISUALS: ("visual", (Role.VISUAL, Role.BOTH))}
 
 
-@frozen
-class _Result:
+class _Result(Struct, frozen=True):
     """How well two lists of shapes fit: those without a counterpart, the worst distance in m, and that of meshes (relative)."""
 
     lone: tuple[str, ...]

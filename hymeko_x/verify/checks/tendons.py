@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct, field
 
 from hymeko_x.verify.checks.pair import Pair, counted, worst
 from hymeko_x.verify.matching.bodies import plain
@@ -105,8 +105,7 @@ def _words(model: KinematicModel, step: Step) -> str:
 # ---- numbers ---------------------------------------------------------------------------------------------------------
 
 
-@dataclass(slots=True)
-class _Differences:
+class _Differences(Struct):
     """Differences of one quantity, what is allowed for each, and where each is."""
 
     unit: str

@@ -20,10 +20,10 @@ from enum import Enum
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.dh.lines import Frame, Line, Link, link_between, motion
 from hymeko_x.verify.kinematics import prepare
 from hymeko_x.verify.model import WORLD, Array, Kind, KinematicModel
@@ -40,8 +40,7 @@ class Convention(Enum):
     HAYATI = "hayati"
 
 
-@frozen
-class Row:
+class Row(Struct, frozen=True):
     """One joint: theta in rad and d in m, to which its coordinate adds (theta of a hinge, d of a slide), and its link.
 
     The link is that behind the joint in the standard convention and before it in the modified one; ``beta`` in rad is not
@@ -57,8 +56,7 @@ class Row:
     beta: float = 0.0
 
 
-@frozen(eq=False)
-class Table:
+class Table(Struct, frozen=True, eq=False):
     """The rows of a chain between two constants: T(q) = ``base`` * rows(q) * ``tool``, the tip's pose in the base's frame.
 
     ``dofs`` are the indices of the rows' dofs in the model, ``ends`` the bodies at both ends, ``start`` and

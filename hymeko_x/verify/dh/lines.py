@@ -9,8 +9,7 @@ import math
 from typing import TYPE_CHECKING
 
 import numpy as np
-
-from hymeko_x.frozen import frozen
+from msgspec import Struct
 
 if TYPE_CHECKING:
     from hymeko_x.verify.model import Array
@@ -27,8 +26,7 @@ TOUCHING = 1e-10
 """The distance in m below which two lines meet, or coincide when they are parallel."""
 
 
-@frozen
-class Line:
+class Line(Struct, frozen=True):
     """A joint's axis in its positive sense: through ``point``, along unit ``axis``. Of a slide only the direction is physical."""
 
     point: Vec
@@ -36,8 +34,7 @@ class Line:
     sliding: bool = False
 
 
-@frozen
-class Frame:
+class Frame(Struct, frozen=True):
     """A right-handed frame: origin and axes."""
 
     o: Vec
@@ -60,8 +57,7 @@ class Frame:
         return dot(minus(point, self.o), self.z)
 
 
-@frozen
-class Link:
+class Link(Struct, frozen=True):
     """J = Rz(theta) Tz(d) along one line, then L = Tx(a) Rx(alpha) Ry(beta) to the next."""
 
     theta: float

@@ -7,10 +7,10 @@ a ball is three hinges elsewhere, and three hinges on one body are a chain elsew
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from hymeko_x.frozen import frozen
+from msgspec import Struct, field
+
 from hymeko_x.verify.matching.bodies import only_carries, pair_by_name, pair_by_structure, plain
 from hymeko_x.verify.model import WORLD, Kind, KinematicModel
 
@@ -23,16 +23,14 @@ _TURNING = (Kind.HINGE, Kind.BALL, Kind.SCREW, Kind.FREE)
 _SAME_MOTION = {Kind.SCREW: Kind.HINGE}  # a screw's angle is the coordinate of the hinge that stands for it
 
 
-@frozen
-class Finding:
+class Finding(Struct, frozen=True):
     """Something that has no counterpart: the quantity that it belongs to, and words that name it."""
 
     quantity: str
     words: str
 
 
-@frozen
-class Turned:
+class Turned(Struct, frozen=True):
     """A body whose rotation is one quaternion on one side and three hinges on the other.
 
     ``top_a`` and ``top_b`` are the matched bodies above; the dofs are the last ones in between that turn.
@@ -46,8 +44,7 @@ class Turned:
     dofs_b: tuple[int, ...]
 
 
-@dataclass(slots=True)
-class Match:
+class Match(Struct):
     """Pairs of bodies (the world first) and of dofs, and what has no partner.
 
     ``floor_a`` and ``floor_b`` are bases that must not count; ``lone_a`` and ``lone_b`` bodies without a partner;
@@ -69,8 +66,7 @@ class Match:
         self.findings.append(Finding(quantity, words))
 
 
-@frozen
-class Path:
+class Path(Struct, frozen=True):
     """From a matched body up to the nearest matched ancestor: the bodies in between and at the end, and their dofs, from the top."""
 
     top: int

@@ -7,8 +7,8 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import WORLD, Array, Body, Kind, KinematicModel
 
 if TYPE_CHECKING:
@@ -58,8 +58,7 @@ def _spelled(model: KinematicModel, taken: Iterable[int]) -> dict[str, int]:
     return {name: i for name, i in names if counts[name] == 1}
 
 
-@frozen(eq=False)
-class _Limb:
+class _Limb(Struct, frozen=True, eq=False):
     """An unmatched body below a matched one, maybe behind bodies that only carry dofs.
 
     ``names`` and ``kinds`` are those of all dofs up to the matched body, a ball being three hinges; ``place`` is its pose there.

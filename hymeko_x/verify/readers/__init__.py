@@ -7,13 +7,13 @@ import importlib
 import os
 import sys
 import tempfile
-from dataclasses import field
 from typing import TYPE_CHECKING, Protocol, cast
+
+from msgspec import Struct, field
 
 from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.frozen import frozen
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -66,8 +66,7 @@ class Reader(Protocol):
         ...
 
 
-@frozen
-class Places:
+class Places(Struct, frozen=True):
     """Where the files are that a robot refers to: the user's own NAME=DIR, the folders in which packages
     stand, the arguments of a xacro file, and the variants of a USD file."""
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.assets.refer import Keep, keep_references, new_uri
 from hymeko_x.formats.mjcf.tree import parse_text

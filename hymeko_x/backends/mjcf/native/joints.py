@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
 
 from hymeko_x.backends.mjcf.native.spot import Op, Spot
 from hymeko_x.formats.mjcf.joints import ANCHOR, AXIS, JOINT

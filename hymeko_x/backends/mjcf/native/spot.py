@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import field
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from hymeko_x.formats.mjcf.classes import merge
 from hymeko_x.formats.mjcf.codec import POSE, BadAttribute
 from hymeko_x.formats.mjcf.tree import parse_text
-from hymeko_x.frozen import frozen
 from hymeko_x.ir.values import IDENTITY, Pose, compose
 
 if TYPE_CHECKING:
@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
 
 
-@frozen
-class Around:
+class Around(Struct, frozen=True):
     """A <frame>: its number and attributes, its pose in the body, its childclass, and the frame around it."""
 
     number: str
@@ -29,8 +28,7 @@ class Around:
     depth: int = 1
 
 
-@frozen
-class Spot:
+class Spot(Struct, frozen=True):
     """A body (or the world), the childclass in force in it, and the frames in it by number."""
 
     body: Id
@@ -46,8 +44,7 @@ class Spot:
         return self.childclass if around is None else around.childclass
 
 
-@frozen
-class Op:
+class Op(Struct, frozen=True):
     """One element to print: ``kind`` is leaf, body (to be opened and filled with ``spot``) or frame (to be opened)."""
 
     kind: str

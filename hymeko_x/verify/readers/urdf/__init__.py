@@ -7,15 +7,15 @@ Source: pinocchio ``buildModelFromXML``; yourdfpy ``URDF.load``.
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pinocchio as pin
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Coupling, Dof, Feature, Joint, Kind, KinematicModel, grounded
 from hymeko_x.verify.readers import overheard
 from hymeko_x.verify.readers.urdf.yourdfpy import Mimic, Second, disagreement, load
@@ -84,8 +84,7 @@ def _build(text: str, file: str, *, mimic: bool) -> Any:
 # ---- bodies and joints -----------------------------------------------------------------------------------------------
 
 
-@frozen(eq=False)
-class _Link:
+class _Link(Struct, frozen=True, eq=False):
     """A BODY frame of Pinocchio with the frame of the joint above it and the index of its parent's BODY frame."""
 
     frame: Any

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
 
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.kinematics import draw, prepare
 from hymeko_x.verify.model import WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, MeshFile, Role, Shape, grounded
 from hymeko_x.verify.spatial import angle_between
@@ -25,8 +25,7 @@ _MOVING = ("revolute", "continuous", "prismatic")
 _SLACK = 1e-9  # m and rad; both readers work in doubles
 
 
-@frozen
-class Mimic:
+class Mimic(Struct, frozen=True):
     """follower = multiplier * leader + offset."""
 
     follower: str
@@ -35,8 +34,7 @@ class Mimic:
     offset: float
 
 
-@frozen(eq=False)
-class Second:
+class Second(Struct, frozen=True, eq=False):
     """What yourdfpy read; ``robot`` and ``shapes`` are None when it refused the file, and ``notes`` say so.
 
     ``still`` is a joint whose axis is zero, which urdfdom takes for a default.

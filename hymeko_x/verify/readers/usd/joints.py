@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 from pxr import UsdPhysics
 
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import INF, Array, Coupling, Dof, Joint, Kind, KinematicModel, Loop, between_frames
 from hymeko_x.verify.readers.usd.scene import number_of, targets_of, value_of
 from hymeko_x.verify.spatial import frame_with_z, rigid, rotation_from_quat
@@ -32,8 +32,7 @@ _D6 = (
 )
 
 
-@frozen(eq=False)
-class JointEdge:
+class JointEdge(Struct, frozen=True, eq=False):
     """One joint: bodies by path ("" is the world), the joint's frame on each, and dofs in that frame.
 
     ``more`` are joints that add their mobility to it. ``closes`` marks a joint that the file leaves out of the articulation;

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
 from pxr import UsdGeom, UsdPhysics
 
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.spatial import inverse, rigid
 
 if TYPE_CHECKING:
@@ -18,8 +18,7 @@ if TYPE_CHECKING:
 _Z_FROM_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
-@frozen(eq=False)
-class Scene:
+class Scene(Struct, frozen=True, eq=False):
     """A stage with its units: ``metres`` and ``kilograms`` per unit, ``upright`` the rotation that makes z point up."""
 
     stage: Any

@@ -5,12 +5,12 @@ Source: MjcPhysics (MuJoCo's USD schemas), mujoco-usd-converter, Newton's import
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from msgspec import Struct
+from msgspec.structs import replace
 from pxr import Sdf
 
-from hymeko_x.frozen import frozen
 from hymeko_x.verify.model import CYLINDER, JOINT, PULLEY, RELAXED, SIDE, SITE, SPHERE, Kind, Role, Spring, Step, Tendon, point_of
 from hymeko_x.verify.readers.usd.joints import dof_names
 from hymeko_x.verify.readers.usd.scene import number_of, owner, targets_of, value_of
@@ -31,8 +31,7 @@ class _BadPath(Exception):
     """A path that nobody can follow; the text says why."""
 
 
-@frozen(eq=False)
-class _Guide:
+class _Guide(Struct, frozen=True, eq=False):
     """What paths lead through: each joint's dof by the joint's path, and the bodies by theirs; "" is the world."""
 
     scene: Scene
