@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 
 import hymeko_x as hx
 from hymeko_x.backends import mjcf
-from hymeko_x.backends.mjcf.text import numbers
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, coupling_edge, joint_edge, layer_edge, mount_edge, shape_edge
@@ -112,8 +111,13 @@ WHOLE = """<mujoco model="chain">
 
 
 def test_no_zero_has_a_sign_whichever_was_written_first() -> None:
-    assert numbers(-0.0, 0.5) == numbers(0.0, 0.5) == "0 0.5"
-    assert numbers(0.0, 0.25) == numbers(-0.0, 0.25) == "0 0.25"
+    shapes = {
+        Id("shape", f"s{number}"): shape_edge(Shape(Box((1.0, 1.0, 1.0)), Role.VISUAL), body("b0"), pose((zero, 0.5, 0.0)))
+        for number, zero in enumerate((-0.0, 0.0, -0.0))
+    }
+    text = printed(chain(hinge(axis=Z), edges=shapes))
+    assert text.count('pos="0 0.5 0"') == 3
+    assert "-0 " not in text
 
 
 def test_a_small_robot_reads_as_if_written_by_hand() -> None:

@@ -1,7 +1,6 @@
-"""Prints a legal mechanism as MJCF for MuJoCo 4.0: radians, named elements, the sections in their usual order.
+"""Prints a legal mechanism as MJCF for MuJoCo 4.0. Its rules made it legal, and its files have paths already.
 
-Everything that MJCF cannot say was rewritten by `ir.legalize` for the target ``mjcf``, and `assets.pack` gave every
-mesh and texture a relative path; nothing is decided here.
+A mechanism that came from MJCF keeps its classes and notations, so that MuJoCo compiles the same model from what is written.
 """
 
 from __future__ import annotations
@@ -11,42 +10,51 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
+from hymeko_x.backends.mjcf.actuators import write_actuators
 from hymeko_x.backends.mjcf.assets import write_assets
 from hymeko_x.backends.mjcf.bodies import write_worldbody
-from hymeko_x.backends.mjcf.classes import write_defaults
-from hymeko_x.backends.mjcf.names import printed_names
-from hymeko_x.backends.mjcf.relations import write_actuators, write_contacts, write_equalities
+from hymeko_x.backends.mjcf.classes import ROLE_CLASSES, write_defaults
+from hymeko_x.backends.mjcf.contacts import write_contacts
+from hymeko_x.backends.mjcf.equalities import write_equalities
+from hymeko_x.backends.mjcf.sensors import write_sensors
+from hymeko_x.backends.mjcf.sheet import open_sheet
 from hymeko_x.backends.mjcf.tendons import write_tendons
-from hymeko_x.backends.mjcf.text import Text
 from hymeko_x.formats import carrier
-from hymeko_x.rewrite.native import is_native
+from hymeko_x.formats.mjcf.words import SECTIONS
 from hymeko_x.source import Package
 from hymeko_x.xml.text import escaped
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from hymeko_x.backends.mjcf.sheet import MjcfSheet
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.rewrite.context import Options
+
+_WRITERS: Mapping[str, Callable[[MjcfSheet], None]] = {
+    "asset": write_assets,
+    "worldbody": write_worldbody,
+    "contact": write_contacts,
+    "equality": write_equalities,
+    "tendon": write_tendons,
+    "actuator": write_actuators,
+    "sensor": write_sensors,
+}
 
 
 def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The MJCF of the mechanism. Files that it refers to are not part of it: `assets.pack` returns them."""
     del options, report
-    if is_native(mechanism):
-        from hymeko_x.backends.mjcf.native import write_native
-
-        return write_native(mechanism)
-    names = printed_names(mechanism)
-    text = Text()
-    text.open("mujoco", {"model": mechanism.name or None})
-    text.leaf("compiler", {"angle": "radian", "autolimits": "true"})
-    place, defaults = text.place, Text()
-    for section in (write_assets, write_worldbody, write_contacts, write_equalities, write_tendons, write_actuators):
-        section(text, mechanism, names)
-    write_defaults(defaults, text.leaves)
-    text.insert(place, defaults)
-    text.close()
-    return Package(text.bytes())
+    sheet = open_sheet(mechanism, ROLE_CLASSES)
+    for section in SECTIONS:
+        sheet.write_kept(section)
+        if section in _WRITERS:
+            _WRITERS[section](sheet)
+    sheet.write_kept("")
+    if not sheet.from_mjcf:
+        write_defaults(sheet)
+    return Package(sheet.bytes())
 
 
 def carry_residue(package: Package, text: str) -> Package:

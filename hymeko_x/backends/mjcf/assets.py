@@ -1,83 +1,109 @@
-"""<asset>: textures, materials and meshes."""
+"""<asset>: textures, materials and meshes, then what is written as it is."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.mjcf.text import Attributes, Text, number, numbers
-from hymeko_x.formats import mjcf as words
+from hymeko_x.backends.mjcf.sheet import tag_of
+from hymeko_x.formats.mjcf.places import MATERIAL, MESH
+from hymeko_x.formats.mjcf.words import below
+from hymeko_x.ir.graph import Arc
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Layer, Material, Mesh, Texture
+from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.mjcf.names import Printed
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.backends.mjcf.sheet import MjcfSheet
+    from hymeko_x.ir.mechanism import Id
 
-_NO_SCALE = (1.0, 1.0, 1.0)
+_PLAIN_MATERIAL = (MATERIAL[-1], *MATERIAL[:-1])
+"""With its texture first, as one reads it."""
 
 
-def write_assets(text: Text, mechanism: Mechanism, names: Printed) -> None:
+def write_assets(sheet: MjcfSheet) -> None:
     """Every texture, material and mesh, in this order; nothing where there is none."""
-    textures = list(mechanism.vertices(Texture))
-    materials = list(mechanism.vertices(Material))
-    meshes = list(mechanism.vertices(Mesh))
-    if not (textures or materials or meshes):
-        return
-    text.section("asset")
-    for key, texture in textures:
-        text.leaf("texture", {"name": names.of(key), "type": "2d", "file": texture.uri})
-    layers = _layers(mechanism)
-    for key, material in materials:
-        write_material(text, names.of(key), material, [(use, names.of(texture)) for use, texture in layers.get(key, ())])
-    for key, mesh in meshes:
-        text.leaf("mesh", _mesh_attributes(mechanism, key, mesh, names))
-    text.close()
+    mechanism = sheet.mechanism
+    layers = _layers(sheet)
+    tags: list[Tag | str] = [_texture(sheet, key, texture) for key, texture in mechanism.vertices(Texture)]
+    tags += [_material(sheet, key, material, layers.get(key, [])) for key, material in mechanism.vertices(Material)]
+    tags += [_mesh(sheet, key, mesh) for key, mesh in _in_order(sheet, list(mechanism.vertices(Mesh)))]
+    tags += [line for _, line in sheet.lines_in("asset")]
+    if tags:
+        sheet.section("asset").children += tags
 
 
-def write_material(text: Text, name: str, material: Material, layers: list[tuple[str, str]]) -> None:
+def _in_order(sheet: MjcfSheet, meshes: list[tuple[Id, Mesh]]) -> list[tuple[Id, Mesh]]:
+    """The meshes in the order of their file in MJCF: by name, or as was noted while there are as many as there were."""
+    if not sheet.from_mjcf:
+        return meshes
+    by_name = sorted(meshes, key=lambda item: item[0].name)
+    places = sheet.mechanism.notation(ROOT, "meshes") or ""
+    order = [int(place) for place in places.split() if place.isdigit()]
+    return [by_name[place] for place in order] if sorted(order) == list(range(len(meshes))) else by_name
+
+
+def _file(uri: str | None, folder: str) -> str | None:
+    """The file as it is called in the folder that <compiler> names."""
+    return None if uri is None else below(folder, uri) or uri
+
+
+def _texture(sheet: MjcfSheet, key: Id, texture: Texture) -> Tag:
+    """An image. Without a type it would be one for the six sides of a cube."""
+    attributes = {
+        "name": sheet.name(key),
+        "class": sheet.own_class(key),
+        **({} if sheet.from_mjcf else {"type": "2d"}),
+        "file": _file(texture.uri, sheet.settings.texture_folder),
+        **sheet.kept_attributes(key),
+    }
+    return tag_of("texture", attributes, sheet.inside(key))
+
+
+def _mesh(sheet: MjcfSheet, key: Id, mesh: Mesh) -> Tag:
+    own_class = sheet.own_class(key)
+    values = {"scale": mesh.scale, "vertex": mesh.vertices, "face": tuple(map(float, mesh.faces))}
+    found = sheet.attributes(values, MESH, sheet.base("mesh", own_class), sheet.notations(key), {})
+    if mesh.faces and "face" in found:
+        found["face"] = " ".join(map(str, mesh.faces))
+    attributes = {
+        "name": sheet.name(key),
+        "class": own_class,
+        "file": _file(mesh.uri, sheet.settings.mesh_folder),
+        **found,
+        **sheet.kept_attributes(key),
+    }
+    return tag_of("mesh", attributes, sheet.inside(key))
+
+
+def _material(sheet: MjcfSheet, key: Id, material: Material, layers: list[tuple[str, str]]) -> Tag:
     """A material; its colour texture is an attribute, several textures are <layer> elements."""
-    simple = len(layers) == 1 and layers[0][0] == "rgb"
-    attributes: Attributes = {
-        "name": name,
-        "texture": layers[0][1] if simple else None,
-        "rgba": None if material.rgba is None else numbers(*material.rgba),
-        "specular": number(material.specular),
-        "shininess": number(material.shininess),
-        "reflectance": number(material.reflectance),
-        "emission": number(material.emission),
-        "metallic": number(material.metallic),
-        "roughness": number(material.roughness),
+    own_class = sheet.own_class(key)
+    notations = sheet.notations(key)
+    simple = layers[0][1] if len(layers) == 1 and layers[0][0] == "rgb" and not notations.get("layers") else None
+    values = {
+        "rgba": material.rgba or (),
+        "specular": material.specular,
+        "shininess": material.shininess,
+        "reflectance": material.reflectance,
+        "emission": material.emission,
+        "metallic": material.metallic,
+        "roughness": material.roughness,
+        "texture": simple,
     }
-    if simple or not layers:
-        text.leaf("material", attributes)
-        return
-    text.open("material", attributes)
-    for use, texture in layers:
-        text.leaf("layer", {"role": use, "texture": texture})
-    text.close()
+    groups = MATERIAL if sheet.from_mjcf else _PLAIN_MATERIAL
+    found = sheet.attributes(values, groups, sheet.base("material", own_class), notations, {})
+    inside = [] if simple is not None else [Tag("layer", {"role": use, "texture": texture}) for use, texture in layers]
+    return tag_of(
+        "material", {"name": sheet.name(key), "class": own_class, **found, **sheet.kept_attributes(key)}, [*inside, *sheet.inside(key)]
+    )
 
 
-def _mesh_attributes(mechanism: Mechanism, key: Id, mesh: Mesh, names: Printed) -> Attributes:
-    said = {
-        extra.path.removeprefix("@"): extra.text
-        for extra in mechanism.extras.get(key, ())
-        if extra.format == words.NAME and extra.path.startswith("@")
-    }
-    return {
-        "name": names.of(key),
-        "file": mesh.uri,
-        "scale": None if mesh.scale == _NO_SCALE else numbers(*mesh.scale),
-        "vertex": numbers(*mesh.vertices) if mesh.vertices else None,
-        "face": " ".join(map(str, mesh.faces)) if mesh.faces else None,
-        **said,
-    }
-
-
-def _layers(mechanism: Mechanism) -> dict[Id, list[tuple[str, Id]]]:
-    """For each material its textures with their use; a layer that lacks one of both says nothing."""
-    found: dict[Id, list[tuple[str, Id]]] = {}
-    for _, layer, arcs in mechanism.edges(Layer):
+def _layers(sheet: MjcfSheet) -> dict[Id, list[tuple[str, str]]]:
+    """For each material its textures with their use; a layer that lacks one of both is left out."""
+    found: dict[Id, list[tuple[str, str]]] = {}
+    for _, layer, arcs in sheet.mechanism.edges(Layer):
         texture = next((arc.target for arc in arcs if arc.sign > 0), None)
         material = next((arc.target for arc in arcs if arc.sign < 0), None)
-        if material is not None and texture is not None and texture in mechanism.graph.vertices:
-            found.setdefault(material, []).append((layer.use, texture))
+        if material is not None and texture is not None and texture in sheet.mechanism.graph.vertices:
+            found.setdefault(material, []).append((layer.use, sheet.reference(Arc(texture))))
     return found

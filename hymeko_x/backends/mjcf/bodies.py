@@ -1,143 +1,85 @@
-"""<worldbody>: the tree of bodies with their inertials, joints, geoms, sites, cameras and lights."""
+"""<worldbody>: bodies with all that is in them, and the frames around it, without recursion."""
 
 from __future__ import annotations
 
-import math
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.mjcf.geoms import write_geom
-from hymeko_x.backends.mjcf.text import Attributes, Text, number, numbers, pose_attributes
-from hymeko_x.formats.mjcf import DOFS, LIGHTS
+from msgspec.structs import replace
+
+from hymeko_x.backends.mjcf.geoms import geom_tag
+from hymeko_x.backends.mjcf.joints import joint_tag
+from hymeko_x.backends.mjcf.mounts import mount_tag
+from hymeko_x.backends.mjcf.sheet import open_body, tag_of
+from hymeko_x.formats.mjcf.codec import POSE
+from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
 from hymeko_x.ir.mechanism import WORLD
-from hymeko_x.ir.parts import Body, Camera, DofKind, Frame, Light
-from hymeko_x.ir.values import IDENTITY, ZERO, apply, compose, inverse, rotate, unit
+from hymeko_x.ir.parts import Body
+from hymeko_x.ir.values import IDENTITY, compose, inverse
+from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.mjcf.names import Printed
-    from hymeko_x.ir.mechanism import Id, JointView, Mechanism
-    from hymeko_x.ir.parts import Dof, Inertial
-    from hymeko_x.ir.values import Pose, Vec3
+    from hymeko_x.backends.mjcf.sheet import BodyTag, MjcfSheet
+    from hymeko_x.ir.mechanism import Id, JointView
+    from hymeko_x.ir.parts import Inertial
 
-_DOWN: Vec3 = (0.0, 0.0, -1.0)
+_POSE = (POSE,)
+_INERTIAL = (INERTIAL,)
+_NO_TENSOR = (0.0,) * 6
 
 
-def write_worldbody(text: Text, mechanism: Mechanism, names: Printed) -> None:
-    """The world's own geoms, then every tree, depth first and without recursion."""
-    text.section("worldbody")
-    _write_content(text, mechanism, WORLD, names)
-    stack: list[Id | None] = list(reversed(mechanism.roots))
+def write_worldbody(sheet: MjcfSheet) -> None:
+    """The world's own geometry and every tree below it."""
+    kept = sheet.kept_attributes(WORLD)
+    world = sheet.section("worldbody", kept)
+    world.has_end = True
+    stack = [open_body(sheet, WORLD, world, kept.get("childclass"))]
     while stack:
-        body = stack.pop()
-        if body is None:
-            text.close()
-            continue
-        write_body(text, mechanism, body, names)
-        stack.append(None)
-        stack.extend(joint.child for joint in reversed(mechanism.children.get(body, ())))
-    text.close()
+        stack += _filled(sheet, stack.pop())
 
 
-def write_body(text: Text, mechanism: Mechanism, key: Id, names: Printed) -> None:
-    """Opens a body and writes all of it but the bodies inside it.
-
-    The body frame at the reference configuration is P C^-1 in the parent; axes and anchors are seen in that frame.
-    """
+def _filled(sheet: MjcfSheet, body: BodyTag) -> list[BodyTag]:
+    """Write the content of a body. Returns the bodies in it, which are open."""
+    mechanism, key = sheet.mechanism, body.key
     view = mechanism.parent_joint.get(key)
-    pose = IDENTITY if view is None else compose(view.parent_pose, inverse(view.child_pose))
-    text.open("body", {"name": names.of(key), **pose_attributes(pose)})
-    inertial = mechanism.vertex(key, Body).inertial
+    inertial = mechanism.vertex(key, Body).inertial if key != WORLD else None
     if inertial is not None:
-        text.leaf("inertial", _inertial_attributes(inertial))
-    for dof in view.joint.dofs if view else ():
-        write_joint(text, view, dof)  # type: ignore[arg-type]
-    _write_content(text, mechanism, key, names)
+        _add_inertial(sheet, body, inertial)
+    for number in range(len(view.joint.dofs) if view is not None else 0):
+        joint_tag(sheet, body, view, number)  # type: ignore[arg-type]
+    for shape in mechanism.shapes.get(key, ()):
+        geom_tag(sheet, body, shape)
+    for mount in mechanism.mounts.get(key, ()):
+        mount_tag(sheet, body, mount)
+    if key == WORLD:
+        return [_add_body(sheet, body, root, mechanism.parent_joint.get(root)) for root in mechanism.roots]
+    return [_add_body(sheet, body, joint.child, joint) for joint in mechanism.children.get(key, ())]
 
 
-def write_joint(text: Text, view: JointView, dof: Dof) -> None:
-    """One dof of the joint above a body."""
-    name = dof.name or view.id.name
-    behaviour = _behaviour_attributes(dof)
-    if dof.kind is DofKind.FREE:
-        if any(value is not None for value in behaviour.values()):
-            text.later("joint", {"name": name, "type": "free", **behaviour}, name)
-        else:
-            text.leaf("freejoint", {"name": name})
-        return
-    anchor = apply(view.child_pose, dof.anchor)
-    turns = dof.kind is not DofKind.SLIDE
-    attributes: Attributes = {
-        "name": name,
-        "type": None if dof.kind is DofKind.HINGE else DOFS[dof.kind],
-        "axis": None if dof.kind is DofKind.BALL else numbers(*unit(rotate(view.child_pose.quat, dof.axis))),
-        "pos": None if anchor == ZERO or not turns else numbers(*anchor),
-        "range": _range(dof),
-        **behaviour,
-    }
-    text.later("joint", attributes, name)
-
-
-def _range(dof: Dof) -> str | None:
-    lower, upper = dof.limits.lower, dof.limits.upper
-    if upper is None:
-        return None
-    return numbers(0.0 if lower is None else lower, upper)
-
-
-def _behaviour_attributes(dof: Dof) -> Attributes:
-    effort = dof.limits.effort
-    return {
-        "ref": number(dof.ref, 0.0),
-        "springref": number(dof.spring_ref, 0.0),
-        "stiffness": number(dof.stiffness, 0.0),
-        "damping": number(dof.damping, 0.0),
-        "frictionloss": number(dof.friction, 0.0),
-        "armature": number(dof.armature, 0.0),
-        "actuatorfrcrange": None if effort is None else numbers(-effort, effort),
-    }
-
-
-def _inertial_attributes(inertial: Inertial) -> Attributes:
+def _add_inertial(sheet: MjcfSheet, body: BodyTag, inertial: Inertial) -> None:
     """Mass, centre of mass, and the tensor about it in body axes: three numbers where the products are zero, else six."""
-    tensor = inertial.tensor or (0.0,) * 6
-    diagonal = not any(tensor[3:])
-    return {
-        "pos": numbers(*inertial.com),
-        "mass": numbers(inertial.mass or 0.0),
-        "diaginertia": numbers(*tensor[:3]) if diagonal else None,
-        "fullinertia": None if diagonal else numbers(*tensor),
+    if not sheet.from_mjcf:
+        inertial = replace(inertial, tensor=inertial.tensor or _NO_TENSOR, written=None)
+    notations = sheet.notations(body.key)
+    frame = body.frame(notations.get("inertial/frame"))
+    groups = _INERTIAL if frame is None else (seen_from(INERTIAL, frame.pose),)
+    attributes = sheet.attributes({"inertial": inertial}, groups, {}, notations, {}, "inertial/")
+    body.add(Tag("inertial", {**attributes, **sheet.kept_attributes(body.key, "inertial")}), frame)
+
+
+def _add_body(sheet: MjcfSheet, outer: BodyTag, key: Id, view: JointView | None) -> BodyTag:
+    """A body without its content: its pose at the reference configuration is P C^-1 in its parent."""
+    pose = IDENTITY if view is None else compose(view.parent_pose, inverse(view.child_pose))
+    notations, kept = sheet.notations(key), sheet.kept_attributes(key)
+    frame = outer.frame(notations.get("frame"))
+    groups = _POSE if frame is None else (seen_from(POSE, frame.pose),)
+    childclass = notations.get("childclass")
+    attributes = {
+        "name": sheet.name(key),
+        "childclass": childclass,
+        **sheet.attributes({"pose": pose}, groups, {}, notations, kept),
+        **kept,
     }
-
-
-def _write_content(text: Text, mechanism: Mechanism, body: Id, names: Printed) -> None:
-    """The geoms, sites, cameras and lights of a body or of the world."""
-    for shape in mechanism.shapes.get(body, ()):
-        write_geom(text, shape, names)
-    for _, key, _, pose in mechanism.mounts.get(body, ()):
-        match mechanism.graph.vertices.get(key):
-            case Frame(size=size):
-                text.leaf("site", {"name": names.of(key), **pose_attributes(pose), "size": numbers(*size) if size else None})
-            case Camera() as camera:
-                text.leaf("camera", {"name": names.of(key), **pose_attributes(pose), **_camera_attributes(camera)})
-            case Light() as light:
-                text.leaf("light", {"name": names.of(key), **_light_attributes(light, pose)})
-            case _:
-                continue
-
-
-def _camera_attributes(camera: Camera) -> Attributes:
-    """MJCF counts ``fovy`` in degrees, whatever the compiler's angle is."""
-    return {
-        "fovy": number(None if camera.fovy is None else math.degrees(camera.fovy)),
-        "resolution": None if camera.resolution is None else "{} {}".format(*camera.resolution),
-    }
-
-
-def _light_attributes(light: Light, pose: Pose) -> Attributes:
-    """A light has a direction instead of an orientation."""
-    direction = rotate(pose.quat, _DOWN)
-    return {
-        "type": light.kind if light.kind in LIGHTS[1:] else None,
-        "pos": None if pose.xyz == ZERO else numbers(*pose.xyz),
-        "dir": None if direction == _DOWN else numbers(*direction),
-        "diffuse": None if light.diffuse is None else numbers(*light.diffuse),
-    }
+    tag = tag_of("body", attributes, sheet.inside(key))
+    tag.has_end = True
+    outer.add(tag, frame)
+    return open_body(sheet, key, tag, childclass or (outer.childclass if frame is None else frame.childclass))

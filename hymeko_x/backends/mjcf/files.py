@@ -68,7 +68,7 @@ class _Packing(Builder, kw_only=True):
 def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """The mechanism with meshes and textures that MuJoCo reads; shapes whose mesh cannot be read are left out."""
     if is_native(mechanism):
-        from hymeko_x.backends.mjcf.native.files import pack_native
+        from hymeko_x.backends.mjcf.references import pack_native
 
         return pack_native(mechanism, shelf, files, report)
     run = _Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)

@@ -1,57 +1,45 @@
-"""Geoms."""
+"""<geom>."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING
 
-from hymeko_x.backends.mjcf.text import Attributes, Text, number, numbers, pose_attributes
+from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf import CLASSES
-from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Geometry, MeshShape, NoShape, Plane, Sphere
+from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, seen_from
+from hymeko_x.ir.graph import Arc
+from hymeko_x.ir.parts import NoShape, Plane
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.mjcf.names import Printed
+    from hymeko_x.backends.mjcf.sheet import BodyTag, MjcfSheet
+    from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.ir.mechanism import ShapeView
 
-_GRID = 0.05
-"""Spacing in m of the lines with which MuJoCo draws a plane; it has to be positive."""
 
-
-def write_geom(text: Text, view: ShapeView, names: Printed) -> None:
-    """A shape on its body."""
-    shape = view.shape
-    attributes: Attributes = {
-        "name": shape.name or None,
-        "class": CLASSES.get(shape.role),
-        **geometry_attributes(shape.geometry),
-        **pose_attributes(view.pose),
-        "mesh": names.of(view.mesh) if view.mesh else None,
-        "material": names.of(view.material) if view.material else None,
-        "rgba": None if shape.rgba is None else numbers(*shape.rgba),
-        "mass": number(shape.mass),
-        "density": number(shape.density),
-        "friction": numbers(*shape.friction) if shape.friction else None,
+def geom_tag(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
+    """A shape on its body. One that did not come from MJCF has the class of its role."""
+    key, shape = view.id, view.shape
+    if isinstance(shape.geometry, NoShape) and not sheet.from_mjcf:
+        raise ValueError("a shape without geometry is not legal MJCF")
+    notations, kept = sheet.notations(key), sheet.kept_attributes(key)
+    frame = body.frame(notations.get("frame"))
+    own_class = sheet.own_class(key) if sheet.from_mjcf else CLASSES.get(shape.role)
+    base = sheet.base("geom", own_class, body.childclass if frame is None else frame.childclass)
+    fitted = "mesh" in kept or ("mesh" in base and view.mesh is None)
+    groups: tuple[Group, ...] = FITTED_GEOM if fitted else GEOM
+    if frame is not None:
+        groups = (seen_from(PLACE, frame.pose), *groups[1:])
+    grid = float(notations.get("grid", GRID)) if isinstance(shape.geometry, Plane) else None
+    mesh = None if view.mesh is None else sheet.reference(Arc(view.mesh))
+    values: dict[str, object] = {
+        "place": Place(shape.geometry, view.pose, grid),
+        "mesh": mesh,
+        "material": None if view.material is None else sheet.reference(Arc(view.material)),
+        "rgba": shape.rgba or (),
+        "mass": shape.mass,
+        "density": shape.density,
+        "friction": shape.friction,
     }
-    text.later("geom", attributes, view.body.name)
-
-
-def geometry_attributes(geometry: Geometry) -> Attributes:
-    """``type`` and ``size``; MuJoCo counts half lengths."""
-    match geometry:
-        case Box():
-            return {"type": "box", "size": numbers(*(length / 2.0 for length in geometry.size))}
-        case Sphere():
-            return {"type": "sphere", "size": numbers(geometry.radius)}
-        case Cylinder():
-            return {"type": "cylinder", "size": numbers(geometry.radius, geometry.length / 2.0)}
-        case Capsule():
-            return {"type": "capsule", "size": numbers(geometry.radius, geometry.length / 2.0)}
-        case Ellipsoid():
-            return {"type": "ellipsoid", "size": numbers(*geometry.radii)}
-        case Plane():
-            return {"type": "plane", "size": numbers(*geometry.half_size, _GRID)}
-        case MeshShape():
-            return {"type": "mesh"}
-        case NoShape():
-            raise ValueError("a shape without geometry is not legal MJCF")
-        case _:
-            assert_never(geometry)
+    context = kept if fitted or mesh is None else {**kept, "mesh": mesh}
+    found = sheet.attributes(values, groups, base, notations, context)
+    body.add(tag_of("geom", {"name": shape.name or None, "class": own_class, **found, **kept}, sheet.inside(key), view.body), frame)

@@ -1,66 +1,62 @@
-"""<tendon>: cables and combinations of joints."""
+"""<tendon>: cables along their whole path, and linear combinations of joints."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.mjcf.text import Attributes, Text, number, numbers
-from hymeko_x.formats.mjcf.codec import parameter_text
-from hymeko_x.formats.mjcf.words import TENDON_PARAMETERS
+from hymeko_x.backends.mjcf.sheet import tag_of
+from hymeko_x.formats.mjcf.joints import TENDON
 from hymeko_x.ir.mechanism import numbers_weight
-from hymeko_x.ir.parts import Shape, Tendon
+from hymeko_x.ir.parts import DofKind, Tendon
 from hymeko_x.ir.tendons import PULLEY, SIDE, SPATIAL
+from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.mjcf.names import Printed
-    from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc
+    from hymeko_x.backends.mjcf.sheet import MjcfSheet
+    from hymeko_x.ir.mechanism import Id, RobotArc
 
 
-def write_tendons(text: Text, mechanism: Mechanism, names: Printed) -> None:
+def write_tendons(sheet: MjcfSheet) -> None:
     """Every tendon with its path."""
-    tendons = list(mechanism.edges(Tendon))
-    if not tendons:
-        return
-    text.section("tendon")
-    for key, tendon, arcs in tendons:
-        text.open(tendon.kind, {"name": names.of(key), **_behaviour(tendon)})
-        for tag, attributes in _steps(mechanism, arcs, names):
-            text.leaf(tag, attributes)
-        text.close()
-    text.close()
+    items: list[tuple[Id, Tag]] = []
+    for key, tendon, arcs in sheet.mechanism.edges(Tendon):
+        own_class = sheet.own_class(key)
+        base = sheet.base("tendon", own_class)
+        attributes = {
+            "name": sheet.name(key),
+            "class": own_class,
+            **sheet.attributes(_values(tendon), TENDON, base, sheet.notations(key), {}),
+            **sheet.parameters(tendon.parameters, f"tendon/{tendon.kind}", base),
+            **sheet.kept_attributes(key),
+        }
+        items.append((key, tag_of(tendon.kind, attributes, [*_path(sheet, arcs), *sheet.inside(key)])))
+    sheet.write_section("tendon", items)
 
 
-def _behaviour(tendon: Tendon) -> Attributes:
-    lower, upper = tendon.limits.lower, tendon.limits.upper
+def _values(tendon: Tendon) -> dict[str, object]:
+    upper, shown = tendon.limits.upper, tendon.kind == SPATIAL
     return {
-        "range": None if upper is None else numbers(lower or 0.0, upper),
-        "stiffness": number(tendon.stiffness, 0.0),
-        "damping": number(tendon.damping, 0.0),
-        "frictionloss": number(tendon.friction, 0.0),
-        "armature": number(tendon.armature, 0.0),
-        "width": number(tendon.width) if tendon.kind == SPATIAL else None,
-        "rgba": None if tendon.rgba is None or tendon.kind != SPATIAL else numbers(*tendon.rgba),
-        **{name: parameter_text(value) for name, value in tendon.parameters if name in TENDON_PARAMETERS},
+        "range": (None if upper is None else (tendon.limits.lower or 0.0, upper), DofKind.SLIDE),
+        "stiffness": tendon.stiffness,
+        "damping": tendon.damping,
+        "frictionloss": tendon.friction,
+        "armature": tendon.armature,
+        "width": tendon.width if shown else None,
+        "rgba": tendon.rgba or () if shown else (),
     }
 
 
-def _steps(mechanism: Mechanism, arcs: tuple[RobotArc, ...], names: Printed) -> list[tuple[str, Attributes]]:
-    """The steps of a path; a shape has the site beside it, whose arc comes after its own."""
-    steps: list[tuple[str, Attributes]] = []
+def _path(sheet: MjcfSheet, arcs: tuple[RobotArc, ...]) -> list[Tag]:
+    """The steps of a path; the site beside a wrapping shape, whose arc comes after the shape's, is an attribute of it."""
+    steps: list[Tag] = []
     for arc in arcs:
         if arc.role == SIDE:
-            steps[-1][1]["sidesite"] = names.of(arc.target)
+            steps[-1].attributes["sidesite"] = sheet.reference(arc)
         elif arc.role == PULLEY:
-            steps.append((PULLEY, {"divisor": numbers(*numbers_weight(arc))}))
+            steps.append(Tag(PULLEY, {"divisor": sheet.numbers(numbers_weight(arc))}))
         elif arc.target.kind == "joint":
-            steps.append(("joint", {"joint": names.joint(arc), "coef": numbers(*numbers_weight(arc))}))
-        elif arc.target.kind == "shape":
-            steps.append(("geom", {"geom": _geom_name(mechanism, arc.target)}))
+            steps.append(Tag("joint", {"joint": sheet.reference(arc), "coef": sheet.numbers(numbers_weight(arc))}))
         else:
-            steps.append(("site", {"site": names.of(arc.target)}))
+            tag = "geom" if arc.target.kind == "shape" else "site"
+            steps.append(Tag(tag, {tag: sheet.reference(arc)}))
     return steps
-
-
-def _geom_name(mechanism: Mechanism, key: Id) -> str | None:
-    shape = mechanism.graph.edges[key].data
-    return shape.name if isinstance(shape, Shape) else None

@@ -143,6 +143,13 @@ def shifted(coefficients: tuple[float, ...], by: float) -> list[float]:
     return [sum(padded[n] * comb(n, k) * by ** (n - k) for n in range(k, COEFFICIENTS) if padded[n]) for k in range(COEFFICIENTS)]
 
 
+def trimmed(coefficients: list[float]) -> list[float]:
+    """The coefficients without zeros at their end, two at least."""
+    while len(coefficients) > 2 and coefficients[-1] == 0.0:
+        coefficients = coefficients[:-1]
+    return coefficients
+
+
 TRANSMISSIONS = ("joint", "jointinparent", "tendon", "site", "body", "cranksite", "slidersite", "refsite")
 """The attributes of an actuator that say what it acts on; all but the first five stand beside another one."""
 

@@ -1,0 +1,378 @@
+"""The open MJCF document: settings and classes, the names of elements, the attributes of one element, and the printing of all.
+
+A mechanism that came from MJCF is written as its author wrote it: with the classes, sections and notations of its file. Every other
+one is the simple case: angles in radians, every element named, and the classes of :mod:`hymeko_x.backends.mjcf.classes`.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+from xml.parsers.expat import ExpatError
+
+import msgspec
+
+from hymeko_x.formats.mjcf import words
+from hymeko_x.formats.mjcf.classes import Classes, merge
+from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, Settings, parameter_text, parameter_value, plan_of
+from hymeko_x.formats.mjcf.places import same_value
+from hymeko_x.formats.mjcf.schema import attributes_of
+from hymeko_x.formats.mjcf.tree import COMMENT, parse_text
+from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.mechanism import ROOT, file_stem
+from hymeko_x.ir.parts import Joint, Mesh, Shape, Texture
+from hymeko_x.ir.values import IDENTITY, Pose, compose, numbers_text
+from hymeko_x.rewrite.native import is_native
+from hymeko_x.xml.printing import Tag, render
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from hymeko_x.formats.mjcf.codec import Group, Plan
+    from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotArc
+    from hymeko_x.ir.parts import Dof, Parameters
+
+Attributes = dict[str, str | None]
+"""The attributes of an element in the order of printing; None is not printed."""
+
+_EMPTY: Mapping[str, str] = {}
+_REFUSED = object()
+"""Is no value."""
+_SIGNED_ZERO = re.compile(r"(?<!\S)-0(?!\S)")
+_REFERENCES = frozenset(("mesh", "material", "texture"))
+
+
+@dataclass(slots=True)
+class MjcfSheet:
+    """The document and what it says about itself. ``kept``: the sections and comments at top level that are written as they were."""
+
+    mechanism: Mechanism
+    root: Tag
+    from_mjcf: bool
+    settings: Settings
+    classes: Classes
+    kept: list[tuple[str, Extra]] = field(default_factory=list)
+    rank: Mapping[Id, int] = field(default_factory=dict)
+    plans: dict[tuple[int, int], Plan] = field(default_factory=dict)
+
+    # ---- names -----------------------------------------------------------------------------------------------------------
+
+    def name(self, key: Id) -> str | None:
+        """The name to print; None for an element of a file in MJCF that its author left unnamed."""
+        part = self.mechanism.graph.vertices.get(key)
+        if isinstance(part, Mesh | Texture) and part.name:
+            return part.name
+        if not self.from_mjcf:
+            return key.name
+        if isinstance(part, Mesh) and part.uri and file_stem(part.uri) == key.name:
+            return None
+        return None if self.mechanism.notation(key, "unnamed") else key.name
+
+    def reference(self, arc: RobotArc) -> str:
+        """The name by which others refer to an element, or to the dof of a joint that the arc means."""
+        key = arc.target
+        if key.kind == "joint":
+            dof = self.dof(arc)
+            return (dof.name if dof else None) or (arc.role if dof is None else "") or key.name
+        if key.kind == "shape":
+            edge = self.mechanism.graph.edges.get(key)
+            return (edge.data.name if edge is not None and isinstance(edge.data, Shape) else None) or key.name
+        part = self.mechanism.graph.vertices.get(key)
+        return (part.name if isinstance(part, Mesh | Texture) else None) or key.name
+
+    def dof(self, arc: RobotArc) -> Dof | None:
+        """The dof that an arc to a joint means; None where the joint is fixed."""
+        edge = self.mechanism.graph.edges.get(arc.target)
+        if edge is None or not isinstance(edge.data, Joint) or not edge.data.dofs:
+            return None
+        return edge.data.dofs[dof_number(edge.data, arc.role) or 0]
+
+    # ---- what the author wrote ---------------------------------------------------------------------------------------------
+
+    def base(self, tag: str, own_class: str | None, childclass: str | None = None) -> Mapping[str, str]:
+        """What an element inherits."""
+        return self.classes.of(tag, own_class or childclass)
+
+    def own_class(self, key: Id, number: int = 0) -> str | None:
+        """The class that the element's author gave it; of a joint, that of one dof."""
+        found = self.mechanism.stereotypes.get(key, ()) if self.from_mjcf else ()
+        name = found[number] if number < len(found) else ""
+        return name if name and self.classes.has(name) else None
+
+    def notations(self, key: Id) -> Mapping[str, str]:
+        """How the author wrote the element in MJCF."""
+        return self.mechanism.notations.get(key, _EMPTY) if self.from_mjcf else _EMPTY
+
+    def extras(self, key: Id) -> tuple[Extra, ...]:
+        """The extras of an element that are written. Only meshes get some that another format's file did not have."""
+        return self.mechanism.extras.get(key, ()) if self.from_mjcf or key.kind == "mesh" else ()
+
+    def kept_attributes(self, key: Id, path: str = "") -> dict[str, str]:
+        """The attributes that the IR cannot represent, of the element's node at this path."""
+        start = f"{path}/@" if path else "@"
+        return {
+            extra.path.removeprefix(start): extra.text
+            for extra in self.extras(key)
+            if extra.format == words.NAME and extra.path.startswith(start)
+        }
+
+    def inside(self, key: Id, path: str = "") -> list[str]:
+        """The elements and comments that stand inside an element, as they are."""
+        found = [extra for extra in self.extras(key) if extra.path == path and extra.format in (words.NAME, "comment")]
+        return [_line_of(extra) for extra in sorted(found, key=lambda extra: extra.index)]
+
+    # ---- attributes --------------------------------------------------------------------------------------------------------
+
+    def attributes(
+        self,
+        values: Mapping[str, Any],
+        groups: tuple[Group, ...],
+        base: Mapping[str, str],
+        notations: Mapping[str, str],
+        kept: Mapping[str, str],
+        prefix: str = "",
+    ) -> dict[str, str]:
+        """The attributes of these values that the class does not give, as the author wrote them where that still means the same."""
+        found: dict[str, str] = {}
+        inherited = self._inherited(groups, base)
+        start = f"{prefix}@"
+        written = {name.removeprefix(start): text for name, text in notations.items() if name.startswith(start)}
+        for group in groups:
+            value = values[group.key]
+            context = {name: text for name in group.needs if (text := found.get(name) or kept.get(name)) is not None} if group.needs else {}
+            below = {**base, **context} if context else base
+            noted = {name: written[name] for name in group.names if name in written} if written else {}
+            if noted and self._means(group, merge(below, noted), value):
+                found |= noted
+            elif not (self._means(group, below, value) if context else same_value(inherited.get(group.key, _REFUSED), value)):
+                new = group.write(value, self.settings)
+                found |= {name: self._unsigned(name, text) for name, text in new.items() if base.get(name) != text}
+        return found
+
+    def _inherited(self, groups: tuple[Group, ...], base: Mapping[str, str]) -> Mapping[str, Any]:
+        """The values of an element that has no attributes of its own; without those that MuJoCo would refuse."""
+        place = id(groups), id(base) if base else 0
+        plan = self.plans.get(place)
+        if plan is None:
+            plan = self.plans[place] = plan_of(groups, self.settings, base)
+        return plan.silent
+
+    def _means(self, group: Group, attributes: Mapping[str, str], value: Any) -> bool:
+        try:
+            return same_value(group.read(attributes, self.settings), value)
+        except BadAttribute:
+            return False
+
+    def _unsigned(self, name: str, text: str) -> str:
+        """Numbers without the sign of a zero, which only robots from MJCF keep."""
+        if self.from_mjcf or "-0" not in text or name in _REFERENCES:
+            return text
+        return _SIGNED_ZERO.sub("0", text)
+
+    def numbers(self, values: tuple[float, ...]) -> str:
+        """The text of these numbers."""
+        return self._unsigned("", numbers_text(values))
+
+    def parameters(self, parameters: Parameters, path: str, base: Mapping[str, str]) -> dict[str, str]:
+        """The parameters that are attributes of the element of this place of the schema, as far as its class does not give them."""
+        known = attributes_of(path)
+        return {
+            name: parameter_text(value)
+            for name, value in parameters
+            if name in known and (name not in base or parameter_value(name, base[name]) != value)
+        }
+
+    # ---- sections ----------------------------------------------------------------------------------------------------------
+
+    def section(self, tag: str, attributes: Mapping[str, str] = _EMPTY) -> Tag:
+        """A new section at the end of the document, behind an empty line."""
+        section = Tag(tag, dict(attributes))
+        self.root.children += "", section
+        return section
+
+    def lines_in(self, section: str) -> list[tuple[int, str]]:
+        """What stands in a section and is written as it is, with its place among all elements."""
+        found = [extra for extra in self.extras(ROOT) if extra.path == section and extra.format in (words.NAME, "comment")]
+        return [(extra.index, _line_of(extra)) for extra in sorted(found, key=lambda extra: extra.index)]
+
+    def write_section(self, section: str, items: list[tuple[Id, Tag]]) -> None:
+        """A section: its elements in order, and between them what is written as it is."""
+        rest = list(reversed(self.lines_in(section)))
+        if not items and not rest:
+            return
+        children = self.section(section).children
+        for key, tag in items:
+            while rest and rest[-1][0] <= self.rank.get(key, 0):
+                children.append(rest.pop()[1])
+            children.append(tag)
+        children += [line for _, line in reversed(rest)]
+
+    def write_kept(self, section: str) -> None:
+        """The sections of this name that are written as they are, each behind the comments before it; for ``""`` all that is left."""
+        waiting: list[tuple[str, Extra]] = []
+        left: list[tuple[str, Extra]] = []
+        for tag, extra in self.kept:
+            waiting.append((tag, extra))
+            if tag == COMMENT:
+                continue
+            if section in ("", tag):
+                self._keep(waiting)
+            else:
+                left += waiting
+            waiting = []
+        if section:
+            left += waiting
+        else:
+            self._keep(waiting)
+        self.kept = left
+
+    def _keep(self, items: list[tuple[str, Extra]]) -> None:
+        for _, extra in items:
+            tag = _as_tag(extra)
+            self.root.children += [tag] if isinstance(tag, str) else ["", tag]
+
+    def bytes(self) -> bytes:
+        """The document in UTF-8, with a newline at its end."""
+        return ("\n".join(render(self.root)) + "\n").encode()
+
+
+def open_sheet(mechanism: Mechanism, others: Classes) -> MjcfSheet:
+    """An empty document with the mechanism's own settings and classes; with ``others`` where it did not come from MJCF."""
+    if not is_native(mechanism):
+        root = Tag("mujoco", {"model": mechanism.name} if mechanism.name else {}, ['<compiler angle="radian" autolimits="true"/>'])
+        return MjcfSheet(mechanism, root, False, Settings(degree=False), others)
+    own = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.NAME, "comment")]
+    kept = {extra.path[1:]: extra.text for extra in own if extra.format == words.NAME and extra.path[:1] == "@"}
+    name = {} if mechanism.notation(ROOT, "unnamed") else {"model": mechanism.name}
+    standing = sorted([extra for extra in own if not extra.path], key=lambda extra: extra.index)
+    nodes = [_parsed(extra) for extra in standing]
+    tags = [COMMENT if extra.format == "comment" else "" if node is None else node.tag for extra, node in zip(standing, nodes, strict=True)]
+    sections = [node for node in nodes if node is not None]
+    settings = words.settings_of([node.attributes for node in sections if node.tag == "compiler"])
+    classes = Classes([node for node in sections if node.tag == "default"])
+    rank = _ranks(mechanism, {extra.index for extra in standing})
+    return MjcfSheet(mechanism, Tag("mujoco", name | kept), True, settings, classes, list(zip(tags, standing, strict=True)), rank)
+
+
+def tag_of(name: str, attributes: Attributes, children: Iterable[Tag | str] = (), owner: Id | None = None) -> Tag:
+    """An element with the attributes that are not None. ``owner``: the element of the mechanism whose name a class may be called after."""
+    tag = Tag(name, {attribute: text for attribute, text in attributes.items() if text is not None}, children)
+    tag.owner = owner
+    return tag
+
+
+def _ranks(mechanism: Mechanism, taken: set[int]) -> dict[Id, int]:
+    """The place of every element among everything that stands at top level."""
+    found: dict[Id, int] = {}
+    place = 0
+    for key in mechanism.layout:
+        while place in taken:
+            place += 1
+        found[key] = place
+        place += 1
+    return found
+
+
+def _parsed(extra: Extra) -> Element | None:
+    if extra.format == "comment":
+        return None
+    try:
+        return parse_text(extra.text)
+    except ExpatError:
+        return None
+
+
+def _line_of(extra: Extra) -> str:
+    return f"<!-- {extra.text} -->" if extra.format == "comment" else extra.text
+
+
+def _as_tag(extra: Extra) -> Tag | str:
+    """A section or comment that is written as it was."""
+    node = _parsed(extra)
+    if node is None:
+        return _line_of(extra)
+    top = Tag(node.tag, node.attributes)
+    stack = [(node, top)]
+    while stack:
+        element, tag = stack.pop()
+        for child in element.children:
+            if child.tag == COMMENT:
+                tag.children.append(f"<!-- {child.text} -->")
+            else:
+                inner = Tag(child.tag, child.attributes)
+                tag.children.append(inner)
+                stack.append((child, inner))
+    return top
+
+
+# ---- bodies -----------------------------------------------------------------------------------------------------------------
+
+
+class FrameTag(msgspec.Struct, frozen=True):
+    """A <frame>: its attributes, its pose in the body, its childclass, and the frames around it with itself, outermost first."""
+
+    number: str
+    attributes: dict[str, str]
+    pose: Pose
+    childclass: str | None
+    path: tuple[str, ...]
+
+
+@dataclass(slots=True)
+class BodyTag:
+    """A body (or the world) that is being written: its element, the childclass in force in it, and its frames by number."""
+
+    key: Id
+    tag: Tag
+    childclass: str | None
+    frames: dict[str, FrameTag]
+    opened: list[tuple[str, Tag]] = field(default_factory=list)
+
+    def frame(self, number: str | None) -> FrameTag | None:
+        """The frame of this number, or None."""
+        return self.frames.get(number) if number else None
+
+    def add(self, tag: Tag, frame: FrameTag | None) -> None:
+        """Put an element into the frame; frames are opened and closed where they change, and named when they open first."""
+        path = () if frame is None else frame.path
+        same = 0
+        while same < min(len(path), len(self.opened)) and path[same] == self.opened[same][0]:
+            same += 1
+        del self.opened[same:]
+        for number in path[same:]:
+            found = self.frames[number]
+            inner = Tag("frame", dict(found.attributes))
+            found.attributes.pop("name", None)
+            self._innermost.children.append(inner)
+            self.opened.append((number, inner))
+        self._innermost.children.append(tag)
+
+    @property
+    def _innermost(self) -> Tag:
+        return self.opened[-1][1] if self.opened else self.tag
+
+
+def open_body(sheet: MjcfSheet, key: Id, tag: Tag, childclass: str | None) -> BodyTag:
+    """A body with the frames that its author put into it."""
+    notations = sheet.notations(key)
+    frames: dict[str, FrameTag] = {}
+    while (text := notations.get(f"frame{len(frames) + 1}")) is not None:
+        number = str(len(frames) + 1)
+        outer, _, rest = text.partition(" ")
+        attributes = parse_text(f"<frame {rest}/>").attributes
+        parent = frames.get(outer)
+        try:
+            pose = POSE.read(merge({}, attributes), sheet.settings)
+        except BadAttribute:
+            pose = IDENTITY
+        inherited = parent.childclass if parent else childclass
+        frames[number] = FrameTag(
+            number,
+            attributes,
+            compose(parent.pose, pose) if parent else pose,
+            attributes.get("childclass", inherited),
+            (*(parent.path if parent else ()), number),
+        )
+    return BodyTag(key, tag, childclass, frames)
