@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 import hymeko_x as hx
 from benchmarks.robots import robots
 from benchmarks.yardstick import verdict
+from hymeko_x import formats
 from hymeko_x.backends.hymeko import write
-from hymeko_x.corpus.lengths import tokens_of
 from hymeko_x.diagnostics import Report
 from hymeko_x.disk import open_source
 from hymeko_x.frontends import mjcf, urdf
@@ -61,11 +61,11 @@ _MESH_ARRAY = re.compile(
 def usda_ratio(robot: Path) -> float:
     """The letters of a URDF's HyMeKo text for one letter of its USD text, in which no array of a mesh is counted."""
     stage = _MESH_ARRAY.sub("", hx.dumps(hx.load(robot), "usd", pure=True))
-    return _code(_said(robot, "urdf"), "hymeko") / _code(stage, "usda")
+    return _code(_said(robot, "urdf"), "hymeko") / _code(stage, "usd")
 
 
 def _code(text: str, form: str) -> int:
-    return sum(map(letters, tokens_of(text, form)))
+    return sum(map(letters, formats.loaded(formats.by_name(form).tokens)(text)))
 
 
 def _source_letters(robot: Path) -> int:

@@ -119,7 +119,7 @@ HYMEKO = Format(
     is_exact=True,
     assets="reference",
     reference="hymeko_x.verify.readers.hymeko",
-    tokens="hymeko_x.formats.hymeko.tokens:tokens",
+    tokens="hymeko_x.language.grammar:tokens",
     includes=rb"(?m)^\s*(?:@?import|#include)\b|^\s*\w+\s*:\s*import\b",
     colour="#ff7f0e",
 )

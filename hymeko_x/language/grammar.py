@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import re
+from functools import cache
 from importlib.resources import files
 from typing import Any
 
@@ -51,6 +52,22 @@ def tables_text() -> str:
         "states": states,
     }
     return json.dumps(tables, indent=None, separators=(",", ":"), sort_keys=True).replace("],[", "],\n[").replace("},{", "},\n{") + "\n"
+
+
+def tokens(text: str) -> list[str]:
+    """The tokens of a text in the order of the terminals, without comments and white space; a list of numbers is one token."""
+    return [match[0] for match in _token_pattern().finditer(text) if match.lastgroup == "token"]
+
+
+@cache
+def _token_pattern() -> re.Pattern[str]:
+    tables = json.loads(files("hymeko_x.language").joinpath("tables.json").read_text(encoding="utf-8"))
+    comment, space = tables["ignored"]
+    terminals = "|".join(f"(?:{pattern})" for name, pattern in tables["terminals"] if name not in tables["opening"])
+    return re.compile(f"(?P<space>{space})|(?P<comment>{comment})|(?P<token>{terminals}|.)", re.DOTALL)
+
+
+# ---- tables -------------------------------------------------------------------------------------------------------------
 
 
 def _rule_order(rule: dict[str, Any]) -> tuple[str, int]:

@@ -1,4 +1,4 @@
-"""XML that a format said verbatim as blocks of the language, and back to the last character.
+"""Extras that are XML as blocks of the language, and back to the last character.
 
 ``<option timestep="0.01"><flag gravity="disable"/></option>`` is ``option { timestep 0.01 flag { gravity=disable } }``.
 Fields are attributes; where an element holds texts, its attributes stand in parentheses and its fields are elements with a
@@ -11,6 +11,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from hymeko_x import formats
 from hymeko_x.ir.values import number_text
 from hymeko_x.language.syntax import Field, Item, Node, Parameter, QuotedName, Ref, Value, is_list
 
@@ -81,7 +82,7 @@ class _Open(NamedTuple):
 
 
 def block_of(xml: str) -> tuple[Node, Spacing | None] | None:
-    """The block that says what one XML element says, and the white space of it; None where it would not read back the same."""
+    """The block of one XML element, and its white space; None where it would not read back the same."""
     node = _read(xml)
     if node is None:
         return None
@@ -130,17 +131,16 @@ def _close(stack: list[_Open], *, empty: bool) -> None:
         return
     if not children and not empty:
         children = [Field(TEXT, value_of_text(text))]
-    parenthesised = any(isinstance(child, Field) for child in children)
-    said = [(name, value_of_text(value)) for name, value in attributes]
-    if parenthesised:
-        node = Node(tag, tuple(children), parameters=tuple(Parameter(name, value) for name, value in said))
+    values = [(name, value_of_text(value)) for name, value in attributes]
+    if any(isinstance(child, Field) for child in children):
+        node = Node(tag, tuple(children), parameters=tuple(Parameter(name, value) for name, value in values))
     else:
-        node = Node(tag, (*(Field(name, value) for name, value in said), *children))
+        node = Node(tag, (*(Field(name, value) for name, value in values), *children))
     stack[-1].children.append(node)
 
 
 def _spacing(xml: str) -> Spacing | None:
-    """The white space that the first and the last line break tell; None for XML in one line."""
+    """The white space behind the first and the last line break; None for XML in one line."""
     if "\n" not in xml:
         return None
     first = re.search(r"\n([ \t]*)", xml)
@@ -154,7 +154,7 @@ def _spacing(xml: str) -> Spacing | None:
 
 
 def markup_of(node: Node, spacing: Spacing | None) -> str | None:
-    """The XML of a block; None where it holds what no XML says."""
+    """The XML of a block; None where XML cannot represent it."""
     parts: list[str] = []
     stack: list[tuple[int, Item | str]] = [(0, node)]
     while stack:
@@ -202,12 +202,36 @@ def _line(spacing: Spacing, depth: int) -> str:
 def _parts_of(node: Node) -> tuple[str | None, tuple[Item, ...]]:
     """The beginning of the element's tag, and what stands in the element."""
     if node.parameters is None:
-        said = [(item.name, item.value) for item in node.items if isinstance(item, Field)]
+        values = [(item.name, item.value) for item in node.items if isinstance(item, Field)]
         children: tuple[Item, ...] = tuple(item for item in node.items if not isinstance(item, Field))
     else:
-        said = [(parameter.name, parameter.default) for parameter in node.parameters]
+        values = [(parameter.name, parameter.default) for parameter in node.parameters]
         children = node.items
-    texts = [(name, text_of_value(value)) for name, value in said]
+    texts = [(name, text_of_value(value)) for name, value in values]
     if any(text is None for _, text in texts):
         return None, ()
     return f"<{node.name}" + "".join(f' {name}="{text}"' for name, text in texts), children
+
+
+# ---- places and white space ----------------------------------------------------------------------------------------------
+
+PLACE = "place"
+"""``place 3``: the number that the next child has among the children of its parent; those behind it count on."""
+INDENT = "indent"
+"""``indent [4 2]``: blanks before the closing tag of the children that follow, and more for every level; also as texts."""
+ONE_LINE = "none"
+"""``indent=none``: no white space between the tags."""
+
+SECTION = re.compile(r"(?!preceding\b|following\b)\w+")
+SECTION_COMMENT = re.compile(rf"\[({SECTION.pattern})\] (.+)", re.DOTALL)
+"""A comment between the elements that stood in a section of its format: ``// [asset] meshes``."""
+
+_NESTED = Spacing("    ", "  ")
+_OUTER = Spacing("  ", "  ")
+
+
+def usual_spacing(format: str, *, at_root: bool) -> Spacing | None:
+    """The white space between the tags of a format's children that is not written: of the whole, or of an element."""
+    if any(row.name == format and row.has_compact_extras for row in formats.FORMATS):
+        return None
+    return _OUTER if at_root else _NESTED

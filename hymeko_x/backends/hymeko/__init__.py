@@ -9,15 +9,14 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.backends.hymeko.angles import shortest
-from hymeko_x.backends.hymeko.assemblies import assemblies, pieces_of
-from hymeko_x.backends.hymeko.attached import attached_arcs
+from hymeko_x.backends.hymeko.assemblies import Instance, assemblies, pieces_of, templates
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
-from hymeko_x.backends.hymeko.foreign import foreign_items, is_standing, sound_comment, standing_items
+from hymeko_x.backends.hymeko.extras import foreign_items, is_standing, sound_comment, standing_items
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
-from hymeko_x.backends.hymeko.parts import Context, name_of, part_items, written_items
+from hymeko_x.backends.hymeko.parts import attached_arcs, part_items
+from hymeko_x.backends.hymeko.sheet import HymekoSheet, name_of, written_items
 from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
-from hymeko_x.backends.hymeko.templates import Instance, templates
+from hymeko_x.backends.hymeko.values import shortest_angles
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -29,8 +28,7 @@ from hymeko_x.source import Package
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from hymeko_x.backends.hymeko.assemblies import Row
-    from hymeko_x.backends.hymeko.templates import Piece
+    from hymeko_x.backends.hymeko.assemblies import Piece, Row
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.rewrite.context import Options
@@ -51,16 +49,16 @@ def document(mechanism: Mechanism) -> Document:
     """The syntax tree of a mechanism."""
     plain = _is_plain(mechanism)
     inline = inline_assets(mechanism)
-    context = Context(
+    sheet = HymekoSheet(
         mechanism,
         files_prefix(mechanism),
         inline,
         given_names(mechanism, inline),
         mimic_arcs(mechanism),
         attached_arcs(mechanism),
-        shortest(mechanism),
+        shortest_angles(mechanism),
     )
-    items = [*_settings(context, plain), *(_elements(context) if plain else _grouped(context))]
+    items = [*_settings(sheet, plain), *(_elements(sheet) if plain else _grouped(sheet))]
     root = mechanism.notation(ROOT, "hymeko.root")
     name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""
@@ -89,33 +87,33 @@ def _is_plain(mechanism: Mechanism) -> bool:
     return bool(keys) and all(key.kind in _PLAIN for key in keys)
 
 
-def _settings(context: Context, plain: bool) -> list[Item]:
+def _settings(sheet: HymekoSheet, plain: bool) -> list[Item]:
     """What stands at the head of the root: units, the prefix of files, notations of the whole."""
     items: list[Item] = []
-    if not plain and not context.angles.degrees:
+    if not plain and not sheet.angles.degrees:
         items.append(Node("units", (Field("angle"), Field("rad"))))
-    if context.files:
-        items.append(Field("files", context.files))
-    notations = {key: text for key, text in kept_notations(context.mechanism).get(ROOT, {}).items() if key != "hymeko.root"}
+    if sheet.files:
+        items.append(Field("files", sheet.files))
+    notations = {key: text for key, text in kept_notations(sheet.mechanism).get(ROOT, {}).items() if key != "hymeko.root"}
     if notations:
         items.extend(written_items(notations, flags=False))
-    items.extend(foreign_items(_in_place(context.mechanism)[1], at_root=True))
+    items.extend(foreign_items(_in_place(sheet.mechanism)[1], at_root=True))
     return items
 
 
-def _grouped(context: Context) -> list[Item]:
+def _grouped(sheet: HymekoSheet) -> list[Item]:
     """The elements with their stereotypes, those of one prefix in assemblies."""
-    rows = _rows(context)
+    rows = _rows(sheet)
     refused: frozenset[str] = frozenset()
     for tries in range(_MOST_TRIES + 1):
-        homes = assemblies(rows, context, refused) if tries < _MOST_TRIES else {}
+        homes = assemblies(rows, sheet, refused) if tries < _MOST_TRIES else {}
         names = {key.name: home for key, home in homes.items()}
-        within = {home: replace(context, homes=names, inside=home) for home in ("", *names.values())}
+        within = {home: replace(sheet, homes=names, inside=home) for home in ("", *names.values())}
         texts = [_texts(within, row, homes) for row in rows]
-        if not context.clashes:
+        if not sheet.clashes:
             break
-        refused |= context.clashes
-        context.clashes.clear()
+        refused |= sheet.clashes
+        sheet.clashes.clear()
     return _assembled(pieces_of(rows, texts, homes))
 
 
@@ -139,31 +137,31 @@ def _assembled(pieces: Sequence[Piece]) -> list[Item]:
     return found
 
 
-def _rows(context: Context) -> list[Row]:
+def _rows(sheet: HymekoSheet) -> list[Row]:
     """The elements in layout order, with what a format said about the whole mechanism in its place among them."""
-    standing, _ = _in_place(context.mechanism)
+    standing, _ = _in_place(sheet.mechanism)
     rows: list[Row] = []
     place = 0
     queue = list(reversed(standing))
-    for key in _order(context):
+    for key in _order(sheet):
         here = []
         while queue and queue[-1].index <= place:
             here.append(queue.pop())
             place += not here[-1].path
         rows.extend([here] if here else [])
         rows.append(key)
-        place += 2 if key in context.attached else 1
+        place += 2 if key in sheet.attached else 1
     return [*rows, queue[::-1]] if queue else rows
 
 
-def _texts(within: Mapping[str, Context], row: Row, homes: Mapping[Id, str]) -> list[Item]:
+def _texts(within: Mapping[str, HymekoSheet], row: Row, homes: Mapping[Id, str]) -> list[Item]:
     """The items of a row, as they stand in its assembly."""
     return standing_items(row) if isinstance(row, list) else [_element(within[homes.get(row, "")], row)]
 
 
-def _elements(context: Context) -> list[Item]:
+def _elements(sheet: HymekoSheet) -> list[Item]:
     """The elements one after the other."""
-    return [item for row in _rows(context) for item in _texts({"": context}, row, {})]
+    return [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})]
 
 
 def _in_place(mechanism: Mechanism) -> tuple[list[Extra], list[Extra]]:
@@ -178,46 +176,46 @@ def _in_place(mechanism: Mechanism) -> tuple[list[Extra], list[Extra]]:
     return sorted(standing, key=lambda extra: extra.index), about
 
 
-def _order(context: Context) -> list[Id]:
+def _order(sheet: HymekoSheet) -> list[Id]:
     """Every element that stands at top level: as its author ordered them, then the rest by kind in graph order."""
-    graph = context.mechanism.graph
-    shown = [key for key in (*graph.vertices, *graph.edges) if _stands_alone(context, key)]
+    graph = sheet.mechanism.graph
+    shown = [key for key in (*graph.vertices, *graph.edges) if _stands_alone(sheet, key)]
     known = set(shown)
-    first = [key for key in dict.fromkeys(context.mechanism.layout) if key in known]
+    first = [key for key in dict.fromkeys(sheet.mechanism.layout) if key in known]
     placed = set(first)
     rank = {kind: number for number, kind in enumerate(_ORDER)}
     rest = sorted((key for key in shown if key not in placed), key=lambda key: rank.get(key.kind, len(_ORDER)))
     return [*first, *rest]
 
 
-def _stands_alone(context: Context, key: Id) -> bool:
-    if key in context.inline or key.kind in _INLINE_EDGES or key in context.mimics or key in context.attached_edges:
+def _stands_alone(sheet: HymekoSheet, key: Id) -> bool:
+    if key in sheet.inline or key.kind in _INLINE_EDGES or key in sheet.mimics or key in sheet.attached_edges:
         return False
     if key != WORLD:
         return True
-    mechanism = context.mechanism
+    mechanism = sheet.mechanism
     marked = WORLD in mechanism.extras or WORLD in mechanism.notations or WORLD in mechanism.layout
     return marked or bool(mechanism.shapes.get(WORLD)) or not mechanism.graph.incidence.get(WORLD)
 
 
-def _element(context: Context, key: Id) -> Item:
-    graph = context.mechanism.graph
+def _element(sheet: HymekoSheet, key: Id) -> Item:
+    graph = sheet.mechanism.graph
     if key in graph.vertices:
-        return _vertex(context, key, graph.vertices[key])
+        return _vertex(sheet, key, graph.vertices[key])
     edge = graph.edges[key]
     if isinstance(edge.data, parts.Joint):
-        kind, items = joint_items(context, key)
-        return context.node(key, items, kind, edge=True)
-    items = part_items(context, key, edge.data, edge.arcs)
+        kind, items = joint_items(sheet, key)
+        return sheet.node(key, items, kind, edge=True)
+    items = part_items(sheet, key, edge.data, edge.arcs)
     if isinstance(edge.data, parts.Loop):
-        items.extend(dof_node(dof, context.angles) for dof in edge.data.dofs)
-    return context.node(key, items, key.kind, edge=True)
+        items.extend(dof_node(dof, sheet.angles) for dof in edge.data.dofs)
+    return sheet.node(key, items, key.kind, edge=True)
 
 
-def _vertex(context: Context, key: Id, part: parts.VertexPart) -> Item:
+def _vertex(sheet: HymekoSheet, key: Id, part: parts.VertexPart) -> Item:
     if isinstance(part, parts.Body | parts.World):
-        node = context.node(key, body_items(context, key, part), "")
-        return node if node.items or key.name not in AXES else context.node(key, [], "link")
-    if isinstance(part, parts.Datum) and not part.parameters and not context.is_marked(key):
+        node = sheet.node(key, body_items(sheet, key, part), "")
+        return node if node.items or key.name not in AXES else sheet.node(key, [], "link")
+    if isinstance(part, parts.Datum) and not part.parameters and not sheet.is_marked(key):
         return Field(name_of(key.name))
-    return context.node(key, part_items(context, key, part, ()), key.kind)
+    return sheet.node(key, part_items(sheet, key, part, ()), key.kind)

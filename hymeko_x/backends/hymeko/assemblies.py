@@ -1,29 +1,41 @@
-"""Elements whose names begin alike, side by side: they stand in an assembly, which says the beginning once.
+"""Assemblies: elements side by side whose names begin alike, and templates of assemblies that are alike.
 
-``left : assembly { hip {..} knee {..} }`` instead of ``left_hip {..} left_knee {..}``. An assembly may stand in several pieces.
+``left : assembly { hip {..} knee {..} }`` stands for ``left_hip {..} left_knee {..}``; an assembly may stand in several pieces.
+Assemblies that are the same up to numbers, signs and words become instances of one template: ``left : leg(name=left) {}`` and
+``right : leg(name=right side=-1) {}`` are two legs of which one mirrors the other. The parameters are found by anti-unification
+(factor/unify.py).
 """
 
 from __future__ import annotations
 
 import heapq
+import re
+from collections import Counter
 from itertools import groupby
 from operator import itemgetter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.backends.hymeko.templates import Piece
+from hymeko_x.backends.hymeko.values import value_of
+from hymeko_x.factor.dialect import words
+from hymeko_x.factor.forms import Hole, Signed
+from hymeko_x.factor.unify import unify
 from hymeko_x.formats.hymeko import AXES, RESERVED
 from hymeko_x.ir.mechanism import KINDS, Id
-from hymeko_x.language.syntax import Comment
+from hymeko_x.ir.values import number_text
+from hymeko_x.language.printer import print_item
+from hymeko_x.language.syntax import ArcItem, Comment, Expression, Field, Node, Parameter, Ref, Stereotype
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
-    from hymeko_x.backends.hymeko.parts import Context
+    from hymeko_x.backends.hymeko.sheet import HymekoSheet
+    from hymeko_x.factor.forms import Text
+    from hymeko_x.factor.unify import Unified
     from hymeko_x.ir.mechanism import Extra
-    from hymeko_x.language.syntax import Item
+    from hymeko_x.language.syntax import Item, Value
 
 Row = Id | list["Extra"]
-"""An element, or what formats said of the whole between two elements."""
+"""An element, or the extras of the whole between two elements."""
 
 _FRAME = 11
 """Letters of `` : assembly { }``."""
@@ -32,14 +44,27 @@ _FEWEST = 3
 _MOST_WORDS = 4
 """Of a name that the beginning may have."""
 _BARE = "datum"
-"""What may be a name alone, which has no place in an assembly."""
+"""Elements that may be a name alone, which has no place in an assembly."""
 _NO_NAMES = {*KINDS.values(), *RESERVED, *AXES}
 
 
-def assemblies(rows: Sequence[Row], context: Context, refused: frozenset[str]) -> dict[Id, str]:
+class Piece(NamedTuple):
+    """Items of the root, or of the assembly ``home``."""
+
+    home: str
+    items: tuple[Item, ...]
+
+
+class Instance(NamedTuple):
+    """A piece as an instance of a template."""
+
+    node: Node
+
+
+def assemblies(rows: Sequence[Row], sheet: HymekoSheet, refused: frozenset[str]) -> dict[Id, str]:
     """The assembly in which each element is to stand, the ones that save most first. ``refused`` are names that none may have."""
-    members = _members(rows, context, refused)
-    weight = {place: _mentions(row, context) for place, row in enumerate(rows) if isinstance(row, Id)}
+    members = _members(rows, sheet, refused)
+    weight = {place: _mentions(row, sheet) for place, row in enumerate(rows) if isinstance(row, Id)}
     queue = [(-_saving(prefix, _pieces(places, rows), weight), prefix) for prefix, places in members.items()]
     heapq.heapify(queue)
     found: dict[int, str] = {}
@@ -54,11 +79,11 @@ def assemblies(rows: Sequence[Row], context: Context, refused: frozenset[str]) -
     return {row: found[place] for place, row in enumerate(rows) if isinstance(row, Id) and place in found}
 
 
-def _members(rows: Sequence[Row], context: Context, refused: frozenset[str]) -> dict[str, list[int]]:
+def _members(rows: Sequence[Row], sheet: HymekoSheet, refused: frozenset[str]) -> dict[str, list[int]]:
     """By the beginnings of names, up to an underscore, the places of the elements that have them."""
     members: dict[str, list[int]] = {}
     for place, row in enumerate(rows):
-        if not isinstance(row, Id) or row.kind == _BARE or _has_comment(row, context):
+        if not isinstance(row, Id) or row.kind == _BARE or _has_comment(row, sheet):
             continue
         for prefix in _prefixes(row.name):
             if prefix not in refused:
@@ -77,15 +102,15 @@ def _prefixes(name: str) -> Iterator[str]:
         cut = name.find("_", cut + 1)
 
 
-def _has_comment(key: Id, context: Context) -> bool:
+def _has_comment(key: Id, sheet: HymekoSheet) -> bool:
     """Comments in a block are kept in the blocks of the root only."""
-    return any(extra.format == "comment" for extra in context.mechanism.extras.get(key, ()))
+    return any(extra.format == "comment" for extra in sheet.mechanism.extras.get(key, ()))
 
 
-def _mentions(key: Id, context: Context) -> tuple[str, ...]:
+def _mentions(key: Id, sheet: HymekoSheet) -> tuple[str, ...]:
     """The names that an element's text has, its own first."""
-    edge = context.mechanism.graph.edges.get(key)
-    arcs = edge.arcs if edge is not None else context.attached.get(key, ())
+    edge = sheet.mechanism.graph.edges.get(key)
+    arcs = edge.arcs if edge is not None else sheet.attached.get(key, ())
     return (key.name, *(arc.target.name for arc in arcs if arc.target.name != key.name))
 
 
@@ -135,3 +160,194 @@ def _homes(rows: Sequence[Row], texts: Sequence[list[Item]], homes: Mapping[Id, 
         if between and all(isinstance(item, Comment) for item in text):
             found[place] = found[place - 1]
     return found
+
+
+# ---- templates ---------------------------------------------------------------------------------------------------------
+
+_LEAST = 40
+"""Letters that a template must save."""
+_MOST_PARAMETERS = 16
+"""Of one template, so that an instance stays readable."""
+_MOST_ITEMS = 50_000
+"""Larger mechanisms get no templates, which stay far below the reader's limit."""
+_NAMED_AFTER = frozenset({"mass", "com", "inertia", "at", "limit", "effort", "velocity", "damping", "friction", "scale", "rgba", "color"})
+"""Fields after which a parameter may be called; the others are plain values."""
+_SIGNS = ("side", "front", "flip")
+_WORD = re.compile(r"[A-Za-z]+")
+
+
+class _Leaf(NamedTuple):
+    """A number or text of a piece, and the field in which it stands."""
+
+    value: float | str
+    field: str
+
+
+def templates(pieces: Sequence[Piece], taken: set[str]) -> tuple[list[Node], list[Piece | Instance]]:
+    """The templates, whose names are added to ``taken``, and the pieces with instances where there is one."""
+    found: list[Node] = []
+    done: list[Piece | Instance] = list(pieces)
+    if sum(len(piece.items) for piece in pieces) > _MOST_ITEMS:
+        return found, done
+    families: dict[str, list[int]] = {}
+    for place, piece in enumerate(pieces):
+        if piece.home and not _is_bound(piece):
+            families.setdefault(_skeleton(piece), []).append(place)
+    for places in families.values():
+        made = _template([pieces[place] for place in places], taken) if len(places) > 1 else None
+        if made is not None:
+            found.append(made[0])
+            for place, instance in zip(places, made[1], strict=True):
+                done[place] = Instance(instance)
+    return found, done
+
+
+def _is_bound(piece: Piece) -> bool:
+    """Whether a piece cannot stand in a template: comments are not kept there, and ``${`` begins an expression."""
+    return any(isinstance(item, Comment) for item in piece.items) or "${" in print_item(Node("", piece.items))
+
+
+def _skeleton(piece: Piece) -> str:
+    """The text of a piece without numbers and texts, which pieces of one template have in common."""
+    return print_item(Node("", _filled(piece.items, lambda leaf: 0.0 if isinstance(leaf.value, float) else "")))
+
+
+def _template(pieces: list[Piece], taken: set[str]) -> tuple[Node, list[Node]] | None:
+    """The template of pieces with one skeleton and its instances; None where that is not shorter."""
+    rows = [_leaves(piece.items) for piece in pieces]
+    numbers = [[number_text(leaf.value) for leaf in row if isinstance(leaf.value, float)] for row in rows]
+    texts = [[leaf.value for leaf in row if isinstance(leaf.value, str)] for row in rows]
+    of_numbers = unify(list(zip(*numbers, strict=True)), lambda text: (text,), signs=True)
+    of_texts = unify(list(zip(*texts, strict=True)), words, signs=False)
+    if len(of_numbers.parameters) + len(of_texts.parameters) > _MOST_PARAMETERS:
+        return None
+    fields = [leaf.field for leaf in rows[0] if isinstance(leaf.value, float)]
+    names = _parameter_names(of_numbers, fields, len(of_texts.parameters))
+    values: list[tuple[Value, ...]] = [
+        *(tuple(value_of(text) for text in vector) for vector in of_texts.parameters),
+        *(tuple(float(str(text)) for text in vector) for vector in of_numbers.parameters),
+    ]
+    plain = iter([_number(text, names[len(of_texts.parameters) :]) for text in of_numbers.texts])
+    written = iter([_text(text, names) for text in of_texts.texts])
+    body = _filled(pieces[0].items, lambda leaf: next(plain) if isinstance(leaf.value, float) else next(written))
+    name = take_name(_name(pieces[0]), {*taken})
+    template = _with_defaults(Node(name, body, (Stereotype(Ref(("assembly",))),), ()), names, values)
+    instances = [_instance(piece, template, values, place) for place, piece in enumerate(pieces)]
+    before = sum(_letters(Node(piece.home, piece.items, template.stereotypes)) for piece in pieces)
+    if before - _letters(template) - sum(map(_letters, instances)) < _LEAST:
+        return None
+    taken.add(name)
+    return template, instances
+
+
+def _with_defaults(template: Node, names: list[str], values: list[tuple[Value, ...]]) -> Node:
+    """The template with its parameters; the most frequent value is the default, if several instances have it."""
+    parameters = []
+    for name, vector in zip(names, values, strict=True):
+        usual, uses = Counter(vector).most_common(1)[0]
+        parameters.append(Parameter(name, usual if uses > 1 else None))
+    signs = {name: 1.0 for name in names if name in _SIGNS}
+    return template._replace(
+        parameters=tuple(parameter._replace(default=signs.get(parameter.name, parameter.default)) for parameter in parameters)
+    )
+
+
+def _instance(piece: Piece, template: Node, values: list[tuple[Value, ...]], place: int) -> Node:
+    given = tuple(
+        (parameter.name, vector[place])
+        for parameter, vector in zip(template.parameters or (), values, strict=True)
+        if parameter.default is None or str(vector[place]) != str(parameter.default)
+    )
+    return Node(piece.home, (), (Stereotype(Ref((template.name,)), given or None),))
+
+
+def _letters(node: Node) -> int:
+    return len("".join(print_item(node).split()))
+
+
+# ---- names ---------------------------------------------------------------------------------------------------------------
+
+
+def _parameter_names(numbers: Unified, fields: list[str], texts: int) -> list[str]:
+    """Names for the texts, then for the numbers."""
+    taken: set[str] = set()
+    names = [take_name("name", taken) for _ in range(texts)]
+    for column, is_sign in zip(numbers.columns, numbers.is_sign, strict=True):
+        field = fields[column]
+        free = [sign for sign in _SIGNS if sign not in taken] if is_sign else []
+        names.append(take_name(free[0] if free else field if field in _NAMED_AFTER and not is_sign else "value", taken))
+    return names
+
+
+def take_name(wanted: str, taken: set[str]) -> str:
+    """The name, with a number behind it when it is taken; then it is taken."""
+    name, number = wanted, 2
+    while name in taken:
+        name, number = f"{wanted}{number}", number + 1
+    taken.add(name)
+    return name
+
+
+def _name(piece: Piece) -> str:
+    """From where to where the assembly leads: ``hip_to_foot``."""
+    named = [found[0].lower() for item in piece.items if isinstance(item, Node) and (found := _WORD.findall(item.name))]
+    if not named:
+        return "limb"
+    return named[0] if named[0] == named[-1] else f"{named[0]}_to_{named[-1]}"
+
+
+# ---- leaves --------------------------------------------------------------------------------------------------------------
+
+
+def _leaves(items: tuple[Item, ...]) -> list[_Leaf]:
+    """The numbers and texts of items, in order."""
+    found: list[_Leaf] = []
+
+    def collect(leaf: _Leaf) -> Value:
+        found.append(leaf)
+        return leaf.value
+
+    _filled(items, collect)
+    return found
+
+
+def _filled(items: tuple[Item, ...], fill: Callable[[_Leaf], Value]) -> tuple[Item, ...]:
+    """The items with every number and text replaced, in order."""
+    done: list[Item] = []
+    for item in items:
+        if isinstance(item, Field) and item.value is not None:
+            item = item._replace(value=_filled_value(item.value, item.name, fill))
+        elif isinstance(item, Node):
+            item = item._replace(items=_filled(item.items, fill))
+        elif isinstance(item, ArcItem):
+            weight = item.weight and tuple(_filled_value(value, "value", fill) for value in item.weight)
+            item = item._replace(weight=weight, items=_filled(item.items, fill))
+        done.append(item)
+    return tuple(done)
+
+
+def _filled_value(value: Value, field: str, fill: Callable[[_Leaf], Value]) -> Value:
+    if isinstance(value, float | str):
+        return fill(_Leaf(value, field))
+    if type(value) is tuple:
+        return tuple(_filled_value(part, field, fill) for part in value)
+    return value
+
+
+def _number(text: Text, names: list[str]) -> Value:
+    """A number, a parameter, or a number with the sign of parameters."""
+    if isinstance(text, str):
+        return float(text)
+    piece = text[0]
+    if isinstance(piece, Hole):
+        return Expression(names[int(piece.name)])
+    assert isinstance(piece, Signed)
+    signs = "*".join(names[int(name)] for name in piece.factors)
+    return Expression(f"{'-' if piece.negative else ''}{signs}*{piece.magnitude}")
+
+
+def _text(text: Text, names: list[str]) -> str:
+    """A text with its holes as ``${name}``."""
+    if isinstance(text, str):
+        return text
+    return "".join(f"${{{names[int(piece.name)]}}}" if isinstance(piece, Hole) else str(piece) for piece in text)

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.hymeko.foreign import foreign_items, verbatim
-from hymeko_x.backends.hymeko.parts import Context, pose_value, short_uri, word_fields, written_items
-from hymeko_x.formats.hymeko import SHAPE_WORDS
+from hymeko_x.backends.hymeko.extras import foreign_items, verbatim
+from hymeko_x.backends.hymeko.parts import word_fields
+from hymeko_x.backends.hymeko.sheet import written_items
+from hymeko_x.backends.hymeko.values import pose_value
+from hymeko_x.formats.hymeko import SHAPE_ROLES, SHAPE_WORDS, SOLIDS
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import Id, file_stem
@@ -18,21 +20,22 @@ from hymeko_x.language.syntax import Field, Item, Node, Value
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.backends.hymeko.angles import Angles
+    from hymeko_x.backends.hymeko.sheet import HymekoSheet
+    from hymeko_x.backends.hymeko.values import Angles
     from hymeko_x.ir.mechanism import Mechanism, ShapeView
     from hymeko_x.ir.values import Pose
 
-_PLACES = {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts.Role.BOTH: "shape"}
+_SOLID_WORDS = {kind: word for word, kind in SOLIDS.items()}
 
 
-def body_items(context: Context, key: Id, part: parts.Body | parts.World) -> list[Item]:
+def body_items(sheet: HymekoSheet, key: Id, part: parts.Body | parts.World) -> list[Item]:
     """The block of a body or of the world: inertial, then shapes in order."""
-    items: list[Item] = [context.arc("joint", arc) for arc in context.attached.get(key, ())]
+    items: list[Item] = [sheet.arc("joint", arc) for arc in sheet.attached.get(key, ())]
     if isinstance(part, parts.Body) and part.inertial is not None:
-        items.extend(_inertial_items(part.inertial, context.angles))
+        items.extend(_inertial_items(part.inertial, sheet.angles))
     names = Names()
-    for view in context.mechanism.shapes.get(key, ()):
-        items.append(_shape(context, view, names))
+    for view in sheet.mechanism.shapes.get(key, ()):
+        items.append(_shape(sheet, view, names))
     return items
 
 
@@ -54,7 +57,7 @@ def _inertial_items(inertial: parts.Inertial, angles: Angles) -> list[Item]:
 def _axes(frame: Pose, angles: Angles) -> Value:
     """A rotation: roll-pitch-yaw, a quaternion, or another notation with its kind before it."""
     if frame.written is not None and frame.written.kind == "fromto":
-        return frame.quat  # two points say more than a rotation
+        return frame.quat  # two points are more than a rotation
     rotation = pose_value(frame, angles)
     if len(rotation) == 2:
         return rotation[1]
@@ -64,18 +67,18 @@ def _axes(frame: Pose, angles: Angles) -> Value:
 # ---- shapes --------------------------------------------------------------------------------------------------------------
 
 
-def _shape(context: Context, view: ShapeView, names: Names) -> Item:
-    """``visual { .. }``, or ``visual "file"`` and ``visual=mesh`` where there is nothing else to say."""
-    word = _PLACES[view.shape.role]
-    items = _shape_items(context, view)
+def _shape(sheet: HymekoSheet, view: ShapeView, names: Names) -> Item:
+    """``visual { .. }``, or ``visual "file"`` and ``visual=mesh`` for a mesh alone."""
+    word = SHAPE_ROLES[view.shape.role]
+    items = _shape_items(sheet, view)
     expected = names.take("shape", f"{view.body.name}/{word}")
     if expected != view.id:
         items.append(Field("id", view.id.name))
-    items.extend(context.class_items(view.id))
-    notations = context.mechanism.notations.get(view.id)
+    items.extend(sheet.class_items(view.id))
+    notations = sheet.mechanism.notations.get(view.id)
     if notations:
         items.extend(written_items(notations))
-    extras = context.mechanism.extras.get(view.id, ())
+    extras = sheet.mechanism.extras.get(view.id, ())
     items.extend(foreign_items(extra for extra in extras if extra.format != "comment"))
     items.extend(verbatim(extra) for extra in extras if extra.format == "comment")  # this deep in a text comments are not kept
     if len(items) == 1 and isinstance(items[0], Field) and items[0].name == "mesh":
@@ -83,13 +86,13 @@ def _shape(context: Context, view: ShapeView, names: Names) -> Item:
     return Node(word, tuple(items))
 
 
-def _shape_items(context: Context, view: ShapeView) -> list[Item]:
-    items = _geometry(context, view)
+def _shape_items(sheet: HymekoSheet, view: ShapeView) -> list[Item]:
+    items = _geometry(sheet, view)
     if not identical(view.pose, IDENTITY):
-        items.append(_place(view.pose, context.angles))
+        items.append(_place(view.pose, sheet.angles))
     if view.material is not None:
-        items.append(_material(context, view.material))
-    items.extend(word_fields(view.shape, SHAPE_WORDS, context.angles))
+        items.append(_material(sheet, view.material))
+    items.extend(word_fields(view.shape, SHAPE_WORDS, sheet.angles))
     return items
 
 
@@ -100,61 +103,55 @@ def _place(pose: Pose, angles: Angles) -> Field:
     return Field("at", pose_value(pose, angles))
 
 
-def _round(word: str, radius: float, length: float, pose: Pose) -> Field:
-    """A cylinder or capsule: its length is not said where the two points that it lies between tell it."""
-    written = pose.written
-    told = written is not None and written.kind == "fromto" and str(length_of(written)) == str(length)
-    return Field(word, radius if told else (radius, length))
-
-
-def _geometry(context: Context, view: ShapeView) -> list[Item]:
-    match view.shape.geometry:
-        case parts.Box(size):
-            return [Field("box", size)]
-        case parts.Sphere(radius):
-            return [Field("sphere", radius)]
-        case parts.Cylinder(radius, length):
-            return [_round("cylinder", radius, length, view.pose)]
-        case parts.Capsule(radius, length):
-            return [_round("capsule", radius, length, view.pose)]
-        case parts.Ellipsoid(radii):
-            return [Field("ellipsoid", radii)]
-        case parts.Plane(half_size):
-            return [Field("plane", half_size)]
+def _geometry(sheet: HymekoSheet, view: ShapeView) -> list[Item]:
+    geometry = view.shape.geometry
+    value: Value
+    match geometry:
         case parts.MeshShape():
-            return _mesh(context, view)
+            return _mesh(sheet, view)
         case parts.NoShape():
             return []
+        case parts.Cylinder(radius, length) | parts.Capsule(radius, length):
+            written = view.pose.written  # two points that it lies between give the length
+            is_between = written is not None and written.kind == "fromto" and str(length_of(written)) == str(length)
+            value = radius if is_between else (radius, length)
+        case parts.Sphere(radius):
+            value = radius
+        case parts.Box(size) | parts.Ellipsoid(size):
+            value = size
+        case parts.Plane(half_size):
+            value = half_size
+    return [Field(_SOLID_WORDS[type(geometry)], value)]
 
 
-def _mesh(context: Context, view: ShapeView) -> list[Item]:
+def _mesh(sheet: HymekoSheet, view: ShapeView) -> list[Item]:
     """The mesh where it is used first: its file; elsewhere a reference."""
     if view.mesh is None:
         return []
-    if context.inline.get(view.mesh) != view.id:
-        return [Field("mesh", context.ref(view.mesh, ("mesh",)))]
-    mesh = context.mechanism.vertex(view.mesh, parts.Mesh)
+    if sheet.inline.get(view.mesh) != view.id:
+        return [Field("mesh", sheet.ref(view.mesh, ("mesh",)))]
+    mesh = sheet.mechanism.vertex(view.mesh, parts.Mesh)
     assert mesh.uri is not None
-    items: list[Item] = [Field("mesh", short_uri(context, mesh.uri))]
+    items: list[Item] = [Field("mesh", sheet.short_uri(mesh.uri))]
     x, y, z = mesh.scale
     if mesh.scale != (1.0, 1.0, 1.0):
         scale: Value = x if x == y == z else mesh.scale
         items.append(Field("scale", scale))
-    if view.mesh in context.given_names:
+    if view.mesh in sheet.given_names:
         items.append(Field("mesh_id", view.mesh.name))
     return items
 
 
-def _material(context: Context, key: Id) -> Item:
+def _material(sheet: HymekoSheet, key: Id) -> Item:
     """An unnamed colour of this shape alone, or a reference."""
-    if key not in context.inline:
-        return Field("material", context.ref(key, ("material",)))
-    rgba = context.mechanism.vertex(key, parts.Material).rgba
+    if key not in sheet.inline:
+        return Field("material", sheet.ref(key, ("material",)))
+    rgba = sheet.mechanism.vertex(key, parts.Material).rgba
     assert rgba is not None
     return Field("color", rgba[:3] if rgba[3] == 1.0 else rgba)
 
 
-# ---- what is said in place -----------------------------------------------------------------------------------------------
+# ---- assets that are defined in place ------------------------------------------------------------------------------------
 
 
 def _first_uses(mechanism: Mechanism) -> dict[Id, Id]:
@@ -193,7 +190,7 @@ def inline_assets(mechanism: Mechanism) -> dict[Id, Id]:
 
 
 def given_names(mechanism: Mechanism, inline: Mapping[Id, Id]) -> frozenset[Id]:
-    """The meshes defined in place that a reader would not call so by itself: their ids must be said."""
+    """The meshes defined in place whose ids must be written, because they do not follow from the file."""
     names = Names()
     for key, _ in mechanism.vertices(parts.Mesh):
         if key not in inline:
@@ -208,7 +205,7 @@ def given_names(mechanism: Mechanism, inline: Mapping[Id, Id]) -> frozenset[Id]:
 
 
 def files_prefix(mechanism: Mechanism) -> str:
-    """The folder that most files share, when saying it once is shorter; empty when there is none."""
+    """The folder that most files share, when writing it once is shorter; empty when there is none."""
     uris = [part.uri for part in mechanism.graph.vertices.values() if isinstance(part, parts.Mesh | parts.Texture) and part.uri]
     folders: dict[str, int] = {}
     for uri in uris:

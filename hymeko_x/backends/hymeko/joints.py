@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.hymeko.angles import TURNING
-from hymeko_x.backends.hymeko.parts import Context, limit_items, pose_value, word_fields
+from hymeko_x.backends.hymeko.parts import limit_items, word_fields
+from hymeko_x.backends.hymeko.values import pose_value
 from hymeko_x.formats.hymeko import (
     AXES,
     CALIBRATION_WORDS,
@@ -15,6 +15,7 @@ from hymeko_x.formats.hymeko import (
     JOINT_TYPES,
     SAFETY_WORDS,
     TARGETS,
+    TURNING,
     default_axis,
 )
 from hymeko_x.ir import parts
@@ -26,7 +27,8 @@ from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.backends.hymeko.angles import Angles
+    from hymeko_x.backends.hymeko.sheet import HymekoSheet
+    from hymeko_x.backends.hymeko.values import Angles
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
 _BODIES = TARGETS["joint"]
@@ -34,40 +36,40 @@ _SHORT_AXES = {str(direction): (name, "") for name, direction in AXES.items() if
 _SHORT_AXES |= {str((-x + 0.0, -y + 0.0, -z + 0.0)): (name, "-") for name, (x, y, z) in AXES.items() if len(name) == 1}
 
 
-def joint_items(context: Context, key: Id) -> tuple[str, list[Item]]:
+def joint_items(sheet: HymekoSheet, key: Id) -> tuple[str, list[Item]]:
     """The type's name (empty for a hinge) and the block of a joint: ends, dofs, what it follows."""
-    view = context.mechanism.joints[key]
-    items: list[Item] = [_end(context, view.parent, "+", view.parent_pose, "")]
+    view = sheet.mechanism.joints[key]
+    items: list[Item] = [_end(sheet, view.parent, "+", view.parent_pose, "")]
     framed = not identical(view.child_pose, IDENTITY)
     if framed or view.child != Id("body", key.name):  # a joint without a child leads to the body of its name
-        items.append(_end(context, view.child, "-", view.child_pose, "at" if framed else ""))
+        items.append(_end(sheet, view.child, "-", view.child_pose, "at" if framed else ""))
     dofs = view.joint.dofs
     kind = JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
     if kind == "compound":
-        items.extend(dof_node(dof, context.angles) for dof in dofs)
+        items.extend(dof_node(dof, sheet.angles) for dof in dofs)
     else:
-        items.extend(item for dof in dofs for item in _dof_items(dof, context.angles))
-    items.extend(_mimic(context, arc) for arc in context.mimics.get(Id("coupling", key.name), ()))
+        items.extend(item for dof in dofs for item in _dof_items(dof, sheet.angles))
+    items.extend(_mimic(sheet, arc) for arc in sheet.mimics.get(Id("coupling", key.name), ()))
     return kind, items
 
 
-def _end(context: Context, body: Id, direction: str, pose: Pose, role: str) -> ArcItem:
-    said = not identical(pose, IDENTITY)
-    return ArcItem(context.ref(body, _BODIES, direction), role, pose_value(pose, context.angles) if said else None)
+def _end(sheet: HymekoSheet, body: Id, direction: str, pose: Pose, role: str) -> ArcItem:
+    weight = None if identical(pose, IDENTITY) else pose_value(pose, sheet.angles)
+    return ArcItem(sheet.ref(body, _BODIES, direction), role, weight)
 
 
-def _mimic(context: Context, arc: RobotArc) -> ArcItem:
+def _mimic(sheet: HymekoSheet, arc: RobotArc) -> ArcItem:
     coefficients = numbers_weight(arc)
     weight = None if identical(coefficients, (0.0, 1.0)) else coefficients
-    return ArcItem(context.ref(arc.target, TARGETS["coupling"], "-"), "mimic", weight)
+    return ArcItem(sheet.ref(arc.target, TARGETS["coupling"], "-"), "mimic", weight)
 
 
 def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
-    """The couplings that the following joint itself can say: named like it, active, with nothing beside them."""
+    """The couplings that stand in the block of the following joint: named like it, active, with nothing beside them."""
     found: dict[Id, tuple[RobotArc, ...]] = {}
-    spoken_of = {*mechanism.extras, *mechanism.notations, *mechanism.layout}
+    marked = {*mechanism.extras, *mechanism.notations, *mechanism.layout}
     for key, coupling, arcs in mechanism.edges(parts.Coupling):
-        if key in spoken_of or key in mechanism.graph.incidence or not coupling.active or len(arcs) < 2:
+        if key in marked or key in mechanism.graph.incidence or not coupling.active or len(arcs) < 2:
             continue
         follower, *leaders = arcs
         sound = follower.sign > 0 and numbers_weight(follower) == (1.0,) and not follower.role

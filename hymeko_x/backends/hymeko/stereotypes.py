@@ -1,4 +1,4 @@
-"""Says once what many elements share: equal fields become a stereotype, ``drive() { effort 87 velocity 2.2 }``.
+"""Stereotypes: fields that many elements share are written once, ``drive() { effort 87 velocity 2.2 }``.
 
 Works on the finished syntax tree. Elements of one kind are compared field by field; the set of fields that saves most
 letters becomes a stereotype of its own, named after the default class or after what the names of its elements share, and so
@@ -8,12 +8,12 @@ on with the elements that are left. Reading merges the fields again, in the same
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from msgspec import Struct
+from msgspec import Struct, field
 
-from hymeko_x.backends.hymeko.parts import value_of
+from hymeko_x.backends.hymeko.assemblies import take_name
+from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.factor.sets import candidates, common_words
 from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
 from hymeko_x.language.printer import print_item
@@ -53,16 +53,19 @@ _NAMES = {
     "fixed": "mount",
     "dof": "turn",
 }
-"""What a stereotype is called where nothing better is known, by what its elements are."""
+"""The name of a stereotype whose elements have no common words in their names, by the type of the elements."""
 
 
 class _Unit(NamedTuple):
-    """Something of an element that a stereotype can say: its place among such things, text, and what it is made of."""
+    """A field or a block of an element that a stereotype can hold, with its text.
+
+    ``slot`` is its name among the units of the element; ``format`` is set for an attribute in the block of that format.
+    """
 
     slot: str
     text: str
     item: Item
-    form: str = ""
+    format: str = ""
 
     @property
     def cost(self) -> int:
@@ -70,33 +73,32 @@ class _Unit(NamedTuple):
         return len("".join(self.text.split()))
 
 
-@dataclass(slots=True)
-class _Carrier:
-    """An element that may be given a stereotype: where it stands, and its units in order."""
+class _Element(Struct):
+    """An element that may get a stereotype: where it stands, its units in order, and the units of its stereotypes."""
 
     path: tuple[int, ...]
     node: Node
     units: dict[str, _Unit]
     stereotype: str = ""
-    said: dict[str, _Unit] = field(default_factory=dict)
-    left: list[_Unit] = field(init=False)
-    """The units that the element says itself."""
-    pairs: Row = field(init=False)
+    given: dict[str, _Unit] = field(default_factory=dict)
+    left: list[_Unit] = field(default_factory=list)
+    """The units that its stereotypes do not hold as they are."""
+    pairs: Row = field(default_factory=list)
     """The slots and texts of those."""
 
     def __post_init__(self) -> None:
         self._keep(list(self.units.values()))
 
-    def is_said(self, slot: str) -> bool:
-        """Whether its stereotype says this unit as it is."""
-        told = self.said.get(slot)
-        return told is not None and told.text == self.units[slot].text
+    def inherits(self, slot: str) -> bool:
+        """Whether a stereotype holds this unit as it is."""
+        given = self.given.get(slot)
+        return given is not None and given.text == self.units[slot].text
 
     def refine(self, definition: _Definition) -> None:
-        """Give the element a stereotype; what was said by another one is said by that, too."""
+        """Give the element a stereotype, which refines the one that it has."""
         self.stereotype = definition.name
-        self.said = {**self.said, **{unit.slot: unit for unit in definition.units}}
-        self._keep([unit for slot, unit in self.units.items() if not self.is_said(slot)])
+        self.given = {**self.given, **{unit.slot: unit for unit in definition.units}}
+        self._keep([unit for slot, unit in self.units.items() if not self.inherits(slot)])
 
     def _keep(self, left: list[_Unit]) -> None:
         self.left = left
@@ -111,66 +113,52 @@ class _Definition(Struct):
     base: tuple[Stereotype, ...]
 
 
-class _Names(Struct):
-    """Names that are taken."""
-
-    taken: set[str]
-
-    def free(self, wanted: str) -> str:
-        """The name, with a number behind it when somebody has it."""
-        name, number = wanted, 2
-        while name in self.taken:
-            name, number = f"{wanted}{number}", number + 1
-        self.taken.add(name)
-        return name
-
-
 def with_stereotypes(items: Sequence[Item], taken: Iterable[str] = ()) -> list[Item]:
-    """The items of a robot, behind the stereotypes that say what several of them share. ``taken`` are names of other templates."""
-    groups: dict[tuple[str, str], list[_Carrier]] = {}
-    for carrier in _carriers(items):
-        groups.setdefault(_group(carrier), []).append(carrier)
-    names = _Names({*standard_templates(), *RESERVED, *taken})
+    """The items of a robot behind the stereotypes that several of them share. ``taken`` are names of other templates."""
+    groups: dict[tuple[str, str], list[_Element]] = {}
+    for element in _elements(items):
+        groups.setdefault(_group(element), []).append(element)
+    names = {*standard_templates(), *RESERVED, *taken}
     definitions: list[_Definition] = []
-    for (kind, _), carriers in groups.items():
-        definitions.extend(_stereotypes(kind, carriers, names))
+    for (kind, _), elements in groups.items():
+        definitions.extend(_stereotypes(kind, elements, names))
     if not definitions:
         return list(items)
-    changed = {carrier.path: _applied(carrier) for group in groups.values() for carrier in group if carrier.stereotype}
+    changed = {element.path: _applied(element) for group in groups.values() for element in group if element.stereotype}
     return [*map(_definition, definitions), *(_rebuilt(number, item, changed) for number, item in enumerate(items))]
 
 
 # ---- what elements are made of -------------------------------------------------------------------------------------------
 
 
-def _carriers(items: Sequence[Item]) -> Iterable[_Carrier]:
+def _elements(items: Sequence[Item]) -> Iterable[_Element]:
     """The elements, and the shapes and dofs in them."""
     for number, item in enumerate(items):
         if not isinstance(item, Node) or item.parameters is not None or (item.name in FOREIGN and not isinstance(item.name, QuotedName)):
             continue
         if item.name in ("units", "written", "world") and not isinstance(item.name, QuotedName) and not item.edge:
             continue
-        outer = _Carrier((number,), item, _units(item))
-        if not (_is_open(_group(outer)[0]) and any(isinstance(inner, Field) and not _is_sayable(inner) for inner in item.items)):
-            yield outer  # parameters are in order, also those that no stereotype may say
+        outer = _Element((number,), item, _units(item))
+        if not (_is_open(_group(outer)[0]) and any(isinstance(inner, Field) and not _can_be_shared(inner) for inner in item.items)):
+            yield outer  # parameters are in order, also those that no stereotype may hold
         for place, inner in enumerate(item.items):
             if isinstance(inner, Node) and (inner.name in _SHAPES or (item.edge and inner.stereotypes)):
-                yield _Carrier((number, place), inner, _units(inner))
+                yield _Element((number, place), inner, _units(inner))
 
 
-def _group(carrier: _Carrier) -> tuple[str, str]:
+def _group(element: _Element) -> tuple[str, str]:
     """Elements of one group may share a stereotype: what they are, and the type that they are written with."""
-    node = carrier.node
-    if len(carrier.path) > 1 and not node.stereotypes:
+    node = element.node
+    if len(element.path) > 1 and not node.stereotypes:
         return node.name, ""
-    if len(carrier.path) > 1:
+    if len(element.path) > 1:
         return "dof", node.stereotypes[0].ref.dotted
     types = ".".join(node.stereotypes[0].ref.path) if node.stereotypes else ""
     return (node.stereotypes[0].ref.path[0] if node.stereotypes else node.edge), f"{node.edge}{types}"
 
 
 def _units(node: Node) -> dict[str, _Unit]:
-    """What a stereotype could say of a node, by slot, in order."""
+    """The units of a node by slot, in order."""
     return {unit.slot: unit for _, units in _by_item(node) for unit in units}
 
 
@@ -186,8 +174,8 @@ def _by_item(node: Node) -> Iterable[tuple[Item, list[_Unit]]]:
         yield item, units
 
 
-def _is_sayable(item: Field) -> bool:
-    """Whether a stereotype could say a field: it is not one of a kind, not called like a format, without parameters of a template."""
+def _can_be_shared(item: Field) -> bool:
+    """Whether a stereotype may hold a field: it is not one of a kind, not called like a format, without parameters of a template."""
     is_like_format = isinstance(item.name, QuotedName) and item.name in FOREIGN
     return item.name not in _ONE_OF_A_KIND and not is_like_format and "${" not in print_item(item)
 
@@ -195,7 +183,7 @@ def _is_sayable(item: Field) -> bool:
 def _units_of(item: Item) -> Iterable[_Unit]:
     if isinstance(item, Node) and item.name in FOREIGN | _WHOLE and "${" in print_item(item):
         return
-    if isinstance(item, Field) and item.name not in FOREIGN and _is_sayable(item):
+    if isinstance(item, Field) and item.name not in FOREIGN and _can_be_shared(item):
         yield _Unit(f"`{item.name}" if isinstance(item.name, QuotedName) else item.name, print_item(item), item)
     elif isinstance(item, Node) and not isinstance(item.name, QuotedName) and item.name in FOREIGN | _WHOLE:
         if item.name in FOREIGN and item.parameters is None and all(isinstance(inner, Field) for inner in item.items):
@@ -208,46 +196,46 @@ def _units_of(item: Item) -> Iterable[_Unit]:
 # ---- finding -------------------------------------------------------------------------------------------------------------
 
 
-def _stereotypes(kind: str, carriers: list[_Carrier], names: _Names) -> list[_Definition]:
+def _stereotypes(kind: str, elements: list[_Element], names: set[str]) -> list[_Definition]:
     """The stereotypes of one group, the one that saves most first, then those that refine it."""
     found: list[_Definition] = []
-    queue = [(carriers, carriers[0].node.stereotypes)]
+    queue = [(elements, elements[0].node.stereotypes)]
     for left, base in queue:
         while len(left) > 1 and len(found) < _MOST:
             best = _best(kind, left)
             if best is None:
                 break
             units, members = best
-            definition = _Definition(names.free(_name(kind, units, members)), units, base)
+            definition = _Definition(take_name(_name(kind, units, members), names), units, base)
             for member in members:
                 member.refine(definition)
             found.append(definition)
             queue.append((members, (Stereotype(Ref((definition.name,))),)))
             gone = {member.path for member in members}
-            left = [carrier for carrier in left if carrier.path not in gone]
+            left = [element for element in left if element.path not in gone]
     return found
 
 
-def _best(kind: str, carriers: list[_Carrier]) -> tuple[list[_Unit], list[_Carrier]] | None:
+def _best(kind: str, elements: list[_Element]) -> tuple[list[_Unit], list[_Element]] | None:
     """The set of units that saves most, and the elements that it serves."""
-    for shared in candidates([carrier.pairs for carrier in carriers]):
-        members = [carrier for carrier in carriers if all(_has(carrier, pair) for pair in shared)]
+    for shared in candidates([element.pairs for element in elements]):
+        members = [element for element in elements if all(_has(element, pair) for pair in shared)]
         units = _in_order(kind, shared, members)
-        members = [carrier for carrier in members if _keeps_order(kind, units, carrier)]
+        members = [element for element in members if _keeps_order(kind, units, element)]
         if len(members) > 1 and _saving(kind, units, members) >= _LEAST:
             return units, members
     return None
 
 
-def _has(carrier: _Carrier, pair: Pair) -> bool:
-    unit = carrier.units.get(pair[0])
+def _has(element: _Element, pair: Pair) -> bool:
+    unit = element.units.get(pair[0])
     return unit is not None and unit.text == pair[1]
 
 
-def _in_order(kind: str, shared: frozenset[Pair], members: list[_Carrier]) -> list[_Unit]:
+def _in_order(kind: str, shared: frozenset[Pair], members: list[_Element]) -> list[_Unit]:
     """The units of a stereotype in the order of its first element.
 
-    Where order counts, what stands between them and differs is said as well, as it is mostly; elements then say their own.
+    Where order counts, units between them that differ are held as well, with their most frequent text; elements then have their own.
     """
     first = members[0]
     slots = {slot for slot, _ in shared}
@@ -256,7 +244,7 @@ def _in_order(kind: str, shared: frozenset[Pair], members: list[_Carrier]) -> li
     for slot, unit in list(first.units.items())[: last + 1]:
         if slot in slots:
             found.append(unit)
-        elif _is_ordered(kind, unit) and slot not in first.said:
+        elif _is_ordered(kind, unit) and slot not in first.given:
             texts = Counter(member.units[slot].text for member in members if slot in member.units)
             common = max(texts, key=lambda text: (texts[text], text))
             found.append(next(member.units[slot] for member in members if slot in member.units and member.units[slot].text == common))
@@ -265,7 +253,7 @@ def _in_order(kind: str, shared: frozenset[Pair], members: list[_Carrier]) -> li
 
 def _is_ordered(kind: str, unit: _Unit) -> bool:
     """Whether the order of such units counts: parameters of open kinds."""
-    return not unit.form and isinstance(unit.item, Field) and unit.item.value is not None and _is_open(kind)
+    return not unit.format and isinstance(unit.item, Field) and unit.item.value is not None and _is_open(kind)
 
 
 def _is_open(kind: str) -> bool:
@@ -273,40 +261,40 @@ def _is_open(kind: str) -> bool:
     return words is not None and words.open
 
 
-def _keeps_order(kind: str, units: list[_Unit], carrier: _Carrier) -> bool:
-    """Whether an element has all that the stereotype says, and merging both gives its units in their order."""
-    said = {**carrier.said, **{unit.slot: unit for unit in units}}
-    if not said.keys() <= carrier.units.keys():
+def _keeps_order(kind: str, units: list[_Unit], element: _Element) -> bool:
+    """Whether an element has all units of the stereotype, and merging both gives its units in their order."""
+    given = {**element.given, **{unit.slot: unit for unit in units}}
+    if not given.keys() <= element.units.keys():
         return False
-    own = [slot for slot in carrier.units if slot not in said]
-    differing = [slot for slot, unit in said.items() if carrier.units[slot].text != unit.text]
-    if not all(_is_ordered(kind, carrier.units[slot]) for slot in differing) or _tears_apart(carrier, said, differing):
+    own = [slot for slot in element.units if slot not in given]
+    differing = [slot for slot, unit in given.items() if element.units[slot].text != unit.text]
+    if not all(_is_ordered(kind, element.units[slot]) for slot in differing) or _splits_repeated(element, given, differing):
         return False
-    by_form: dict[str, list[str]] = {}
-    for slot in (*said, *own):
-        by_form.setdefault(carrier.units[slot].form, []).append(slot)
-    merged = {form: iter(slots) for form, slots in by_form.items()}
+    by_format: dict[str, list[str]] = {}
+    for slot in (*given, *own):
+        by_format.setdefault(element.units[slot].format, []).append(slot)
+    merged = {format: iter(slots) for format, slots in by_format.items()}
     ordered = _is_open(kind)
-    return all(next(merged[unit.form]) == slot for slot, unit in carrier.units.items() if unit.form or ordered)
+    return all(next(merged[unit.format]) == slot for slot, unit in element.units.items() if unit.format or ordered)
 
 
-def _tears_apart(carrier: _Carrier, said: Mapping[str, _Unit], differing: list[str]) -> bool:
-    """Whether some of several fields of one name would be said by the stereotype and some by the element."""
-    repeated = {slot.split(_AGAIN)[0] for slot in carrier.units if _AGAIN in slot}
-    names = Counter(slot.split(_AGAIN)[0] for slot in carrier.units)
-    told = Counter(slot.split(_AGAIN)[0] for slot in said if slot not in differing)
-    return any(told[name] not in (0, names[name]) for name in repeated) or any(slot.split(_AGAIN)[0] in repeated for slot in differing)
+def _splits_repeated(element: _Element, given: Mapping[str, _Unit], differing: list[str]) -> bool:
+    """Whether some of several fields of one name would stand in the stereotype and some in the element."""
+    repeated = {slot.split(_AGAIN)[0] for slot in element.units if _AGAIN in slot}
+    names = Counter(slot.split(_AGAIN)[0] for slot in element.units)
+    shared = Counter(slot.split(_AGAIN)[0] for slot in given if slot not in differing)
+    return any(shared[name] not in (0, names[name]) for name in repeated) or any(slot.split(_AGAIN)[0] in repeated for slot in differing)
 
 
-def _saving(kind: str, units: list[_Unit], members: list[_Carrier]) -> int:
+def _saving(kind: str, units: list[_Unit], members: list[_Element]) -> int:
     """Letters that a stereotype saves, its definition and its name counted."""
     name = len(_name(kind, units, members)) + 1
-    said = {unit.slot: unit.text for unit in units}
+    texts = {unit.slot: unit.text for unit in units}
     saved = 0
     for member in members:
         types = member.node.stereotypes
         before = sum(len(step) for step in types[0].ref.path) + 1 if types else 0
-        saved += sum(unit.cost for unit in member.left if said.get(unit.slot) == unit.text)
+        saved += sum(unit.cost for unit in member.left if texts.get(unit.slot) == unit.text)
         saved -= 0 if member.stereotype else max(name - before, 0)
     return saved - sum(unit.cost for unit in units) - name - 10
 
@@ -314,8 +302,8 @@ def _saving(kind: str, units: list[_Unit], members: list[_Carrier]) -> int:
 # ---- naming --------------------------------------------------------------------------------------------------------------
 
 
-def _name(kind: str, units: list[_Unit], members: list[_Carrier]) -> str:
-    """The default class, or what the elements' names have in common, or a word for what they are."""
+def _name(kind: str, units: list[_Unit], members: list[_Element]) -> str:
+    """The name of the default class, or the words that the elements' names have in common, or a word for their type."""
     for unit in units:
         if unit.slot == "class" and isinstance(unit.item, Field):
             value = unit.item.value
@@ -336,8 +324,8 @@ def _definition(definition: _Definition) -> Node:
     items: list[Item] = []
     blocks: dict[str, list[Item]] = {}
     for unit in definition.units:
-        if unit.form:
-            blocks.setdefault(unit.form, []).append(unit.item)
+        if unit.format:
+            blocks.setdefault(unit.format, []).append(unit.item)
         elif unit.slot == "class" and unit.item == Field("class", value_of(definition.name)):
             items.append(Field("class"))
         else:
@@ -346,16 +334,16 @@ def _definition(definition: _Definition) -> Node:
     return Node(definition.name, tuple(items), definition.base, ())
 
 
-def _applied(carrier: _Carrier) -> Node:
-    """The element with its stereotype, without what that says."""
+def _applied(element: _Element) -> Node:
+    """The element with its stereotype, without the units of that."""
     items: list[Item] = []
-    for item, units in _by_item(carrier.node):
-        left = [unit for unit in units if not carrier.is_said(unit.slot)]
-        if not units or (not units[0].form and left):
+    for item, units in _by_item(element.node):
+        left = [unit for unit in units if not element.inherits(unit.slot)]
+        if not units or (not units[0].format and left):
             items.append(item)
         elif left and isinstance(item, Node):
             items.append(item._replace(items=tuple(unit.item for unit in left)))
-    return carrier.node._replace(items=tuple(items), stereotypes=(Stereotype(Ref((carrier.stereotype,))),))
+    return element.node._replace(items=tuple(items), stereotypes=(Stereotype(Ref((element.stereotype,))),))
 
 
 def _rebuilt(number: int, item: Item, changed: Mapping[tuple[int, ...], Node]) -> Item:

@@ -7,10 +7,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import formats
 from hymeko_x.ir import parts
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.values import X
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
+
+    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
 
 
 class Word(NamedTuple):
@@ -33,64 +37,54 @@ class PartWords(NamedTuple):
     open: bool = False
 
 
+def _number(word: str, dimension: str = "") -> Word:
+    return Word(word, word, "number", dimension)
+
+
+def _numbers(words: str) -> tuple[Word, ...]:
+    return tuple(map(_number, words.split()))
+
+
+def _motions(words: str) -> tuple[Word, ...]:
+    """Numbers along a dof: dimension ``motion`` is an angle for dofs that turn and a length for dofs that slide."""
+    return tuple(_number(word, "motion") for word in words.split())
+
+
 _TYPE = Word("type", "kind", "text")
+_NAME = Word("name", "name", "text")
+_FILE = Word("file", "uri", "text")
+_RGBA = Word("rgba", "rgba", "rgba")
+_SCALE = Word("scale", "scale", "vec3")
+_ACTIVE = Word("active", "active", "flag")
+_FACES = Word("faces", "faces", "integers")
+_MASS = _number("mass", "mass")
+_POINTS = (Word("vertices", "vertices", "numbers", "length"), _FACES)
+_TEXTURING = (Word("texcoords", "texcoords", "numbers"), Word("texfaces", "texfaces", "integers"))
+_SURFACE = _numbers("specular shininess reflectance emission metallic roughness")
 
 PARTS: Mapping[str, PartWords] = MappingProxyType(
     {
         "frame": PartWords(parts.Frame, (Word("size", "size", "numbers", "length"),)),
-        "material": PartWords(
-            parts.Material,
-            (
-                Word("name", "name", "text"),
-                Word("rgba", "rgba", "rgba"),
-                Word("specular", "specular", "number"),
-                Word("shininess", "shininess", "number"),
-                Word("reflectance", "reflectance", "number"),
-                Word("emission", "emission", "number"),
-                Word("metallic", "metallic", "number"),
-                Word("roughness", "roughness", "number"),
-            ),
-        ),
-        "texture": PartWords(parts.Texture, (Word("file", "uri", "text"), Word("name", "name", "text"))),
-        "mesh": PartWords(
-            parts.Mesh,
-            (
-                Word("file", "uri", "text"),
-                Word("scale", "scale", "vec3"),
-                Word("name", "name", "text"),
-                Word("vertices", "vertices", "numbers", "length"),
-                Word("faces", "faces", "integers"),
-                Word("texcoords", "texcoords", "numbers"),
-                Word("texfaces", "texfaces", "integers"),
-            ),
-        ),
+        "material": PartWords(parts.Material, (_NAME, _RGBA, *_SURFACE)),
+        "texture": PartWords(parts.Texture, (_FILE, _NAME)),
+        "mesh": PartWords(parts.Mesh, (_FILE, _SCALE, _NAME, *_POINTS, *_TEXTURING)),
         "actuator": PartWords(parts.Actuator, (_TYPE,), open=True),
-        "sensor": PartWords(parts.Sensor, (_TYPE, Word("rate", "rate", "number")), open=True),
-        "camera": PartWords(parts.Camera, (Word("fovy", "fovy", "number", "angle"), Word("resolution", "resolution", "pixels")), open=True),
+        "sensor": PartWords(parts.Sensor, (_TYPE, _number("rate")), open=True),
+        "camera": PartWords(parts.Camera, (_number("fovy", "angle"), Word("resolution", "resolution", "pixels")), open=True),
         "light": PartWords(parts.Light, (_TYPE, Word("diffuse", "diffuse", "vec3")), open=True),
-        "pose": PartWords(parts.PoseSet, (Word("group", "group", "text"), Word("time", "time", "number", "time")), open=True),
-        "spring": PartWords(parts.Spring, (Word("stiffness", "stiffness", "number"), Word("rest", "rest", "number"))),
-        "damper": PartWords(parts.Damper, (Word("damping", "damping", "number"),)),
-        "mass": PartWords(parts.Mass, (Word("mass", "mass", "number", "mass"),)),
-        "port": PartWords(parts.Port, (_TYPE, Word("value", "value", "number"))),
+        "pose": PartWords(parts.PoseSet, (Word("group", "group", "text"), _number("time", "time")), open=True),
+        "spring": PartWords(parts.Spring, _numbers("stiffness rest")),
+        "damper": PartWords(parts.Damper, _numbers("damping")),
+        "mass": PartWords(parts.Mass, (_MASS,)),
+        "port": PartWords(parts.Port, (_TYPE, _number("value"))),
         "datum": PartWords(parts.Datum, (), open=True),
         "mount": PartWords(parts.Mount, ()),
         "layer": PartWords(parts.Layer, (Word("use", "use", "text"),)),
-        "subset": PartWords(parts.Subset, (Word("faces", "faces", "integers"),)),
-        "coupling": PartWords(parts.Coupling, (Word("active", "active", "flag"),)),
-        "loop": PartWords(parts.Loop, (_TYPE, Word("active", "active", "flag")), open=True),
+        "subset": PartWords(parts.Subset, (_FACES,)),
+        "coupling": PartWords(parts.Coupling, (_ACTIVE,)),
+        "loop": PartWords(parts.Loop, (_TYPE, _ACTIVE), open=True),
         "tendon": PartWords(
-            parts.Tendon,
-            (
-                _TYPE,
-                Word("damping", "damping", "number"),
-                Word("stiffness", "stiffness", "number"),
-                Word("friction", "friction", "number"),
-                Word("armature", "armature", "number"),
-                Word("width", "width", "number", "length"),
-                Word("rgba", "rgba", "rgba"),
-            ),
-            open=True,
+            parts.Tendon, (_TYPE, *_numbers("damping stiffness friction armature"), _number("width", "length"), _RGBA), open=True
         ),
         "drive": PartWords(parts.Drive, (_TYPE,), open=True),
         "sense": PartWords(parts.Sense, ()),
@@ -100,7 +94,7 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
         "relation": PartWords(parts.Relation, (), open=True),
     }
 )
-"""The parts that are said by fields alone; bodies, shapes and joints have readers and writers of their own."""
+"""The parts that fields alone represent; bodies, shapes and joints have readers and writers of their own."""
 
 ATTACHED: Mapping[str, str] = MappingProxyType(
     {
@@ -114,7 +108,7 @@ ATTACHED: Mapping[str, str] = MappingProxyType(
         "body": "joint",
     }
 )
-"""Vertices whose block may hold the arcs of the one edge that puts them to use: ``tip : frame { [0 0 1] + arm }``.
+"""Vertices whose block may hold the arcs of the one edge that attaches them: ``tip : frame { [0 0 1] + arm }``.
 
 For a body that is a joint without freedom: ``hand { [0 0 1] + arm mass 2 }``."""
 
@@ -129,13 +123,13 @@ SHORT_TYPES: Mapping[tuple[str, str], str] = MappingProxyType(
         ("contact", "pair"): "pair",
     }
 )
-"""Types of the standard vocabulary that say an element's kind and its ``type`` in one word."""
+"""Types of the standard vocabulary that stand for an element's kind and its ``type``."""
 
 CHILD_CLASS = "childclass"
 """The field of a body that names the default class of MJCF for everything in it; a notation."""
 
 NAMED_AFTER_ID = frozenset({"material"})
-"""Parts whose ``name`` is that of the element unless something else is said: another name, or ``unnamed``."""
+"""Parts whose ``name`` is that of the element unless another name or ``unnamed`` is given."""
 
 ALIASES: Mapping[str, Mapping[str, str]] = MappingProxyType(
     {
@@ -147,47 +141,39 @@ ALIASES: Mapping[str, Mapping[str, str]] = MappingProxyType(
 )
 """Other words for fields, from the published examples; read, never printed."""
 
-LIMIT_WORDS = (
-    Word("lower", "lower", "number", "motion"),
-    Word("upper", "upper", "number", "motion"),
-    Word("velocity", "velocity", "number", "motion"),
-    Word("effort", "effort", "number"),
-    Word("acceleration", "acceleration", "number", "motion"),
-    Word("jerk", "jerk", "number", "motion"),
-)
-"""Bounds of a dof; dimension ``motion`` is an angle for what turns and a length for what slides."""
+LIMIT_WORDS = (*_motions("lower upper velocity"), _number("effort"), *_motions("acceleration jerk"))
+"""Bounds of a dof."""
 
 DOF_WORDS = (
-    Word("damping", "damping", "number"),
-    Word("friction", "friction", "number"),
-    Word("stiffness", "stiffness", "number"),
-    Word("spring_ref", "spring_ref", "number", "motion"),
-    Word("armature", "armature", "number"),
-    Word("ref", "ref", "number", "motion"),
+    *_numbers("damping friction stiffness"),
+    _number("spring_ref", "motion"),
+    _number("armature"),
+    _number("ref", "motion"),
     Word("anchor", "anchor", "vec3", "length"),
-    Word("pitch", "pitch", "number", "length"),
+    _number("pitch", "length"),
     Word("dof_name", "name", "text"),
 )
+SAFETY_WORDS = (*_numbers("k_velocity k_position"), *_motions("soft_lower soft_upper"))
+CALIBRATION_WORDS = _motions("rising falling reference")
 
-SAFETY_WORDS = (
-    Word("k_velocity", "k_velocity", "number"),
-    Word("k_position", "k_position", "number"),
-    Word("soft_lower", "soft_lower", "number", "motion"),
-    Word("soft_upper", "soft_upper", "number", "motion"),
-)
-CALIBRATION_WORDS = (
-    Word("rising", "rising", "number", "motion"),
-    Word("falling", "falling", "number", "motion"),
-    Word("reference", "reference", "number", "motion"),
-)
+SHAPE_WORDS = (_NAME, _RGBA, _MASS, _number("density"), Word("friction", "friction", "numbers"))
 
-SHAPE_WORDS = (
-    Word("name", "name", "text"),
-    Word("rgba", "rgba", "rgba"),
-    Word("mass", "mass", "number", "mass"),
-    Word("density", "density", "number"),
-    Word("friction", "friction", "numbers"),
+SHAPE_ROLES: Mapping[parts.Role, str] = MappingProxyType(
+    {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts.Role.BOTH: "shape"}
 )
+"""The word of a shape; one without a given id is named after its body and this word."""
+
+SOLIDS: Mapping[str, type[parts.Geometry]] = MappingProxyType(
+    {
+        "box": parts.Box,
+        "sphere": parts.Sphere,
+        "ellipsoid": parts.Ellipsoid,
+        "cylinder": parts.Cylinder,
+        "capsule": parts.Capsule,
+        "plane": parts.Plane,
+    }
+)
+"""The geometries that one field represents; those with radius and length have both in it."""
 
 MOVES: Mapping[str, tuple[parts.DofKind, ...]] = MappingProxyType(
     {
@@ -199,7 +185,7 @@ MOVES: Mapping[str, tuple[parts.DofKind, ...]] = MappingProxyType(
         "free": (parts.DofKind.FREE,),
     }
 )
-"""What the preset ``moves`` of a joint type means; ``several`` reads the dofs from blocks."""
+"""The dofs of a joint type, by its preset ``moves``; those of ``several`` are read from blocks."""
 
 JOINT_TYPES: Mapping[tuple[parts.DofKind, ...], str] = MappingProxyType(
     {
@@ -214,19 +200,11 @@ JOINT_TYPES: Mapping[tuple[parts.DofKind, ...], str] = MappingProxyType(
 """The type that a joint with these dofs is printed with; a joint without a type turns about its axis."""
 
 ROLE_MOVES: Mapping[str, str] = MappingProxyType(
-    {
-        "REV": "hinge",
-        "ROT": "hinge",
-        "CONT": "hinge",
-        "PRI": "slide",
-        "PRISM": "slide",
-        "LIN": "slide",
-        "TRANS": "slide",
-        "FIX": "none",
-        "FIXED": "none",
-    }
+    dict.fromkeys(("REV", "ROT", "CONT"), "hinge")
+    | dict.fromkeys(("PRI", "PRISM", "LIN", "TRANS"), "slide")
+    | dict.fromkeys(("FIX", "FIXED"), "none")
 )
-"""Roles on the child's arc that tell the joint's type, as in the published listings."""
+"""Roles on the child's arc that name the joint's type, as in the published listings."""
 
 AXES: Mapping[str, tuple[float, float, float]] = MappingProxyType(
     {
@@ -244,7 +222,7 @@ _NO_AXIS = frozenset({parts.DofKind.BALL, parts.DofKind.FREE})
 
 
 def default_axis(kind: parts.DofKind) -> tuple[float, float, float]:
-    """The axis of a dof that names none: z, and what every format says where no axis has a meaning."""
+    """The axis of a dof that names none: z, and x, as in every format, where an axis has no meaning."""
     return X if kind in _NO_AXIS else (0.0, 0.0, 1.0)
 
 
@@ -272,24 +250,52 @@ TARGETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
 """The kinds that a reference in an edge may mean, the likeliest first; empty = any kind."""
 
 FOREIGN = frozenset({*(format.family for format in formats.FORMATS), "srdf"})
-"""Fields of these names hold what a format said verbatim."""
+"""Fields of these names hold extras of a format."""
 
 SETTINGS = FOREIGN | {"extra", "written", "files", "scope"}
-"""Fields that stand in the root and say something about the whole."""
+"""Fields in the root that are about the whole."""
 
 DOF_TYPES: Mapping[parts.DofKind, str] = MappingProxyType(
-    {
-        parts.DofKind.HINGE: "hinge",
-        parts.DofKind.SLIDE: "slide",
-        parts.DofKind.SCREW: "screw",
-        parts.DofKind.BALL: "ball",
-        parts.DofKind.FREE: "floating",
-    }
+    {kind: "floating" if moves == "free" else moves for moves, kinds in MOVES.items() for kind in kinds}
 )
 """The type that one of several dofs is printed with."""
+
+TURNING = frozenset({parts.DofKind.HINGE, parts.DofKind.BALL, parts.DofKind.SCREW})
+"""The dofs whose coordinates are angles."""
 
 DOF_BLOCKS = SETTINGS | {"dof", "safety", "calibration"}
 """Names of blocks in a joint that are no names of dofs."""
 
 RESERVED = SETTINGS | {"units", "world", "style"}
 """Names that must be quoted to be names of elements; the printer quotes the words of the grammar by itself."""
+
+# ---- edges in the block of a vertex --------------------------------------------------------------------------------------
+
+TEXTURE = "texture"
+"""The field of a material that names its texture."""
+
+
+def attached_key(vertex: Id) -> Id | None:
+    """The edge whose arcs may stand in the block of a vertex: it has the vertex's name."""
+    kind = ATTACHED.get(vertex.kind)
+    return None if kind is None else Id(kind, vertex.name)
+
+
+def attached_edge(vertex: Id, arcs: tuple[RobotArc, ...]) -> RobotEdge:
+    """The edge that attaches a vertex with these arcs in its block: its mount, drive, sense, stance, layer or fixed joint.
+
+    The vertex itself comes after the arcs, for an actuator and a stance before them.
+    """
+    match vertex.kind:
+        case "actuator":
+            return Edge(parts.Drive(), (Arc(vertex, 1), *arcs))
+        case "pose":
+            return Edge(parts.Stance(), (Arc(vertex, 1), *arcs))
+        case "sensor":
+            return Edge(parts.Sense(), (*arcs, Arc(vertex, -1)))
+        case "material":
+            return Edge(parts.Layer(), (*arcs, Arc(vertex, -1)))
+        case "body":
+            return Edge(parts.Joint(()), (*arcs, Arc(vertex, -1)))
+        case _:
+            return Edge(parts.Mount(), (*arcs, Arc(vertex, -1)))

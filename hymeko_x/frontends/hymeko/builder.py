@@ -1,4 +1,4 @@
-"""The mechanism under construction: what the readers of HyMeKo text put their elements into."""
+"""The builder of a mechanism from HyMeKo text: ids, references and arcs."""
 
 from __future__ import annotations
 
@@ -10,14 +10,15 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Provenance
-from hymeko_x.ir.parts import EdgePart, Weight, World
+from hymeko_x.ir.parts import Weight, World
 from hymeko_x.language.syntax import ArcItem, QuotedName, is_list
 from hymeko_x.language.templates import standard_templates
 
 if TYPE_CHECKING:
-    from hymeko_x.frontends.hymeko.block import Block, Context
+    from hymeko_x.frontends.hymeko.block import Block
+    from hymeko_x.frontends.hymeko.values import ValueReader
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.values import Vec3
     from hymeko_x.language.expansion import Element, Scope
@@ -28,16 +29,14 @@ _ALL_KINDS = tuple(KINDS.values())
 _SIGNS = {"+": 1, "<-": 1, "-": -1, "->": -1, "~": 0, "<>": 0}
 
 
-class Build(Builder):
+class HymekoBuilder(Builder):
     """The elements of a text so far, and which names exist of which kind."""
 
-    context: Context
+    reader: ValueReader
     source: Provenance = field(default=Provenance())
     files: str = ""
     kinds: dict[str, list[str]] = field(default_factory=dict)
     directions: dict[str, Vec3] = field(default_factory=dict)
-
-    # ---- adding ----------------------------------------------------------------------------------------------------------
 
     def declare(self, kind: str, element: Element) -> Id:
         """Reserve the id of an element, so that references find it.
@@ -47,32 +46,28 @@ class Build(Builder):
         key = self.reserve(kind, element.name, element.node)
         self.layout.append(key)
         own = tuple(name for name in element.types if name not in standard_templates())
-        if own and not self.source.version:  # whose classes are said apart
+        if own and not self.source.version:  # a mechanism with a version has its default classes in `class` fields
             self.stereotypes[key] = own
         return key
 
     def reserve(self, kind: str, name: str, item: Item) -> Id:
-        """Reserve an id for something that stands inside an element."""
+        """Reserve the id of a part of an element."""
         taken = self.kinds.setdefault(name, [])
         key = Id(kind, name)
         if kind in taken:
             first = self.origins[key].line
             message = f"{key} is defined twice; the first definition is in line {first}"
-            raise refuse(codes.DUPLICATE_NAME, message, self.context.origin(item), hint="give one of them another name")
+            raise refuse(codes.DUPLICATE_NAME, message, self.reader.origin(item), hint="give one of them another name")
         taken.append(kind)
         self.names.reserve(kind, name)
-        self.origins[key] = self.context.origin(item)
+        self.origins[key] = self.reader.origin(item)
         return key
 
     def name_after_place(self, kind: str, name: str, item: Item) -> Id:
-        """An id for something that its author left unnamed: after its place, with a number when that is taken."""
-        key = self.fresh(kind, name, self.context.origin(item))
+        """The id of an element without a name: after its place, with a number when that is taken."""
+        key = self.fresh(kind, name, self.reader.origin(item))
         self.kinds.setdefault(key.name, []).append(kind)
         return key
-
-    def add_edge(self, key: Id, data: EdgePart, arcs: tuple[RobotArc, ...]) -> None:
-        """Put an edge in."""
-        self.edges[key] = Edge(data, arcs)
 
     def keep(self, key: Id, block: Block) -> None:
         """Keep the block's extras and notations beside its element."""
@@ -82,8 +77,6 @@ class Build(Builder):
         written = {**({"unnamed": "yes"} if block.unnamed else {}), **block.written}
         if written:
             self.notations[key] = {**self.notations.get(key, {}), **written}
-
-    # ---- references --------------------------------------------------------------------------------------------------------
 
     def target(self, ref: Ref, scope: Scope, kinds: tuple[str, ...], item: Item) -> Id:
         """The element behind a reference: the first of these kinds that has the name.
@@ -95,7 +88,7 @@ class Build(Builder):
             raise refuse(
                 codes.UNDEFINED_REFERENCE,
                 f"'{ref.dotted}' is not defined; expected a {' or '.join(kinds or ('element',))}",
-                self.context.origin(item),
+                self.reader.origin(item),
                 hint=self._near(ref.path[-1], kinds),
             )
         return found
@@ -123,21 +116,25 @@ class Build(Builder):
             return f"did you mean {' or '.join(near)}?"
         return f"defined are {', '.join(candidates)}" if 0 < len(candidates) <= _FEW else ""
 
+    def full_uri(self, uri: str) -> str:
+        """The uri of a file: behind the mechanism's ``files`` prefix where it begins with ``~/``."""
+        return self.files + uri[2:] if self.files and uri.startswith("~/") else uri
+
     def arc(self, kind: str, item: ArcItem, scope: Scope) -> RobotArc:
         """An arc of an edge of this kind, with its weight read as the kind wants it."""
         target = self.target(item.ref, scope, TARGETS[kind], item)
-        return Arc(target, sign_of(item), self.weight(kind, item), item.role)
+        return Arc(target, sign_of(item), self._weight(kind, item), item.role)
 
-    def weight(self, kind: str, item: ArcItem) -> Weight | None:
+    def _weight(self, kind: str, item: ArcItem) -> Weight | None:
         """An arc's weight: a pose for the edges that join bodies, numbers for the others."""
         if item.weight is None:
             return None
         if kind in POSED_EDGES:
-            return self.context.pose(item.weight, item)
+            return self.reader.pose(item.weight, item)
         flat = tuple(part for part in item.weight if not is_list(part))
         if len(flat) != len(item.weight):
-            raise self.context.refuse(item, f"the weight of the arc to '{item.ref.dotted}' is a list of numbers")
-        return self.context.numbers(item.weight, "", item)
+            raise self.reader.refuse(item, f"the weight of the arc to '{item.ref.dotted}' is a list of numbers")
+        return self.reader.numbers(item.weight, "", item)
 
 
 def sign_of(item: ArcItem) -> int:

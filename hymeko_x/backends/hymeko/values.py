@@ -1,14 +1,16 @@
-"""Angles in the unit that says them shortest: degrees where the author thought in degrees, else radians."""
+"""Values of HyMeKo text: numbers, words, rotations and poses, with angles in the unit that takes fewer letters."""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
+from hymeko_x.formats.hymeko import TURNING
 from hymeko_x.ir import parts
-from hymeko_x.ir.values import Pose, number_text
-from hymeko_x.language.syntax import Quantity
+from hymeko_x.ir.values import NO_ROTATION, Pose, number_text
+from hymeko_x.language.syntax import Quantity, Ref
 from hymeko_x.language.units import unit_factor
 
 if TYPE_CHECKING:
@@ -20,13 +22,13 @@ if TYPE_CHECKING:
 
 _DEGREE = unit_factor("deg") or 1.0
 _DIGITS = (6, 10, 13, 15, 16, 17)
-_UNITS_BLOCK = 15  # letters of units { angle rad }
-TURNING = frozenset({parts.DofKind.HINGE, parts.DofKind.BALL, parts.DofKind.SCREW})
-"""The dofs whose coordinates are angles."""
+_UNITS_BLOCK = 15  # letters of `units { angle rad }`
+_WORD = re.compile(r"[^\W\d]\w*")
+_NO_WORDS = frozenset({"inf", "nan", "rel", "seq", "concurrent", "use", "import", "as"})
 
 
 class Angles(Struct, frozen=True):
-    """How plain angles are written: in degrees or in radians."""
+    """The unit of plain angles: degrees or radians."""
 
     degrees: bool
 
@@ -49,6 +51,40 @@ class Angles(Struct, frozen=True):
         return (*numbers[:3], self.value(numbers[3])) if kind == "axisangle" else numbers
 
 
+def value_of(value: object) -> Value:
+    """A part's value as a value of the language."""
+    if isinstance(value, bool):
+        return Ref(("true" if value else "false",))
+    if isinstance(value, int):
+        return float(value)
+    if isinstance(value, tuple):
+        return tuple(value if isinstance(value, str) else value_of(value) for value in value)
+    if isinstance(value, str) and _WORD.fullmatch(value) and value not in _NO_WORDS:
+        return Ref((value,))
+    assert isinstance(value, float | str), value
+    return value
+
+
+def pose_value(pose: Pose, angles: Angles) -> tuple[Value, ...]:
+    """``[x y z]`` for a translation, else ``[[x y z] rotation]``, roll-pitch-yaw if written so, else a quaternion.
+
+    Other notations have their kind before it: ``[[x y z] "zaxis" [0 1 0]]``, and ``["fromto" [two points]]``.
+    """
+    if pose.written is not None:
+        rotation = angles.rotation(pose.written)
+        if pose.written.kind in ("rpy", "quat"):
+            return (pose.xyz, rotation)
+        if pose.written.kind == "fromto":
+            return ("fromto", rotation)
+        return (pose.xyz, pose.written.kind, rotation)
+    if pose.quat == NO_ROTATION:
+        return pose.xyz
+    return (pose.xyz, pose.quat)
+
+
+# ---- the unit of angles ------------------------------------------------------------------------------------------------
+
+
 def in_degrees(radians: float) -> float | None:
     """The shortest number of degrees that reads back to the same double, or None."""
     for digits in _DIGITS:
@@ -58,7 +94,7 @@ def in_degrees(radians: float) -> float | None:
     return None
 
 
-def shortest(mechanism: Mechanism) -> Angles:
+def shortest_angles(mechanism: Mechanism) -> Angles:
     """The unit in which all angles of the mechanism together take fewer letters."""
     radians, degrees = _UNITS_BLOCK, 0
     for angle in _angles(mechanism):
@@ -89,12 +125,12 @@ def _of_dof(dof: parts.Dof) -> Iterator[float]:
     if dof.kind not in TURNING:
         return
     limits = dof.limits
-    said = [limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk]
+    found = [limits.lower, limits.upper, limits.velocity, limits.acceleration, limits.jerk]
     if dof.safety is not None:
-        said += [dof.safety.soft_lower, dof.safety.soft_upper]
+        found += [dof.safety.soft_lower, dof.safety.soft_upper]
     if dof.calibration is not None:
-        said += [dof.calibration.rising, dof.calibration.falling, dof.calibration.reference]
-    yield from (value for value in said if value is not None)
+        found += [dof.calibration.rising, dof.calibration.falling, dof.calibration.reference]
+    yield from (value for value in found if value is not None)
     yield from (value for value in (dof.ref, dof.spring_ref) if value)
 
 

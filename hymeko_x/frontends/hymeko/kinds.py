@@ -1,4 +1,4 @@
-"""What an element is that does not say so: from its root, its fields, and its place in the edges."""
+"""The kinds of elements without a type: from the root, from their fields, and from their place in the edges."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def infer_kinds(expanded: Expanded, elements: list[Element]) -> list[str]:
     by_name: dict[str, list[int]] = {}
     for number, element in enumerate(elements):
         by_name.setdefault(element.name, []).append(number)
-    kinds = [_said(element) for element in elements]
+    kinds = [_typed(element) for element in elements]
     mode = next((name for name in expanded.types if name in ("robot", "graph")), "")
     if not mode:
         _infer_from_edges(elements, kinds, by_name)
@@ -42,7 +42,7 @@ def is_direction(element: Element) -> bool:
     return (not fields and element.name in AXES) or (len(fields) == 1 and bool(fields & {"axis", "ax", "direction"}))
 
 
-def _said(element: Element) -> str:
+def _typed(element: Element) -> str:
     """The kind that the element's types preset, or nothing."""
     for item in element.node.items:
         if isinstance(item, Field) and item.name == "kind" and not isinstance(item.name, QuotedName) and isinstance(item.value, str):
@@ -100,7 +100,7 @@ def _is_joint(ends: list[tuple[ArcItem, int | None]], elements: list[Element]) -
 
 
 def _lumped(element: Element) -> str:
-    """Which lumped element of the dynamics dialect a node's fields make it, or nothing."""
+    """The lumped element of the dynamics dialect that a node's fields describe, or nothing."""
     fields = {item.name for item in element.node.items if isinstance(item, Field)}
     if fields & _SPRING:
         return "spring"

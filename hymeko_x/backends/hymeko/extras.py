@@ -5,8 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import FOREIGN
-from hymeko_x.language.foreign import INDENT, ONE_LINE, PLACE, SECTION, SECTION_COMMENT, usual_spacing
-from hymeko_x.language.markup import COMMENT, TEXT, block_of, markup_of, value_of_text
+from hymeko_x.language.markup import (
+    COMMENT,
+    INDENT,
+    ONE_LINE,
+    PLACE,
+    SECTION,
+    SECTION_COMMENT,
+    TEXT,
+    block_of,
+    markup_of,
+    usual_spacing,
+    value_of_text,
+)
 from hymeko_x.language.syntax import Comment, Field, Item, Node, QuotedName, Ref, Value
 
 if TYPE_CHECKING:

@@ -1,0 +1,159 @@
+"""The text of a mechanism under construction: nodes, names, references and arcs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, cast
+
+from msgspec import Struct, field
+
+from hymeko_x.backends.hymeko.extras import foreign_items
+from hymeko_x.backends.hymeko.values import pose_value, value_of
+from hymeko_x.formats.hymeko import CHILD_CLASS, NAMED_AFTER_ID, PARTS, RESERVED, SHORT_TYPES, TARGETS, attached_key
+from hymeko_x.ir.fields import layout_of
+from hymeko_x.ir.mechanism import KINDS, WORLD, Id
+from hymeko_x.ir.values import Pose
+from hymeko_x.language.markup import value_of_text
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value
+from hymeko_x.rewrite.native import is_native
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.backends.hymeko.values import Angles
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc
+
+_ALL_KINDS = tuple(KINDS.values())
+_DIRECTIONS = {1: "+", 0: "~", -1: "-"}
+
+
+class HymekoSheet(Struct, frozen=True):
+    """The text under construction: the mechanism, and where the text of each element stands.
+
+    ``files``: the prefix that files have in common; ``inline``: meshes and colours that are defined where a shape uses them, with the
+    first shape that does; ``given_names``: those among them that have an id there; ``mimics``: couplings in the block of the joint
+    that follows; ``attached``: arcs of mounts, drives and the like in the block of the vertex that they attach; ``angles``: the unit
+    of plain angles; ``homes``: the assemblies of elements, by the elements' names, and ``inside``: the one that is being printed;
+    ``clashes`` collects the assemblies in which a reference would mean another element.
+    """
+
+    mechanism: Mechanism
+    files: str
+    inline: Mapping[Id, Id]
+    given_names: frozenset[Id]
+    mimics: Mapping[Id, tuple[RobotArc, ...]]
+    attached: Mapping[Id, tuple[RobotArc, ...]]
+    angles: Angles
+    homes: Mapping[str, str] = field(default_factory=dict)
+    inside: str = ""
+    clashes: set[str] = field(default_factory=set)
+    names: dict[str, list[str]] = field(default_factory=dict)
+
+    attached_edges: set[Id] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        if self.names:
+            return  # a copy for another assembly
+        graph = self.mechanism.graph
+        self.attached_edges.update(key for vertex in self.attached if (key := attached_key(vertex)) is not None)
+        for key in (*graph.vertices, *graph.edges):
+            self.names.setdefault(key.name, []).append(key.kind)
+
+    def is_marked(self, key: Id) -> bool:
+        """Whether an element has extras or notations."""
+        return bool(self.mechanism.extras.get(key)) or bool(self.mechanism.notations.get(key))
+
+    def node(self, key: Id, items: list[Item], kind: str, *, edge: bool = False) -> Node:
+        """An element's node with its notations and extras at the end of its block."""
+        notations = self.mechanism.notations.get(key)
+        items.extend(self.class_items(key))
+        if notations:
+            items.extend(written_items(notations, flags=key.kind not in NAMED_AFTER_ID))
+        items.extend(foreign_items(self.mechanism.extras.get(key, ())))
+        path, items = _typed(kind, items)
+        stereotypes = (Stereotype(Ref(path)),) if kind else ()
+        name = key.name if key == WORLD else name_of(key.name.removeprefix(f"{self.inside}_" if self.inside else ""))
+        return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
+
+    def class_items(self, key: Id) -> list[Item]:
+        """``class "a"``: the default classes of an element of MJCF, of a joint one for each of its dofs."""
+        classes = self.mechanism.stereotypes.get(key)
+        if not classes or not is_native(self.mechanism):
+            return []
+        return [Field("class", value_of(classes[0]) if len(classes) == 1 else classes)]
+
+    def ref(self, target: Id, kinds: tuple[str, ...], direction: str = "") -> Ref:
+        """A reference: by name alone where the name means the target, else with its kind before it."""
+        if target == WORLD:
+            self._note_clash("world", kinds)
+            alone = self.names.get("world") == ["world"]
+            return Ref(("world",) if alone else ("world", "world"), direction)
+        first = next((kind for kind in kinds or _ALL_KINDS if kind in self.names.get(target.name, ())), None)
+        path = self._path(target.name, kinds)
+        return Ref(path if first == target.kind else (target.kind, *path), direction)
+
+    def _path(self, name: str, kinds: tuple[str, ...]) -> tuple[str, ...]:
+        """The path to a name from the assembly that is being printed: ``foot`` in the assembly ``left``, ``left.foot`` elsewhere."""
+        home = self.homes.get(name)
+        if home is None:
+            self._note_clash(name, kinds)
+            return (name_of(name),)
+        short = name_of(name.removeprefix(f"{home}_"))
+        return (short,) if home == self.inside else (name_of(home), short)
+
+    def _note_clash(self, name: str, kinds: tuple[str, ...]) -> None:
+        """Note when a name from outside means another element in the assembly that is being printed."""
+        full = f"{self.inside}_{name}"
+        if self.inside and self.homes.get(full) == self.inside and not {*(kinds or _ALL_KINDS)}.isdisjoint(self.names[full]):
+            self.clashes.add(self.inside)
+
+    def short_uri(self, uri: str) -> str:
+        """A file's uri behind the common prefix, where it has it."""
+        return f"~/{uri.removeprefix(self.files)}" if self.files and uri.startswith(self.files) else uri
+
+    def arc(self, kind: str, arc: RobotArc) -> ArcItem:
+        """An arc of an edge of this kind."""
+        weight = None
+        if isinstance(arc.weight, Pose):
+            weight = pose_value(arc.weight, self.angles)
+        elif arc.weight is not None:
+            weight = cast("tuple[Value, ...]", arc.weight)
+        return ArcItem(self.ref(arc.target, TARGETS[kind], _DIRECTIONS[arc.sign]), arc.role, weight)
+
+
+def defaults_of(part: type) -> dict[str, object]:
+    """The default of every field of a part that has one."""
+    layout = layout_of(part)
+    assert layout is not None
+    return {item.name: item.default for item in layout.attributes}
+
+
+def name_of(name: str) -> str:
+    """The name of an element, quoted where it would mean something else."""
+    return QuotedName(name) if name in RESERVED else name
+
+
+def _typed(kind: str, items: list[Item]) -> tuple[tuple[str, ...], list[Item]]:
+    """The type that stands for an element's kind and its ``type``, and the fields without that: ``sensor.imu``, ``weld``."""
+    found = next(
+        (item for item in items if isinstance(item, Field) and item.name == "type" and not isinstance(item.name, QuotedName)), None
+    )
+    part = PARTS[kind].part if kind in PARTS else None
+    value = found.value if found is not None else defaults_of(part).get("kind") if part is not None else None
+    word = value.path[0] if isinstance(value, Ref) else value
+    if isinstance(word, str) and (kind, word) in SHORT_TYPES:
+        return (SHORT_TYPES[kind, word],), [item for item in items if item is not found]
+    if found is not None and isinstance(value, Ref):
+        return (kind, value.path[0]), [item for item in items if item is not found]
+    return (kind,), items
+
+
+def written_items(notations: Mapping[str, str], *, flags: bool = True) -> list[Item]:
+    """``written { key text .. }``, and the flag ``unnamed`` for an element without a name."""
+    unnamed = flags and notations.get("unnamed") == "yes"
+    done = {"unnamed"} if unnamed else set()
+    items: list[Item] = [Field("unnamed")] if unnamed else []
+    if flags and CHILD_CLASS in notations:
+        items.append(Field(CHILD_CLASS, value_of(notations[CHILD_CLASS])))
+        done.add(CHILD_CLASS)
+    fields = [Field(key, value_of_text(text)) for key, text in notations.items() if key not in done]
+    return [*items, *([Node("written", tuple(fields))] if fields else [])]

@@ -1,0 +1,109 @@
+"""Vertices and edges that their fields represent completely: everything but bodies, shapes and joints (formats/hymeko)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.hymeko import ALIASES, ATTACHED, NAMED_AFTER_ID, PARTS, TARGETS, TEXTURE, attached_edge, attached_key
+from hymeko_x.frontends.hymeko.block import Block, is_field
+from hymeko_x.frontends.hymeko.joints import read_dofs, read_limits
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.language.syntax import ArcItem, Field, Node, Ref
+
+if TYPE_CHECKING:
+    from hymeko_x.frontends.hymeko.builder import HymekoBuilder
+    from hymeko_x.frontends.hymeko.values import Parameter
+    from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.language.expansion import Element
+    from hymeko_x.language.syntax import Item
+
+
+def read_part(builder: HymekoBuilder, key: Id, element: Element) -> None:
+    """Add a vertex or an edge, and the edge whose arcs stand in a vertex's block.
+
+    Raises: Refusal (HX062) for a part without a field that it needs, HX040 for references.
+    """
+    words = PARTS[key.kind]
+    attached = _attached_arcs(builder, key, element)
+    block = Block(_renamed(element.node.items, key.kind), builder.reader, open=words.open)
+    block.take("kind")
+    values = block.take_words(words.words)
+    if key.kind in NAMED_AFTER_ID:
+        if not block.unnamed:
+            values.setdefault("name", key.name)
+        block.unnamed = False
+    if isinstance(uri := values.get("uri"), str):
+        values["uri"] = builder.full_uri(uri)
+    if key.kind == "tendon":
+        values["limits"] = read_limits(block, "length")
+    if key.kind == "loop":
+        values["dofs"] = read_dofs(builder, block, element.scope)
+    if words.open:
+        values["parameters"] = (*block.take_rest(builder.reader.parameter), *_nested_parameters(builder, block))
+    try:
+        part = words.part(**values)
+    except TypeError as error:
+        missing = ", ".join(f"'{word.word}'" for word in words.words if word.attribute not in values)
+        raise builder.reader.refuse(element.node, f"{key} needs {missing}") from error
+    if key.kind in TARGETS:
+        builder.edges[key] = Edge(part, tuple(builder.arc(key.kind, arc, element.scope) for arc in block.arcs))
+        block.arcs = []
+    else:
+        builder.vertices[key] = part
+        edge = attached_key(key)
+        if attached and edge is not None:
+            builder.edges[edge] = attached_edge(key, attached)
+            block.arcs = []
+            block.take(TEXTURE)
+    block.rest(str(key))
+    builder.keep(key, block)
+
+
+def _renamed(items: tuple[Item, ...], kind: str) -> tuple[Item, ...]:
+    """The items with published synonyms of fields replaced by our words."""
+    aliases = ALIASES.get(kind)
+    if not aliases:
+        return items
+    return tuple(item._replace(name=aliases[item.name]) if is_field(item, aliases) else item for item in items)
+
+
+def _nested_parameters(builder: HymekoBuilder, block: Block) -> list[tuple[str, Parameter]]:
+    """Fields of nested nodes as parameters with dotted names; arcs of a vertex are left to be reported."""
+    found: list[tuple[str, Parameter]] = []
+    stack = [(node.name, node) for node in reversed(block.nodes)]
+    block.nodes = []
+    while stack:
+        path, node = stack.pop()
+        for item in node.items:
+            if isinstance(item, Field):
+                found.append((f"{path}.{item.name}", builder.reader.parameter(item)))
+            elif isinstance(item, Node):
+                stack.append((f"{path}.{item.name}", item))
+    return found
+
+
+# ---- edges in the block of a vertex --------------------------------------------------------------------------------------
+
+
+def has_attached(kind: str, node: Node) -> bool:
+    """Whether the block of a vertex, which is no body, holds the arcs of the edge that attaches it."""
+    return kind in ATTACHED and any(isinstance(item, ArcItem) or _is_texture(kind, item) for item in node.items)
+
+
+def _is_texture(kind: str, item: Item) -> bool:
+    return kind == "material" and is_field(item, (TEXTURE,))
+
+
+def _attached_arcs(builder: HymekoBuilder, key: Id, element: Element) -> tuple[RobotArc, ...]:
+    edge = attached_key(key)
+    arcs: list[RobotArc] = []
+    if edge is None:
+        return ()
+    for item in element.node.items:
+        if isinstance(item, ArcItem):
+            arcs.append(builder.arc(edge.kind, item, element.scope))
+        elif _is_texture(key.kind, item) and isinstance(item, Field):
+            if not isinstance(item.value, Ref):
+                raise builder.reader.refuse(item, "'texture' takes a reference: texture=grid")
+            arcs.append(Arc(builder.target(item.value, element.scope, ("texture",), item), 1))
+    return tuple(arcs)

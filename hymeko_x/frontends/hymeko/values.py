@@ -1,0 +1,191 @@
+"""Values of HyMeKo text: numbers with units in SI, texts, colours and poses, or a refusal at the item that holds them."""
+
+from __future__ import annotations
+
+from math import isfinite
+from types import MappingProxyType
+from typing import TYPE_CHECKING, cast
+
+from msgspec import Struct, field
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
+from hymeko_x.ir.values import Pose, Vec3, Written, numbers_text, pose, pose_from_rpy
+from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, Ref, Value, is_list, origin_of
+from hymeko_x.language.units import BASE_UNITS, unit_dimension, unit_factor
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.parts import Rgba
+
+Parameter = float | str | tuple[float, ...]
+
+DEFAULT_UNITS: Mapping[str, float] = MappingProxyType({"length": 1.0, "angle": unit_factor("deg") or 0.0, "mass": 1.0, "time": 1.0})
+"""Plain numbers are metres, kilograms, seconds and, as published, degrees."""
+
+
+class ValueReader(Struct):
+    """Reads the values of one file. ``units`` are the factors of plain numbers by dimension."""
+
+    file: str
+    report: Report
+    units: Mapping[str, float] = field(default_factory=lambda: DEFAULT_UNITS)
+
+    def origin(self, item: Item) -> Origin:
+        """The place of an item."""
+        return origin_of(item, self.file)
+
+    def refuse(self, item: Item, message: str, *, hint: str = "") -> Refusal:
+        """A refusal (HX062) at an item."""
+        if not hint and isinstance(item, Field) and item.value is None:
+            hint = f"a value that is a name stands behind '=': {item.name}=name"
+        return refuse(codes.BAD_VALUE, message, self.origin(item), hint=hint)
+
+    def number(self, value: Value | None, dimension: str, item: Item) -> float:
+        """A number in SI: plain, by the units in force, or with a unit of its own."""
+        if type(value) is float:
+            return value * self.units.get(dimension, 1.0)
+        if isinstance(value, Quantity):
+            factor = unit_factor(value.unit)
+            if factor is None:
+                hint = "lengths m mm, angles rad deg, mass kg g, time s ms, and products such as kg*m^2 or rad/s"
+                raise self.refuse(item, f"'{value.unit}' is not a unit that is known", hint=hint)
+            kind = unit_dimension(value.unit)
+            if dimension in BASE_UNITS and kind and kind != dimension:
+                message = f"{name_of(item)} takes a unit of {dimension}, and '{value.unit}' is one of {kind}"
+                raise self.refuse(item, message, hint=f"such as {', '.join(list(BASE_UNITS[dimension])[:4])}")
+            return value.number * factor
+        raise self.refuse(item, f"{name_of(item)} takes a number, not {describe(value)}")
+
+    def whole(self, value: Value | None, item: Item) -> int:
+        """A whole number."""
+        number = self.number(value, "", item)
+        if not number.is_integer():
+            raise self.refuse(item, f"{name_of(item)} takes whole numbers, not {number}")
+        return int(number)
+
+    def numbers(self, value: Value | None, dimension: str, item: Item, count: int | None = None) -> tuple[float, ...]:
+        """A list of numbers in SI, of the given length if there is one."""
+        if not is_list(value):
+            raise self.refuse(item, f"{name_of(item)} takes a list of numbers, not {describe(value)}")
+        values = tuple(self.number(part, dimension, item) for part in cast("tuple[Value, ...]", value))
+        if count is not None and len(values) != count:
+            raise self.refuse(item, f"{name_of(item)} takes {count} numbers, not {len(values)}")
+        return values
+
+    def vec3(self, value: Value | None, dimension: str, item: Item) -> Vec3:
+        """Three numbers in SI."""
+        return cast("Vec3", self.numbers(value, dimension, item, 3))
+
+    def rgba(self, value: Value | None, item: Item) -> Rgba:
+        """``[r g b a]``, or ``[r g b]`` for an opaque colour."""
+        numbers = self.numbers(value, "", item)
+        if len(numbers) not in (3, 4):
+            raise self.refuse(item, f"{name_of(item)} takes [r g b] or [r g b a], not {len(numbers)} numbers")
+        r, g, b, a = (*numbers, 1.0)[:4]
+        return (r, g, b, a)
+
+    def text(self, value: Value | None, item: Item) -> str:
+        """A string, or a bare name."""
+        if isinstance(value, str):
+            return value
+        if isinstance(value, Ref) and len(value.path) == 1 and not value.direction:
+            return value.path[0]
+        raise self.refuse(item, f"{name_of(item)} takes a text, not {describe(value)}")
+
+    def pose(self, value: Value | None, item: Item) -> Pose:
+        """``[x y z]``, ``[[x y z] [roll pitch yaw]]`` or ``[[x y z] [w x y z]]``; the rotation keeps its notation."""
+        if not is_list(value):
+            raise self.refuse(item, f"a pose is [x y z] or [[x y z] [roll pitch yaw]], not {describe(value)}")
+        values = cast("tuple[Value, ...]", value)
+        if len(values) == 2 and values[0] == "fromto":
+            return self._as_written((0.0, 0.0, 0.0), "fromto", values[1], item)
+        if not values or not is_list(values[0]):
+            return Pose(self.vec3(value, "length", item))
+        xyz = self.vec3(values[0], "length", item)
+        if len(values) == 1:
+            return Pose(xyz)
+        if len(values) == 3 and isinstance(values[1], str):
+            return self._as_written(xyz, values[1], values[2], item)
+        if len(values) != 2 or not is_list(values[1]):
+            raise self.refuse(item, f"a pose has a position and a rotation, not {len(values)} parts")
+        return self._rotated(xyz, cast("tuple[Value, ...]", values[1]), item)
+
+    def parameter(self, item: Field) -> float | str | tuple[float, ...]:
+        """A free value: a number, a text, or a list of numbers."""
+        value = item.value
+        if value is None:
+            return ""
+        if is_list(value):
+            return self.numbers(value, "", item)
+        if isinstance(value, Ref):
+            return value.dotted
+        return value if isinstance(value, str) else self.number(value, "", item)
+
+    def _as_written(self, xyz: Vec3, kind: str, value: Value, item: Item) -> Pose:
+        """A rotation with its notation: ``"euler:xyz" [a b c]``, ``"zaxis" [x y z]`` ...
+
+        Raises: Refusal (HX062).
+        """
+        count = number_count(kind)
+        if count is None:
+            raise self.refuse(item, f"'{kind}' is not a notation of rotations; there are {', '.join(NOTATIONS)}")
+        plain = self.numbers(value, "length" if kind == "fromto" else "angle" if kind.startswith("euler") else "", item, count)
+        if kind == "axisangle":
+            plain = (*plain[:3], self.number(cast("tuple[Value, ...]", value)[3], "angle", item))
+        try:
+            return pose_as_written(xyz, Written(kind, plain))
+        except (ZeroDivisionError, ValueError) as error:
+            raise self.refuse(item, f"{plain} is no rotation") from error
+
+    def _rotated(self, xyz: Vec3, rotation: tuple[Value, ...], item: Item) -> Pose:
+        if len(rotation) == 3:
+            rpy = self.vec3(rotation, "angle", item)
+            if not all(map(isfinite, rpy)):
+                raise self.refuse(item, f"{rpy} are no angles of a rotation")
+            return pose_from_rpy(xyz, rpy)
+        w, x, y, z = self.numbers(rotation, "", item, 4)
+        try:
+            return pose(xyz, (w, x, y, z))
+        except ZeroDivisionError as error:
+            raise self.refuse(item, f"the quaternion [{numbers_text((w, x, y, z))}] is no rotation") from error
+
+
+def describe(value: Value | None) -> str:
+    """A value in the words of an error message."""
+    if value is None:
+        return "nothing"
+    if isinstance(value, str):
+        return f"the text {value!r}"
+    if isinstance(value, Ref):
+        return f"the reference '{value.dotted}'"
+    if isinstance(value, Quantity):
+        return "a quantity"
+    if is_list(value):
+        return "a list"
+    return f"the number {value}" if isinstance(value, float) else "an open question"
+
+
+def name_of(item: Item) -> str:
+    """An item in the words of an error message."""
+    if isinstance(item, ArcItem):
+        return f"the arc to '{item.ref.dotted}'"
+    return "an import" if not isinstance(item, Node | Field) else f"'{item.name}'"
+
+
+def read_units(node: Node, reader: ValueReader) -> dict[str, float]:
+    """The factors that a ``units { angle rad length mm }`` block sets."""
+    words = [item.name for item in node.items if isinstance(item, Field)]
+    factors = dict(reader.units)
+    for dimension, unit in zip(words[::2], words[1::2], strict=False):
+        known = BASE_UNITS.get(dimension)
+        if known is None:
+            raise reader.refuse(node, f"'{dimension}' is not a dimension; there are {', '.join(BASE_UNITS)}")
+        if unit not in known:
+            raise reader.refuse(node, f"'{unit}' is not a unit of {dimension}; there are {', '.join(known)}")
+        factors[dimension] = known[unit]
+    if len(words) % 2:
+        raise reader.refuse(node, f"'{words[-1]}' stands without its unit")
+    return factors
