@@ -11,6 +11,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.names import Names, rename
+from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
 from hymeko_x.testing import mechanisms
 
@@ -25,7 +26,7 @@ def read_text(text: str) -> Mechanism:
 def canonical(text: str) -> str:
     """The text as hymeko-x prints it, which says the same."""
     mechanism = read_text(text)
-    printed = write(mechanism, Report()).main.decode()
+    printed = write(mechanism, Options(), Report()).main.decode()
     back = read_text(printed)
     assert back == mechanism
     assert (back.layout, back.extras) == (mechanism.layout, mechanism.extras)
@@ -133,8 +134,8 @@ def _mechanisms(draw: st.DrawFn) -> Mechanism:
 @settings(max_examples=40, deadline=None, suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large])
 @given(_mechanisms())
 def test_whatever_names_begin_alike_reads_back_equal(mechanism: Mechanism) -> None:
-    printed = write(mechanism, Report()).main
+    printed = write(mechanism, Options(), Report()).main
     back = read(Source("robot.hymeko", printed), Report())
     assert back == mechanism
     assert back.layout[: len(mechanism.layout)] == mechanism.layout
-    assert write(back, Report()).main == printed
+    assert write(back, Options(), Report()).main == printed

@@ -18,6 +18,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.parts import DofKind, Role
 from hymeko_x.ir.values import Pose, quat_from_rpy
+from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
 
 CORPUS = Path(__file__).parents[2] / "corpus"
@@ -108,10 +109,10 @@ def test_the_robots_among_the_listings_move_as_the_paper_says(name: str, tmp_pat
 @pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.stem)
 def test_a_robot_is_read_in_silence_and_its_text_says_the_same_again(path: Path) -> None:
     robot = load(path)
-    text = write(robot, Report()).main
+    text = write(robot, Options(), Report()).main
     back = read(Source(path.name, text), Report())
     assert back == robot
-    assert write(back, Report()).main == text
+    assert write(back, Options(), Report()).main == text
 
 
 @pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.stem)

@@ -22,6 +22,7 @@ from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Field, Node, Query, Ref
 from hymeko_x.language.templates import standard_templates
+from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
 from hymeko_x.testing import DOCUMENTS
 
@@ -149,7 +150,7 @@ def test_one_text_uses_everything() -> None:
     ((_, loop, arcs),) = robot.edges(parts.Loop)
     assert loop == parts.Loop("connect", parameters=(("solref", (0.02, 1.0)),))
     assert [arc.target.name for arc in arcs] == ["left_tibia", "right_tibia"]
-    text = write(robot, Report()).main
+    text = write(robot, Options(), Report()).main
     assert read(Source("spider.hymeko", text), Report()) == robot
 
 

@@ -14,6 +14,7 @@ from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import ArcItem, Document, Field, Import, Item, Node
+from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
 from hymeko_x.testing import DOCUMENTS, mechanisms
 
@@ -21,7 +22,7 @@ FEW = settings(max_examples=50, deadline=None, suppress_health_check=[HealthChec
 
 
 def text_of(mechanism: Mechanism) -> str:
-    return write(mechanism, Report()).main.decode()
+    return write(mechanism, Options(), Report()).main.decode()
 
 
 def read_text(text: str) -> Mechanism:

@@ -17,6 +17,7 @@ from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.language import expansion
 from hymeko_x.language.expressions import ExpressionError, evaluate
 from hymeko_x.language.parser import parse
+from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
 from tests.pace import assert_at_most, seconds
 
@@ -209,7 +210,7 @@ def test_brackets_a_hundred_thousand_deep_are_a_diagnostic(text: str, place: str
 def test_everything_up_to_the_depth_is_handled_without_a_crash() -> None:
     text = "robot {" + "a { b 1 " * 190 + "}" * 190 + "}"
     robot = read_text(text)
-    assert read_text(write(robot, Report()).main.decode()) == robot
+    assert read_text(write(robot, Options(), Report()).main.decode()) == robot
 
 
 @pytest.mark.parametrize("piece", ["a.", "a, ", "1 ", "[1] ", "'", '"', "`", "/*", "${", "((", "@ ", "+ a ", "[[1] ", "[1 [", "\\"])
@@ -237,7 +238,7 @@ def _converting(count: int) -> Callable[[], object]:
 
     def work() -> None:
         robot = read_text(text)
-        written = write(robot, Report()).main.decode()
+        written = write(robot, Options(), Report()).main.decode()
         assert len(robot.joints) == count
         assert sum(1 for _ in robot.depth_first()) == count + 1
         assert len(written) < len(text)
