@@ -160,7 +160,7 @@ def test_groups_of_some_colliders_of_a_body_are_kept_and_said(tmp_path: Path) ->
     mechanism = read_text(source, report)
     assert apart(mechanism) == set()
     assert [item.message for item in report] == [
-        "collision groups keep only some colliders of body 'a' and body 'b' apart, which is kept as written"
+        "collision groups separate only some colliders of body 'a' and body 'b'; that is kept as written"
     ]
     assert groups_of(opened(written(mechanism), tmp_path)) == {"/r/g": ["/r/g"]}
 
@@ -171,7 +171,7 @@ def test_groups_of_thousands_of_bodies_are_kept_and_said(tmp_path: Path) -> None
     mechanism = read_text(stage(group("g", " ".join(names), "g"), bodies=" ".join(names), more=""), report)
     assert apart(mechanism) == set()
     assert [item.message for item in report] == [
-        f"collision groups with more than {contacts.MOST_PAIRS} pairs of bodies are kept as written; other formats do not hear of them"
+        f"collision groups with more than {contacts.MOST_PAIRS} pairs of bodies are kept as written; no other format represents them"
     ]
     assert groups_of(opened(written(mechanism), tmp_path)) == {"/r/g": ["/r/g"]}
 
@@ -180,7 +180,7 @@ def test_very_many_groups_are_kept_and_said() -> None:
     report = Report()
     mechanism = read_text(stage(*(group(f"g{number}", "a b", "g0") for number in range(600)), bodies="a b", more=""), report)
     assert apart(mechanism) == set()
-    assert [item.message for item in report] == ["collision groups with 600 groups are kept as written; other formats do not hear of them"]
+    assert [item.message for item in report] == ["collision groups with 600 groups are kept as written; no other format represents them"]
 
 
 @pytest.mark.corpus

@@ -1,6 +1,6 @@
 """USD out: one stage in metres and kilograms with z up, flat bodies, joint frames on both sides, drives and materials.
 
-What USD has no word for, and the digits that single precision cuts off, travel in the residue of the root layer.
+The residue of the root layer carries parts that USD cannot represent, and the digits that single precision cuts off.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def _root(mechanism: Mechanism) -> Any:
 
 
 def _write_stage(sheet: UsdSheet) -> None:
-    """Units, up axis and the default prim, which stands for the robot."""
+    """Units, up axis and the default prim, which represents the robot."""
     stage = sheet.layer.pseudoRoot
     stage.SetInfo("metersPerUnit", 1.0)
     stage.SetInfo("kilogramsPerUnit", 1.0)

@@ -43,7 +43,7 @@ def write_drives(sheet: UsdSheet) -> None:
 
 
 def _is_drive(sheet: UsdSheet, key: Id, actuator: Actuator) -> bool:
-    """Whether a drive says it: servos, and motors that were drives before."""
+    """Whether a drive represents it: servos, and motors that were drives before."""
     noted = sheet.mechanism.notation(key, words.TYPE)
     return actuator.kind in SERVOS or (actuator.kind == "motor" and noted in words.DRIVES)
 
@@ -65,7 +65,7 @@ def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None
 
 
 def write_actuators(sheet: UsdSheet) -> None:
-    """Each actuator that no drive says, with what it acts on: as a general one, where that is known. Servos of joints are drives."""
+    """Each actuator that no drive represents, with its targets: as a general one, where that is known. Servos of joints are drives."""
     for key, drive, arcs in sheet.mechanism.edges(Drive):
         source = next((arc.target for arc in arcs if arc.sign > 0), None)
         actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
@@ -85,7 +85,7 @@ def write_actuators(sheet: UsdSheet) -> None:
 
 
 def _target(sheet: UsdSheet, arc: RobotArc) -> Any | None:
-    """The prim of what an arc means, or else of its whole joint. A joint that a body's freedom stands for has none."""
+    """The prim of the target of an arc, or else of its whole joint. A floating base is a joint without a prim."""
     found, home = prim_of(sheet, arc), sheet.paths.get(arc.target)
     if found is not None or home is None:
         return found

@@ -57,7 +57,7 @@ def _write_body(sheet: UsdSheet, spec: Any, key: Id) -> None:
 
 
 def _parents_first(mechanism: Mechanism) -> list[Id]:
-    """Every body, those that hang on a cycle last."""
+    """Every body, those without a root last."""
     return list(dict.fromkeys((*mechanism.depth_first(), *(key for key, _ in mechanism.vertices(Body)))))
 
 
@@ -74,7 +74,7 @@ def _place_nested(sheet: UsdSheet, key: Id) -> Any:
 
 
 def note_body_shapes(sheet: UsdSheet) -> None:
-    """The bodies whose own prim was a geometry, as their notations tell: it will be that again, with its scale."""
+    """Find the bodies whose own prim was a geometry, by their notations: it will be that again, with its scale."""
     mechanism = sheet.mechanism
     for key, _ in mechanism.vertices(Body):
         path = mechanism.notation(key, words.PATH)
@@ -125,7 +125,7 @@ def write_inertial(spec: Any, inertial: Inertial, com: Vec3) -> None:
     if inertial.tensor is None:
         return
     moments, quat = principal(inertial)
-    if min(moments) > 0.0:  # UsdPhysics takes anything else for "not said"
+    if min(moments) > 0.0:  # UsdPhysics takes anything else for "not authored"
         put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*moments))
         put(spec, "physics:principalAxes", T.Quatf, quatf(quat))
     apply(spec, "NewtonMassAPI")

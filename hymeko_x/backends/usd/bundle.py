@@ -44,7 +44,7 @@ def carry_residue(package: Package, text: str) -> Package:
 
 
 _BEGINNING = (1980, 1, 1, 0, 0, 0, 0, 0, -1)
-"""The date of every file, in whatever time zone, so that the same files make the same archive; a zip file knows none before it."""
+"""The date of every file, in any time zone, so that the same files make the same archive; the earliest of the zip format."""
 
 
 def zipped(files: Mapping[str, bytes]) -> bytes:

@@ -1,4 +1,4 @@
-"""What touches what: filtered pairs of bodies, and physics materials for the friction of colliders."""
+"""Filtered pairs of bodies, and physics materials for the friction of colliders."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _BINDING = "material:binding:physics"
 
 
 def write_contacts(sheet: UsdSheet) -> None:
-    """Pairs of bodies that do not collide, on the first of them; each prim carries one of its pairs. Collision groups say others."""
+    """Pairs of bodies that do not collide, on the first of them; each prim carries one of its pairs. Collision groups contain others."""
     first: set[Any] = set()
     for key, contact, arcs in sheet.mechanism.edges(Contact):
         paths = [sheet.paths.get(arc.target) for arc in arcs if arc.target.kind == "body"]

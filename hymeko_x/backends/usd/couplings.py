@@ -62,7 +62,7 @@ def _follower(sheet: UsdSheet, key: Id, coupling: Coupling, arcs: tuple[RobotArc
 
 
 def _first_leader(found: _Follower, followers: dict[Any, _Follower]) -> tuple[Prim, tuple[float, ...]]:
-    """The leader that follows nobody, and the coefficients with respect to it: a + b (c + d x) = (a + b c) + b d x."""
+    """The leader that is no follower, and the coefficients with respect to it: a + b (c + d x) = (a + b c) + b d x."""
     leader, weight = found.leader, found.weight
     passed = {found.spec.path}
     while leader.path in followers and leader.path not in passed and len(weight) == 2:

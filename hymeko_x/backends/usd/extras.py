@@ -82,7 +82,7 @@ def _target(sheet: UsdSheet, key: Id, relative: str) -> Any | None:
 
 
 def _merge(sheet: UsdSheet, spec: Any, path: Any) -> None:
-    """Everything that a block says about a prim, on the prim at this path, which may have to be made."""
+    """Every opinion of a block, on the prim at this path, which may have to be made."""
     there = sheet.layer.GetPrimAtPath(path)
     if there is None:
         there = _new_prim(sheet, path)
@@ -107,13 +107,13 @@ def _merge(sheet: UsdSheet, spec: Any, path: Any) -> None:
 
 
 def _says_nothing(item: Any) -> bool:
-    """Whether a number is only what it would be anyway, so that a typed value beside it counts."""
+    """Whether a number is only a default, so that a typed value beside it counts."""
     value = getattr(item, "default", None)
     return isinstance(value, float) and (value == 0.0 or math.isinf(value))
 
 
 def _new_prim(sheet: UsdSheet, path: Any) -> Any:
-    """A prim where there was none; so are groups above it that nothing was said about."""
+    """A new prim; groups above it that have no opinion become Xforms."""
     missing = [above for above in path.GetPrefixes()[:-1] if not sheet.layer.GetPrimAtPath(above)]
     spec = Sdf.CreatePrimInLayer(sheet.layer, path)
     for above in missing:

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 class _Packing(Builder, kw_only=True):
-    """One run: what it reads from, and what it adds to the mechanism. ``known`` are the files that were read, by uri."""
+    """One run: its input, and the elements that it adds to the mechanism. ``known`` are the files that were read, by uri."""
 
     mechanism: Mechanism
     shelf: Shelf
@@ -85,14 +85,14 @@ def _show_all(run: _Packing, view: ShapeView, material: Id | None) -> None:
 
 
 def _show_parts(run: _Packing, view: ShapeView, shown: list[tuple[Look, Id | None, NDArray[np.intp]]]) -> None:
-    """Subsets of the shape: what the file says nothing about looks as the shape does."""
+    """Subsets of the shape; triangles without an appearance in the file have that of the shape."""
     for look, material, rows in shown:
         if material is not None and len(rows):
             run.edges[run.names.take("subset", look.name or material.name)] = subset_edge(tuple(rows.tolist()), view.id, material)
 
 
 def _material(run: _Packing, mesh: Id, look: Look) -> Id | None:
-    """The material of a look; equal colours and equal images share one."""
+    """The material of an appearance; equal colours and equal images share one."""
     if look.rgba is None and look.image is None:
         return None
     if (look.rgba, look.image) not in run.materials:
@@ -101,7 +101,7 @@ def _material(run: _Packing, mesh: Id, look: Look) -> Id | None:
 
 
 def _own_material(run: _Packing, mesh: Id, look: Look) -> Id | None:
-    """The material of a look, with its image beside the output; None where the image cannot be read."""
+    """The material of an appearance, with its image beside the output; None where the image cannot be read."""
     uri = None if look.image is None else _placed_image(run, mesh, look, look.image)
     if look.image is not None and uri is None:
         return None
@@ -120,7 +120,7 @@ def _placed_image(run: _Packing, mesh: Id, look: Look, image: bytes) -> str | No
 
 
 def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: bool) -> Painted | None:
-    """The triangles of a file; what it says of its looks does not count unless ``are_coloured``.
+    """The triangles of a file; its own appearances do not count unless ``are_coloured``.
 
     ``is_mapped``: a shape of the mesh shows an image that it does not have from the file.
     """

@@ -39,7 +39,7 @@ def write_joints(sheet: UsdSheet) -> None:
 
 
 def _hold(sheet: UsdSheet, root: Id) -> None:
-    """Fix a root that stands for the world to it, as UsdPhysics has to be told."""
+    """Fix a root that represents the world to it: without a joint UsdPhysics lets it fall."""
     path = sheet.free_path(sheet.scope("joints"), f"{root.name}_base")
     prim = sheet.define(path, "PhysicsFixedJoint")
     point(prim, "physics:body1", sheet.paths[root])
@@ -188,7 +188,7 @@ def _coordinate(dof: Dof, value: float) -> float:
 
 
 def _write_generic(spec: Any, dofs: tuple[Dof, ...]) -> None:
-    """A LimitAPI on each axis that is limited or locked, which low above high says; the others are free."""
+    """A LimitAPI on each axis that is limited or locked (low above high); the others are free."""
     if dofs and dofs[0].kind is DofKind.FREE:
         return
     authored = {axis_name(dof): dof for dof in dofs if dof.kind is not DofKind.BALL}
@@ -269,7 +269,7 @@ def _loop_type(sheet: UsdSheet, key: Id, loop: Loop) -> str:
 
 
 def _frames(sheet: UsdSheet) -> dict[Id, End]:
-    """The body and pose of each thing that is mounted somewhere."""
+    """The body and pose of each mounted element."""
     return {view.thing: (view.body, view.pose) for views in sheet.mechanism.mounts.values() for view in views}
 
 

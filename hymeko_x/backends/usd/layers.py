@@ -118,7 +118,7 @@ def _write_interface(layer: Any, interface: Any, payload: str) -> None:
         spec.payloadList.prependedItems = [Sdf.Payload(payload, root.path)]
 
 
-# ---- who says what -------------------------------------------------------------------------------------------------------------
+# ---- which layer has which opinion -----------------------------------------------------------------------------------------------
 
 
 def _divide(spec: Any, aspects: dict[str, Any]) -> None:
@@ -179,7 +179,7 @@ def carry_in_text(package: Package, text: str) -> Package:
     whole = package.main.decode()
     head, end, prims = whole.partition("\n)\n")
     header = _parsed_layer(head + end)
-    if header is None:  # a string in the header looks like its end
+    if header is None:  # a string in the header contains the end of a header
         header, prims = _parsed_layer(whole), ""
     assert header is not None
     _put(header, text)

@@ -54,12 +54,12 @@ def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id
 
 
 def _says(mechanism: Mechanism, shape: Id, notation: str) -> bool:
-    """Whether a mesh says this of its triangles as we do: ours do, those of others where they did."""
+    """Whether the prim of a mesh gets such an attribute: new prims do, those from a stage where they had it."""
     return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, notation) is not None
 
 
 def _carry_mesh(sheet: UsdSheet, spec: Any, mesh: Id) -> None:
-    """The prim of a mesh carries it; it says nothing about subdivision but that there is none."""
+    """The prim of a mesh represents it."""
     sheet.paths[mesh] = spec.path
 
 

@@ -16,10 +16,7 @@ if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import Prim, UsdSheet
 
 _SITE_SIZE = 0.005
-"""The radius in m of a site of which MJCF says none."""
-
-
-# ---- what is mounted on bodies -----------------------------------------------------------------------------------------------
+"""The radius in m of a site without a size in MJCF."""
 
 
 def write_mounts(sheet: UsdSheet) -> None:
@@ -64,7 +61,7 @@ def _type_of(part: Frame | Camera | Light) -> str:
 
 
 def _write_thing(spec: Any, part: Frame | Camera | Light) -> None:
-    """What a frame, a camera or a light says beside where it is."""
+    """The schemas and attributes of a frame, a camera or a light beside its pose."""
     if isinstance(part, Frame):
         apply(spec, *words.SITES)
     elif isinstance(part, Light):

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from hymeko_x.rewrite.context import Context, Rule
 
 
-# ---- what UsdPhysics has no joint for --------------------------------------------------------------------------------------------
+# ---- limits of UsdPhysics --------------------------------------------------------------------------------------------------------
 
 
 def drop_loops_without_bodies(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -33,14 +33,14 @@ def drop_loops_without_bodies(mechanism: Mechanism, context: Context) -> Mechani
 
 
 def drop_stale_groups(mechanism: Mechanism, context: Context) -> Mechanism:
-    """Collision groups that say something else than the exclusions leave; what is excluded now is written in pairs."""
+    """Remove collision groups that contradict the exclusions, which then are all written as pairs."""
     noted = mechanism.notation(ROOT, GROUPS)
     if noted is None:
         return mechanism
     marked = [(key, arcs) for key, _, arcs in mechanism.edges(Contact) if mechanism.notation(key, GROUPED) is not None]
     if pairs_digest((arcs[0].target, arcs[-1].target) for _, arcs in marked) == noted:
         return mechanism
-    message = "exclusions have changed, so that the collision groups that said them are left out; what is excluded now is said in pairs"
+    message = "exclusions have changed, so that the collision groups for them are left out; exclusions are written as pairs"
     context.report.note(codes.REWRITTEN, message)
     gone = (GROUPS, GROUPED)
     notations = {key: {name: text for name, text in own.items() if name not in gone} for key, own in mechanism.notations.items()}

@@ -49,7 +49,7 @@ def write_shape(sheet: UsdSheet, view: ShapeView, users: dict[Id, int], shared: 
         sheet.paths[view.id] = body
     else:
         spec = sheet.add_prim(view.id, body, "Xform", view.shape.name or view.shape.role.value, below=view.body != WORLD)
-        if view.shape.name is None:  # nobody calls it so
+        if view.shape.name is None:  # it is not its name
             spec.info.pop("displayName", None)
     if prim is not None:
         _write_primitive(spec, prim)
@@ -68,7 +68,7 @@ def write_shape(sheet: UsdSheet, view: ShapeView, users: dict[Id, int], shared: 
 
 
 def _is_hull(mechanism: Mechanism, view: ShapeView, prim: gprims.Gprim | None) -> bool:
-    """Whether the hull of a mesh collides: of ours it does, those of others say for themselves."""
+    """Whether the hull of a mesh collides: of new prims it does, those from a stage have an attribute for it."""
     if prim is not None:
         return prim.kind == "Mesh"
     return isinstance(view.shape.geometry, MeshShape) and mechanism.notation(view.id, words.PATH) is None
@@ -96,7 +96,7 @@ def _write_primitive(spec: Any, prim: gprims.Gprim) -> None:
     return None
 
 
-# ---- looks ---------------------------------------------------------------------------------------------------------------------
+# ---- appearance ------------------------------------------------------------------------------------------------------------------
 
 
 def _write_looks(sheet: UsdSheet, spec: Any, view: ShapeView) -> None:

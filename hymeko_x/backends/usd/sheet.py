@@ -141,7 +141,7 @@ class UsdSheet(Struct):
         return path
 
     def define(self, path: Any, kind: str, name: str = "") -> Prim:
-        """A new prim of this type; prims above it that are not there yet become Xforms. ``name`` is what people call it."""
+        """A new prim of this type; missing ancestors become Xforms. ``name`` is the display name."""
         if path.GetParentPath() not in self.prims:
             for above in path.GetPrefixes()[:-1]:
                 self.prims.setdefault(above, Prim(above))
@@ -152,11 +152,11 @@ class UsdSheet(Struct):
         return prim
 
     def is_made(self, path: Any) -> bool:
-        """Whether a prim is there for an element or a group of ours, not only because something is below it."""
+        """Whether a prim represents an element or is a group of the writer's, and not only an ancestor of one."""
         return path in self.element_paths or path in self.group_paths
 
     def noted_path(self, key: Id) -> Any | None:
-        """The path of the prim that an element was read from, where nothing else stands there yet."""
+        """The path of the prim that an element was read from, where it is free."""
         noted = self.mechanism.notation(key, words.PATH)
         if noted is None or not Sdf.Path.IsValidPathString(noted):
             return None
@@ -195,7 +195,7 @@ class UsdSheet(Struct):
         return point if scale is None else (point[0] / scale[0], point[1] / scale[1], point[2] / scale[2])
 
     def scope(self, name: str) -> Any:
-        """The path of one of our own groups below the robot's prim."""
+        """The path of one of the writer's groups below the robot's prim."""
         path = self.root.AppendChild(name)
         if path not in self.prims:
             self.define(path, "Scope")
@@ -230,7 +230,7 @@ def point(prim: Prim, name: str, *targets: Any) -> None:
 
 
 def apply(prim: Prim, *schemas: str) -> None:
-    """Apply API schemas, known to a plugin or not."""
+    """Apply API schemas, with or without a plugin."""
     prim.schemas.extend(schema for schema in schemas if schema not in prim.schemas)
 
 
@@ -280,7 +280,7 @@ def dof_of(sheet: UsdSheet, arc: RobotArc) -> tuple[Any, str, Dof] | None:
 
 
 def prim_of(sheet: UsdSheet, arc: RobotArc) -> Any | None:
-    """The path of the prim of what an arc means: of one dof where a joint has several; None where an axis of a joint is no prim."""
+    """The path of the prim of an arc's target: of one dof where a joint has several; None where that is an axis of a generic joint."""
     if arc.target.kind != "joint":
         return sheet.paths.get(arc.target)
     found = dof_of(sheet, arc)

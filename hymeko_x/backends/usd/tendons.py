@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def write_tendons(sheet: UsdSheet) -> None:
-    """Each tendon whose path leads through prims; the schema has no word for one through an axis of a generic joint."""
+    """Each tendon whose path leads through prims; the schema cannot represent one through an axis of a generic joint."""
     for key, tendon, arcs in sheet.mechanism.edges(Tendon):
         path = None if wrong_path(tendon, arcs, sheet.mechanism.graph.edges) else _path(sheet, arcs)
         if path is None:
@@ -92,11 +92,11 @@ def _write_path(spec: Prim, tendon: Tendon, path: _Path) -> None:
         put(spec, table.SIDE_INDICES, T.IntArray, Vt.IntArray(path.sides.indices))
 
 
-# ---- what it is like -------------------------------------------------------------------------------------------------------------
+# ---- limits, mechanics, appearance -----------------------------------------------------------------------------------------------
 
 
 def _write_behaviour(spec: Prim, tendon: Tendon) -> None:
-    """Limits, mechanics and looks; what is the schema's default is not said."""
+    """Limits, mechanics and appearance; defaults of the schema are left out."""
     lower, upper = tendon.limits.lower, tendon.limits.upper
     if upper is not None:
         put(spec, table.LIMITED, T.Token, "true")

@@ -20,30 +20,30 @@ TYPE = "usd.type"
 REVERSED = "usd.reversed"
 """The notation of a joint whose parent in the tree is its ``body1``."""
 EQUALITY = "usd.equality"
-"""The notation of a coupling that MuJoCo's schema says alone, without Newton's."""
+"""The notation of a coupling that has MuJoCo's schema alone, without Newton's."""
 NORMALS = "usd.normals"
-"""The notation of a mesh shape whose prim says the normal of each triangle, which follows from its points."""
+"""The notation of a mesh shape whose prim has the normal of each triangle as computed from its points."""
 TEXCOORDS = "usd.texcoords"
-"""The notation of a mesh shape whose prim says the place of each corner in an image by rows of a table, as we do."""
+"""The notation of a mesh shape whose prim has texture coordinates by corner with indices, in the form that the writer uses."""
 MATERIAL_BIND = "materialBind"
 """The family of the subsets of a mesh that show other materials."""
 FAMILY = f"subsetFamily:{MATERIAL_BIND}:familyType"
-"""The attribute of a mesh that says what holds for these, and what we say: no face is in two of them."""
+"""The attribute of a mesh for the type of that family; the writer sets it to: no face is in two subsets."""
 NON_OVERLAPPING = "nonOverlapping"
 FACE = "face"
 """What a subset is made of."""
 HELD = "usd.held"
-"""The notation of a joint that stands for no prim: its body is fixed because its simulation is switched off."""
+"""The notation of a joint without a prim: its body is fixed because its simulation is switched off."""
 POSE = "usd.pose"
-"""The notation of a body that keeps where its prim stands (x y z qw qx qy qz) where its joints put it elsewhere."""
+"""The notation of a body with the pose of its prim (x y z qw qx qy qz) where that is not the pose that its joints give."""
 GROUND = ("usd.body0", "usd.body1")
 """The notations of a joint that keep the group that stood for the world on either side."""
 ROOT_PRIM = "usd.root"
-"""The notation of the mechanism that keeps the path of the prim that stands for the robot."""
+"""The notation of the mechanism with the path of the prim that represents the robot."""
 
 WRAPS = ("inputs:wrapS", "inputs:wrapT")
 REPEAT = "repeat"
-"""What an image does beyond its borders in every format that says nothing of it."""
+"""The wrapping of images in every format that does not specify one."""
 WITHIN = "xformOp:scale:within"
 """The operation that undoes the scale of the body above."""
 
@@ -51,14 +51,14 @@ PREFIX = "hymeko:"
 
 AXES: Mapping[str, values.Vec3] = MappingProxyType({"X": values.X, "Y": values.Y, "Z": values.Z})
 D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
-"""The axes of a generic joint in the order in which they move: what comes first is nearer to the parent."""
+"""The axes of a generic joint in the order in which they move: the first is nearest to the parent."""
 LIGHTS: Mapping[str, str] = MappingProxyType({"DistantLight": "directional", "SphereLight": "point", "DomeLight": "image"})
-"""The lights of UsdLux that the IR has a word for; a sphere light with a cone is a spot."""
+"""The lights of UsdLux that the IR can represent; a sphere light with a cone is a spot."""
 CONE = "ShapingAPI"
 SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 """The schemas of a prim that marks a place, MuJoCo's and Newton's."""
 APERTURE = 15.2908
-"""How high the film of a camera is that says nothing of it, in mm as is its focal length."""
+"""The default vertical aperture of a camera, in mm as is its focal length."""
 DRIVES = ("angular", "linear", *D6_AXES)
 """The instances of a DriveAPI."""
 
@@ -67,7 +67,7 @@ LOCKED = (1.0, -1.0)
 
 
 class D6Axis(NamedTuple):
-    """One axis of a generic joint: how it moves, and along or about what."""
+    """One axis of a generic joint: the kind of its motion, and the axis of it."""
 
     kind: parts.DofKind
     axis: values.Vec3
@@ -88,7 +88,7 @@ _pack = struct.Struct("f").pack
 def single(value: float) -> float:
     """The shortest decimal that names a single-precision number: 0.1 for the float that is closest to 0.1.
 
-    So that what an author wrote comes back, not its rounding error; the float that it rounds to is the same.
+    Hence an author's number comes back without its rounding error; the float that it rounds to is the same.
     """
     if not math.isfinite(value) or value == int(value):
         return float(value)

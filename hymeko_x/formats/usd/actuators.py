@@ -1,4 +1,4 @@
-"""MjcActuator of MuJoCo's schema and the actuators of MJCF that it says: names of attributes and of parameters, in one table."""
+"""MjcActuator of MuJoCo's schema and the actuators of MJCF that it represents: names of attributes and of parameters."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ TOKENS: Mapping[str, str] = MappingProxyType(
         "actlimited": "actLimited",
     }
 )
-"""Parameters that are words, with the attributes that say them."""
+"""Parameters that are words, with their attributes."""
 VECTORS: Mapping[str, str] = MappingProxyType({"dynprm": "dynPrm", "gainprm": "gainPrm", "biasprm": "biasPrm"})
 RANGES: Mapping[str, str] = MappingProxyType(
     {"ctrlrange": "ctrlRange", "forcerange": "forceRange", "actrange": "actRange", "lengthrange": "lengthRange"}
@@ -35,14 +35,14 @@ RANGES: Mapping[str, str] = MappingProxyType(
 NUMBERS: Mapping[str, str] = MappingProxyType({"cranklength": "crankLength", "inheritrange": "inheritRange"})
 INTEGERS: Mapping[str, str] = MappingProxyType({"actdim": "actDim", "group": "group"})
 DEFAULTS: Mapping[str, str] = MappingProxyType({"dyntype": "none", "gaintype": "fixed", "biastype": "none"})
-"""What the words are for a plain motor."""
+"""The words of a plain motor."""
 
 TARGET, SLIDER, REFERENCE = "mjc:target", "mjc:sliderSite", "mjc:refSite"
 RELATIONSHIPS: Mapping[str, str] = MappingProxyType({"": TARGET, "crank": TARGET, "slider": SLIDER, "reference": REFERENCE})
-"""The relationship for each role of what an actuator acts on."""
+"""The relationship for each role of a target of an actuator."""
 
 
-# ---- what MJCF has a word of its own for -----------------------------------------------------------------------------------------
+# ---- actuators that MJCF has elements of their own for ---------------------------------------------------------------------------
 
 _MUSCLE = MappingProxyType(
     {
@@ -59,7 +59,7 @@ _DETAILS = frozenset(("kp", "kv", "dampratio", "timeconst", "tausmooth", "range"
 
 
 def in_general(kind: str, parameters: Parameters) -> Parameters | None:
-    """The parameters of an actuator of this kind as those of a general one; None where nobody has said what those are.
+    """The parameters of an actuator of this kind as those of a general one; None for kinds that are not documented as such.
 
     Source: MuJoCo, user_api.cc, mjs_setToPosition and its siblings.
     """
@@ -87,7 +87,7 @@ def _speed(authored: Mapping[str, Numbers]) -> Parameters:
 
 
 def _muscle(authored: Mapping[str, Numbers]) -> Parameters:
-    """A muscle; the same numbers say its active and its passive force."""
+    """A muscle; the same numbers describe its active and its passive force."""
     law = (*authored.get("range", (0.75, 1.05)), *(authored.get(name, usual)[0] for name, usual in _MUSCLE.items()))
     times = (*authored.get("timeconst", (0.01, 0.04)), *authored.get("tausmooth", (0.0,)))
     kinds = tuple((name, "muscle") for name in DEFAULTS)

@@ -15,10 +15,10 @@ if TYPE_CHECKING:
 
 GROUP = "PhysicsCollisionGroup"
 GROUPED = "usd.grouped"
-"""The notation of an exclusion that collision groups say: ``groups`` where they alone do, ``both`` where a filtered pair says it, too."""
+"""The notation of an exclusion from collision groups: ``groups`` where it is theirs alone, ``both`` where a filtered pair has it, too."""
 BY_GROUPS, BY_BOTH = "groups", "both"
 GROUPS = "usd.groups"
-"""The notation of the mechanism that tells whether the exclusions which its collision groups say are all still there, and no others."""
+"""The notation of the mechanism with the digest of the exclusions that its collision groups mean."""
 
 
 def pairs_digest(pairs: Iterable[tuple[Id, Id]]) -> str:

@@ -1,4 +1,4 @@
-"""Primitive prims of UsdGeom as plain values: the attributes of a prim, and the geometry that it stands for.
+"""Primitive prims of UsdGeom as plain values: the attributes of a prim, and the geometry that it represents.
 
 Shared by reader and writer, so that sizes, axis and scale are written as their author wrote them.
 """
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Geometry
 
 NOTATION = "usd.gprim"
-"""The notation of a shape that keeps what its prim says where that is not what the writer would choose."""
+"""The notation of a shape with its primitive where that is not the one that the writer chooses."""
 
 SIZES: Mapping[str, tuple[tuple[str, float], ...]] = MappingProxyType(
     {
@@ -36,7 +36,7 @@ SIZES: Mapping[str, tuple[tuple[str, float], ...]] = MappingProxyType(
         "Mesh": (),
     }
 )
-"""The sizes of each primitive with UsdGeom's defaults. A mesh is one where it is :func:`ball`, which stands for an ellipsoid."""
+"""The sizes of each primitive with UsdGeom's defaults. A mesh is a primitive where it is :func:`ball`, which represents an ellipsoid."""
 TURNS: Mapping[str, Quat] = MappingProxyType(
     {"X": quat_about(Y, 1.5707963267948966), "Y": quat_about(X, -1.5707963267948966), "Z": NO_ROTATION}
 )
@@ -46,7 +46,7 @@ _WRITTEN = re.compile(r"(\w+) ([XYZ]) ([^;]+); (.+)")
 
 
 class Gprim(Struct, frozen=True):
-    """A primitive as a prim says it: type, sizes and axis, and the scale (in m per unit) of the space that they are in."""
+    """A primitive as its prim has it: type, sizes and axis, and the scale (in m per unit) of the space that they are in."""
 
     kind: str
     sizes: tuple[float, ...]
@@ -70,7 +70,7 @@ class PlacedGeometry(NamedTuple):
 
 
 def parse(text: str | None) -> Gprim | None:
-    """The primitive of a notation; None for what is none."""
+    """The primitive of a notation; None where there is none."""
     found = _WRITTEN.fullmatch(text or "")
     if found is None or found[1] not in SIZES:
         return None
@@ -108,7 +108,7 @@ def geometry_of(prim: Gprim) -> PlacedGeometry:
 
 
 def default_gprim(geometry: Geometry, role: Role) -> Gprim | None:
-    """The primitive by which the writer says a geometry; None for meshes and empty shapes.
+    """The primitive that the writer chooses for a geometry; None for meshes and empty shapes.
 
     UsdPhysics takes a sphere whose scale is not uniform for no collider, but the hull of any mesh.
     """

@@ -1,4 +1,4 @@
-"""MjcTendon of MuJoCo's schema: its path, and the attributes for what a tendon is like, in one table for reader and writer."""
+"""MjcTendon of MuJoCo's schema: its path, and the attributes of a tendon."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 PRIM = "MjcTendon"
 KIND = "mjc:type"
-"""The kind of tendon, spatial where nothing is said."""
+"""The kind of tendon, spatial by default."""
 
 PATH = "mjc:path"
 """What the path leads through, each prim once."""
@@ -21,7 +21,7 @@ COEFFICIENTS = "mjc:path:coef"
 SEGMENTS = "mjc:path:segments"
 """In which part of the path each step is, of those that pulleys divide it into."""
 DIVISORS = "mjc:path:divisors"
-"""By what the length of each part is divided."""
+"""The divisor of the length of each part."""
 SIDES = "mjc:sideSites"
 SIDE_INDICES = "mjc:sideSites:indices"
 """Which of the sites beside shapes belongs to each step, -1 for none."""
@@ -37,7 +37,7 @@ NUMBERS: Mapping[str, str] = MappingProxyType(
         "armature": "mjc:armature",
     }
 )
-"""Numbers of a tendon that are 0 where nothing is said, with their attributes."""
+"""Numbers of a tendon that are 0 by default, with their attributes."""
 WIDTH, COLOUR = "mjc:width", "mjc:rgba"
 
 VECTORS: Mapping[str, tuple[float, ...]] = MappingProxyType(
@@ -48,7 +48,7 @@ VECTORS: Mapping[str, tuple[float, ...]] = MappingProxyType(
         "solimpfriction": (0.9, 0.95, 0.001, 0.5, 2.0),
     }
 )
-"""Parameters of several numbers, with those that the schema has where nothing is said; the last ones may be left out."""
+"""Parameters of several numbers, with the defaults of the schema; the last ones may be left out."""
 SPRING, MARGIN, GROUP = "springlength", "margin", "group"
 FORCE_RANGE, FORCE_LIMITED = "actuatorfrcrange", "actuatorfrclimited"
 

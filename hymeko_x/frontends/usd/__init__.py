@@ -1,7 +1,7 @@
 """USD in: a composed stage becomes bodies, joints, shapes and materials; whatever else is on any prim becomes extras.
 
-Source: UsdPhysics as its own parser reads it, UsdGeom, and the MjcPhysics and Newton schemas; docs/mapping/usd.md says
-what becomes what.
+Source: UsdPhysics as its own parser reads it, UsdGeom, and the MjcPhysics and Newton schemas; docs/mapping/usd.md has
+the mapping.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def _take_residue(scene: Scene) -> Iterator[str]:
 
 
 def _prims(scene: Scene) -> list[Prim]:
-    """All prims in stage order, without the groups that only hold prims of ours."""
+    """All prims in stage order, without the groups that the writer makes for prims of its own."""
     return [prim for prim in scene.prims.values() if prim.is_real and f"{words.PREFIX}scope" not in prim.types]
 
 
@@ -95,7 +95,7 @@ def _read_shapes(prims: list[Prim], builder: UsdBuilder) -> None:
 
 
 def _read_things(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder) -> None:
-    """What sits on bodies, then what acts on it."""
+    """Mounts, tendons, actuators and contacts."""
     for prim in prims:
         kind = prim.kind
         if kind == "Camera":
@@ -114,7 +114,7 @@ def _read_things(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder
 
 
 def _read_joints(prims: list[Prim], bare: list[Prim], builder: UsdBuilder) -> dict[str, DofRef]:
-    """The joints, with what acts on them; returns which dof each of their prims is."""
+    """The joints, with drives and mimics; returns the dof that each of their prims is."""
     joints = [joint for prim in prims if prim.kind in TYPES for joint in [read_joint(prim, builder)] if joint is not None]
     joints = join_bare_links(bare, [with_dialect(joint, builder) for joint in joints], builder)
     joints = build_trees(joints, _articulation_roots(prims, joints, builder), _held(builder), builder)
@@ -130,7 +130,7 @@ def _read_joints(prims: list[Prim], bare: list[Prim], builder: UsdBuilder) -> di
 
 
 def _articulation_roots(prims: list[Prim], joints: list[ReadJoint], builder: UsdBuilder) -> list[Id]:
-    """The bodies at which articulations begin: those that bear the API, or an end of the joint that does."""
+    """The bodies at which articulations begin: those that have the API, or an end of the joint that has it."""
     ends = {joint.prim.path: [end.body for end in joint.ends if end.body != WORLD] for joint in joints}
     roots: list[Id] = []
     for prim in prims:
@@ -140,7 +140,7 @@ def _articulation_roots(prims: list[Prim], joints: list[ReadJoint], builder: Usd
 
 
 def _held(builder: UsdBuilder) -> list[Id]:
-    """The bodies whose simulation is switched off, that only a user moves, or that mean the world: by themselves they stand still."""
+    """The bodies that are fixed unless a joint moves them: simulation switched off, kinematic, or another converter's world."""
     prims = {body: builder.prim_at(path) for path, body in builder.bodies.items()}
     return [body for body, prim in prims.items() if is_world(prim, builder) or _stands_still(prim)]
 

@@ -51,7 +51,7 @@ def _driven(instance: str, name: str, joint: Joint) -> int | None:
 
 
 def _add_drive(prim: Prim, key: Id, instance: str, number: int, joint: Joint, builder: UsdBuilder) -> None:
-    """Gains per degree become gains per radian; what a drive aims at stays an extra."""
+    """Gains per degree become gains per radian; the target of a drive stays an extra."""
     scene, turns = builder.scene, joint.dofs[number].kind is DofKind.HINGE
     gain = scene.kilograms * (scene.metres**2 * 180.0 / math.pi if turns else 1.0)
     effort = scene.kilograms * scene.metres * (scene.metres if turns else 1.0)
@@ -78,10 +78,10 @@ _KINDS = ("frame", "body", "tendon")
 
 
 def read_actuator(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder) -> None:
-    """The actuator of a prim with the edge to its targets; one without a target that we know stays an extra."""
+    """The actuator of a prim with the edge to its targets; one without a known target stays an extra."""
     arcs = [arc for role, name in _relationships(prim) for arc in _arcs(prim, role, name, ends, builder)]
     if not arcs:
-        message = f"actuator '{prim.path}' acts on nothing that is known; it is kept as written"
+        message = f"actuator '{prim.path}' has no target that exists; it is kept as written"
         builder.report.warn(codes.UNDEFINED_REFERENCE, message, builder.origin, element=prim.path)
         return
     parameters = _parameters(prim, builder)
@@ -119,7 +119,7 @@ def _arcs(prim: Prim, role: str, name: str, ends: dict[str, DofRef], builder: Us
 
 
 def _parameters(prim: Prim, builder: UsdBuilder) -> list[tuple[str, float | str | tuple[float, ...]]]:
-    """What the prim says beside its targets, under the names of MJCF; what is the schema's default says nothing."""
+    """The other attributes of the prim, under the names of MJCF; defaults of the schema are left out."""
     found: list[tuple[str, float | str | tuple[float, ...]]] = []
     for name, attribute in table.TOKENS.items():
         value = builder.get(prim, f"mjc:{attribute}")

@@ -78,7 +78,7 @@ def read_mass(prim: Prim, key: Id, shapes: list[ReadShape], builder: UsdBuilder)
 
 
 def _stated(prim: Prim, builder: UsdBuilder) -> Inertial:
-    """What the body's own MassAPI says; None for what it leaves to be computed."""
+    """The MassAPI of the body itself; None for values that are left to be computed."""
     scene = builder.scene
     mass = builder.number(prim, "physics:mass", 0.0) * scene.kilograms
     centre = builder.get(prim, "physics:centerOfMass")
@@ -137,12 +137,12 @@ def _plain(prim: Prim, name: str) -> float:
 
 
 def _massless(stated: Inertial) -> Inertial:
-    """What was said of a body that no collider gives a mass: none at all, where it has a tensor."""
+    """The inertial of a body that no collider gives a mass: none at all, where it has a tensor."""
     return replace(stated, mass=0.0) if stated.mass is None and stated.tensor is not None else stated
 
 
 def _completed(stated: Inertial, solid: Solid) -> Inertial:
-    """What was said, with the rest from the colliders; their tensor is scaled to a mass that was said."""
+    """The authored values, with the others from the colliders; their tensor is scaled to an authored mass."""
     mass = stated.mass if stated.mass is not None else solid.mass
     com = stated.com if any(stated.com) else solid.com
     if stated.tensor is not None:
@@ -165,7 +165,7 @@ class Solid(Struct, frozen=True):
         return Solid(self.mass * factor, self.com, _times(self.tensor, factor))
 
     def about(self, com: Vec3, mass: float) -> Tensor:
-        """The tensor when it weighs ``mass`` and its centre of mass is said to be elsewhere."""
+        """The tensor when the mass is ``mass`` and the centre of mass is authored elsewhere."""
         del com  # UsdPhysics moves no tensor along with a stated centre of mass
         return _times(self.tensor, mass / self.mass if self.mass else 1.0)
 

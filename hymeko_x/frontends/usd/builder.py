@@ -31,10 +31,10 @@ _SIZES = MappingProxyType(
         **dict.fromkeys(("physics:localRot0", "physics:localRot1", "physics:principalAxes"), 4),
     }
 )
-"""How many numbers the values have that are taken apart: a file may give a property another type than its schema."""
+"""How many numbers the values have that are unpacked: a file may give a property another type than its schema."""
 
 ORIGINAL_NAME = "cyberwave:name"
-"""Where cyberwave-robot-format keeps what a prim could not be called."""
+"""The attribute in which cyberwave-robot-format keeps a name that is no legal name of a prim."""
 
 
 class UsdBuilder(Builder, dict=True):
@@ -68,7 +68,7 @@ class UsdBuilder(Builder, dict=True):
         return Origin(self.source.name)
 
     def new_id(self, prim: Prim, kind: str, fallback: str | None = None) -> Id:
-        """A fresh id for the element that a prim stands for, after the name that it carries."""
+        """A fresh id for the element that a prim represents, after the name that it has."""
         key = self.fresh(kind, self._name(prim, fallback), self.origin)
         path = prim.path
         self.elements.setdefault(path, []).append(key)
@@ -86,7 +86,7 @@ class UsdBuilder(Builder, dict=True):
         return prim.display_name or prim.name
 
     def part_name(self, prim: Prim) -> str:
-        """The name that a part keeps by itself, whatever its id is: what people call the prim."""
+        """The name that a part keeps by itself, whatever its id is: the display name of the prim."""
         self.mark_read(prim, "displayName")
         return prim.display_name or prim.name
 
@@ -95,7 +95,7 @@ class UsdBuilder(Builder, dict=True):
         self.read_names.setdefault(prim.path, set()).update(names)
 
     def get(self, prim: Prim, name: str) -> Any:
-        """An authored value, single precision as the decimal that it stands for; None without one. The property counts as read.
+        """An authored value, single precision as the shortest decimal; None without one. The property counts as read.
 
         A value that changes with time stays an extra as well.
         """
@@ -128,7 +128,7 @@ class UsdBuilder(Builder, dict=True):
         return default
 
     def number(self, prim: Prim, name: str, default: float) -> float:
-        """An authored number, or the default (not a number for none). One that says nothing, which is not written, stays an extra."""
+        """An authored number, or the default (not a number for none). One that equals the default and is not written stays an extra."""
         if name not in prim.types:
             return default
         value = self.get(prim, name)

@@ -45,7 +45,7 @@ def read_filtered_pairs(prim: Prim, builder: UsdBuilder) -> None:
 
 
 def friction_of(prim: Prim, builder: UsdBuilder) -> tuple[float, ...]:
-    """Sliding, torsional and rolling friction of a collider by its physics material; nothing where that does not say."""
+    """Sliding, torsional and rolling friction of a collider by its physics material; nothing where that has none."""
     bound = bound_to(prim, builder.scene, "physics")
     found: list[float] = []
     if bound is None:
@@ -65,7 +65,7 @@ def friction_of(prim: Prim, builder: UsdBuilder) -> tuple[float, ...]:
 # ---- collision groups --------------------------------------------------------------------------------------------------------------
 
 MOST_PAIRS = 10_000
-"""How many pairs of bodies are typed at most: a hundred groups of a hundred bodies are as many words as a large robot."""
+"""How many pairs of bodies are typed at most: a hundred groups of a hundred bodies are as long as a large robot."""
 _MOST_GROUPS = 500
 _MOST_KINDS = 400
 _MOST_MEMBERS = 1_000_000
@@ -76,18 +76,18 @@ Memberships = frozenset[str]
 
 
 class _TooMany(Exception):
-    """More than anybody can say in pairs; the text says of what."""
+    """More than can be written as pairs; the text names the excess."""
 
 
 def read_collision_groups(prims: list[Prim], builder: UsdBuilder) -> None:
-    """Each pair of bodies of which no collider of the one touches a collider of the other, as an exclusion that says where it is from."""
+    """Each pair of bodies of which no collider of the one touches a collider of the other, as an exclusion noted as such."""
     groups = [prim for prim in prims if prim.kind == GROUP]
     if not groups:
         return
     try:
         pairs = _pairs(groups, builder)
     except _TooMany as error:
-        message = f"collision groups with {error} are kept as written; other formats do not hear of them"
+        message = f"collision groups with {error} are kept as written; no other format represents them"
         builder.report.warn(codes.NOT_SAID, message, builder.origin, element=groups[0].path)
         return
     if not pairs:
@@ -126,7 +126,7 @@ def _pairs(groups: list[Prim], builder: UsdBuilder) -> list[tuple[Id, Id]]:
             raise _TooMany(f"more than {MOST_PAIRS} pairs of bodies")
         found += combinations(here, 2) if here is there else ((a, b) if a < b else (b, a) for a, b in product(here, there))
     if partly is not None:
-        message = f"collision groups keep only some colliders of {partly[0]} and {partly[1]} apart, which is kept as written"
+        message = f"collision groups separate only some colliders of {partly[0]} and {partly[1]}; that is kept as written"
         builder.report.note(codes.NOT_SAID, message, builder.origin, element=groups[0].path)
     return [(a, b) for (_, a), (_, b) in sorted(found)]
 
@@ -167,7 +167,7 @@ def _colliders(builder: UsdBuilder) -> Iterator[tuple[str, Id]]:
 
 
 class _Rules(NamedTuple):
-    """What groups say of each other: with whom each does not collide, and which collide only with whom they name."""
+    """The filters of groups: ``apart`` with which each does not collide, ``inverted`` those that collide only with the ones they name."""
 
     apart: Mapping[str, Memberships]
     inverted: Memberships
@@ -180,7 +180,7 @@ class _Rules(NamedTuple):
 
 
 def _rules(groups: list[Prim], used: set[str]) -> _Rules:
-    """The rules of the groups that have colliders; groups of one merge name are one group, which heeds what each of them says.
+    """The rules of the groups that have colliders; groups of one merge name are one group with all of their filters.
 
     Source: the schema of UsdPhysics and OpenUSD's own table, which takes a filtered group that is not there for the first one.
     """

@@ -24,7 +24,7 @@ EQUALITY = "MjcEqualityJointAPI"
 
 
 def read_mimic(prim: Prim, end: DofRef, ends: dict[str, DofRef], builder: UsdBuilder) -> None:
-    """This joint follows another one, as NewtonMimicAPI says, with the higher powers of MjcEqualityJointAPI.
+    """This joint follows another one by NewtonMimicAPI, with the higher powers of MjcEqualityJointAPI.
 
     The constant is a coordinate of the follower, in degrees for a hinge; factors are dimensionless. Where Newton's names are
     not there, MuJoCo's older ones count (radians).
@@ -47,7 +47,7 @@ def read_mimic(prim: Prim, end: DofRef, ends: dict[str, DofRef], builder: UsdBui
 
 
 def _follows(prim: Prim) -> bool:
-    """Whether a schema says that the joint follows; other schemas have a target, too."""
+    """Whether a schema makes the joint a follower; other schemas have a target, too."""
     return any(schema in (MIMIC, EQUALITY) for schema in prim.schemas)
 
 

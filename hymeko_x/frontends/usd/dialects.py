@@ -2,7 +2,7 @@
 
 urdf-usd-converter keeps attributes of URDF as ``urdf:`` attributes, and writes links without mass, shapes and motion as plain
 Xforms: it nests prims as the URDF nests links, leaves out the fixed joints above such links, and leads joints that begin at
-one past it to the nearest rigid body. Its ``creator`` in the stage's custom data tells its files from others.
+one past it to the nearest rigid body. Its ``creator`` in the stage's custom data marks its files.
 cyberwave-robot-format repeats everything in ``cyberwave:`` attributes, in SI units, radians and double precision.
 """
 
@@ -74,7 +74,7 @@ def _cyberwave_limits(prim: Prim, limits: Limits, builder: UsdBuilder) -> Limits
 
 
 def _sharper(native: float | None, double: float) -> float | None:
-    """The double that a single-precision value was made from; the latter where somebody has edited it."""
+    """The double that a single-precision value was made from; the latter where it was edited since."""
     is_same = native is not None and math.isclose(native, double, rel_tol=1e-5, abs_tol=1e-6)
     return double if is_same else native
 
@@ -103,7 +103,7 @@ def read_named_mimic(prim: Prim, end: DofRef, named: dict[str, DofRef], builder:
 
 
 def is_world(prim: Prim, builder: UsdBuilder) -> bool:
-    """Whether a rigid body is what cyberwave-robot-format makes of the world body of an MJCF."""
+    """Whether a rigid body is the one into which cyberwave-robot-format converts the world body of an MJCF."""
     return prim.name == "world" and any("cyberwave" in top.custom_data for top in builder.scene.prims.values() if top.parent is None)
 
 
@@ -141,7 +141,7 @@ def _is_bare_link(prim: Prim, above: str) -> bool:
 
 
 def join_bare_links(bare: list[Prim], joints: list[ReadJoint], builder: UsdBuilder) -> list[ReadJoint]:
-    """The joints, with each bare link between the bodies where its prim stands."""
+    """The joints, with each bare link between the bodies at its prim."""
     if not bare:
         return joints
     prims = {key: builder.prim_at(path) for path, key in builder.bodies.items()}
@@ -162,7 +162,7 @@ def _from_bare_link(joint: ReadJoint, links: set[Id], prims: dict[Id, Prim], bui
 
 
 def _fixed_above(prim: Prim, builder: UsdBuilder) -> ReadJoint:
-    """The fixed joint above a bare link; a bare root stands on the world, as its other roots do."""
+    """The fixed joint that is the parent of a bare link; a bare root is fixed to the world, as its other roots are."""
     body = builder.bodies[prim.path]
     start: Pose = IDENTITY
     parent = WORLD

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
 
 STAGE = "/"
-"""The path of the extra that holds what the stage as a whole says."""
+"""The path of the extra with the metadata of the stage."""
 _STAGE_KNOWN = ("upAxis", "metersPerUnit", "kilogramsPerUnit", "defaultPrim", "subLayers", "subLayerOffsets", "primChildren")
 _TARGETS = (("targetPaths", "targetPathList"), ("connectionPaths", "connectionPathList"))
 _ARCS = ("references", "payload", "inheritPaths", "specializes", "variantSetNames", "variantSelection")
@@ -38,7 +38,7 @@ def gather_extras(builder: UsdBuilder) -> None:
     owners: dict[Prim | None, tuple[Id, str] | None] = {None: (ROOT, "/")}
     for prim in builder.scene.prims.values():
         above = owners[prim.parent]
-        if above is None or f"{words.PREFIX}scope" in prim.types:  # what we made up ourselves, with all that is in it
+        if above is None or f"{words.PREFIX}scope" in prim.types:  # groups of the writer's own, with everything in them
             owners[prim] = None
             continue
         found = builder.elements.get(prim.path)
@@ -53,7 +53,7 @@ def _home(key: Id, path: str, builder: UsdBuilder) -> str:
 
 
 class _Unread(Struct, frozen=True):
-    """What was not read of a prim: whether its type was not, its schemas, metadata and properties, and where it stands now."""
+    """The unread parts of a prim: whether its type is, its schemas, metadata and properties, and its new matrix."""
 
     has_type: bool
     schemas: tuple[str, ...]
@@ -126,7 +126,7 @@ def _lead_where_it_led(item: Any, copy: Any) -> None:
 
 
 def _gather_stage(layer: Any, builder: UsdBuilder) -> None:
-    """What the root layer says besides its units, as the header of an empty layer."""
+    """The metadata of the root layer besides its units, as the header of an empty layer."""
     header = Sdf.Layer.CreateAnonymous(".usda")
     for name in layer.pseudoRoot.ListInfoKeys():
         if name not in _STAGE_KNOWN and not (name == "customLayerData" and not layer.customLayerData):
@@ -139,7 +139,7 @@ def _gather_stage(layer: Any, builder: UsdBuilder) -> None:
 
 
 def _above_typed(builder: UsdBuilder) -> set[str]:
-    """The paths of all prims with a typed one somewhere below: their transformations are part of what is below."""
+    """The paths of all prims with a typed descendant: their transformations are part of its pose."""
     above: set[str] = set()
     for path in builder.elements:
         way = path.rpartition("/")[0]
@@ -150,9 +150,9 @@ def _above_typed(builder: UsdBuilder) -> set[str]:
 
 
 def _new_place(prim: Prim, folded: set[str], builder: UsdBuilder) -> Any | None:
-    """The matrix of a prim in the frame in which it will stand, or None where what it says stays true.
+    """The matrix of a prim in the frame in which it will be written, or None where its own one stays true.
 
-    Groups above typed prims stand in the frame of their body or the world; what hangs below such a group alone gets its
+    Groups above typed prims are in the frame of their body or the world; an untyped child of such a group gets its
     own matrix there; what hangs deeper keeps its own.
     """
     if prim.path in folded:
@@ -170,7 +170,7 @@ def _new_place(prim: Prim, folded: set[str], builder: UsdBuilder) -> Any | None:
 
 
 def _is_skin(prim: Prim, builder: UsdBuilder) -> bool:
-    """Whether the prim is a body and its geometry at once: it keeps its scale, so what is below keeps its place."""
+    """Whether the prim is a body and its geometry at once: it keeps its scale, so its children keep their poses."""
     return {"body", "shape"} <= {key.kind for key in builder.elements.get(prim.path, ())}
 
 

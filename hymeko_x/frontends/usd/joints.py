@@ -1,4 +1,4 @@
-"""Joints of UsdPhysics: their two frames, dofs, limits, and what MuJoCo's and Newton's schemas say about them."""
+"""Joints of UsdPhysics: their two frames, dofs and limits, with the attributes of MuJoCo's and Newton's schemas."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class End(Struct, frozen=True):
 
 
 class ReadJoint(Struct, frozen=True):
-    """A joint as its prim says it, not yet part of a tree: ``ends`` are those of body0 and body1.
+    """A joint as its prim has it, not yet part of a tree: ``ends`` are those of body0 and body1.
 
     ``merged`` are the prims of its dofs where it was made of several joints.
     """
@@ -59,7 +59,7 @@ class ReadJoint(Struct, frozen=True):
 
 
 def read_joint(prim: Prim, builder: UsdBuilder) -> ReadJoint | None:
-    """The joint of a prim; None, said and kept as an extra, where it does not connect two bodies."""
+    """The joint of a prim; None, reported and kept as an extra, where it does not connect two bodies."""
     first, second = _end(prim, 0, builder), _end(prim, 1, builder)
     if first is None or second is None:
         return None
@@ -83,7 +83,7 @@ def read_joint(prim: Prim, builder: UsdBuilder) -> ReadJoint | None:
 
 
 def _take_schemas(prim: Prim, builder: UsdBuilder) -> None:
-    """A schema of which every value is typed needs no extra; one that says nothing does."""
+    """A schema of which every value is typed needs no extra; one without values does."""
     taken = builder.read_names.get(prim.path, set())
     own = [name for name in prim.properties if not name.startswith(_OF_COUPLINGS)]
     for prefix, schema in (("mjc:", "MjcJointAPI"), ("newton:", "NewtonJointAPI")):
@@ -221,7 +221,7 @@ def _is_locked(prim: Prim, name: str) -> bool:
 
 
 def _behaving(prim: Prim, dof: Dof, builder: UsdBuilder) -> Dof:
-    """The dof with what MuJoCo's and Newton's schemas say about the whole joint. Newton counts angles in degrees, MuJoCo in radians."""
+    """The dof with MuJoCo's and Newton's attributes of the whole joint. Newton counts angles in degrees, MuJoCo in radians."""
     scene = builder.scene
     turns = dof.kind is not DofKind.SLIDE
     inertia = scene.kilograms * (scene.metres**2 if turns else 1.0)
@@ -255,7 +255,7 @@ def _effort(prim: Prim, unit: float, builder: UsdBuilder) -> float | None:
 
 
 def _first(*values: float) -> float:
-    """The first value that was said, else 0."""
+    """The first authored value, else 0."""
     return next((value for value in values if not math.isnan(value)), 0.0)
 
 
@@ -270,7 +270,7 @@ class DofRef(NamedTuple):
 
 
 def dof_refs(joint: ReadJoint) -> list[tuple[Prim, DofRef]]:
-    """Each prim of a joint with what it moves."""
+    """Each prim of a joint with the dof that it moves."""
     if not joint.merged:
         return [(joint.prim, DofRef(joint.id, ""))]
     return [(prim, DofRef(joint.id, dof.name or "")) for prim, dof in zip(joint.merged, joint.dofs, strict=True)]

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 MOST_FILES = 10_000
 MOST_BYTES = 1 << 30
 MOST_PACKED = 1 << 26
-"""Files in packages are stored as they are; those who compress them anyway have no need for many."""
+"""Files in packages are stored uncompressed by rule; compressed ones are accepted up to this size."""
 _LAYERS = (".usda", ".usdc", ".usd")
 
 
@@ -46,7 +46,7 @@ def lay_out(source: Source, base: str) -> str:
 
 
 def _suffix_of(source: Source) -> str:
-    """The suffix by which USD chooses its parser: by content where the name does not say."""
+    """The suffix by which USD chooses its parser: by content where the name does not have one."""
     if source.data.startswith(b"PXR-USDC"):
         return ".usdc"
     suffix = posixpath.splitext(source.name.lower())[1]
@@ -93,7 +93,7 @@ _SUFFIXES = (".usd", ".usda", ".usdc", ".usdz")
 
 
 def _words(error: Exception) -> str:
-    """The first sentence of what USD says, without its own source files and our temporary folder."""
+    """The first sentence of an error of USD, without its own source files and the temporary folder."""
     try:
         text = str(error)
     except UnicodeDecodeError:  # USD quotes the bytes of the file
@@ -106,7 +106,7 @@ def _words(error: Exception) -> str:
 
 
 def _gather(main: str, base: str, source: Source, report: Report) -> list[Any]:
-    """Every layer that can be reached, written where the reference expects it; what cannot be found is said and stays out."""
+    """Every layer that can be reached, written where the reference expects it; a missing one is reported and left out."""
     waiting, kept, seen = [main], [], {main}
     while waiting:
         path = waiting.pop()
@@ -157,7 +157,7 @@ def _fetch(uri: str, layer: str, base: str, source: Source, report: Report) -> s
         os.makedirs(os.path.dirname(target), exist_ok=True)
         Path(target).write_bytes(data)
         return target
-    report.warn(codes.ASSET_NOT_FOUND, f"the layer '{uri}' was not found; what it says is missing", Origin(source.name))
+    report.warn(codes.ASSET_NOT_FOUND, f"the layer '{uri}' was not found; its content is missing", Origin(source.name))
     return None
 
 
@@ -247,7 +247,7 @@ def _count(start: Place, below: dict[Place, list[Place]], sizes: dict[Place, int
 
 
 def specs(layer: Any) -> Iterator[Any]:
-    """Every prim that a layer says something about, also in variants. Not recursive."""
+    """Every prim that a layer has an opinion about, also in variants. Not recursive."""
     stack = [layer.pseudoRoot]
     while stack:
         spec = stack.pop()
@@ -270,11 +270,11 @@ def _parts(layer: Any, spec: Any, known: dict[str, Any]) -> Iterator[Place]:
 
 
 def drop_unknown_types(layers: list[Any], source: Source, report: Report) -> None:
-    """Remove such attributes from the layers, which are copies of ours."""
+    """Remove attributes of types that USD does not know, which have no usable value, from the layers (copies)."""
     for layer in layers:
         for prim in specs(layer):
             unknown = [attribute for attribute in prim.attributes if attribute.typeName.type == Tf.Type.Unknown]
             for attribute in unknown:
-                message = f"'{attribute.path}' has the type '{attribute.typeName}', which USD does not know; it is left out"
+                message = f"'{attribute.path}' has the type '{attribute.typeName}', which USD cannot read; it is left out"
                 report.error(codes.BAD_VALUE, message, Origin(source.name), element=str(prim.path))
                 prim.RemoveProperty(attribute)

@@ -77,7 +77,7 @@ def _material(name: str, shader: Any) -> Material:
 
 
 def _constant(shader: Any, name: str) -> Any:
-    """The constant value of an input; None where it is not said or comes from another shader."""
+    """The constant value of an input; None where there is none or it comes from another shader."""
     found = UsdShade.Shader(shader).GetInput(name)
     if not found or found.HasConnectedSource():
         return None
@@ -100,7 +100,7 @@ def _is_plain(prim: Any, shader: Any) -> bool:
 
 
 def _is_plain_image(image: Any, coordinates: Any, shader: Any) -> bool:
-    """Whether an image is repeated, and nothing is said of it that we would not say."""
+    """Whether an image is repeated, and has no attributes beyond those that the writer sets."""
     authored = [{str(name) for name in child.GetAuthoredPropertyNames()} for child in (image, coordinates)]
     is_repeated = all(image.GetAttribute(name).Get() == words.REPEAT for name in words.WRAPS)
     is_ours = authored[0] == _OF_IMAGE and authored[1] == _OF_COORDINATES and is_repeated
@@ -129,7 +129,7 @@ def _seen_from(folder: str, image: Any) -> str:
 
 
 def _take_network(prim: Prim, builder: UsdBuilder) -> None:
-    """Everything below the material is typed, or follows from what is."""
+    """Everything below the material is typed, or follows from typed values."""
     builder.mark_read(prim, "outputs:surface")
     for child in prim.children:
         if child.is_real:

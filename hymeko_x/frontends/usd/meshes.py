@@ -37,7 +37,7 @@ def read_mesh(prim: Prim, builder: UsdBuilder, scale: Vec3) -> tuple[NDArray[Any
     vertices = np.asarray(points, dtype=np.float64).reshape(-1, 3)
     sizes, corners = np.asarray(counts, dtype=np.int64), np.asarray(indices, dtype=np.int64)
     if sizes.size and (sizes.min() < 0 or sizes.sum() != corners.size):
-        return _refused(prim, "says another number of corners than it has", builder)
+        return _refused(prim, "has another number of corners than its counts add up to", builder)
     if corners.size and (corners.min() < 0 or corners.max() >= len(vertices)):
         return _refused(prim, "has a face with a point that does not exist", builder)
     if not np.isfinite(vertices).all():
@@ -46,7 +46,7 @@ def read_mesh(prim: Prim, builder: UsdBuilder, scale: Vec3) -> tuple[NDArray[Any
     if not prim.is_animated("points"):
         builder.mark_read(prim, "points")
     _take_mesh_extent(prim, vertices, builder)
-    if prim.value("subdivisionScheme") == "none":  # which is what we say of every mesh
+    if prim.value("subdivisionScheme") == "none":  # as the writer sets for every mesh
         builder.mark_read(prim, "subdivisionScheme")
     if (sizes == 3).all():
         builder.mark_read(prim, "faceVertexCounts", "faceVertexIndices")
@@ -65,7 +65,7 @@ def _take_mesh_extent(prim: Prim, vertices: NDArray[Any], builder: UsdBuilder) -
 
 
 def read_normals(prim: Prim, builder: UsdBuilder) -> bool:
-    """Whether the normals of a mesh are those of its triangles, which nobody has to keep."""
+    """Whether the normals of a mesh are those of its triangles, and need not be kept."""
     normals, counts = prim.value("normals"), prim.value("faceVertexCounts")
     if normals is None or len(normals) != len(counts) or "faceVertexCounts" not in builder.read_names.get(prim.path, ()):
         return False
@@ -91,7 +91,7 @@ def _refused(prim: Prim, why: str, builder: UsdBuilder) -> tuple[None, None]:
 def _shared_mesh(
     prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], places: TextureCoordinates, scale: Vec3, builder: UsdBuilder
 ) -> Id:
-    about = tuple(f"{factor:.12g}" for factor in scale)  # computed from what is above the prim: its last bits are those of no author
+    about = tuple(f"{factor:.12g}" for factor in scale)  # computed from the prim's ancestors: its last bits are rounding errors
     authored = repr((about, places) if places[0] else about)
     content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + authored.encode()).hexdigest()
     known = builder.meshes.get(content)
@@ -138,7 +138,7 @@ def read_places(prim: Prim, sizes: NDArray[Any], corners: NDArray[Any]) -> Textu
 
 
 def read_st_as_written(prim: Prim, builder: UsdBuilder) -> bool:
-    """Whether a mesh says the place of each corner of its triangles as we would, so that nobody has to keep it."""
+    """Whether the texture coordinates of a mesh are in the form that the writer uses, and need not be kept."""
     if prim.value(_ST) is None or prim.value(f"{_ST}:indices") is None or "faceVertexCounts" not in builder.read_names.get(prim.path, ()):
         return False
     specs = [prim.spec.attributes[name] for name in (_ST, f"{_ST}:indices")]
@@ -155,7 +155,7 @@ def read_st_as_written(prim: Prim, builder: UsdBuilder) -> bool:
 
 
 def read_subsets(mesh: Prim, shape: Id, builder: UsdBuilder) -> None:
-    """Add the faces of a mesh that show a material which we know. What is no such subset, or is broken, stays an extra."""
+    """Add the subsets of a mesh with materials that were read. Other subsets, and broken ones, stay extras."""
     found = [prim for prim in mesh.children if _is_bound(prim, builder)]
     if not found:
         return
@@ -181,7 +181,7 @@ def read_subsets(mesh: Prim, shape: Id, builder: UsdBuilder) -> None:
 
 
 def _is_bound(prim: Prim, builder: UsdBuilder) -> bool:
-    """Whether a prim says of some faces that they show a material that was read."""
+    """Whether a prim binds some faces to a material that was read."""
     if prim.kind != "GeomSubset" or not prim.is_real or prim.value("familyName") != words.MATERIAL_BIND:
         return False
     if not prim.value("indices"):

@@ -16,11 +16,11 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id
 
 
-# ---- things that sit somewhere -------------------------------------------------------------------------------------------------
+# ---- sites, cameras and lights ---------------------------------------------------------------------------------------------------
 
 
 def read_site(prim: Prim, builder: UsdBuilder) -> None:
-    """A frame at the prim, which is no more than that if it says all that we would say; the shape by which it is shown stays an extra."""
+    """A frame at the prim, which is all that it is if it has the type and schemas that the writer sets; a gprim of it stays an extra."""
     key = builder.new_id(prim, "frame")
     builder.vertices[key] = Frame()
     if prim.kind == "Xform" and all(map(prim.has_api, words.SITES)):
@@ -36,13 +36,13 @@ def read_camera(prim: Prim, builder: UsdBuilder) -> None:
     fovy = 2.0 * math.atan(aperture / (2.0 * focal))
     builder.vertices[key] = Camera(fovy)
     builder.mark_read(prim, "@type")
-    if aperture == words.APERTURE and 0.0 < fovy < math.pi:  # as we say it
+    if aperture == words.APERTURE and 0.0 < fovy < math.pi:  # as the writer sets it
         builder.mark_read(prim, *(name for name in ("focalLength", "verticalAperture") if not prim.is_animated(name)))
     mount(prim, key, builder)
 
 
 def mount(prim: Prim, key: Id, builder: UsdBuilder) -> None:
-    """The edge that puts a thing where its prim is, on the body above or on the world."""
+    """The edge that mounts an element at the pose of its prim, on the nearest body or on the world."""
     found = body_at(prim, builder)
     body, owner = found if found is not None else (None, WORLD)
     if owner == WORLD:

@@ -1,7 +1,7 @@
-"""Prims as plain values: what a layer that says everything by itself tells of each, looked up once.
+"""Prims of one self-contained layer as plain values, looked up once.
 
 Every call into USD costs more than all that Python does for a property; so types, schemas and names are gathered in one pass,
-and values are asked for only where somebody wants them.
+and values are looked up only where a reader asks for them.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _CLASSES = MappingProxyType(
         **dict.fromkeys(("texCoord2f[]", "float2[]"), Vt.Vec2fArray),
     }
 )
-"""What the values of the types are that somebody reads: in a damaged file they may be anything else."""
+"""The Python types of the value types that are read: in a damaged file a value may be anything else."""
 
 _TRIPLES = frozenset(kind for kind, found in _CLASSES.items() if found in (Vt.Vec3fArray, Vt.Vec3dArray, Vt.Vec3hArray))
 _TYPES_OF = MappingProxyType(
@@ -50,11 +50,11 @@ _TYPES_OF = MappingProxyType(
         "xformOpOrder": frozenset(("token[]",)),
     }
 )
-"""The types that the rows of UsdGeom's schemas may have; one that is said to be anything else has no value for us."""
+"""The types that attributes of UsdGeom's schemas may have; the value of one of another type is not used."""
 
 
 class Prim(Struct, eq=False):
-    """A prim: its path, name, type and API schemas (also those that no plugin knows), and what it says.
+    """A prim: its path, name, type and API schemas (also those without a plugin), and its properties and metadata.
 
     ``properties`` are the names of all that it says, ``types`` the types of those that are attributes; ``said`` is what the prim
     itself has metadata for. ``is_real`` unless it is inactive, abstract or only an opinion about a prim that nobody defines. ``is_bound``
@@ -82,13 +82,13 @@ class Prim(Struct, eq=False):
 
     @property
     def display_name(self) -> str:
-        """What people call it; empty where nothing is said."""
+        """Its display name; empty where it has none."""
         shown = self.spec.GetInfo("displayName") if "displayName" in self.metadata else ""
         return shown if isinstance(shown, str) else ""
 
     @property
     def is_generated(self) -> bool:
-        """Whether it stands in a group that our writer made up, and says nothing but what the elements that use it say."""
+        """Whether it is in a group that the writer makes, and follows from the elements that use it."""
         return self.parent is not None and f"{PREFIX}scope" in self.parent.types
 
     @property
@@ -104,7 +104,7 @@ class Prim(Struct, eq=False):
         return self._sound(name, self.spec.layer.GetAttributeAtPath(f"{self.path}.{name}").default)
 
     def _sound(self, name: str, value: Any) -> Any:
-        """A value that is of the type that it is said to have."""
+        """A value that is of its declared type; else None."""
         return value if isinstance(value, _CLASSES.get(self.types[name], object)) and not isinstance(value, Sdf.ValueBlock) else None
 
     def is_animated(self, name: str) -> bool:
@@ -139,7 +139,7 @@ class Prim(Struct, eq=False):
 
 
 class Layer(Struct, eq=False):
-    """All prims of a layer by path, those above first. ``has_unknown_types``: some attribute has a type that USD does not know.
+    """All prims of a layer by path, parents first. ``has_unknown_types``: some attribute has a type that USD cannot read.
 
     ``stage`` is set when the layer is opened as one.
     """
@@ -154,7 +154,7 @@ class Layer(Struct, eq=False):
         return [prim for prim in self.prims.values() if prim.is_real]
 
     def close(self) -> None:
-        """Let go of everything, so that nothing waits for the collector of cycles: prims know each other, and USD's objects."""
+        """Cut all cycles, so that memory is freed at once: prims refer to each other and to USD's objects."""
         for prim in self.prims.values():
             prim.parent = None
             prim.children.clear()
@@ -184,7 +184,7 @@ def read_layer(layer: Any, most: int) -> Layer | None:
 
 
 class _Names(Struct):
-    """One copy of each name, and whether USD knows the types that have occurred."""
+    """One copy of each name, and whether USD can read the types that have occurred."""
 
     known: dict[str, str] = field(default_factory=dict)
     types: dict[str, bool] = field(default_factory=dict)
@@ -215,7 +215,7 @@ def _type_of(attribute: Any, names: _Names) -> str:
 
 
 def _children(spec: Any, authored: Collection[str], names: _Names) -> list[str]:
-    """The names of the prims below, in the order that the prim wants."""
+    """The names of the children, in the order that the prim prescribes."""
     below = [names.one(name) for name in spec.GetInfo("primChildren") or ()]
     if "primOrder" in authored:
         below = list(spec.ApplyNameChildrenOrder(below))

@@ -34,7 +34,7 @@ def is_shape(prim: Prim) -> bool:
 
 
 def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
-    """Add the shape of a gprim; returns the body (or the world) that it is on with what was read. None where it cannot be one."""
+    """Add the shape of a gprim; returns its body (or the world) with the shape. None where the prim is damaged."""
     found = body_at(prim, builder)
     body, owner = found if found is not None else (None, WORLD)
     at = builder.transforms.seen_from(prim, body)
@@ -72,14 +72,14 @@ def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
 
 
 def _primitive(prim: Prim, scale: Vec3, builder: UsdBuilder) -> gprims.Gprim:
-    """What the prim of a primitive says."""
+    """The type, sizes, axis and scale of a prim."""
     kind = prim.kind
     sizes = tuple(builder.number(prim, name, default) for name, default in gprims.SIZES[kind])
     return gprims.Gprim(kind, sizes, builder.axis(prim, "axis", "Z"), scale)
 
 
 def _is_ball(prim: Prim, builder: UsdBuilder) -> bool:
-    """Whether a mesh is the one that stands for an ellipsoid, of which it then says nothing else."""
+    """Whether a mesh is the ball that represents an ellipsoid."""
     import numpy as np
 
     points, faces = gprims.ball()
@@ -93,7 +93,7 @@ def _is_ball(prim: Prim, builder: UsdBuilder) -> bool:
 
 
 def _take_extent(prim: Prim, half: Vec3, builder: UsdBuilder) -> None:
-    """A box around the prim that follows from its sizes is no news."""
+    """An extent that follows from the sizes counts as read."""
     authored = prim.value("extent")
     box = (*(-value for value in half), *half)
     if authored is None or len(authored) != 2:
@@ -103,7 +103,7 @@ def _take_extent(prim: Prim, half: Vec3, builder: UsdBuilder) -> None:
         builder.mark_read(prim, "extent")
 
 
-# ---- looks and purpose -----------------------------------------------------------------------------------------------------------
+# ---- purpose and colour ----------------------------------------------------------------------------------------------------------
 
 
 def _role(prim: Prim, builder: UsdBuilder) -> Role:
@@ -119,7 +119,7 @@ def _role(prim: Prim, builder: UsdBuilder) -> Role:
 
 
 def _purpose(prim: Prim) -> str:
-    """What a prim is for: its own purpose, else that of the nearest one above that says it."""
+    """The purpose of a prim: its own, else that of the nearest ancestor that has one."""
     if not any("purpose" in above.types for above in prim.with_ancestors()):
         return "default"
     from pxr import UsdGeom

@@ -108,7 +108,7 @@ _ARCS = frozenset(("references", "payload", "inheritPaths", "specializes", "vari
 
 
 def _read_plain(layers: list[Any], source: Source, report: Report) -> Layer | None:
-    """What a layer says that says everything by itself, so that composing it changes nothing; None where there is more to it."""
+    """The prims of a self-contained layer, which composing does not change; None where other layers or arcs contribute."""
     root = layers[0]
     if len(layers) > 1 or root.subLayerPaths or root.relocates or source.variants:
         return None
@@ -133,7 +133,7 @@ def _read_layer(layer: Any, source: Source) -> Layer:
 
 
 def _choose_variants(stage: Any, source: Source) -> None:
-    """Select what the user chose on every prim that has the set, also where only another selection brings it forth.
+    """Select the user's variants on every prim that has the set, also where only another selection defines the prim.
 
     Raises: Refusal HX040 when no prim has the set, or none has that variant.
     """

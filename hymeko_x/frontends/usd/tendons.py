@@ -28,17 +28,17 @@ _NOBODY = Id("tendon", "")
 _OF_KIND = MappingProxyType(
     {True: (table.COEFFICIENTS,), False: (table.SEGMENTS, table.DIVISORS, table.SIDES, table.SIDE_INDICES)},
 )
-"""What says the path of a fixed tendon, and of another one."""
+"""The attributes for the path of a fixed tendon, and of another one."""
 _TYPES: Mapping[str, type] = MappingProxyType({table.MARGIN: float, table.GROUP: int, table.FORCE_LIMITED: str})
 """What the parameters are that are not several numbers."""
 
 
 class _BadPath(Exception):
-    """A path that nobody can follow; the text says why."""
+    """A path that cannot be followed; the text is the reason."""
 
 
 def read_tendons(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder) -> None:
-    """The tendons of these prims; one whose path leads nowhere is said and stays an extra."""
+    """The tendons of these prims; one with a broken path is reported and stays an extra."""
     found = [prim for prim in prims if prim.kind == table.PRIM]
     automatic = _limits_are_automatic(prims) if found else True
     for prim in found:
@@ -50,7 +50,7 @@ def read_tendons(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder
 
 
 def _limits_are_automatic(prims: list[Prim]) -> bool:
-    """Whether a range alone is a limit, as everywhere unless a scene says otherwise."""
+    """Whether a range alone is a limit, which a scene can switch off."""
     return not any(prim.value("mjc:compiler:autoLimits") is False for prim in prims)
 
 
@@ -71,7 +71,7 @@ def _read_tendon(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder, *, au
 
 
 def _joints(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder) -> list[RobotArc]:
-    """The joints of a fixed tendon with their coefficients, which are 1 where nothing is said."""
+    """The joints of a fixed tendon with their coefficients, 1 by default."""
     steps = _steps(prim, ends, builder)
     coefficients = _numbers(prim, table.COEFFICIENTS) or [1.0] * len(steps)
     if len(coefficients) != len(steps):
@@ -109,7 +109,7 @@ def _cable(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder) -> list[Rob
 
 
 def _pulley(divisors: list[float], segment: int) -> list[RobotArc]:
-    """The pulley before a segment; which tendon it is of is not known yet."""
+    """The pulley before a segment; its tendon has no id yet."""
     if segment >= len(divisors):
         raise _BadPath(f"has no divisor for segment {segment}")
     return [Arc(_NOBODY, 0, (divisors[segment],), PULLEY)]
@@ -145,7 +145,7 @@ def _element(path: str, ends: dict[str, DofRef], builder: UsdBuilder) -> tuple[I
 
 
 def _indices(prim: Prim, name: str, count: int | None = None) -> list[int]:
-    """Whole numbers; nothing where nothing is said. ``count`` is how many there have to be."""
+    """Whole numbers; empty by default. ``count`` is how many there have to be."""
     found = [int(value) for value in _numbers(prim, name)]
     if found and count is not None and len(found) != count:
         raise _BadPath(f"has {count} steps and {len(found)} {name}")
@@ -153,7 +153,7 @@ def _indices(prim: Prim, name: str, count: int | None = None) -> list[int]:
 
 
 def _numbers(prim: Prim, name: str) -> list[float]:
-    """The numbers of an attribute; nothing where nothing is said. Raises: _BadPath."""
+    """The numbers of an attribute; empty by default. Raises: _BadPath."""
     found = _items(prim, name)
     if not all(map(math.isfinite, found)):
         raise _BadPath(f"has {name} that are not finite")
@@ -165,7 +165,7 @@ def _items(prim: Prim, name: str) -> list[float]:
     return list(prim.value(name) or ()) if prim.types.get(name) in ("int[]", "float[]", "double[]") else []
 
 
-# ---- what it is like -------------------------------------------------------------------------------------------------------------
+# ---- limits, mechanics, appearance -----------------------------------------------------------------------------------------------
 
 
 def _limits(prim: Prim, builder: UsdBuilder, *, automatic: bool) -> Limits:
@@ -205,7 +205,7 @@ def _colour(prim: Prim, builder: UsdBuilder) -> Rgba | None:
 
 
 def _parameters(prim: Prim, builder: UsdBuilder) -> Iterator[tuple[str, float | str | tuple[float, ...]]]:
-    """What else the prim says, under the names of MJCF and in their order there."""
+    """The other attributes of the prim, under the names of MJCF and in their order there."""
     for name in TENDON_PARAMETERS:
         value = _parameter(prim, name, builder)
         if value is not None:

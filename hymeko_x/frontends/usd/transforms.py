@@ -24,7 +24,7 @@ _UNIT = 1e-6
 
 
 class Transform(Struct, frozen=True):
-    """A rigid pose in m and the scale along its axes; ``sheared`` when the matrix says more than that."""
+    """A rigid pose in m and the scale along its axes; ``sheared`` when the matrix has shear besides."""
 
     pose: Pose
     scale: Vec3
@@ -114,7 +114,7 @@ def numbers_of(value: Any) -> list[Any]:
 
 
 def quat_of(quat: Any) -> Quat:
-    """A quaternion of USD as one of ours."""
+    """A quaternion of USD as (w, x, y, z)."""
     x, y, z = numbers_of(quat.imaginary)
     return rotation_of((float(quat.real), x, y, z))
 

@@ -34,7 +34,7 @@ FREE_SUFFIX = "_free"
 def build_trees(joints: list[ReadJoint], roots: Iterable[Id], held: Iterable[Id], builder: UsdBuilder) -> list[ReadJoint]:
     """Add every joint as an edge of a tree or as a loop, and a free joint above each body that is left without one.
 
-    Returns the joints as they are in the result. ``roots`` are the bodies that bear an articulation root, ``held`` those
+    Returns the joints as they are in the result. ``roots`` are the bodies that have an articulation root, ``held`` those
     whose simulation is switched off: they stand still.
     """
     joints = merge_parallel(joints, builder)
@@ -52,7 +52,7 @@ def build_trees(joints: list[ReadJoint], roots: Iterable[Id], held: Iterable[Id]
 
 
 def note_poses(builder: UsdBuilder) -> None:
-    """Keep where a body's prim stands where that is not where the joints above it put it: only their frames count for the robot."""
+    """Note the pose of a body's prim where that is not the one that its joints give: only their frames count for the robot."""
     mechanism = Mechanism("", Hypergraph(builder.vertices, builder.edges))
     prims = {key: builder.prim_at(path) for path, key in builder.bodies.items()}
     poses = {WORLD: IDENTITY}
@@ -123,7 +123,7 @@ def _child(joint: ReadJoint, turned: set[Id]) -> End:
 
 
 def _add_joint(joint: ReadJoint, is_turned: bool, builder: UsdBuilder) -> None:
-    """A turned joint moves the other way: its dofs stand in reverse order with opposite axes, so that coordinates keep their sign."""
+    """A turned joint moves the other way: its dofs are in reverse order with opposite axes, so that coordinates keep their sign."""
     parent, child = (joint.ends[1], joint.ends[0]) if is_turned else joint.ends
     dofs = joint.dofs
     if is_turned:
@@ -172,7 +172,7 @@ def _loop_kind(joint: ReadJoint, builder: UsdBuilder) -> tuple[str, tuple[Dof, .
 
 
 def _join_free_bodies(hung: set[Id], held: set[Id], builder: UsdBuilder) -> None:
-    """In UsdPhysics a body without a joint above it falls: a free joint says so and where it starts."""
+    """In UsdPhysics a body without a parent joint falls: it gets a free joint at its pose."""
     for path, body in builder.bodies.items():
         if body in hung:
             continue
