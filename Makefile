@@ -44,7 +44,7 @@ test-full: lint types
 
 bench: $(STAMP)
 	@$(BIN)/python -m peers || echo "what could not be installed has no figures"
-	@for name in parse load load_mjcf growth size residue speed whole usd contest; do $(BIN)/python -m benchmarks.$$name || failed=1; done; exit $${failed:-0}
+	@for name in parse load load_mjcf growth size residue speed whole usd meshes contest; do $(BIN)/python -m benchmarks.$$name || failed=1; done; exit $${failed:-0}
 
 peers: $(STAMP)
 	$(BIN)/python -m peers

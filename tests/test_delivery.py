@@ -10,7 +10,7 @@ import hymeko_x as hx
 from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.ir.parts import Mesh
-from hymeko_x.meshes.mesh import read_whole
+from hymeko_x.meshes.reader import read_whole
 
 URDF = """<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
 <visual><geometry><mesh filename="meshes/a.obj"/></geometry></visual></link></robot>"""

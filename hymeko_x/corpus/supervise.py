@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     Task = Callable[[Case, Plan, str, str, Sequence[str]], None]
 
 _PRELOADED = (
-    "hymeko_x.meshes.mesh",
+    "hymeko_x.meshes.reader",
     "hymeko_x.corpus.work",
     "hymeko_x.verify.compare",
     "hymeko_x.verify.readers.mechanism",

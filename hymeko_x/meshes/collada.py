@@ -15,9 +15,8 @@ from urllib.parse import unquote
 import numpy as np
 from lxml import etree
 
-from hymeko_x.meshes.numerals import columns_in, numbers_in
-from hymeko_x.meshes.part import Finish, Table
-from hymeko_x.meshes.polygons import fans, used_rows
+from hymeko_x.meshes.numerals import numbers_in
+from hymeko_x.meshes.submesh import MaterialEntry, MaterialGroup, fans, used_rows
 
 if TYPE_CHECKING:
     from lxml.etree import _Element as Element
@@ -38,7 +37,7 @@ class NotPlain(Exception):
     """The file has something that this reader leaves to others."""
 
 
-def collada_tables(data: bytes) -> list[Table] | None:
+def collada_groups(data: bytes) -> list[MaterialGroup] | None:
     """The points in m and the triangles of all that the scene of a COLLADA file shows; None where the file is not plain.
 
     Nodes move what is below them and the file's unit counts; its up axis does not. Numbers are read in single precision.
@@ -66,7 +65,7 @@ class _File:
     materials: dict[str | None, list[Element]] = field(init=False)
     effects: dict[str | None, list[Element]] = field(init=False)
     images: dict[str | None, list[Element]] = field(init=False)
-    known: dict[str, list[Table]] = field(default_factory=dict)
+    known: dict[str, list[MaterialGroup]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.geometries = _by_id(self.root, "{*}library_geometries/{*}geometry")
@@ -74,7 +73,7 @@ class _File:
         self.effects = _by_id(self.root, "{*}library_effects/{*}effect")
         self.images = _by_id(self.root, "{*}library_images/{*}image")
 
-    def tables(self) -> list[Table]:
+    def tables(self) -> list[MaterialGroup]:
         metres = self._metres()
         found = []
         for shown, matrix in _shown(self._scene()):
@@ -83,29 +82,29 @@ class _File:
             found += [self._coloured(_placed(table, matrix, metres), given) for table in tables]
         return found
 
-    def _coloured(self, table: Table, given: dict[str | None, Element]) -> Table:
+    def _coloured(self, table: MaterialGroup, given: dict[str | None, Element]) -> MaterialGroup:
         """With the material that an instance of a geometry gives to the name that a primitive has for it."""
         if table.material not in given:
             return table._replace(material="", uv=None, corners=None)
         name = _reference(given[table.material].get("target"))
-        finish = self._finish(name)
-        if table.uv is None or not finish.image:
-            return table._replace(material=name, finish=finish._replace(image=""), uv=None, corners=None)
-        return table._replace(material=name, finish=finish)
+        entry = self._entry(name)
+        if table.uv is None or not entry.image:
+            return table._replace(material=name, entry=entry._replace(image=""), uv=None, corners=None)
+        return table._replace(material=name, entry=entry)
 
-    def _finish(self, name: str) -> Finish:
+    def _entry(self, name: str) -> MaterialEntry:
         """The diffuse colour or image of a material."""
         effect = self.materials[name][-1].find("{*}instance_effect") if name in self.materials else None
         wanted = "" if effect is None else _reference(effect.get("url"))
         if wanted not in self.effects:
-            return Finish()
+            return MaterialEntry()
         profile = self.effects[wanted][0].find("{*}profile_COMMON")
         diffuse = None if profile is None else profile.find("{*}technique/*/{*}diffuse")
         if profile is None or diffuse is None:
-            return Finish()
+            return MaterialEntry()
         colour, texture = diffuse.find("{*}color"), diffuse.find("{*}texture")
         rgba = None if colour is None else _rgba(_numbers(colour, np.float64).tolist())
-        return Finish(rgba, "" if texture is None else self._image(profile, texture.get("texture", "")))
+        return MaterialEntry(rgba, "" if texture is None else self._image(profile, texture.get("texture", "")))
 
     def _image(self, profile: Element, name: str) -> str:
         """The file that a sampler, or a careless exporter at once, means; empty where there is none."""
@@ -126,7 +125,7 @@ class _File:
         wanted = _reference(shown.get("url") if shown is not None else None)
         return _only([scene for scene in self.root.iterfind("{*}library_visual_scenes/{*}visual_scene") if scene.get("id") == wanted])
 
-    def _geometry(self, name: str) -> list[Table]:
+    def _geometry(self, name: str) -> list[MaterialGroup]:
         if name not in self.known:
             mesh = _only(_only(self.geometries.get(name, [])).findall("{*}mesh"))
             self.known[name] = _mesh_tables(mesh, has_images=bool(self.images))
@@ -214,8 +213,8 @@ def _rotation(said: NDArray[Any]) -> NDArray[Any]:
 _MOVES = {"matrix": _matrix, "translate": _translation, "scale": _scaling, "rotate": _rotation}
 
 
-def _placed(table: Table, matrix: NDArray[np.float64], metres: float) -> Table:
-    """The triangles where a node puts them, in m; a mirror turns them around, so that they still look outwards."""
+def _placed(table: MaterialGroup, matrix: NDArray[np.float64], metres: float) -> MaterialGroup:
+    """The triangles where a node puts them, in m; a mirror turns them around, so that they still appearance outwards."""
     points, faces, corners = table.points, table.faces, table.corners
     if not np.array_equal(matrix, np.eye(4)):
         points = points @ matrix[:3, :3].T + matrix[:3, 3]
@@ -227,7 +226,7 @@ def _placed(table: Table, matrix: NDArray[np.float64], metres: float) -> Table:
 # ---- geometry ----------------------------------------------------------------------------------------------------------------
 
 
-def _mesh_tables(mesh: Element, *, has_images: bool) -> list[Table]:
+def _mesh_tables(mesh: Element, *, has_images: bool) -> list[MaterialGroup]:
     """One table for each primitive; with texture coordinates only where there are images."""
     sources = {f"#{child.get('id')}": child for child in mesh if _tag(child) in ("source", "vertices")}
     known: dict[str, NDArray[np.float64]] = {}
@@ -239,7 +238,7 @@ def _mesh_tables(mesh: Element, *, has_images: bool) -> list[Table]:
             if name not in known:
                 known[name] = _points(sources.get(name), sources)
             faces = _triangles(child, index, known[name])
-            table = Table(*used_rows(known[name], faces), child.get("material", ""))
+            table = MaterialGroup(*used_rows(known[name], faces), child.get("material", ""))
             map_name = _map_name(child) if has_images and places is not None else ""
             if places is not None and map_name in sources:
                 if map_name not in known:
@@ -271,8 +270,11 @@ def _index(primitive: Element) -> tuple[NDArray[Any], NDArray[Any] | None]:
         raise NotPlain
     places += [offset for offset, semantic in inputs if semantic == "TEXCOORD"][:1]
     width = max(offset for offset, _ in inputs) + 1
-    lists = [columns_in(item.text or "", width, places).astype(_INDEX) for item in primitive.iterfind("{*}p")]
-    rows = np.concatenate(lists) if lists else np.zeros((0, len(places)), dtype=_INDEX)
+    lists = [_numbers(item, np.int64).reshape(-1, width)[:, places] for item in primitive.iterfind("{*}p")]
+    rows = np.concatenate(lists) if lists else np.zeros((0, len(places)), dtype=np.int64)
+    if rows.size and rows.max() > np.iinfo(_INDEX).max:
+        raise NotPlain
+    rows = rows.astype(_INDEX)
     return rows[:, 0], rows[:, 1] if len(places) > 1 else None
 
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hymeko_x.meshes.part import Part
+from hymeko_x.meshes.submesh import Submesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -40,7 +40,7 @@ def _normals(triangles: NDArray[np.float32]) -> NDArray[np.float64]:
     return normals
 
 
-def volume_of_sheets(part: Part) -> float:
+def volume_of_sheets(part: Submesh) -> float:
     """The sum of the volumes of the pyramids from the mean point to all triangles, in m^3; zero for a flat mesh.
 
     Source: MuJoCo's volume of a mesh with ``inertia="legacy"``.
@@ -49,7 +49,7 @@ def volume_of_sheets(part: Part) -> float:
     return float(np.abs(np.einsum("ij,ij->i", a, np.cross(b, c))).sum() / 6.0)
 
 
-def extents(part: Part) -> Vec3:
+def extents(part: Submesh) -> Vec3:
     """The lengths in m of the box along the principal axes of the points, ascending."""
     centred = part.points - part.points.mean(axis=0)
     _, axes = np.linalg.eigh(centred.T @ centred)
@@ -57,7 +57,7 @@ def extents(part: Part) -> Vec3:
     return (low, middle, high)
 
 
-def thickened(part: Part, share: float) -> Part:
+def thickened(part: Submesh, share: float) -> Submesh:
     """A flat part as a thin solid: a second layer lies below the first one, ``share`` of the largest extent away."""
     centred = part.points - part.points.mean(axis=0)
     _, axes = np.linalg.eigh(centred.T @ centred)
@@ -67,4 +67,4 @@ def thickened(part: Part, share: float) -> Part:
     corners = None
     if part.uv is not None and part.corners is not None:
         corners = np.concatenate([part.corners, part.corners[:, ::-1] + len(part.uv)])
-    return Part(np.concatenate([part.points, below]), faces, uv, part.look, corners)
+    return Submesh(np.concatenate([part.points, below]), faces, uv, part.appearance, corners)

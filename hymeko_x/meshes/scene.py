@@ -9,8 +9,8 @@ from xml.etree.ElementTree import ParseError
 
 import numpy as np
 
-from hymeko_x.meshes.mtl import opacity
-from hymeko_x.meshes.part import MOST_FACES, Look, Part, Unreadable
+from hymeko_x.meshes.obj import opacity
+from hymeko_x.meshes.submesh import MOST_FACES, Appearance, Submesh, Unreadable
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -20,21 +20,21 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Rgba
 
 
-def read_scene(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, looks: bool = True) -> list[Part]:
-    """Every geometry of the file where its node puts it, in m; with its look, if that matters."""
+def read_scene(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, with_appearance: bool = True) -> list[Submesh]:
+    """Every geometry of the file at the pose of its node, in m; with its appearance if wanted."""
     import trimesh
 
     try:
         if suffix == ".dae":
-            return _collada_parts(data, fetch, looks=looks)
+            return _collada_parts(data, fetch, with_appearance=with_appearance)
         scene = trimesh.load_scene(io.BytesIO(data), suffix[1:], resolver=_resolver(fetch), process=False)
         placed = [scene.graph[node] for node in scene.graph.nodes_geometry]
-        return [part for matrix, name in placed for part in _placed_part(scene.geometry[name], matrix, looks=looks)]
+        return [part for matrix, name in placed for part in _placed_part(scene.geometry[name], matrix, with_appearance=with_appearance)]
     except _raised_by_loaders(suffix) as error:
         raise Unreadable(str(error).split("\n")[0][:200] or type(error).__name__) from error
 
 
-def _collada_parts(data: bytes, fetch: Callable[[str], bytes], *, looks: bool) -> list[Part]:
+def _collada_parts(data: bytes, fetch: Callable[[str], bytes], *, with_appearance: bool) -> list[Submesh]:
     """The same for COLLADA, of which a scene would merge points that are close to one another, and take its time for that."""
     import trimesh
     from trimesh.exchange.dae import load_collada
@@ -44,10 +44,12 @@ def _collada_parts(data: bytes, fetch: Callable[[str], bytes], *, looks: bool) -
         name: trimesh.Trimesh(**{**said, "vertex_normals": None}, process=False, validate=False)
         for name, said in loaded["geometry"].items()
     }
-    return [part for node in loaded["graph"] for part in _placed_part(meshes[node["geometry"]], node["matrix"], looks=looks)]
+    return [
+        part for node in loaded["graph"] for part in _placed_part(meshes[node["geometry"]], node["matrix"], with_appearance=with_appearance)
+    ]
 
 
-def _placed_part(mesh: Any, matrix: Any, *, looks: bool) -> Iterable[Part]:
+def _placed_part(mesh: Any, matrix: Any, *, with_appearance: bool) -> Iterable[Submesh]:
     import trimesh
 
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
@@ -60,8 +62,8 @@ def _placed_part(mesh: Any, matrix: Any, *, looks: bool) -> Iterable[Part]:
         raise Unreadable("a triangle has a corner that does not exist")
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         faces = faces[:, ::-1]
-    look, uv = _look_of(mesh) if looks else (None, None)
-    yield Part(points, faces, uv, look)
+    appearance, uv = _appearance_of(mesh) if with_appearance else (None, None)
+    yield Submesh(points, faces, uv, appearance)
 
 
 def _metres(units: str | None) -> float:
@@ -71,30 +73,30 @@ def _metres(units: str | None) -> float:
     return 1.0 if units is None else float(trimesh.units.unit_conversion(units, "meters"))
 
 
-def _look_of(mesh: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
+def _appearance_of(mesh: Any) -> tuple[Appearance | None, NDArray[np.float64] | None]:
     """The material of a geometry and its texture coordinates; colours of vertices or faces become their mean."""
     visual = mesh.visual
     if not visual.defined:
         return None, None
     if visual.kind in ("vertex", "face"):
-        return Look("", _rgba(visual.main_color)), None
+        return Appearance("", _rgba(visual.main_color)), None
     material = visual.material
     name = str(getattr(material, "name", None) or "")
     if type(material).__name__ == "SimpleMaterial":
-        return _simple_look(name, material, visual.uv)
+        return _simple_appearance(name, material, visual.uv)
     image = _png(material.baseColorTexture)
-    look = Look(name, None if image else _rgba(material.main_color), image)
-    return look, _uv(visual.uv) if image else None
+    appearance = Appearance(name, None if image else _rgba(material.main_color), image)
+    return appearance, _uv(visual.uv) if image else None
 
 
-def _simple_look(name: str, material: Any, uv: Any) -> tuple[Look | None, NDArray[np.float64] | None]:
-    """The look of an OBJ material. One without colour and without a named image is what trimesh makes up itself."""
+def _simple_appearance(name: str, material: Any, uv: Any) -> tuple[Appearance | None, NDArray[np.float64] | None]:
+    """The appearance of an OBJ material. One without colour and without a named image is what trimesh makes up itself."""
     image = _png(material.image) if material.image is not None and "file_path" in material.image.info else None
     color, alpha = material.kwargs.get("kd"), opacity(material.kwargs.get("d", ()), material.kwargs.get("tr", ()))
     rgba = (float(color[0]), float(color[1]), float(color[2]), alpha) if isinstance(color, list) and len(color) == 3 else None
     if image is None and rgba is None:
         return None, None
-    return Look(name, None if image else rgba, image), _uv(uv) if image else None
+    return Appearance(name, None if image else rgba, image), _uv(uv) if image else None
 
 
 def _uv(uv: Any) -> NDArray[np.float64] | None:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from hymeko_x.meshes.part import Unreadable
+from hymeko_x.meshes.submesh import Unreadable
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from hymeko_x.meshes.part import Part
+    from hymeko_x.meshes.submesh import Submesh
 
 _STL_HEADER = 80
 _STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("spare", "<u2")])
@@ -68,7 +68,7 @@ def _text_corners(data: bytes) -> NDArray[np.float64]:
     return values.reshape(-1, 3, 3)
 
 
-def stl_bytes(part: Part) -> bytes:
+def stl_bytes(part: Submesh) -> bytes:
     """The part as a binary STL file; its normals are computed."""
     corners = part.points[part.faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -11,10 +11,10 @@ import trimesh
 from PIL import Image
 
 from hymeko_x.meshes.measures import extents, thickened, volume_of_sheets
-from hymeko_x.meshes.mesh import inline_part, merged, read_parts, read_whole
 from hymeko_x.meshes.obj import obj_bytes
-from hymeko_x.meshes.part import Part, Unreadable
+from hymeko_x.meshes.reader import inline_part, merged, read_parts, read_whole
 from hymeko_x.meshes.stl import read_stl, stl_bytes, stl_is_exact
+from hymeko_x.meshes.submesh import Submesh, Unreadable
 
 BOX = trimesh.creation.box((1.0, 2.0, 3.0))
 STL: bytes = BOX.export(file_type="stl")
@@ -24,7 +24,7 @@ def nothing_else(name: str) -> bytes:
     raise FileNotFoundError(name)
 
 
-def size_of(part: Part) -> list[float]:
+def size_of(part: Submesh) -> list[float]:
     return np.ptp(part.points, axis=0).tolist()
 
 
@@ -109,7 +109,11 @@ def dae(*, matrix: str = IN_PLACE, materials: int = 3) -> bytes:
 
 def test_a_collada_file_has_one_part_per_material_with_its_colour() -> None:
     parts = read_parts(dae(), ".dae", nothing_else)
-    assert [part.look and part.look.rgba for part in parts] == [(1.0, 0.0, 0.0, 1.0), (0.0, 1.0, 0.0, 1.0), (0.0, 0.0, 1.0, 1.0)]
+    assert [part.appearance and part.appearance.rgba for part in parts] == [
+        (1.0, 0.0, 0.0, 1.0),
+        (0.0, 1.0, 0.0, 1.0),
+        (0.0, 0.0, 1.0, 1.0),
+    ]
     assert [len(part.faces) for part in parts] == [2, 2, 2]
 
 
@@ -126,14 +130,14 @@ def test_the_nodes_of_a_collada_file_move_and_mirror_its_geometry() -> None:
     assert normal(mirrored) == pytest.approx(normal(plain))
 
 
-def normal(part: Part) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
+def normal(part: Submesh) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
     a, b, c = part.points[part.faces[0]]
     direction = np.cross(b - a, c - a)
     return np.asarray(direction / np.linalg.norm(direction))
 
 
 def test_triangles_without_a_material_have_no_look() -> None:
-    assert [part.look for part in read_parts(dae(materials=0), ".dae", nothing_else)] == [None]
+    assert [part.appearance for part in read_parts(dae(materials=0), ".dae", nothing_else)] == [None]
 
 
 def test_a_collada_file_with_entities_is_refused() -> None:
@@ -152,24 +156,24 @@ def material_file(name: str) -> bytes:
 
 def test_an_obj_file_has_one_part_per_material_with_exact_colours() -> None:
     parts = read_parts(OBJ, ".obj", material_file)
-    looks = {part.look.name: part.look.rgba for part in parts if part.look}
-    assert looks == {"one": (0.123456, 0.5, 0.25, 1.0), "two": (0.0, 0.0, 1.0, 1.0)}
+    appearances = {part.appearance.name: part.appearance.rgba for part in parts if part.appearance}
+    assert appearances == {"one": (0.123456, 0.5, 0.25, 1.0), "two": (0.0, 0.0, 1.0, 1.0)}
 
 
 def test_an_obj_file_whose_material_file_is_missing_is_one_part_without_a_look() -> None:
     parts = read_parts(OBJ, ".obj", nothing_else)
-    assert [(part.look, len(part.faces)) for part in parts] == [(None, 2)]
+    assert [(part.appearance, len(part.faces)) for part in parts] == [(None, 2)]
 
 
 def test_an_image_of_a_material_comes_as_png_with_its_coordinates() -> None:
     image = io.BytesIO()
     Image.new("RGB", (2, 2), (255, 0, 0)).save(image, "JPEG")
     files = {"a.mtl": b"newmtl one\nmap_Kd skin.jpg\nnewmtl two\nKd 0 0 1\n", "skin.jpg": image.getvalue()}
-    part = next(part for part in read_parts(OBJ, ".obj", files.__getitem__) if part.look and part.look.image)
-    assert part.look is not None
-    assert part.look.image is not None
-    assert part.look.image.startswith(b"\x89PNG")
-    assert part.look.rgba is None
+    part = next(part for part in read_parts(OBJ, ".obj", files.__getitem__) if part.appearance and part.appearance.image)
+    assert part.appearance is not None
+    assert part.appearance.image is not None
+    assert part.appearance.image.startswith(b"\x89PNG")
+    assert part.appearance.rgba is None
     assert part.uv is not None
     assert len(part.uv) == len(part.points)
 
@@ -178,7 +182,7 @@ def test_a_png_of_a_material_comes_bit_by_bit() -> None:
     image = io.BytesIO()
     Image.new("RGB", (2, 2), (255, 0, 0)).save(image, "PNG")
     files = {"a.mtl": b"newmtl one\nmap_Kd skin.png\nnewmtl two\nKd 0 0 1\n", "skin.png": image.getvalue()}
-    images = [part.look.image for part in read_parts(OBJ, ".obj", files.__getitem__) if part.look and part.look.image]
+    images = [part.appearance.image for part in read_parts(OBJ, ".obj", files.__getitem__) if part.appearance and part.appearance.image]
     assert images == [image.getvalue()]
 
 
@@ -244,11 +248,11 @@ def test_the_volume_of_a_box_is_its_own() -> None:
 def test_a_whole_file_is_its_parts_put_together(suffix: str) -> None:
     data = {".stl": STL, ".obj": OBJ.encode() if isinstance(OBJ, str) else OBJ, ".dae": dae()}[suffix]
     whole, parts = (read(data, suffix, lambda name: b"") for read in (read_whole, lambda *all: merged(read_parts(*all))))
-    assert triangles(whole) == triangles(parts)  # the parts stand by look
+    assert triangles(whole) == triangles(parts)  # the parts stand by appearance
     assert len(whole.points) == len(parts.points)
 
 
-def triangles(part: Part, digits: int = 5) -> list[list[list[float]]]:
+def triangles(part: Submesh, digits: int = 5) -> list[list[list[float]]]:
     """The corners of all triangles, each from its least one on, in order."""
     corners = (part.points[part.faces].round(digits) + 0.0).tolist()
     return sorted(min(three[turn:] + three[:turn] for turn in range(3)) for three in corners)

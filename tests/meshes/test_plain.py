@@ -7,12 +7,10 @@ import time
 import numpy as np
 import pytest
 
-from hymeko_x.meshes.collada import collada_tables
-from hymeko_x.meshes.colours import read_colours
-from hymeko_x.meshes.mesh import merged, read_parts, read_whole
-from hymeko_x.meshes.mtl import finishes_of
-from hymeko_x.meshes.obj import obj_tables
-from hymeko_x.meshes.part import Finish, Look
+from hymeko_x.meshes.collada import collada_groups
+from hymeko_x.meshes.obj import material_entries, obj_groups
+from hymeko_x.meshes.reader import merged, read_colours, read_parts, read_whole
+from hymeko_x.meshes.submesh import Appearance, MaterialEntry
 from tests.meshes.test_mesh import IN_PLACE, dae, nothing_else, triangles
 
 POLYGONS = (
@@ -34,7 +32,7 @@ def moved(said: str) -> bytes:
 @pytest.mark.parametrize("said", MOVES)
 def test_nodes_move_a_plain_collada_file_as_the_general_loader_does(said: str) -> None:
     data = moved(said)
-    assert collada_tables(data) is not None
+    assert collada_groups(data) is not None
     whole, parts = read_whole(data, ".dae", nothing_else), merged(read_parts(data, ".dae", nothing_else))
     assert triangles(whole) == triangles(parts)
     assert len(whole.faces) == 6
@@ -43,7 +41,7 @@ def test_nodes_move_a_plain_collada_file_as_the_general_loader_does(said: str) -
 
 def test_polygons_of_a_plain_collada_file_are_fans() -> None:
     data = dae().replace(b"</mesh>", POLYGONS.encode() + b"</mesh>")
-    tables = collada_tables(data)
+    tables = collada_groups(data)
     assert tables is not None
     assert tables[-1].faces.tolist() == [[0, 1, 2], [0, 2, 3], [4, 5, 6]]
     whole, parts = read_whole(data, ".dae", nothing_else), merged(read_parts(data, ".dae", nothing_else))
@@ -70,19 +68,19 @@ def test_polygons_of_a_plain_collada_file_are_fans() -> None:
 def test_what_is_not_plain_collada_is_left_to_others(old: str, new: str) -> None:
     data = dae().replace(old.encode(), new.encode())
     assert data != dae()
-    assert collada_tables(data) is None
+    assert collada_groups(data) is None
 
 
 def test_what_a_node_shows_besides_geometry_is_passed_over() -> None:
     data = dae().replace(b"<instance_geometry", b'<instance_camera url="#c"/><extra/><!-- c --><node/><instance_geometry')
-    tables = collada_tables(data)
+    tables = collada_groups(data)
     assert tables is not None
     assert [len(table.faces) for table in tables] == [2, 2, 2]
 
 
 @pytest.mark.parametrize("faces", [b"f 1 2 3 4\nf 1 2 5", b"f 1/1 2/1 3/1 4/1\nf 1/1 2/1 5/1", b"f 1//1 2//1 3//1 4//1\nf 1//1 2//1 5//1 "])
 def test_a_plain_obj_file_says_its_corners_in_any_form(faces: bytes) -> None:
-    (table,) = obj_tables(CUBE + faces) or ()
+    (table,) = obj_groups(CUBE + faces) or ()
     assert table[1].tolist() == [[0, 1, 2], [0, 2, 3], [0, 1, 4]]
     assert table[0].tolist() == [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1]]
 
@@ -92,7 +90,7 @@ def test_a_plain_obj_file_says_its_corners_in_any_form(faces: bytes) -> None:
     [b"f -5 -4 -3", b"f 1 2 \\\n 3", b" f 1 2 3", b"f 1 2 9", b"f 1 2 x", b"f 1 2/1 3", b"f 1 2 3\nv 1 2\n", b"f 1 2.5 3"],
 )
 def test_what_is_not_plain_obj_is_left_to_others(faces: bytes) -> None:
-    assert obj_tables(CUBE + faces) is None
+    assert obj_groups(CUBE + faces) is None
 
 
 LIBRARY = b"newmtl wood\nKd 0.5 0.5 0.5\nmap_Kd wood.png\nnewmtl paint\nKd 1 0 0\n"
@@ -115,14 +113,14 @@ f 2/1 3/1 4/1
 """
 
 
-def tables_of(data: bytes, *, mapped: bool = False) -> list[tuple[str, Finish, list[list[float]], list[list[float]] | None]]:
-    """Name, finish, and of every triangle the first coordinates of its corners and of their places."""
-    tables = obj_tables(data, {"a.mtl": LIBRARY}.get, mapped=mapped)
+def tables_of(data: bytes, *, mapped: bool = False) -> list[tuple[str, MaterialEntry, list[list[float]], list[list[float]] | None]]:
+    """Name, entry, and of every triangle the first coordinates of its corners and of their places."""
+    tables = obj_groups(data, {"a.mtl": LIBRARY}.get, mapped=mapped)
     assert tables is not None
     return [
         (
             table.material,
-            table.finish,
+            table.entry,
             table.points[table.faces].sum(axis=2).tolist(),
             None if table.uv is None or table.corners is None else table.uv[table.corners][:, :, 0].tolist(),
         )
@@ -130,16 +128,16 @@ def tables_of(data: bytes, *, mapped: bool = False) -> list[tuple[str, Finish, l
     ]
 
 
-WOOD, PAINT = Finish((0.5, 0.5, 0.5, 1.0), "wood.png"), Finish((1.0, 0.0, 0.0, 1.0))
+WOOD, PAINT = MaterialEntry((0.5, 0.5, 0.5, 1.0), "wood.png"), MaterialEntry((1.0, 0.0, 0.0, 1.0))
 
 
 @pytest.mark.parametrize("end", [b"\n", b"\r\n", b"\r"])
 def test_materials_of_an_obj_file_are_runs_of_its_lines_each_in_its_own_form(end: bytes) -> None:
     assert tables_of(MATERIALS.replace(b"\n", end)) == [
-        ("", Finish(), [[0, 1, 2]], None),
+        ("", MaterialEntry(), [[0, 1, 2]], None),
         ("wood", WOOD, [[1, 2, 1], [1, 2, 1], [1, 1, 0]], [[0, 1, 0], [0, 1, 0], [0, 0, 1]]),
         ("paint", PAINT, [[0, 1, 1]], None),
-        ("other", Finish(), [[1, 2, 1]], None),
+        ("other", MaterialEntry(), [[1, 2, 1]], None),
     ]
 
 
@@ -163,12 +161,12 @@ def test_materials_of_an_obj_file_are_runs_of_its_lines_each_in_its_own_form(end
 )
 def test_what_hides_a_part_of_what_is_behind_it_says_so_in_either_word(said: str, alpha: float) -> None:
     library = f"newmtl glass\nKd 0.5 0.5 0.5\n{said}\nnewmtl paint\nKd 1 0 0\n".encode()
-    glass, paint = Finish((0.5, 0.5, 0.5, alpha)), Finish((1.0, 0.0, 0.0, 1.0))
-    assert finishes_of(library) == {"glass": glass, "paint": paint}
-    assert finishes_of(library.replace(b"Kd 0.5 0.5 0.5\n", b"")) == {"paint": paint}
+    glass, paint = MaterialEntry((0.5, 0.5, 0.5, alpha)), MaterialEntry((1.0, 0.0, 0.0, 1.0))
+    assert material_entries(library) == {"glass": glass, "paint": paint}
+    assert material_entries(library.replace(b"Kd 0.5 0.5 0.5\n", b"")) == {"paint": paint}
     data = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl glass\nf 1 2 3\nusemtl paint\nf 1 2 4\n"
-    looks = {part.look for part in read_parts(data, ".obj", {"a.mtl": library}.__getitem__)}
-    assert looks == {Look("glass", glass.rgba), Look("paint", paint.rgba)}
+    appearances = {part.appearance for part in read_parts(data, ".obj", {"a.mtl": library}.__getitem__)}
+    assert appearances == {Appearance("glass", glass.rgba), Appearance("paint", paint.rgba)}
 
 
 def test_an_image_without_a_place_that_exists_is_not_shown() -> None:
@@ -192,8 +190,10 @@ def test_thousands_of_uses_of_a_material_take_linear_time() -> None:
     begin = time.process_time()
     painted = read_colours(b"mtllib a.mtl\n" + points + uses, ".obj", {"a.mtl": LIBRARY}.__getitem__)
     assert time.process_time() - begin < 2.0
-    assert (painted.part.points[painted.part.faces][:, :, 0] == rows).all()
-    assert [(look, faces.tolist()) for look, faces in painted.looks] == [(Look("paint", PAINT.rgba), list(range(0, count, 2)))]
+    assert (painted.mesh.points[painted.mesh.faces][:, :, 0] == rows).all()
+    assert [(appearance, faces.tolist()) for appearance, faces in painted.appearances] == [
+        (Appearance("paint", PAINT.rgba), list(range(0, count, 2)))
+    ]
 
 
 def test_materials_that_take_turns_leave_triangles_and_their_places_in_the_order_of_the_file() -> None:
@@ -213,14 +213,17 @@ usemtl wood
 f 7/7 8/8 9/9
 """
     painted = read_colours(b"mtllib a.mtl\n" + points + uses, ".obj", {"a.mtl": LIBRARY, "wood.png": b"image"}.__getitem__)
-    part = painted.part
+    part = painted.mesh
     assert part.uv is not None
     assert part.corners is not None
     triangles = [(1, 2, 3), (1, 3, 4), (2, 3, 4), (3, 4, 5), (4, 5, 6), (5, 6, 7), (5, 7, 8), (6, 7, 8), (7, 8, 9)]
     assert (part.points[part.faces][:, :, 0] + 1).tolist() == [list(corners) for corners in triangles]
     places = [(0, 0, 0), (0, 0, 0), (0, 0, 0), (20, 30, 40), (0, 0, 0), (0, 10, 20), (0, 20, 30), (0, 0, 0), (60, 70, 80)]
     assert part.uv[part.corners][:, :, 0].tolist() == [list(corners) for corners in places]
-    assert [(look.name, faces.tolist()) for look, faces in painted.looks] == [("paint", [0, 1, 2, 4, 7]), ("wood", [3, 5, 6, 8])]
+    assert [(appearance.name, faces.tolist()) for appearance, faces in painted.appearances] == [
+        ("paint", [0, 1, 2, 4, 7]),
+        ("wood", [3, 5, 6, 8]),
+    ]
 
 
 def test_corners_from_the_end_of_an_obj_file_count_too() -> None:
@@ -237,8 +240,8 @@ def shown_alone(number: int) -> tuple[str, str, str, str]:
     points += "<param/><param/><param/></accessor></technique_common></source>"
     corners = f'<vertices id="v{number}"><input semantic="POSITION" source="#s{number}"/></vertices>'
     corners += f'<triangles material="m"><input semantic="VERTEX" offset="0" source="#v{number}"/><p>0 1 2</p></triangles>'
-    look = f'<instance_material symbol="m" target="#m{number}"/>'
-    bound = f"<bind_material><technique_common>{look}</technique_common></bind_material>"
+    appearance = f'<instance_material symbol="m" target="#m{number}"/>'
+    bound = f"<bind_material><technique_common>{appearance}</technique_common></bind_material>"
     colour = "<profile_COMMON><technique><phong><diffuse><color>1 0 0 1</color></diffuse></phong></technique></profile_COMMON>"
     return (
         f'<geometry id="g{number}"><mesh>{points}{corners}</mesh></geometry>',
@@ -254,15 +257,15 @@ def test_thousands_of_geometries_with_their_materials_take_linear_time() -> None
     libraries += f"<library_effects>{effects}</library_effects>"
     scenes = f'<library_visual_scenes><visual_scene id="v">{nodes}</visual_scene></library_visual_scenes>'
     begin = time.process_time()
-    tables = collada_tables(f'<COLLADA>{libraries}{scenes}<scene><instance_visual_scene url="#v"/></scene></COLLADA>'.encode())
+    tables = collada_groups(f'<COLLADA>{libraries}{scenes}<scene><instance_visual_scene url="#v"/></scene></COLLADA>'.encode())
     assert time.process_time() - begin < 5.0
     assert tables is not None
-    assert [table.finish.rgba for table in tables] == [(1.0, 0.0, 0.0, 1.0)] * 3000
+    assert [table.entry.rgba for table in tables] == [(1.0, 0.0, 0.0, 1.0)] * 3000
 
 
 def test_primitives_that_share_points_keep_their_own() -> None:
     alone = '<triangles><input semantic="VERTEX" offset="0" source="#v"/><p>3 1 2</p></triangles>'
-    tables = collada_tables(dae().replace(b"</mesh>", (alone * 3).encode() + b"</mesh>"))
+    tables = collada_groups(dae().replace(b"</mesh>", (alone * 3).encode() + b"</mesh>"))
     assert tables is not None
     assert [len(table.points) for table in tables[-3:]] == [3, 3, 3]
     whole = tables[0].points

@@ -14,8 +14,8 @@ from pxr import Usd, UsdGeom, UsdShade
 
 import hymeko_x as hx
 from hymeko_x.ir.parts import Texture
-from hymeko_x.meshes.colours import read_colours
-from hymeko_x.meshes.part import Part
+from hymeko_x.meshes.reader import read_colours
+from hymeko_x.meshes.submesh import Submesh
 from tests.usd.test_rules import complaints
 
 URDF = """<robot name="r"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
@@ -58,7 +58,7 @@ GLASS = "newmtl glass\nKd 0.5 0.5 0.5\nd 0.25\nnewmtl paint\nKd 1 0 0\n"
 
 
 def lay_glass(folder: Path) -> Path:
-    """A robot whose mesh file has one colour to look through and another one; where it is opaque it says nothing about that."""
+    """A robot whose mesh file has one colour to appearance through and another one; where it is opaque it says nothing about that."""
     (folder / "a.obj").write_text(
         f"mtllib a.mtl\n{PYRAMID}usemtl glass\nf 1 4 3\nf 1 3 2\nusemtl paint\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
     )
@@ -87,7 +87,7 @@ def corners(prim: Usd.Prim) -> set[tuple[float, ...]]:
     return {(*map(float, point), *map(float, place)) for point, place in zip(points, places.ComputeFlattened(), strict=True)}
 
 
-def corners_of(part: Part) -> set[tuple[float, ...]]:
+def corners_of(part: Submesh) -> set[tuple[float, ...]]:
     assert part.uv is not None
     assert part.corners is not None
     rows = np.hstack([part.points[part.faces].reshape(-1, 3), part.uv[part.corners].reshape(-1, 2)])
@@ -127,9 +127,9 @@ def test_a_stage_of_others_leaves_as_obj_with_its_image(tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     hx.convert(tmp_path / "r.usda", tmp_path / "out" / "r.urdf")
     mesh = next((tmp_path / "out").rglob("*.obj"))
-    part, ((look, rows),) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
+    part, ((appearance, rows),) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
     assert corners_of(part) == EXPECTED
-    assert (look.image, len(rows)) == (image(), len(part.faces))
+    assert (appearance.image, len(rows)) == (image(), len(part.faces))
     assert hx.verify(tmp_path / "r.usda", tmp_path / "out" / "r.urdf").verdict == "same"
     (tmp_path / "again").mkdir()
     hx.convert(tmp_path / "out" / "r.urdf", tmp_path / "again" / "r.usda")
@@ -222,8 +222,8 @@ def test_a_mjcf_mesh_keeps_its_coordinates(tmp_path: Path) -> None:
 def test_a_glb_file_brings_its_image(tmp_path: Path) -> None:
     box = trimesh.creation.box((1.0, 2.0, 3.0))
     places = np.linspace(0.0, 1.0, 2 * len(box.vertices)).reshape(-1, 2)
-    looks = trimesh.visual.material.PBRMaterial(name="wood", baseColorTexture=Image.open(io.BytesIO(image())))
-    box.visual = trimesh.visual.TextureVisuals(uv=places, material=looks)
+    appearances = trimesh.visual.material.PBRMaterial(name="wood", baseColorTexture=Image.open(io.BytesIO(image())))
+    box.visual = trimesh.visual.TextureVisuals(uv=places, material=appearances)
     (tmp_path / "a.glb").write_bytes(trimesh.Scene(box).export(file_type="glb"))
     hx.convert(lay(tmp_path, ".glb"), tmp_path / "r.usda")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
@@ -316,9 +316,9 @@ def test_an_image_that_is_said_more_of_is_typed_and_stays_as_it_is(tmp_path: Pat
     assert not after.GetAttributeAtPath("/r/a/m.primvars:st:indices")
     hx.convert(tmp_path / "s.usda", tmp_path / "r.urdf", pure=True)
     mesh = next((tmp_path / "shapes").glob("*.obj"))
-    part, ((look, rows),) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
+    part, ((appearance, rows),) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
     assert corners_of(part) == {(0, 0, 0, 0, 0), (1, 0, 0, 1, 0), (1, 1, 0, 1, 1), (0, 1, 0, 0, 1)}
-    assert (look.image, len(rows)) == (image(), len(part.faces))
+    assert (appearance.image, len(rows)) == (image(), len(part.faces))
 
 
 @pytest.mark.parametrize("layout", ["single", "layered"])
@@ -346,7 +346,7 @@ def test_an_image_comes_out_of_a_package_again(tmp_path: Path, layout: Literal["
     assert (tmp_path / texture.uri).read_bytes() == image()
 
 
-# ---- colours to look through ---------------------------------------------------------------------------------------------------
+# ---- colours to appearance through ---------------------------------------------------------------------------------------------------
 
 
 def test_a_colour_to_look_through_reaches_a_stage_and_comes_back_in_the_mesh_file(tmp_path: Path) -> None:
@@ -378,7 +378,7 @@ def test_a_colour_to_look_through_is_one_in_mjcf_and_the_way_home_is_exact(tmp_p
         assert hx.diff(hx.load(source), hx.load(tmp_path / "back.urdf")) == ()
 
 
-# ---- looks of one triangle -----------------------------------------------------------------------------------------------------
+# ---- appearances of one triangle -----------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("faces", ["usemtl wood\nf 1/1 2/2 5/5\n" + RED_FACES, "usemtl paint\nf 1 2 3\nusemtl other\nf 1 2 5\nf 2 3 5\n"])

@@ -16,7 +16,7 @@ from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
-from hymeko_x.meshes.texture import UnreadableImage, png_bytes
+from hymeko_x.meshes.images import UnreadableImage, png_bytes
 from hymeko_x.rewrite.native import is_native
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Code, Report
     from hymeko_x.ir.mechanism import Mechanism, ShapeView
-    from hymeko_x.meshes.part import Look, Part
+    from hymeko_x.meshes.submesh import Appearance, Submesh
     from hymeko_x.source import Files
 
 _MESHES = "meshes"
@@ -123,8 +123,8 @@ def _pack_meshes(run: _Packing) -> None:
 
 def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
     """Data that stands in the mechanism itself stays there, unless MuJoCo would refuse it."""
-    from hymeko_x.meshes.mesh import inline_part
-    from hymeko_x.meshes.part import Unreadable
+    from hymeko_x.meshes.reader import inline_part
+    from hymeko_x.meshes.submesh import Unreadable
 
     solid = any(view.shape.role is not Role.VISUAL for view in users)
     try:
@@ -143,8 +143,8 @@ def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> 
 
 
 def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
-    from hymeko_x.meshes.mesh import read_parts
-    from hymeko_x.meshes.part import Unreadable
+    from hymeko_x.meshes.reader import read_parts
+    from hymeko_x.meshes.submesh import Unreadable
 
     found = read_file(run.files, mesh.uri or "")
     if found is None:
@@ -194,7 +194,7 @@ def _show(run: _Packing, view: ShapeView, pieces: list[_Piece]) -> None:
 # ---- one file --------------------------------------------------------------------------------------------------------------------
 
 
-def _pack_looks(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], file: _File, hull: Id | None) -> list[_Piece]:
+def _pack_looks(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], file: _File, hull: Id | None) -> list[_Piece]:
     """The meshes that show a file, one per look. The file itself where MuJoCo reads it and it has one look.
 
     Raises: Unreadable.
@@ -203,7 +203,7 @@ def _pack_looks(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], fil
         _say_converted(run, key, f"has {len(parts)} looks; each one becomes a mesh of its own")
         return [_own_mesh(run, mesh, part) for part in _with_surface(run, key, parts)]
     part = parts[0]
-    look = _material(run, part.look, mesh)
+    look = _material(run, part.appearance, mesh)
     if hull == key and not _is_altered(part):
         return [_Piece(key, look)]
     target = key if hull is None else run.names.take("mesh", f"{key.name}_visual")
@@ -211,26 +211,26 @@ def _pack_looks(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], fil
     return [_Piece(target, look)]
 
 
-def _own_mesh(run: _Packing, mesh: Mesh, part: Part) -> _Piece:
+def _own_mesh(run: _Packing, mesh: Mesh, part: Submesh) -> _Piece:
     """A part of a file as a mesh of its own."""
-    name = f"{file_stem(mesh.uri or '')}_{part.look.name}" if part.look and part.look.name else file_stem(mesh.uri or "")
+    name = f"{file_stem(mesh.uri or '')}_{part.appearance.name}" if part.appearance and part.appearance.name else file_stem(mesh.uri or "")
     key = run.names.take("mesh", name)
     _write_mesh(run, key, mesh, part, name, solid=False)
-    return _Piece(key, _material(run, part.look, mesh))
+    return _Piece(key, _material(run, part.appearance, mesh))
 
 
-def _pack_hull(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Part, ...], file: _File) -> Id:
+def _pack_hull(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], file: _File) -> Id:
     """The mesh for contact: all of the file, with a volume.
 
     Raises: Unreadable.
     """
-    from hymeko_x.meshes.mesh import merged
+    from hymeko_x.meshes.reader import merged
 
     _store(run, key, key, mesh, merged(parts), file, solid=True)
     return key
 
 
-def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Part, file: _File, *, solid: bool) -> None:
+def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Submesh, file: _File, *, solid: bool) -> None:
     """The file as it is where MuJoCo takes it, else converted; the report says why."""
     _check_surface(part)
     path, data = file
@@ -244,26 +244,26 @@ def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Part, file: _Fi
     _write_mesh(run, target, mesh, part, file_stem(mesh.uri or path), solid=solid, stl=suffix == ".stl")
 
 
-def _check_surface(part: Part) -> None:
+def _check_surface(part: Submesh) -> None:
     """Raises: Unreadable for a mesh that has no surface at all, which nothing can repair."""
-    from hymeko_x.meshes.part import Unreadable
+    from hymeko_x.meshes.submesh import Unreadable
 
     if _is_line(part):
         raise Unreadable("all of its points lie on a line")
 
 
-def _with_surface(run: _Packing, key: Id, parts: tuple[Part, ...]) -> list[Part]:
+def _with_surface(run: _Packing, key: Id, parts: tuple[Submesh, ...]) -> list[Submesh]:
     """The parts that there is something to see of.
 
     Raises: Unreadable when there are none.
     """
-    from hymeko_x.meshes.part import Unreadable
+    from hymeko_x.meshes.submesh import Unreadable
 
-    seen: list[Part] = []
+    seen: list[Submesh] = []
     lines: list[str] = []
     for part in parts:
         if _is_line(part):
-            lines.append(f"'{part.look.name if part.look else ''}'")
+            lines.append(f"'{part.appearance.name if part.appearance else ''}'")
         else:
             seen.append(part)
     if not seen:
@@ -273,7 +273,7 @@ def _with_surface(run: _Packing, key: Id, parts: tuple[Part, ...]) -> list[Part]
     return seen
 
 
-def _refusal(part: Part, suffix: str, data: bytes, *, solid: bool) -> str | None:
+def _refusal(part: Submesh, suffix: str, data: bytes, *, solid: bool) -> str | None:
     """Why MuJoCo would not take the file as it is, or None when it would."""
     from hymeko_x.meshes.stl import stl_is_exact
 
@@ -297,7 +297,7 @@ def _objects_in(obj: bytes) -> int:
     return sum(_FACE.search(group) is not None for group in _GROUP.split(obj))
 
 
-def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part, stem: str, *, solid: bool, stl: bool = False) -> None:
+def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Submesh, stem: str, *, solid: bool, stl: bool = False) -> None:
     """A converted file: STL stays STL where that is enough, all else becomes OBJ, which may say a point twice."""
     import numpy as np
 
@@ -317,7 +317,7 @@ def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part, stem: str, *, so
     _add_mesh(run, key, replace(mesh, uri=uri), part)
 
 
-def _add_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part) -> None:
+def _add_mesh(run: _Packing, key: Id, mesh: Mesh, part: Submesh) -> None:
     run.vertices[key] = mesh
     if _is_sheet(part, mesh):
         run.surfaces.add(key)
@@ -326,21 +326,21 @@ def _add_mesh(run: _Packing, key: Id, mesh: Mesh, part: Part) -> None:
 # ---- geometry --------------------------------------------------------------------------------------------------------------------
 
 
-def _is_flat(part: Part) -> bool:
+def _is_flat(part: Submesh) -> bool:
     from hymeko_x.meshes.measures import extents
 
     low, _, high = extents(part)
     return low <= _FLAT * high
 
 
-def _is_line(part: Part) -> bool:
+def _is_line(part: Submesh) -> bool:
     from hymeko_x.meshes.measures import extents
 
     _, middle, high = extents(part)
     return middle <= _FLAT * high
 
 
-def _is_sheet(part: Part, mesh: Mesh) -> bool:
+def _is_sheet(part: Submesh, mesh: Mesh) -> bool:
     """Whether MuJoCo would find no volume, so that the mesh has to be declared a surface."""
     from hymeko_x.meshes.measures import volume_of_sheets
 
@@ -348,7 +348,7 @@ def _is_sheet(part: Part, mesh: Mesh) -> bool:
     return volume_of_sheets(part) * abs(x * y * z) < _LEAST_VOLUME
 
 
-def _is_altered(part: Part) -> bool:
+def _is_altered(part: Submesh) -> bool:
     """Whether the mesh for contact is not also the one to show."""
     return _is_flat(part) or len(part.points) < _FEWEST_POINTS
 
@@ -356,7 +356,7 @@ def _is_altered(part: Part) -> bool:
 # ---- looks ----------------------------------------------------------------------------------------------------------------------
 
 
-def _material(run: _Packing, look: Look | None, mesh: Mesh) -> Id | None:
+def _material(run: _Packing, look: Appearance | None, mesh: Mesh) -> Id | None:
     """The material of a file's look; equal looks share one."""
     if look is None or (look.rgba is None and look.image is None):
         return None

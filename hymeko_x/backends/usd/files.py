@@ -14,7 +14,7 @@ from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import file_stem, shape_edge, subset_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
-from hymeko_x.meshes.part import FilledMesh
+from hymeko_x.meshes.submesh import LoadedMesh
 from hymeko_x.rewrite.native import is_native
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Code, Report
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.parts import Rgba
-    from hymeko_x.meshes.part import Look, Painted
+    from hymeko_x.meshes.submesh import Appearance, ColouredMesh
     from hymeko_x.source import Files
 
 
@@ -38,7 +38,7 @@ class _Packing(Builder, kw_only=True):
     shelf: Shelf
     files: Files
     report: Report
-    known: dict[tuple[str, bool], Painted] = field(default_factory=dict)
+    known: dict[tuple[str, bool], ColouredMesh] = field(default_factory=dict)
     materials: dict[tuple[Rgba | None, bytes | None], Id | None] = field(default_factory=dict)
 
 
@@ -63,15 +63,15 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
     return run.added_to(packed) if run.vertices else packed
 
 
-def _pack(run: _Packing, key: Id, mesh: Mesh, painted: Painted, views: list[ShapeView]) -> None:
+def _pack(run: _Packing, key: Id, mesh: Mesh, painted: ColouredMesh, views: list[ShapeView]) -> None:
     """The mesh, and for the eye the colours of the file, which count where it has some, as in RViz."""
-    from hymeko_x.meshes.part import Part
+    from hymeko_x.meshes.submesh import Submesh
 
-    part, looks = painted
+    part, appearances = painted
     seen = [view for view in views if view.shape.role is Role.VISUAL]
     is_shown = any(view.shape.role is not Role.COLLISION for view in views)
-    run.vertices[key] = FilledMesh(mesh.uri, mesh.scale, mesh.name, part=part if is_shown else Part(part.points, part.faces))
-    shown = [(look, _material(run, key, look), rows) for look, rows in looks] if seen else []
+    run.vertices[key] = LoadedMesh(mesh.uri, mesh.scale, mesh.name, loaded=part if is_shown else Submesh(part.points, part.faces))
+    shown = [(appearance, _material(run, key, appearance), rows) for appearance, rows in appearances] if seen else []
     for view in seen:
         if len(shown) == 1 and len(shown[0][2]) == len(part.faces):
             _show_all(run, view, shown[0][1])
@@ -84,49 +84,48 @@ def _show_all(run: _Packing, view: ShapeView, material: Id | None) -> None:
         run.edges[view.id] = shape_edge(replace(view.shape, rgba=None), view.body, view.pose, view.mesh, material)
 
 
-def _show_parts(run: _Packing, view: ShapeView, shown: list[tuple[Look, Id | None, NDArray[np.intp]]]) -> None:
+def _show_parts(run: _Packing, view: ShapeView, shown: list[tuple[Appearance, Id | None, NDArray[np.intp]]]) -> None:
     """Subsets of the shape; triangles without an appearance in the file have that of the shape."""
-    for look, material, rows in shown:
+    for appearance, material, rows in shown:
         if material is not None and len(rows):
-            run.edges[run.names.take("subset", look.name or material.name)] = subset_edge(tuple(rows.tolist()), view.id, material)
+            run.edges[run.names.take("subset", appearance.name or material.name)] = subset_edge(tuple(rows.tolist()), view.id, material)
 
 
-def _material(run: _Packing, mesh: Id, look: Look) -> Id | None:
+def _material(run: _Packing, mesh: Id, appearance: Appearance) -> Id | None:
     """The material of an appearance; equal colours and equal images share one."""
-    if look.rgba is None and look.image is None:
+    if appearance.rgba is None and appearance.image is None:
         return None
-    if (look.rgba, look.image) not in run.materials:
-        run.materials[look.rgba, look.image] = _own_material(run, mesh, look)
-    return run.materials[look.rgba, look.image]
+    if (appearance.rgba, appearance.image) not in run.materials:
+        run.materials[appearance.rgba, appearance.image] = _own_material(run, mesh, appearance)
+    return run.materials[appearance.rgba, appearance.image]
 
 
-def _own_material(run: _Packing, mesh: Id, look: Look) -> Id | None:
+def _own_material(run: _Packing, mesh: Id, appearance: Appearance) -> Id | None:
     """The material of an appearance, with its image beside the output; None where the image cannot be read."""
-    uri = None if look.image is None else _placed_image(run, mesh, look, look.image)
-    if look.image is not None and uri is None:
+    uri = None if appearance.image is None else _placed_image(run, mesh, appearance, appearance.image)
+    if appearance.image is not None and uri is None:
         return None
-    return run.add_material(Material(look.name, look.rgba), None if uri is None else Texture(uri))
+    return run.add_material(Material(appearance.name, appearance.rgba), None if uri is None else Texture(uri))
 
 
-def _placed_image(run: _Packing, mesh: Id, look: Look, image: bytes) -> str | None:
-    from hymeko_x.meshes.texture import UnreadableImage, shown_image
+def _placed_image(run: _Packing, mesh: Id, appearance: Appearance, image: bytes) -> str | None:
+    from hymeko_x.meshes.images import UnreadableImage, shown_image
 
     try:
         data, suffix = shown_image(image)
     except UnreadableImage as error:
-        _warn(run, mesh, codes.ASSET_UNREADABLE, f"its image '{look.file or look.name}' cannot be read: {error}")
+        _warn(run, mesh, codes.ASSET_UNREADABLE, f"its image '{appearance.file or appearance.name}' cannot be read: {error}")
         return None
-    return run.shelf.place("textures", file_stem(look.file) or look.name or mesh.name, suffix, data)
+    return run.shelf.place("textures", file_stem(appearance.file) or appearance.name or mesh.name, suffix, data)
 
 
-def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: bool) -> Painted | None:
+def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: bool) -> ColouredMesh | None:
     """The triangles of a file; its own appearances do not count unless ``are_coloured``.
 
     ``is_mapped``: a shape of the mesh shows an image that it does not have from the file.
     """
-    from hymeko_x.meshes.colours import read_colours, read_mapped
-    from hymeko_x.meshes.mesh import read_whole
-    from hymeko_x.meshes.part import Painted, Unreadable
+    from hymeko_x.meshes.reader import read_colours, read_mapped, read_whole
+    from hymeko_x.meshes.submesh import ColouredMesh, Unreadable
 
     found = read_file(run.files, mesh.uri or "")
     if found is None:
@@ -140,9 +139,9 @@ def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: 
 
     try:
         painted = read_colours(data, suffix_of(path), fetch, miss=miss) if are_coloured else None
-        if painted is not None and (painted.looks or not is_mapped):
+        if painted is not None and (painted.appearances or not is_mapped):
             return painted
-        return Painted((read_mapped if is_mapped else read_whole)(data, suffix_of(path), fetch))
+        return ColouredMesh((read_mapped if is_mapped else read_whole)(data, suffix_of(path), fetch))
     except Unreadable as error:
         _warn(run, key, codes.ASSET_UNREADABLE, f"'{mesh.uri}' cannot be read: {error}")
         return None

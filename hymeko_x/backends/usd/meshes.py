@@ -12,7 +12,7 @@ from hymeko_x.backends.usd.sheet import T, put
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.parts import Mesh
 from hymeko_x.meshes.measures import face_normals
-from hymeko_x.meshes.part import FilledMesh
+from hymeko_x.meshes.submesh import LoadedMesh
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import Prim, Triangles, UsdSheet
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.values import Vec3
-    from hymeko_x.meshes.part import Part
+    from hymeko_x.meshes.submesh import Submesh
 
 _ST = "primvars:st"
 
@@ -126,11 +126,11 @@ def write_subsets(sheet: UsdSheet, spec: Prim, view: ShapeView) -> None:
 
 def places_of(mesh: Mesh) -> Triangles | None:
     """The places of a mesh in its image (n x 2, single precision) and the row of each corner; None where they are none or broken."""
-    table = _mapped(mesh.part) if isinstance(mesh, FilledMesh) else _listed_places(mesh)
+    table = _mapped(mesh.loaded) if isinstance(mesh, LoadedMesh) else _listed_places(mesh)
     return None if table is None else _in_single(*table)
 
 
-def _mapped(part: Part) -> Triangles | None:
+def _mapped(part: Submesh) -> Triangles | None:
     return None if part.uv is None else (part.uv, (part.faces if part.corners is None else part.corners).ravel())
 
 
@@ -143,7 +143,7 @@ def _listed_places(mesh: Mesh) -> Triangles | None:
 
 def surface_of(mesh: Mesh) -> Triangles | None:
     """What of a mesh can be drawn; None without points, with one that single precision cannot hold, or with a broken triangle."""
-    table = (mesh.part.points, mesh.part.faces.ravel()) if isinstance(mesh, FilledMesh) else _listed(mesh)
+    table = (mesh.loaded.points, mesh.loaded.faces.ravel()) if isinstance(mesh, LoadedMesh) else _listed(mesh)
     return None if table is None or not len(table[0]) else _in_single(*table)
 
 

@@ -29,7 +29,7 @@ def read_mesh(prim: Prim, builder: UsdBuilder, scale: Vec3) -> tuple[NDArray[Any
     """The points of a mesh prim in metres with the mesh's id. Equal meshes at equal scale share one; polygons become fans."""
     import numpy as np
 
-    from hymeko_x.meshes.polygons import fans
+    from hymeko_x.meshes.submesh import fans
 
     points, counts, indices = (prim.value(name) for name in ("points", "faceVertexCounts", "faceVertexIndices"))
     if points is None or counts is None or indices is None:
@@ -121,7 +121,7 @@ def read_places(prim: Prim, sizes: NDArray[Any], corners: NDArray[Any]) -> Textu
         return (), ()
     import numpy as np
 
-    from hymeko_x.meshes.polygons import fans
+    from hymeko_x.meshes.submesh import fans
 
     places, rows = np.asarray(authored, dtype=np.float64).reshape(-1, 2), prim.value(f"{_ST}:indices")
     spread = prim.spec.attributes[_ST].GetInfo("interpolation")

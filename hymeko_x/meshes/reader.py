@@ -1,0 +1,350 @@
+"""Mesh files of any type that robots use: by appearance, as a whole, or with colours and images as subsets.
+
+Sizes are checked before anything is allocated.
+"""
+
+from __future__ import annotations
+
+import posixpath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from hymeko_x.meshes.scene import read_scene
+from hymeko_x.meshes.stl import read_stl
+from hymeko_x.meshes.submesh import MOST_FACES, Appearance, ColouredMesh, MaterialEntry, MaterialGroup, Submesh, Unreadable
+from hymeko_x.meshes.weld import joined
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+    Triangles = tuple[NDArray[np.float64], NDArray[Any]]
+    """Points (n, 3) and triangles (m, 3) as rows of them."""
+
+READABLE = (".stl", ".obj", ".dae", ".glb", ".gltf", ".ply", ".off")
+"""The types of mesh files that can be read, by suffix."""
+_IN_SEVERAL_FILES = (".gltf", ".glb")
+"""Types whose triangles may stand in files of their own."""
+
+MOST_BYTES = 2**28
+
+
+def read_parts(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> tuple[Submesh, ...]:
+    """The submeshes of a mesh file, one per appearance, in the order of the file.
+
+    Node transformations and the file's unit are applied. The up axis of a COLLADA file is not, as in RViz and Gazebo:
+    robot descriptions are written for readers that ignore it. ``fetch`` returns the content of a file that the mesh refers
+    to, by the name it uses, or raises OSError.
+
+    Raises: Unreadable.
+    """
+    check_file(data, suffix)
+    if suffix == ".stl":
+        return (_welded(read_stl(data), None),)
+    groups = _by_appearance(read_scene(data, suffix, fetch))
+    return sound(tuple(_welded(*_corners(group), group[0].appearance) for group in groups))
+
+
+def check_file(data: bytes, suffix: str) -> None:
+    """Raises: Unreadable for what is too large, of a type that is not read, or made to do harm."""
+    if len(data) > MOST_BYTES:
+        raise Unreadable(f"it has {len(data)} bytes, at most {MOST_BYTES} are read")
+    if suffix not in READABLE:
+        raise Unreadable(f"meshes of type '{suffix}' are not read; known: {', '.join(READABLE)}")
+    if suffix == ".dae":
+        _check_collada(data)
+
+
+def sound(parts: tuple[Submesh, ...]) -> tuple[Submesh, ...]:
+    """The parts, if there are any and every coordinate is a number."""
+    if not parts:
+        raise Unreadable("it has no triangles")
+    if not all(np.isfinite(part.points).all() for part in parts):
+        raise Unreadable("a coordinate is not a finite number")
+    return parts
+
+
+def _check_collada(data: bytes) -> None:
+    """Entities would be expanded, and an archive unpacked to any size."""
+    if b"!" in data and (b"<!DOCTYPE" in data or b"<!ENTITY" in data):  # one letter is found much faster than a word
+        raise Unreadable("it declares XML entities, which are not expanded")
+    if data.find(b"PK\x05\x06", -70_000) >= 0:
+        raise Unreadable("it is a ZIP archive, which is not unpacked")
+
+
+# ---- submeshes -------------------------------------------------------------------------------------------------------------------
+
+
+def _by_appearance(parts: list[Submesh]) -> list[list[Submesh]]:
+    """The submeshes that have the same appearance, in the order of their first appearance."""
+    groups: dict[Appearance | None, list[Submesh]] = {}
+    for part in parts:
+        groups.setdefault(part.appearance, []).append(part)
+    return list(groups.values())
+
+
+def _corners(group: list[Submesh]) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+    """The corners (faces, 3, 3) of all triangles of the parts, and their texture coordinates where all have some."""
+    corners = np.concatenate([part.points[part.faces] for part in group])
+    maps = [part.uv[part.faces] for part in group if part.uv is not None]
+    return corners, np.concatenate(maps) if len(maps) == len(group) else None
+
+
+def _welded(corners: NDArray[Any], uv: NDArray[np.float64] | None, appearance: Appearance | None = None) -> Submesh:
+    """Triangles with their common points shared; triangles with two equal corners are left out."""
+    flat = corners.reshape(-1, 3)
+    unique, index = joined(flat if uv is None else np.hstack([flat, uv.reshape(-1, 2)]))
+    points, maps = unique[:, :3].astype(np.float64), None if uv is None else unique[:, 3:]
+    return Submesh(points, _without_degenerate(index.reshape(-1, 3)), maps, appearance)
+
+
+def _without_degenerate(faces: NDArray[Any]) -> NDArray[Any]:
+    """The triangles with three different corners."""
+    is_good = are_proper(faces)
+    return faces if is_good.all() else np.asarray(faces[is_good])
+
+
+def are_proper(faces: NDArray[Any]) -> NDArray[np.bool_]:
+    """Which triangles have three different corners."""
+    first, second, third = faces.T
+    return np.asarray((first != second) & (second != third) & (third != first))
+
+
+def inline_part(
+    points: tuple[float, ...], faces: tuple[int, ...], places: tuple[float, ...] = (), corners: tuple[int, ...] = ()
+) -> Submesh:
+    """The triangles of a mesh that is given by flat lists; without faces, those of its convex hull are not computed.
+
+    ``places`` in an image and ``corners``, the rows of them, are left out where they do not fit.
+
+    Raises: Unreadable.
+    """
+    table = np.array(points[: len(points) // 3 * 3], dtype=np.float64).reshape(-1, 3)
+    index = np.array(faces[: len(faces) // 3 * 3], dtype=np.int64).reshape(-1, 3)
+    if len(table) == 0:
+        raise Unreadable("it has no points")
+    if len(index) and (index.min() < 0 or index.max() >= len(table)):
+        raise Unreadable("a triangle has a corner that does not exist")
+    if not np.isfinite(table).all():
+        raise Unreadable("a coordinate is not a finite number")
+    uv = np.array(places, dtype=np.float64)
+    rows = np.array(corners or faces, dtype=np.int64)
+    is_there = rows.size == index.size > 0 and uv.size > 0 and uv.size % 2 == 0 and bool(np.isfinite(uv).all())
+    if not is_there or rows.min() < 0 or rows.max() >= uv.size // 2:
+        return Submesh(table, index)
+    return Submesh(table, index, uv.reshape(-1, 2), None, rows.reshape(-1, 3))
+
+
+def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Submesh:
+    """All triangles of a mesh file as one part without a appearance, in the order of the file; no image is opened for that.
+
+    Raises: Unreadable.
+    """
+    check_file(data, suffix)
+    if suffix == ".stl":
+        return _welded(read_stl(data), None)
+    tables = _plain_tables(data, suffix)
+    if tables is None:
+        parts = read_scene(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, with_appearance=False)
+        tables = [(part.points, part.faces) for part in parts]
+    return sound((put_together(tables),))[0]
+
+
+def put_together(tables: list[Triangles]) -> Submesh:
+    """Points and triangles of several meshes as one; common points are shared, and those of no triangle are left out.
+
+    Raises: Unreadable when there is no triangle, or there are too many.
+    """
+    points, faces = put_in_one(tables)
+    return Submesh(points, _without_degenerate(faces))
+
+
+def put_in_one(tables: list[Triangles]) -> Triangles:
+    """The same with every triangle, also those that have no area.
+
+    Raises: Unreadable when there is no triangle, or there are too many.
+    """
+    if not any(len(faces) for _, faces in tables):
+        raise Unreadable("it has no triangles")
+    points, faces = tables[0] if len(tables) == 1 else _in_one_table(tables)
+    if len(faces) > MOST_FACES:
+        raise Unreadable(f"it has {len(faces)} triangles, at most {MOST_FACES} are read")
+    used = np.zeros(len(points), dtype=bool)
+    used[faces] = True
+    unique, index = joined(points[used])
+    if len(unique) < len(points):
+        places = np.zeros(len(points), dtype=index.dtype)
+        places[used] = index
+        faces = places[faces]
+    return unique, faces
+
+
+def _in_one_table(tables: list[Triangles]) -> Triangles:
+    starts = np.cumsum([0, *(len(points) for points, _ in tables)])
+    points = np.concatenate([points for points, _ in tables])
+    return points, np.concatenate([rows.astype(np.int64) + start for (_, rows), start in zip(tables, starts[:-1], strict=True)])
+
+
+def _plain_tables(data: bytes, suffix: str) -> list[Triangles] | None:
+    """Points and triangles of the two text formats that most robots use, where nothing about them is unusual."""
+    if suffix == ".dae":
+        from hymeko_x.meshes.collada import collada_groups
+
+        return [(table.points, table.faces) for table in collada_groups(data) or ()] or None
+    if suffix == ".obj":
+        from hymeko_x.meshes.obj import obj_groups
+
+        return [(table.points, table.faces) for table in obj_groups(data) or ()] or None
+    return None
+
+
+def _nothing_beside(name: str) -> bytes:
+    """Files that a mesh refers to, where only its triangles matter: none."""
+    raise FileNotFoundError(name)
+
+
+def merged(parts: tuple[Submesh, ...]) -> Submesh:
+    """All triangles as one part without a appearance."""
+    if len(parts) == 1:
+        return parts[0]
+    return _welded(np.concatenate([part.points[part.faces] for part in parts]), None)
+
+
+# ---- colours and images --------------------------------------------------------------------------------------------------------------
+
+_IN_SCENES = (".glb", ".gltf")
+
+
+def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, miss: Callable[[str], None] | None = None) -> ColouredMesh:
+    """The triangles of a COLLADA, OBJ or glTF file, in its order, with its colours and images; those of other files have none.
+
+    ``miss`` is called with every missing image of a COLLADA or OBJ file; its triangles have their colour instead.
+
+    Raises: Unreadable.
+    """
+    check_file(data, suffix)
+    if suffix in _IN_SCENES:
+        return _coloured([_piece_of(part) for part in read_parts(data, suffix, fetch)])
+    groups = [group for group in _groups_of(data, suffix, fetch) if len(group.faces)]
+    if not groups:
+        return ColouredMesh(read_whole(data, suffix, fetch))
+    images = _images(groups, fetch)
+    for name in dict.fromkeys(group.entry.image for group in groups if group.entry.image and group.entry.image not in images):
+        if miss is not None:
+            miss(name)
+    shown = [_with_image(group) if group.entry.image in images else _without_image(group) for group in groups]
+    appearances: dict[MaterialEntry, Appearance | None] = {}
+    for group in shown:
+        if group.entry not in appearances:
+            appearances[group.entry] = _appearance_of(group, images)
+    return _coloured([(appearances[group.entry], group) for group in shown])
+
+
+def read_mapped(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Submesh:
+    """All triangles of a file without its appearances; with texture coordinates where it is an OBJ file that has them for every corner.
+
+    Raises: Unreadable.
+    """
+    check_file(data, suffix)
+    from hymeko_x.meshes.obj import obj_groups
+
+    groups = [group for group in (obj_groups(data, mapped=True) or () if suffix == ".obj" else ()) if len(group.faces)]
+    if not groups or any(group.uv is None for group in groups):
+        return read_whole(data, suffix, fetch)
+    return _coloured([(None, group) for group in groups]).mesh
+
+
+def _groups_of(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> list[MaterialGroup]:
+    """The triangles of each material; nothing where the file has none, or is not plain."""
+    if suffix == ".dae":
+        from hymeko_x.meshes.collada import collada_groups
+
+        return collada_groups(data) or []
+    if suffix != ".obj":
+        return []
+    from hymeko_x.meshes.obj import obj_groups
+
+    return obj_groups(data, lambda name: _fetched(name, fetch)) or []
+
+
+def _images(groups: list[MaterialGroup], fetch: Callable[[str], bytes]) -> dict[str, bytes]:
+    """The images that are there, by the names that the file has for them."""
+    names = dict.fromkeys(group.entry.image for group in groups if group.entry.image)
+    found = {name: _fetched(name, fetch) for name in names}
+    return {name: data for name, data in found.items() if data is not None}
+
+
+def _fetched(name: str, fetch: Callable[[str], bytes]) -> bytes | None:
+    """A file beside the mesh; where there is none of that path, which may be one of the author's disk, the one of that name."""
+    plain = name.replace("\\", "/")
+    for wanted in dict.fromkeys((plain, posixpath.basename(plain))):
+        try:
+            return fetch(wanted)
+        except OSError:
+            continue
+    return None
+
+
+def _with_image(group: MaterialGroup) -> MaterialGroup:
+    """A group with the colours of its image alone."""
+    return group._replace(entry=group.entry._replace(rgba=None))
+
+
+def _without_image(group: MaterialGroup) -> MaterialGroup:
+    return group._replace(entry=group.entry._replace(image=""), uv=None, corners=None)
+
+
+def _appearance_of(group: MaterialGroup, images: dict[str, bytes]) -> Appearance | None:
+    """The appearance of a group; None where its file has none for it."""
+    rgba, image = group.entry
+    if image:
+        return Appearance(group.material, None, images[image], posixpath.basename(image.replace("\\", "/")))
+    return None if rgba is None else Appearance(group.material, rgba)
+
+
+def _piece_of(part: Submesh) -> tuple[Appearance | None, MaterialGroup]:
+    """A submesh of a scene as a group; one without texture coordinates has no image."""
+    has_appearance = part.appearance is not None and (part.appearance.rgba is not None or part.uv is not None)
+    return part.appearance if has_appearance else None, MaterialGroup(
+        part.points, part.faces, uv=part.uv, corners=None if part.uv is None else part.faces
+    )
+
+
+def _coloured(pieces: list[tuple[Appearance | None, MaterialGroup]]) -> ColouredMesh:
+    """Groups as one mesh, in which equal points are one; triangles without texture coordinates have those of the image's corner."""
+    groups = [group for _, group in pieces]
+    points, faces = put_in_one([(group.points, group.faces) for group in groups])
+    order = _order(groups)
+    faces = faces[order]
+    proper = are_proper(faces)
+    uv, corners = _places(groups)
+    part = Submesh(points, faces[proper], uv, None, None if corners is None else corners[order][proper])
+    kinds = dict.fromkeys(appearance for appearance, _ in pieces if appearance is not None)
+    numbers = {appearance: number for number, appearance in enumerate(kinds)}
+    own = np.array([-1 if appearance is None else numbers[appearance] for appearance, _ in pieces])
+    owners = np.repeat(own, [len(group.faces) for group in groups])[order][proper]
+    by_appearance = np.argsort(owners, kind="stable")
+    ends = np.searchsorted(owners[by_appearance], np.arange(len(kinds) + 1)).tolist()
+    appearances = tuple([(appearance, by_appearance[start:end]) for appearance, start, end in zip(kinds, ends, ends[1:], strict=False)])
+    return ColouredMesh(sound((part,))[0], appearances)
+
+
+def _order(groups: list[MaterialGroup]) -> NDArray[np.intp] | slice:
+    """The order of the file, as rows of the triangles of all groups one after the other."""
+    orders = [group.order for group in groups if group.order is not None]
+    return slice(None) if len(orders) < 2 else np.argsort(np.concatenate(orders), kind="stable")
+
+
+def _places(groups: list[MaterialGroup]) -> Triangles | tuple[None, None]:
+    """The texture coordinates of all corners; nothing where no group has any."""
+    if all(group.uv is None for group in groups):
+        return None, None
+    nowhere = np.zeros((1, 2))
+    return put_in_one(
+        [
+            (nowhere, np.zeros_like(group.faces)) if group.uv is None or group.corners is None else (group.uv, group.corners)
+            for group in groups
+        ]
+    )
