@@ -23,7 +23,6 @@ from hymeko_x.residue.bridge import other_words
 from hymeko_x.residue.delta import residue_behind
 from hymeko_x.residue.text import BadResidue, parse_residue, print_residue
 from hymeko_x.rewrite import Options, legalize
-from hymeko_x.rewrite.native import is_native
 from hymeko_x.source import Package, PackageFiles, PlacedFiles, Source
 
 if TYPE_CHECKING:
@@ -213,7 +212,7 @@ def with_references_of(packed: Mechanism, mechanism: Mechanism) -> Mechanism:
 
 def _standing_in(moved: Mechanism, packed: Mechanism) -> Mechanism:
     """What a file carries that stands in for another one: nothing that leads back to the files which are being replaced."""
-    return replace(moved, extras=packed.extras) if is_native(moved) else moved
+    return replace(moved, extras=packed.extras) if formats.native_format(moved) else moved
 
 
 def reader(format: Format) -> Reader:

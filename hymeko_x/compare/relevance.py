@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from hymeko_x import formats
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Shape
 from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
-from hymeko_x.rewrite.native import compiler_says
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -37,7 +37,8 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
     described in. What an author said is not left out, whether or not somebody uses it.
     """
     alike: dict[Id, bool] = {}
-    weighed = not compiler_says(before, ("inertiafromgeom",))
+    native = formats.native_format(before)
+    weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
     for difference in found:
         key = difference.element
         if _is_told_otherwise(difference, before, after):

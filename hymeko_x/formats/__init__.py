@@ -73,6 +73,8 @@ class Format(Struct, frozen=True):
     """Notations that hold more than how a value was written, by the name of the field as which the ledger lists them."""
     inherited: str | None = None
     """The function ``text -> text`` that leaves out of an extra what the elements have in fields of their own (classes of MJCF)."""
+    shapes_have_weight: str | None = None
+    """The function ``mechanism -> bool``: whether masses of shapes may count although their bodies have inertials."""
     boilerplate: frozenset[str] = frozenset()
     """Fields of the whole that every file of the format has, and no other."""
     has_compact_extras: bool = False
@@ -165,9 +167,10 @@ MJCF = Format(
     "hymeko_x.backends.mjcf",
     "hymeko_x.backends.mjcf.rules",
     roots=("mujoco", "mujocoinclude"),
-    completes="hymeko_x.frontends.mjcf.weigh:weigh",
+    completes="hymeko_x.frontends.mjcf.complete:complete",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
     inherited="hymeko_x.formats.mjcf.classes:without_inherited",
+    shapes_have_weight="hymeko_x.formats.mjcf.words:shapes_have_weight",
     has_compact_extras=True,
     reference="hymeko_x.verify.readers.mjcf",
     engines=MappingProxyType({"mujoco": "mujoco"}),

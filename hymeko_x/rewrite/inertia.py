@@ -11,7 +11,6 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.ir.parts import Body, Inertial
 from hymeko_x.ir.values import numbers_text
-from hymeko_x.rewrite.native import engine_mends_inertias
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,8 +44,6 @@ _NOTHING: Tensor = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 def make_tensors_physical(mechanism: Mechanism, context: Context) -> Mechanism:
     """No negative mass, and principal moments A, B, C >= 0 with A + B >= C in any order, by the smallest change."""
-    if engine_mends_inertias(mechanism):
-        return mechanism
     changed: dict[Id, Body] = {}
     for key, body in mechanism.vertices(Body):
         if body.inertial is None:

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING, assert_never
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.formats import native_format
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Geometry, MeshShape, NoShape, Plane, Shape, Sphere
-from hymeko_x.rewrite.native import is_shape_of_mujoco
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
     from hymeko_x.rewrite.context import Context
 
@@ -20,16 +22,32 @@ THINNEST = 1e-6
 _NO_LENGTH = 1e-12
 
 
-def drop_empty_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
-    """A shape without a geometry, or of a mesh that is not there, is left out; what came from MJCF has geometries of its own."""
+def _never(_: Id) -> bool:
+    return False
+
+
+def drop_empty_shapes(mechanism: Mechanism, context: Context, has_own_geometry: Callable[[Id], bool] = _never) -> Mechanism:
+    """A shape without a geometry, or of a mesh that is not there, is left out, unless it has a geometry that only the target has."""
     gone = []
     for view in mechanism.every_shape():
         lost = isinstance(view.shape.geometry, MeshShape) and view.mesh not in mechanism.graph.vertices
-        if not lost and (not isinstance(view.shape.geometry, NoShape) or is_shape_of_mujoco(mechanism, view.id)):
+        if not lost and (not isinstance(view.shape.geometry, NoShape) or has_own_geometry(view.id)):
             continue
         gone.append(view.id)
-        what = "has no mesh" if lost else "has no geometry that the target knows"
-        context.report.note(codes.NOT_SAID, f"{view.id} {what}; it is left out", mechanism.origin(view.id), element=str(view.id))
+        reason = "has no mesh" if lost else "has no geometry that the target can represent"
+        context.report.note(codes.NOT_SAID, f"{view.id} {reason}; it is left out", mechanism.origin(view.id), element=str(view.id))
+    return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+
+
+def drop_engine_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Shapes whose geometry only the engine of the robot's own format has: height fields, distance functions, fitted primitives."""
+    native = native_format(mechanism)
+    if native is None:
+        return mechanism
+    gone = [view.id for view in mechanism.every_shape() if isinstance(view.shape.geometry, NoShape)]
+    for key in gone:
+        message = f"{key} has a geometry that only {native.title} can represent; it is left out"
+        context.report.warn(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.formats import native_format
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Role, Sphere
 from hymeko_x.ir.values import ZERO, add, rotate_tensor, scaled
-from hymeko_x.rewrite.native import is_native
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -34,7 +34,7 @@ def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
     The centre of mass stays as it is. MJCF means zero where it says nothing, and URDF no inertial at all: those stay,
     and so does what has no solid, of which the notation says so: a plane that becomes a thin box later is none.
     """
-    if is_native(mechanism):
+    if native_format(mechanism):
         return mechanism
     changed: dict[Id, Body] = {}
     unsaid: dict[Id, Mapping[str, str]] = {}

@@ -8,13 +8,13 @@ from msgspec import Struct, field
 
 from hymeko_x.backends.hymeko.extras import foreign_items
 from hymeko_x.backends.hymeko.values import pose_value, value_of
+from hymeko_x.formats import native_format
 from hymeko_x.formats.hymeko import CHILD_CLASS, NAMED_AFTER_ID, PARTS, RESERVED, SHORT_TYPES, TARGETS, attached_key
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.markup import value_of_text
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value
-from hymeko_x.rewrite.native import is_native
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -77,7 +77,7 @@ class HymekoSheet(Struct, frozen=True):
     def class_items(self, key: Id) -> list[Item]:
         """``class "a"``: the default classes of an element of MJCF, of a joint one for each of its dofs."""
         classes = self.mechanism.stereotypes.get(key)
-        if not classes or not is_native(self.mechanism):
+        if not classes or native_format(self.mechanism) is None:
             return []
         return [Field("class", value_of(classes[0]) if len(classes) == 1 else classes)]
 

@@ -12,12 +12,12 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
+from hymeko_x.formats.mjcf.words import from_mjcf
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.meshes.images import UnreadableImage, png_bytes
-from hymeko_x.rewrite.native import is_native
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -67,7 +67,7 @@ class _Packing(Builder, kw_only=True):
 
 def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """The mechanism with meshes and textures that MuJoCo reads; shapes whose mesh cannot be read are left out."""
-    if is_native(mechanism):
+    if from_mjcf(mechanism):
         from hymeko_x.backends.mjcf.references import pack_native
 
         return pack_native(mechanism, shelf, files, report)

@@ -1,9 +1,17 @@
-"""What makes a mechanism legal in MJCF."""
+"""The rules that make a mechanism legal in MJCF, and which of them a mechanism needs that came from there."""
 
 from __future__ import annotations
 
+import re
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
+from hymeko_x import codes
+from hymeko_x.formats.mjcf.words import NAME, compiler_has
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Actuator, DofKind
 from hymeko_x.rewrite.actuators import choose_actuators, drop_idle_actuators
 from hymeko_x.rewrite.base import choose_base, put_world_link_into_world
 from hymeko_x.rewrite.couplings import make_couplings_scalar
@@ -12,14 +20,17 @@ from hymeko_x.rewrite.joints import expand_screws, lower_inner_free_joints, name
 from hymeko_x.rewrite.limits import make_limits_intervals
 from hymeko_x.rewrite.loops import anchor_closures, close_by_points, open_second_parents
 from hymeko_x.rewrite.names import make_names_usable, name_assets_once
-from hymeko_x.rewrite.native import drop_stale_keyframes
 from hymeko_x.rewrite.shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.rewrite.solids import fill_tensors
 from hymeko_x.rewrite.subsets import split_subsets
 from hymeko_x.rewrite.tendons import drop_odd_tendons, make_tendons_sound, name_wrapped_shapes
 
 if TYPE_CHECKING:
-    from hymeko_x.rewrite.context import Rule
+    from collections.abc import Mapping
+
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.rewrite.context import Context, Rule
 
 RULES: tuple[Rule, ...] = (
     make_names_usable,
@@ -51,8 +62,76 @@ RULES: tuple[Rule, ...] = (
     make_names_usable,  # once more, for what the rules have added
 )
 
-_FOREIGN = (anchor_closures, name_dofs, give_moving_bodies_mass)
-"""What MJCF says in more ways than others, and what MuJoCo finds out itself or the model that a part is made for."""
 
-NATIVE: tuple[Rule, ...] = (*(rule for rule in RULES if rule not in _FOREIGN), name_dofs_once, drop_stale_keyframes)
+# ---- what came from MJCF -----------------------------------------------------------------------------------------------------
+
+
+def _make_tensors_physical(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Inertias as they are where the file tells MuJoCo to repair those that it would refuse otherwise."""
+    return mechanism if compiler_has(mechanism, ("balanceinertia", "boundinertia")) else make_tensors_physical(mechanism, context)
+
+
+def _drop_empty_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
+    """MuJoCo has geometries of its own: a height field, a distance function, a primitive fitted to a mesh."""
+
+    def has_own_geometry(shape: Id) -> bool:
+        kept = any(extra.format == NAME for extra in mechanism.extras.get(shape, ()))
+        return kept or mechanism.notation(shape, "@type") is not None
+
+    return drop_empty_shapes(mechanism, context, has_own_geometry)
+
+
+_COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})
+"""How many numbers place a dof, and how many say how fast it moves; one of each for all others."""
+_KEY = re.compile(r"<key\b[^>]*?/>|<key\b.*?</key>", re.DOTALL)
+_NUMBERS = re.compile(r'\b(qpos|qvel|ctrl)="([^"]*)"')
+
+
+def _drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Keyframes are kept verbatim, and fit as long as no joint or actuator is added or removed; MuJoCo refuses others."""
+    own = mechanism.extras.get(ROOT, ())
+    if any("<flex" in extra.text or "<composite" in extra.text for extra in own) or not any(_is_keyframes(extra) for extra in own):
+        return mechanism  # soft bodies have coordinates of their own, which are not counted here
+    kinds = [dof.kind for view in mechanism.joints.values() for dof in view.joint.dofs]
+    counts = {
+        "qpos": sum(_COORDINATES.get(kind, (1, 1))[0] for kind in kinds),
+        "qvel": sum(_COORDINATES.get(kind, (1, 1))[1] for kind in kinds),
+        "ctrl": sum(1 for _ in mechanism.vertices(Actuator)),
+    }
+    kept = tuple(_with_fitting_keys(extra, counts, context.report) if _is_keyframes(extra) else extra for extra in own)
+    return mechanism if kept == own else replace(mechanism, extras={**mechanism.extras, ROOT: kept})
+
+
+def _is_keyframes(extra: Extra) -> bool:
+    return extra.format == NAME and extra.text.startswith("<keyframe")
+
+
+def _with_fitting_keys(extra: Extra, counts: dict[str, int], report: Report) -> Extra:
+    def fitting(found: re.Match[str]) -> str:
+        for name, numbers in _NUMBERS.findall(found[0]):
+            if len(numbers.split()) != counts[name]:
+                message = f"a keyframe has {len(numbers.split())} numbers in {name}, and the robot has {counts[name]}; it is left out"
+                report.warn(codes.NOT_SAID, message)
+                return ""
+        return found[0]
+
+    return replace(extra, text=_KEY.sub(fitting, extra.text))
+
+
+_REPLACED: Mapping[Rule, Rule | None] = MappingProxyType(
+    {
+        anchor_closures: None,
+        name_dofs: None,
+        give_moving_bodies_mass: None,
+        make_tensors_physical: _make_tensors_physical,
+        drop_empty_shapes: _drop_empty_shapes,
+    }
+)
+"""Rules that a robot from MJCF does without, since MJCF has more than one form of it or MuJoCo finds it out, and those that do less."""
+
+NATIVE: tuple[Rule, ...] = (
+    *(rule for common in RULES if (rule := _REPLACED.get(common, common)) is not None),
+    name_dofs_once,
+    _drop_stale_keyframes,
+)
 """The rules for what came from MJCF: none changes what MuJoCo reads, all hold for what was edited in another format since."""

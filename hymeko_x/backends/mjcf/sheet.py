@@ -23,7 +23,6 @@ from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import ROOT, file_stem
 from hymeko_x.ir.parts import Joint, Mesh, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose, compose, numbers_text
-from hymeko_x.rewrite.native import is_native
 from hymeko_x.xml.printing import Tag, render
 
 if TYPE_CHECKING:
@@ -240,7 +239,7 @@ class MjcfSheet:
 
 def open_sheet(mechanism: Mechanism, others: Classes) -> MjcfSheet:
     """An empty document with the mechanism's own settings and classes; with ``others`` where it did not come from MJCF."""
-    if not is_native(mechanism):
+    if not words.from_mjcf(mechanism):
         root = Tag("mujoco", {"model": mechanism.name} if mechanism.name else {}, ['<compiler angle="radian" autolimits="true"/>'])
         return MjcfSheet(mechanism, root, False, Settings(degree=False), others)
     own = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.NAME, "comment")]

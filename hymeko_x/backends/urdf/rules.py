@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
-from hymeko_x.rewrite.native import drop_shapes_of_mujoco
+from hymeko_x.rewrite.shapes import drop_engine_shapes
 from hymeko_x.rewrite.solids import fill_tensors
 from hymeko_x.rewrite.subsets import part_meshes_by_looks
 from hymeko_x.rewrite.urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 RULES: tuple[Rule, ...] = (
     make_names_usable,
-    drop_shapes_of_mujoco,
+    drop_engine_shapes,
     fill_tensors,
     expand_screws,
     chain_dofs,

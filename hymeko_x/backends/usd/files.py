@@ -10,12 +10,12 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.assets.refer import Keep, keep_references
 from hymeko_x.assets.shelf import read_file, suffix_of
+from hymeko_x.formats import native_format
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import file_stem, shape_edge, subset_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.meshes.submesh import LoadedMesh
-from hymeko_x.rewrite.native import is_native
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +49,7 @@ def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Repor
     what came from there.
     """
     run = _Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
-    users, are_coloured = mechanism.shapes_by_mesh(), not is_native(mechanism)
+    users, are_coloured = mechanism.shapes_by_mesh(), native_format(mechanism) is None
     textured = {arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0}
     for key, mesh in mechanism.vertices(Mesh):
         if mesh.uri is None or mesh.vertices:

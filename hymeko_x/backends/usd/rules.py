@@ -12,7 +12,6 @@ from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Contact, Loop
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
-from hymeko_x.rewrite.native import say_what_cameras_see
 from hymeko_x.rewrite.urdf import hold_or_free_open_bases
 
 if TYPE_CHECKING:
@@ -58,5 +57,4 @@ RULES: tuple[Rule, ...] = (
     expand_screws,
     drop_loops_without_bodies,
     drop_stale_groups,
-    say_what_cameras_see,
 )

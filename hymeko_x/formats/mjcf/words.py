@@ -8,10 +8,13 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.mjcf import NAME as NAME
 from hymeko_x.formats.mjcf.codec import Settings
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Role
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+
+    from hymeko_x.ir.mechanism import Mechanism
 
 
 VERSION = "4.0"
@@ -102,6 +105,31 @@ def settings_of(compilers: Iterable[Mapping[str, str]]) -> Settings:
         texture_folder=said.get("texturedir", assets),
         strip_path=said.get("strippath", "false") == "true",
     )
+
+
+def from_mjcf(mechanism: Mechanism) -> bool:
+    """Whether a mechanism came from MJCF: directly, through HyMeKo text, or carried by another file."""
+    return mechanism.source.format == NAME
+
+
+def compilers(mechanism: Mechanism) -> list[str]:
+    """The <compiler> elements of the file that a mechanism came from, verbatim."""
+    return [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.format == NAME and extra.text.startswith("<compiler")]
+
+
+def compiler_has(mechanism: Mechanism, names: Iterable[str]) -> bool:
+    """Whether a <compiler> of the file has one of these attributes."""
+    return any(f"{name}=" in text for text in compilers(mechanism) for name in names)
+
+
+def shapes_have_weight(mechanism: Mechanism) -> bool:
+    """Whether the masses of shapes may count although their bodies have inertials."""
+    return compiler_has(mechanism, ("inertiafromgeom",))
+
+
+def mentions(mechanism: Mechanism, attribute: str) -> bool:
+    """Whether an element or a class has an attribute of this name, as far as extras show it."""
+    return any(attribute in extra.path or attribute in extra.text for own in mechanism.extras.values() for extra in own)
 
 
 def joined(folder: str, file: str, settings: Settings) -> str:

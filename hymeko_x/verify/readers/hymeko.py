@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
+from hymeko_x.formats import native_format
 from hymeko_x.frontends import hymeko
-from hymeko_x.frontends.mjcf.weigh import weigh
+from hymeko_x.frontends.mjcf.complete import complete
 from hymeko_x.ir.parts import Body
 from hymeko_x.rewrite.context import Options
-from hymeko_x.rewrite.native import is_native
 from hymeko_x.source import Source
 from hymeko_x.verify.readers.mechanism import from_mechanism
 
@@ -36,11 +36,11 @@ def read(path: Path, places: Places) -> KinematicModel:
         raise refuse(codes.ENGINE_REFUSED, f"the HyMeKo text cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
     if next(mechanism.vertices(Body), None) is None:
         raise refuse(codes.ENGINE_REFUSED, "the HyMeKo text describes a hypergraph without bodies, which is no robot", Origin(str(path)))
-    if is_native(mechanism):
+    if native_format(mechanism):
         mechanism = _weighed(mechanism, files)
     return from_mechanism(mechanism, format="hymeko")
 
 
 def _weighed(mechanism: Mechanism, files: Files) -> Mechanism:
     """What came from MJCF, with what only MuJoCo knows."""
-    return weigh(mechanism, lambda: (mechanism, mjcf.write(mechanism, Options(), Report()).main), files, Report())
+    return complete(mechanism, lambda: (mechanism, mjcf.write(mechanism, Options(), Report()).main), files, Report())

@@ -10,7 +10,7 @@ from mjmodels import read_text, write
 
 import hymeko_x as hx
 from hymeko_x.diagnostics import Report
-from hymeko_x.frontends.mjcf.weigh import weigh
+from hymeko_x.frontends.mjcf.complete import complete
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.parts import Body, Capsule, Inertial, NoShape, Shape
 from hymeko_x.rewrite import Options, legalize
@@ -21,7 +21,7 @@ CUBE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1"
 
 def weighed(content: str, head: str = "") -> Mechanism:
     robot = read_text(f"<mujoco>{head}<worldbody>{content}</worldbody></mujoco>")
-    return weigh(robot, lambda: (robot, write(robot).encode()), NoFiles(), Report())
+    return complete(robot, lambda: (robot, write(robot).encode()), NoFiles(), Report())
 
 
 def inertial(mechanism: Mechanism, body: str) -> Inertial:
@@ -52,7 +52,7 @@ def test_an_inertia_that_is_said_stays_as_it_is() -> None:
 def test_where_everything_is_said_nothing_is_printed_for_mujoco() -> None:
     body = '<body name="b"><freejoint/><inertial pos="0 0 1" mass="2" diaginertia="1 2 2"/><geom size=".1"/></body>'
     robot = read_text(f"<mujoco><worldbody>{body}</worldbody></mujoco>")
-    assert weigh(robot, lambda: pytest.fail("it was printed"), NoFiles(), Report()) is robot
+    assert complete(robot, lambda: pytest.fail("it was printed"), NoFiles(), Report()) is robot
 
 
 def test_a_total_mass_scales_what_is_said_as_well() -> None:
@@ -69,7 +69,7 @@ def test_without_a_mesh_there_is_a_warning_and_no_inertia() -> None:
     asset = '<asset><mesh name="m" file="gone.stl"/></asset>'
     text = f'<mujoco>{asset}<worldbody><body name="b"><geom type="mesh" mesh="m"/></body></worldbody></mujoco>'
     robot, report = read_text(text), Report()
-    assert weigh(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
+    assert complete(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
     assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
 
 
@@ -93,7 +93,7 @@ def test_a_capsule_around_a_mesh_has_its_size_in_every_format() -> None:
 def test_a_time_constant_and_a_damping_ratio_become_stiffness_and_damping() -> None:
     text = '<mujoco><worldbody><body><joint name="j" springdamper="1 1"/><geom size="1" mass="1"/></body></worldbody></mujoco>'
     robot = read_text(text)
-    dof = weigh(robot, lambda: (robot, write(robot).encode()), NoFiles(), Report()).joints[Id("joint", "j")].joint.dofs[0]
+    dof = complete(robot, lambda: (robot, write(robot).encode()), NoFiles(), Report()).joints[Id("joint", "j")].joint.dofs[0]
     assert dof.stiffness > 0.0
     assert dof.damping == pytest.approx(2.0 * (dof.stiffness * 0.4) ** 0.5)
 
@@ -104,7 +104,7 @@ def test_a_geometry_that_only_mujoco_knows_is_left_out_elsewhere_with_a_warning(
     report = Report()
     legal = legalize(read_text(text), "urdf", Options(), report)
     assert not [shape for _, shape, _ in legal.edges(Shape) if isinstance(shape.geometry, NoShape)]
-    assert any("has a geometry that only MuJoCo knows; it is left out" in str(said) for said in report)
+    assert any("has a geometry that only MuJoCo XML can represent; it is left out" in str(said) for said in report)
 
 
 WEDGE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 3"

@@ -12,9 +12,8 @@ from hymeko_x import formats, pipeline
 from hymeko_x.corpus.catalog import development_files
 from hymeko_x.diagnostics import Report
 from hymeko_x.disk import open_source
-from hymeko_x.frontends.mjcf import weigh as weigh_module
-from hymeko_x.frontends.mjcf.lean import can_be_lean
-from hymeko_x.frontends.mjcf.weigh import weigh
+from hymeko_x.frontends.mjcf import complete as complete_module
+from hymeko_x.frontends.mjcf.complete import are_solids_alone, complete
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.parts import Body
 from hymeko_x.rewrite import Options, legalize
@@ -31,14 +30,14 @@ def unweighed(mechanism: Mechanism) -> list[Id]:
 
 def weighed_whole(mechanism: Mechanism, files: Files) -> Mechanism:
     native = legalize(mechanism, "mjcf", Options(), Report())
-    return weigh(mechanism, lambda: (native, write(native).encode()), files, Report())
+    return complete(mechanism, lambda: (native, write(native).encode()), files, Report())
 
 
 def assert_same_alone(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     source = open_source(str(robot))
     mechanism = pipeline.read(source, formats.MJCF, Report())
     alone = weighed_whole(mechanism, source.files)
-    monkeypatch.setattr(weigh_module, "can_be_lean", lambda *_: False)
+    monkeypatch.setattr(complete_module, "are_solids_alone", lambda *_: False)
     assert repr(alone.graph.vertices) == repr(weighed_whole(mechanism, source.files).graph.vertices)
 
 
@@ -46,7 +45,7 @@ def assert_same_alone(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("robot", FEW, ids=lambda file: file.id, indirect=True)
 def test_bodies_of_a_real_robot_weigh_alone_what_they_weigh_in_it_to_the_last_bit(robot: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     mechanism = pipeline.read(open_source(str(robot)), formats.MJCF, Report())
-    assert can_be_lean(mechanism, unweighed(mechanism))
+    assert are_solids_alone(mechanism, unweighed(mechanism))
     assert_same_alone(robot, monkeypatch)
 
 
@@ -86,9 +85,9 @@ def test_however_a_solid_is_placed_it_weighs_alone_what_it_weighs_in_the_robot(
     position = "" if "fromto" in place or "pos" in place else 'pos="4 5 6"'
     head = f'<compiler {angles}/><default><geom type="box" density="5" size=".1 .2 .3"/></default>'
     robot = robot_of(f'<geom {place} {position}/><geom size="3 2 1"/>', head)
-    assert can_be_lean(robot, unweighed(robot))
+    assert are_solids_alone(robot, unweighed(robot))
     alone = weighed_whole(robot, NoFiles())
-    monkeypatch.setattr(weigh_module, "can_be_lean", lambda *_: False)
+    monkeypatch.setattr(complete_module, "are_solids_alone", lambda *_: False)
     assert repr(alone.graph.vertices) == repr(weighed_whole(robot, NoFiles()).graph.vertices)
 
 
@@ -108,23 +107,23 @@ def test_however_a_solid_is_placed_it_weighs_alone_what_it_weighs_in_the_robot(
 )
 def test_wherever_more_than_solids_counts_the_whole_robot_is_asked(content: str, head: str) -> None:
     plain, robot = robot_of(), robot_of(content, head)
-    assert can_be_lean(plain, unweighed(plain))
-    assert not can_be_lean(robot, unweighed(robot))
+    assert are_solids_alone(plain, unweighed(plain))
+    assert not are_solids_alone(robot, unweighed(robot))
 
 
 def test_without_mujoco_there_is_a_warning_and_no_inertia(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     robot, report = robot_of(), Report()
-    assert weigh(robot, lambda: pytest.fail("it was printed"), NoFiles(), report) is robot
+    assert complete(robot, lambda: pytest.fail("it was printed"), NoFiles(), report) is robot
     assert [str(said)[:15] for said in report] == ["warning[HX301]:"]
 
 
 def test_what_weighs_nothing_is_left_to_the_whole_robot_which_mujoco_refuses() -> None:
     robot, report = robot_of('<geom size=".1" mass="0"/>'), Report()
-    assert weigh(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
+    assert complete(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
     assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
 
 
 def test_nothing_is_printed_for_a_robot_of_solids() -> None:
-    found = weigh(robot_of(), lambda: pytest.fail("it was printed"), NoFiles(), Report())
+    found = complete(robot_of(), lambda: pytest.fail("it was printed"), NoFiles(), Report())
     assert found.vertex(Id("body", "b"), Body).inertial is not None
