@@ -8,6 +8,7 @@ from hymeko_x import formats
 from hymeko_x.compare.diff import Difference, Tolerance, diff
 from hymeko_x.compare.relevance import relevant
 from hymeko_x.ir.mechanism import ROOT, file_stem
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Mesh, Texture
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
         return False
     part = mechanism.graph.vertices.get(key)
     of_file = isinstance(part, Mesh | Texture) and part.name is None and part.uri and key.name.partition("#")[0] == file_stem(part.uri)
-    return key.kind == "shape" or bool(of_file) or mechanism.notation(key, "unnamed") is not None
+    return key.kind == "shape" or bool(of_file) or mechanism.notation(key, UNNAMED) is not None
 
 
 def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference]:
@@ -101,8 +102,9 @@ def _unsaid_notes(mechanism: Mechanism, image: Mechanism) -> Iterator[Difference
     stated = [(field, name) for format in formats.families() for field, name in format.stated_notations.items()]
     for key, table in mechanism.notations.items() if stated else ():
         for field, name in stated:
-            if name in table and image.notation(key, name) != table[name]:
-                yield Difference(key, field, table[name], image.notation(key, name))
+            after = image.notations.get(key, {}).get(name)
+            if name in table and after != table[name]:
+                yield Difference(key, field, table[name], after)
 
 
 def _is_boilerplate(difference: Difference, mechanism: Mechanism, format: Format) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from msgspec import Struct, field
 from msgspec.structs import replace
@@ -16,7 +16,10 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Origin
     from hymeko_x.ir.mechanism import Extra, Id, Provenance, RobotEdge
+    from hymeko_x.ir.notations import Notation
     from hymeko_x.ir.parts import Material, Texture, VertexPart
+
+T = TypeVar("T")
 
 
 class Builder(Struct, kw_only=True):
@@ -40,9 +43,14 @@ class Builder(Struct, kw_only=True):
         self.origins[key] = origin
         return key
 
-    def note(self, key: Id, name: str, text: str) -> None:
-        """Keep how the author wrote a value."""
-        self.notations.setdefault(key, {})[name] = text
+    def note(self, key: Id, notation: Notation[T], value: T) -> None:
+        """Keep how the author wrote something of an element."""
+        self.notations.setdefault(key, {})[notation.name] = notation.write(value)
+
+    def noted(self, key: Id, notation: Notation[T]) -> T | None:
+        """The value of a notation, or None."""
+        text = self.notations.get(key, {}).get(notation.name)
+        return None if text is None else notation.read(text)
 
     def add_extras(self, key: Id, *extras: Extra) -> None:
         """Keep texts of an element that the IR cannot represent."""

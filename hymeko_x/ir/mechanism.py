@@ -22,8 +22,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from hymeko_x.diagnostics import Origin
+    from hymeko_x.ir.notations import Notation
 
 P = TypeVar("P")
+T = TypeVar("T")
 
 
 class Id(NamedTuple):
@@ -129,11 +131,11 @@ class StoredMesh(NamedTuple):
 class Mechanism(Struct, frozen=True, eq=False, dict=True):
     """Name, graph and side tables. Equality looks at name, graph and extras; places and notations do not count.
 
-    ``notations`` keeps, by element and key, how an author wrote what he wrote where the value itself cannot remember
-    it; ``stereotypes`` the classes, macros and templates that elements were made from; ``layout`` the order in
-    which the author wrote the elements (of any kind), as far as known; ``places`` by uri how the file that carried the
-    mechanism calls a mesh or an image, which may lie there and no longer where the uri says; ``stored`` what
-    this file itself has of a mesh by its uri, which stands in where there is no such file; ``source`` where all of it came from.
+    ``notations`` keeps, by element and name, how an author wrote what the value itself cannot keep, as text
+    (see :class:`hymeko_x.ir.notations.Notation`); ``stereotypes`` the classes, macros and templates that elements were made
+    from; ``layout`` the order in which the author wrote the elements (of any kind), as far as known; ``places`` by uri the
+    name that the file which carried the mechanism has for a mesh or an image; ``stored`` the content that this file itself has
+    of a mesh by its uri, which is used where there is no such file; ``source`` where all of it came from.
     """
 
     name: str
@@ -300,9 +302,10 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
         """Where the element stands in its source, if known."""
         return self.origins.get(key)
 
-    def notation(self, key: Id, name: str) -> str | None:
+    def notation(self, key: Id, notation: Notation[T]) -> T | None:
         """How the author wrote something of an element, or None."""
-        return self.notations.get(key, {}).get(name)
+        text = self.notations.get(key, _NO_NOTATIONS).get(notation.name)
+        return None if text is None else notation.read(text)
 
     def with_graph(self, graph: RobotGraph) -> Mechanism:
         """The same mechanism with another graph. What is known of its edges stays known where they are the same table."""
@@ -313,6 +316,7 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
         return changed
 
 
+_NO_NOTATIONS: Mapping[str, str] = MappingProxyType({})
 _OF_EDGES = ("_kinds_of_edges", "joints", "children", "parent_joint", "shapes", "subsets", "mounts")
 """What a mechanism computes of its edges alone."""
 

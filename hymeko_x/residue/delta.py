@@ -10,8 +10,8 @@ from hymeko_x.compare.leaves import TURN, leaves_between
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import ROOT, Id
-from hymeko_x.ir.notations import kept_notations
 from hymeko_x.ir.parts import Body
+from hymeko_x.ir.provenance import kept_notations
 from hymeko_x.residue import Addition, Change, Removal, Residue, Sides
 from hymeko_x.residue.align import aligned
 from hymeko_x.residue.order import by_kind, moves

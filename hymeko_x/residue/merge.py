@@ -14,8 +14,8 @@ from hymeko_x.compare.leaves import TURN
 from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.notations import kept_notations, take_provenance
 from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Texture
+from hymeko_x.ir.provenance import kept_notations, take_provenance
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.residue.bridge import cross
 from hymeko_x.residue.follow import renamed_since, with_new_names, with_old_names

@@ -10,6 +10,7 @@ from hymeko_x import codes
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, coupling_edge, joint_edge
 from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import UNLIMITED, Body, Coupling, Dof, DofKind, Drive, Joint, Sense, Tendon
 from hymeko_x.ir.values import IDENTITY, X, Y, Z
 from hymeko_x.rewrite.names import usable_name
@@ -132,7 +133,7 @@ def _said_names(mechanism: Mechanism, view: JointView) -> list[str | None]:
     """What the dofs of a joint are called where nobody has to have a name."""
     if len(view.joint.dofs) == 1:
         only = view.joint.dofs[0].name
-        return [only or (None if mechanism.notation(view.id, "unnamed") else view.id.name)]
+        return [only or (None if mechanism.notation(view.id, UNNAMED) else view.id.name)]
     return [dof.name for dof in view.joint.dofs]
 
 

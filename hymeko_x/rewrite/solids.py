@@ -9,6 +9,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.formats import native_format
+from hymeko_x.ir.notations import WITHOUT_TENSOR
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Role, Sphere
 from hymeko_x.ir.values import ZERO, add, rotate_tensor, scaled
 
@@ -19,10 +20,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Geometry
     from hymeko_x.ir.values import Tensor, Vec3
     from hymeko_x.rewrite.context import Context
-
-UNSAID_NOTATION = "urdf.tensor"
-UNSAID = "unsaid"
-"""The notation of a body from a URDF file whose <inertial> has no <inertia>: urdfdom takes nothing of it."""
 
 _Solid = tuple[float, "Vec3"]
 """The volume in m^3 of a primitive, and its principal moments in m^2 per kg of mass."""
@@ -40,11 +37,11 @@ def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
     unsaid: dict[Id, Mapping[str, str]] = {}
     for key, body in mechanism.vertices(Body):
         inertial = body.inertial
-        if inertial is None or not inertial.mass or inertial.tensor is not None or mechanism.notation(key, UNSAID_NOTATION):
+        if inertial is None or not inertial.mass or inertial.tensor is not None or mechanism.notation(key, WITHOUT_TENSOR):
             continue
         unit = unit_tensor(mechanism.shapes.get(key, ()))
         if unit is None:
-            unsaid[key] = {**mechanism.notations.get(key, {}), UNSAID_NOTATION: UNSAID}
+            unsaid[key] = {**mechanism.notations.get(key, {}), WITHOUT_TENSOR.name: WITHOUT_TENSOR.write(True)}
             continue
         xx, yy, zz, xy, xz, yz = (inertial.mass * value for value in unit)
         changed[key] = replace(body, inertial=replace(inertial, tensor=(xx, yy, zz, xy, xz, yz)))

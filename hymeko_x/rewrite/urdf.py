@@ -12,6 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.formats.urdf.notations import TYPE
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, joint_edge
 from hymeko_x.ir.names import names_in_use, rename
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
     from hymeko_x.ir.names import Names
     from hymeko_x.rewrite.context import Context
-
-TYPE_NOTATION = "urdf.type"
-"""The notation of a joint whose type a URDF file said in a word of its own (``spherical``): it is written so again."""
 
 _SINGLE = (DofKind.HINGE, DofKind.SLIDE)
 
@@ -138,7 +136,7 @@ def _is_sayable(view: JointView, mechanism: Mechanism) -> bool:
         return False
     kinds = tuple(dof.kind for dof in dofs)
     if kinds == (DofKind.BALL,):
-        return mechanism.notation(view.id, TYPE_NOTATION) is not None
+        return mechanism.notation(view.id, TYPE) is not None
     if kinds == (DofKind.SLIDE, DofKind.SLIDE, DofKind.HINGE):
         plain = all(dof == Dof(dof.kind, dof.axis) for dof in dofs)  # a planar joint has one name, and no limits or damping
         return plain and tuple(dof.axis for dof in dofs[:2]) == plane_axes(dofs[2].axis)

@@ -7,6 +7,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.formats.urdf.notations import STYLE, Explicit, Style
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism, ShapeView, shape_edge
 from hymeko_x.ir.names import names_in_use
@@ -18,10 +19,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.names import Names
     from hymeko_x.ir.parts import Geometry
     from hymeko_x.rewrite.context import Context
-
-STYLE_NOTATION = "urdf.style"
-CAPSULE_WORD = "capsule"
-"""The word of the style of a mechanism from a URDF file that has <capsule>: it is written so again."""
 
 PLANE_SIZE = 100.0
 """The edge length in m of the box that stands for an infinite plane."""
@@ -58,7 +55,7 @@ def prefer_own_colours(mechanism: Mechanism, context: Context) -> Mechanism:
 
 def approximate_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
     """Capsules become a cylinder and two spheres, planes thin boxes, ellipsoids stretched sphere meshes."""
-    keeps_capsules = CAPSULE_WORD in (mechanism.notation(ROOT, STYLE_NOTATION) or "").split()
+    keeps_capsules = Explicit.CAPSULE in (mechanism.notation(ROOT, STYLE) or Style()).explicit
     unsayable = (Ellipsoid, Plane) if keeps_capsules else (Ellipsoid, Plane, Capsule)
     found = [view for view in mechanism.every_shape() if isinstance(view.shape.geometry, unsayable)]
     if not found:

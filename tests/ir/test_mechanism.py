@@ -26,6 +26,7 @@ from hymeko_x.ir.mechanism import (
     shape_edge,
 )
 from hymeko_x.ir.names import Names
+from hymeko_x.ir.notations import word
 from hymeko_x.ir.values import IDENTITY, Pose
 
 A, B, C, D, E = (Id("body", name) for name in "abcde")
@@ -124,8 +125,8 @@ def test_places_notations_and_order_do_not_count_in_equality() -> None:
     )
     assert robot == twin
     assert twin.origin(A) == Origin("f", 1)
-    assert twin.notation(A, "k") == "v"
-    assert twin.notation(B, "k") is None
+    assert twin.notation(A, word("k")) == "v"
+    assert twin.notation(B, word("k")) is None
     assert robot.with_graph(Hypergraph()) != robot
 
 

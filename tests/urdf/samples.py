@@ -10,6 +10,7 @@ from hymeko_x.backends.urdf import write
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.urdf import read
 from hymeko_x.ir.mechanism import Mechanism
+from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
 
 TWO_LINKS = '<link name="a"/><link name="b"/>'
@@ -46,7 +47,7 @@ def said(text: str | bytes) -> list[str]:
 
 def dump(mechanism: Mechanism) -> str:
     """The URDF text of a mechanism."""
-    return write(mechanism, Report()).main.decode()
+    return write(mechanism, Options(), Report()).main.decode()
 
 
 def again(text: str | bytes) -> str:

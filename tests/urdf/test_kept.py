@@ -108,7 +108,7 @@ def test_what_most_fixed_joints_say_in_vain_is_said_once() -> None:
     body = TWO_LINKS + '<link name="c"/><link name="d"/>'
     body += joint(vain, "fixed") + joint(vain, "fixed", name="k", child="c") + joint('<axis xyz="0 0 1"/>', "fixed", name="l", child="d")
     mechanism = load(robot(body))
-    assert mechanism.notation(ROOT, "urdf.fixed") == vain
+    assert mechanism.notations.get(ROOT, {}).get("urdf.fixed") == vain
     assert list(mechanism.extras) == [Id("joint", "l")]
     assert dump(mechanism).count(vain) == 2
     assert dump(mechanism).count('<axis xyz="0 0 1"/>') == 1
@@ -120,7 +120,7 @@ def test_what_few_fixed_joints_say_in_vain_stays_theirs() -> None:
     vain = '<axis xyz="0 0 1"/>'
     joints = "".join(joint(vain if name in "bc" else "", "fixed", name=name, child=name) for name in names)
     mechanism = load(robot(links + joints))
-    assert mechanism.notation(ROOT, "urdf.fixed") is None
+    assert mechanism.notations.get(ROOT, {}).get("urdf.fixed") is None
     assert list(mechanism.extras) == [Id("joint", "b"), Id("joint", "c")]
 
 
@@ -132,7 +132,7 @@ def test_what_the_author_wrote_in_vain_is_written_again() -> None:
     )
     mechanism = load(robot(body, ' name="r" version="1.0"'))
     style = "dynamics inertial joint scale version visual"
-    assert mechanism.notation(ROOT, "urdf.style") == style
+    assert mechanism.notations.get(ROOT, {}).get("urdf.style") == style
     written = dump(mechanism)
     assert written.count("<origin ") == 3
     assert '<dynamics damping="0" friction="0"/>' in written

@@ -45,7 +45,7 @@ def test_a_rotation_that_was_not_written_as_rpy_comes_back_to_the_last_bits(
 def test_every_mechanism_can_be_written_after_legalising_and_the_text_is_well_formed(mechanism: Mechanism, base: str | None) -> None:
     own_words = replace(mechanism, extras={})  # the generated ones are not XML
     legal = legalize(own_words, "urdf", Options(base=base), Report())  # type: ignore[arg-type]
-    text = write(legal, Report()).main
+    text = write(legal, Options(), Report()).main
     assert not [message for message in said(text) if "HX005" in message]
     result = read(Source("r.urdf", text), Report())
     assert {key for key, _ in legal.vertices(parts.Body)} == {key for key, _ in result.vertices(parts.Body)}

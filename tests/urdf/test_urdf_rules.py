@@ -206,7 +206,7 @@ def test_an_ellipsoid_becomes_a_mesh_of_a_sphere_in_a_file_of_its_own() -> None:
     assert all(sum(x * x for x in point) == pytest.approx(1.0) for point in points)
     volume = sum(_determinant(*(points[corner] for corner in mesh.faces[at : at + 3])) for at in range(0, len(mesh.faces), 3)) / 6.0
     assert 4.0 < volume < 4.19
-    package = write(after, Report())
+    package = write(after, Options(), Report())
     assert list(package.files) == ["shapes/a_ellipsoid.obj"]
     assert b'<mesh filename="shapes/a_ellipsoid.obj" scale="1 2 3"/>' in package.main
 

@@ -17,10 +17,10 @@ from hymeko_x.backends.hymeko.parts import attached_arcs, part_items
 from hymeko_x.backends.hymeko.sheet import HymekoSheet, name_of, written_items
 from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
 from hymeko_x.backends.hymeko.values import shortest_angles
-from hymeko_x.formats.hymeko import AXES
+from hymeko_x.formats.hymeko import AXES, ROOT_NAME
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
-from hymeko_x.ir.notations import kept_notations
+from hymeko_x.ir.provenance import kept_notations
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, Ref, Stereotype
 from hymeko_x.source import Package
@@ -59,7 +59,7 @@ def document(mechanism: Mechanism) -> Document:
         shortest_angles(mechanism),
     )
     items = [*_settings(sheet, plain), *(_elements(sheet) if plain else _grouped(sheet))]
-    root = mechanism.notation(ROOT, "hymeko.root")
+    root = mechanism.notation(ROOT, ROOT_NAME)
     name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""
     kind = Stereotype(Ref(("graph" if plain else "robot",)))
@@ -94,7 +94,7 @@ def _settings(sheet: HymekoSheet, plain: bool) -> list[Item]:
         items.append(Node("units", (Field("angle"), Field("rad"))))
     if sheet.files:
         items.append(Field("files", sheet.files))
-    notations = {key: text for key, text in kept_notations(sheet.mechanism).get(ROOT, {}).items() if key != "hymeko.root"}
+    notations = {key: text for key, text in kept_notations(sheet.mechanism).get(ROOT, {}).items() if key != ROOT_NAME.name}
     if notations:
         items.extend(written_items(notations, flags=False))
     items.extend(foreign_items(_in_place(sheet.mechanism)[1], at_root=True))

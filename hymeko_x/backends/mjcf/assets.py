@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
+from hymeko_x.formats.mjcf.notations import MESHES
 from hymeko_x.formats.mjcf.places import MATERIAL, MESH
 from hymeko_x.formats.mjcf.words import below
 from hymeko_x.ir.graph import Arc
@@ -37,9 +38,8 @@ def _in_order(sheet: MjcfSheet, meshes: list[tuple[Id, Mesh]]) -> list[tuple[Id,
     if not sheet.from_mjcf:
         return meshes
     by_name = sorted(meshes, key=lambda item: item[0].name)
-    places = sheet.mechanism.notation(ROOT, "meshes") or ""
-    order = [int(place) for place in places.split() if place.isdigit()]
-    return [by_name[place] for place in order] if sorted(order) == list(range(len(meshes))) else by_name
+    places = sheet.mechanism.notation(ROOT, MESHES) or ()
+    return [by_name[place] for place in places] if sorted(places) == list(range(len(meshes))) else by_name
 
 
 def _file(uri: str | None, folder: str) -> str | None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf import CLASSES
+from hymeko_x.formats.mjcf.notations import GRID as NOTED_GRID
 from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, seen_from
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.parts import NoShape, Plane
@@ -29,7 +30,7 @@ def geom_tag(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     groups: tuple[Group, ...] = FITTED_GEOM if fitted else GEOM
     if frame is not None:
         groups = (seen_from(PLACE, frame.pose), *groups[1:])
-    grid = float(notations.get("grid", GRID)) if isinstance(shape.geometry, Plane) else None
+    grid = (sheet.mechanism.notation(key, NOTED_GRID) or GRID) if isinstance(shape.geometry, Plane) else None
     mesh = None if view.mesh is None else sheet.reference(Arc(view.mesh))
     values: dict[str, object] = {
         "place": Place(shape.geometry, view.pose, grid),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import NAME, compiler_has
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Actuator, DofKind
@@ -76,7 +77,7 @@ def _drop_empty_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
 
     def has_own_geometry(shape: Id) -> bool:
         kept = any(extra.format == NAME for extra in mechanism.extras.get(shape, ()))
-        return kept or mechanism.notation(shape, "@type") is not None
+        return kept or mechanism.notation(shape, attribute("type")) is not None
 
     return drop_empty_shapes(mechanism, context, has_own_geometry)
 

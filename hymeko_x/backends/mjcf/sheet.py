@@ -16,11 +16,13 @@ import msgspec
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import Classes, merge
 from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, Settings, parameter_text, parameter_value, plan_of
+from hymeko_x.formats.mjcf.notations import frame
 from hymeko_x.formats.mjcf.places import same_value
 from hymeko_x.formats.mjcf.schema import attributes_of
 from hymeko_x.formats.mjcf.tree import COMMENT, parse_text
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import ROOT, file_stem
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Joint, Mesh, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose, compose, numbers_text
 from hymeko_x.xml.printing import Tag, render
@@ -67,7 +69,7 @@ class MjcfSheet:
             return key.name
         if isinstance(part, Mesh) and part.uri and file_stem(part.uri) == key.name:
             return None
-        return None if self.mechanism.notation(key, "unnamed") else key.name
+        return None if self.mechanism.notation(key, UNNAMED) else key.name
 
     def reference(self, arc: RobotArc) -> str:
         """The name by which others refer to an element, or to the dof of a joint that the arc means."""
@@ -244,7 +246,7 @@ def open_sheet(mechanism: Mechanism, others: Classes) -> MjcfSheet:
         return MjcfSheet(mechanism, root, False, Settings(degree=False), others)
     own = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.NAME, "comment")]
     kept = {extra.path[1:]: extra.text for extra in own if extra.format == words.NAME and extra.path[:1] == "@"}
-    name = {} if mechanism.notation(ROOT, "unnamed") else {"model": mechanism.name}
+    name = {} if mechanism.notation(ROOT, UNNAMED) else {"model": mechanism.name}
     standing = sorted([extra for extra in own if not extra.path], key=lambda extra: extra.index)
     nodes = [_parsed(extra) for extra in standing]
     tags = [COMMENT if extra.format == "comment" else "" if node is None else node.tag for extra, node in zip(standing, nodes, strict=True)]
@@ -355,12 +357,10 @@ class BodyTag:
 
 def open_body(sheet: MjcfSheet, key: Id, tag: Tag, childclass: str | None) -> BodyTag:
     """A body with the frames that its author put into it."""
-    notations = sheet.notations(key)
     frames: dict[str, FrameTag] = {}
-    while (text := notations.get(f"frame{len(frames) + 1}")) is not None:
+    while (noted := sheet.mechanism.notation(key, frame(len(frames) + 1))) is not None:
         number = str(len(frames) + 1)
-        outer, _, rest = text.partition(" ")
-        attributes = parse_text(f"<frame {rest}/>").attributes
+        outer, attributes = noted
         parent = frames.get(outer)
         try:
             pose = POSE.read(merge({}, attributes), sheet.settings)

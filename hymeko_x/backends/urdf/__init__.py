@@ -19,6 +19,7 @@ from hymeko_x.backends.urdf.sheet import Sheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
 from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf.notations import STYLE, Explicit, Style
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 from hymeko_x.xml.printing import Tag, foreign_text, put_back, ready, render
@@ -77,7 +78,7 @@ def carry_residue(package: Package, text: str) -> Package:
 
 def _root_tag(mechanism: Mechanism) -> Tag:
     root = Tag("robot", {"name": mechanism.name})
-    if words.STYLE_VERSION in (mechanism.notation(ROOT, words.STYLE) or "").split():
+    if Explicit.VERSION in (mechanism.notation(ROOT, STYLE) or Style()).explicit:
         root.attributes["version"] = "1.0"
     own = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format == words.FORMAT and extra.path.startswith("@")]
     put_back(root, own, {})

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf import notations
+from hymeko_x.formats.urdf.notations import Explicit
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind, Joint
 from hymeko_x.ir.values import IDENTITY, number_text, numbers_text, plane_axes, said_numbers, unit
@@ -26,7 +28,7 @@ def joint_tag(key: Id, sheet: Sheet) -> Tag:
     view = sheet.mechanism.joints[key]
     word = _type(view, sheet)
     tag = Tag("joint", {"name": key.name, "type": word})
-    sheet.add_origin(tag, view.parent_pose, always=words.STYLE_JOINT_ORIGIN in sheet.style)
+    sheet.add_origin(tag, view.parent_pose, always=Explicit.JOINT_ORIGIN in sheet.explicit)
     tag.add("parent", link=view.parent.name)
     tag.add("child", link=view.child.name)
     if view.joint.dofs:
@@ -40,7 +42,7 @@ def joint_tag(key: Id, sheet: Sheet) -> Tag:
 def _type(view: JointView, sheet: Sheet) -> str:
     """The word for the joint: its author's if it still fits, else the usual one."""
     usual = words.default_type(view.joint)
-    own = sheet.mechanism.notation(view.id, words.TYPE)
+    own = sheet.mechanism.notation(view.id, notations.TYPE)
     word = own if own is not None and _fits(own, view.joint, usual) else usual
     if word is None or view.child_pose != IDENTITY or not _is_standard(view.joint):
         said = f"{view.id} has dofs or a frame that URDF has no word for"
@@ -70,7 +72,7 @@ def _add_dofs(tag: Tag, dofs: tuple[Dof, ...], word: str, sheet: Sheet) -> None:
         return
     if dof.calibration is not None:
         _add_calibration(tag, dof.calibration)
-    if dof.kind in (DofKind.HINGE, DofKind.SLIDE) and (dof.damping or dof.friction or words.STYLE_DYNAMICS in sheet.style):
+    if dof.kind in (DofKind.HINGE, DofKind.SLIDE) and (dof.damping or dof.friction or Explicit.DYNAMICS in sheet.explicit):
         tag.add("dynamics", damping=number_text(dof.damping), friction=number_text(dof.friction))
     _add_limits(tag, dof.limits, bounded=words.JOINT_TYPES[word].bounded)
     if dof.safety is not None:

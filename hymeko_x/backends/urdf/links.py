@@ -8,6 +8,7 @@ from hymeko_x import codes
 from hymeko_x.backends.urdf.materials import add_shape_material
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf.notations import Explicit
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
 from hymeko_x.ir.values import Pose, number_text, numbers_text, rotate_tensor, said_numbers
 from hymeko_x.xml.printing import Tag
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Tensor
 
-_ORIGIN_STYLES = {"visual": words.STYLE_VISUAL_ORIGIN, "collision": words.STYLE_COLLISION_ORIGIN}
+_ORIGIN_STYLES = {"visual": Explicit.VISUAL_ORIGIN, "collision": Explicit.COLLISION_ORIGIN}
 
 
 def link_tag(key: Id, sheet: Sheet) -> Tag:
@@ -38,7 +39,7 @@ def link_tag(key: Id, sheet: Sheet) -> Tag:
 def _add_inertial(link: Tag, inertial: Inertial, sheet: Sheet) -> None:
     tag = link.add("inertial")
     frame, tensor = _as_written(inertial)
-    sheet.add_origin(tag, frame, always=words.STYLE_INERTIAL_ORIGIN in sheet.style)
+    sheet.add_origin(tag, frame, always=Explicit.INERTIAL_ORIGIN in sheet.explicit)
     if inertial.mass is not None:
         tag.add("mass", value=number_text(inertial.mass))
     if tensor is not None:
@@ -58,7 +59,7 @@ def _add_shape(link: Tag, name: str, view: ShapeView, sheet: Sheet) -> None:
     tag = link.add(name)
     if view.shape.name is not None:
         tag.attributes["name"] = view.shape.name
-    sheet.add_origin(tag, view.pose, always=_ORIGIN_STYLES[name] in sheet.style)
+    sheet.add_origin(tag, view.pose, always=_ORIGIN_STYLES[name] in sheet.explicit)
     _add_geometry(tag.add("geometry"), view, sheet)
     add_shape_material(tag, view, sheet)
     sheet.put_back(tag, view.id)
@@ -90,5 +91,5 @@ def _add_mesh(tag: Tag, view: ShapeView, sheet: Sheet) -> None:
     uri = sheet.mesh_files.get(view.mesh, mesh.uri)
     if uri is not None:
         child.attributes["filename"] = uri
-    if mesh.scale != (1.0, 1.0, 1.0) or words.STYLE_SCALE in sheet.style:
+    if mesh.scale != (1.0, 1.0, 1.0) or Explicit.SCALE in sheet.explicit:
         child.attributes["scale"] = numbers_text(mesh.scale)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.urdf import Defined
+from hymeko_x.formats.urdf.notations import Defined
 from hymeko_x.ir.parts import Actuator, Body, Drive, Joint, Material
 
 if TYPE_CHECKING:

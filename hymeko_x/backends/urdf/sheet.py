@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 from hymeko_x.backends.urdf.meshes import files_of_meshes
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.urdf import Defined
+from hymeko_x.formats.urdf import notations
+from hymeko_x.formats.urdf.notations import Defined, Style
 from hymeko_x.ir.mechanism import ROOT, numbers_weight
 from hymeko_x.ir.parts import Coupling, Layer, Material, Texture
 from hymeko_x.ir.values import IDENTITY, numbers_text, rpy_of
@@ -18,11 +19,15 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc
+    from hymeko_x.ir.notations import Notation
     from hymeko_x.ir.values import Pose
 
 
 _RECENT = 256
 """How many poses are remembered: those of one link are near each other."""
+
+
+E = TypeVar("E")
 
 
 class Sheet:
@@ -32,24 +37,27 @@ class Sheet:
         self.mechanism = mechanism
         self.declared = declared
         self.within = within
-        self.style = frozenset((mechanism.notation(ROOT, words.STYLE) or "").split())
-        self._chosen = dict(word.split("=", 1) for word in self.style if "=" in word)
+        style = mechanism.notation(ROOT, notations.STYLE) or Style()
+        self.explicit = style.explicit
+        self._usual = dict(style.usual)
         self._defined_before: set[Id] = set()
         self._places: dict[Id, Defined | None] = {}
         self._origins: dict[int, tuple[Pose, dict[str, str]]] = {}
 
     # ---- style -----------------------------------------------------------------------------------------------------------
 
-    def choice(self, key: Id, choice: str) -> str:
-        """Which of several ways of writing an element's author took: its own, else the usual one, else the default."""
-        own = self.mechanism.notation(key, words.notation(choice))
-        return own or self._chosen.get(choice) or words.DEFAULT_CHOICES[choice]
+    def choice(self, key: Id, choice: Notation[E]) -> E:
+        """Which of several ways of writing an element's author chose: its own, else the file's, else the usual one."""
+        own = self.mechanism.notation(key, choice)
+        if own is not None:
+            return own
+        usual: Any = choice.read(self._usual.get(choice.name.removeprefix("urdf."), "")) or notations.USUAL[choice]
+        return cast("E", usual)
 
     @cached_property
     def usual_if_fixed(self) -> tuple[tuple[str, str], ...]:
-        """Name and text of the elements that fixed joints carry unless they have their own."""
-        text = self.mechanism.notation(ROOT, words.FIXED) or ""
-        return tuple((found[1], found[0]) for found in re.finditer(r"<([\w:.-]+)[^>]*/>", text))
+        """Name and text of the elements that fixed joints have unless they have their own."""
+        return self.mechanism.notation(ROOT, notations.FIXED) or ()
 
     # ---- materials -------------------------------------------------------------------------------------------------------
 
@@ -76,14 +84,14 @@ class Sheet:
     def place_of(self, key: Id) -> Defined | None:
         """Where a material is defined; None where it is only referred to."""
         material = self.mechanism.vertex(key, Material)
-        explicit = self.mechanism.notation(key, words.notation(words.DEFINED))
+        own = self.mechanism.notation(key, notations.DEFINED)
         if material.name is None:
             return Defined.INLINE
         if material.rgba is None and key not in self.textures:
-            return Defined(explicit) if explicit else None
+            return own
         if self.first_of_name[material.name] != key:
-            return Defined(explicit or Defined.INLINE)
-        return Defined(self.choice(key, words.DEFINED))
+            return own or Defined.INLINE
+        return self.choice(key, notations.DEFINED)
 
     def defined_now(self, key: Id) -> bool:
         """Whether a shape that uses the material has to define it; asked once for each shape, in printing order."""

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf import notations
+from hymeko_x.formats.urdf.notations import Reduction, TypeAs
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, Drive
 from hymeko_x.ir.values import number_text, numbers_text
@@ -22,7 +23,7 @@ def transmission_tag(key: Id, sheet: Sheet) -> Tag:
     edge = sheet.mechanism.graph.edges[key]
     assert isinstance(edge.data, Drive)
     tag = Tag("transmission", {"name": key.name})
-    _add_kind(tag, edge.data.kind, sheet.choice(key, words.TYPE_AS))
+    _add_kind(tag, edge.data.kind, sheet.choice(key, notations.TYPE_AS))
     joints = [arc for arc in edge.arcs if arc.sign < 0 and arc.target.kind == "joint"]
     actuators = [arc for arc in edge.arcs if arc.sign > 0]
     for arc in joints:
@@ -30,12 +31,12 @@ def transmission_tag(key: Id, sheet: Sheet) -> Tag:
     for arc in actuators:
         part = sheet.mechanism.vertex(arc.target, Actuator)
         _add_end(tag, "actuator", arc, part.parameters)
-    _add_reductions(tag, joints, actuators, sheet.choice(key, words.REDUCTION))
+    _add_reductions(tag, joints, actuators, sheet.choice(key, notations.REDUCTION))
     return tag
 
 
-def _add_kind(tag: Tag, kind: str, place: str) -> None:
-    if place == "attribute":
+def _add_kind(tag: Tag, kind: str, type_as: TypeAs) -> None:
+    if type_as is TypeAs.ATTRIBUTE:
         tag.attributes["type"] = kind
     elif kind:
         tag.children.append(_element("type", kind))
@@ -52,12 +53,12 @@ def _add_end(tag: Tag, name: str, arc: RobotArc, parameters: Parameters) -> None
         end.children.append(_element(key, text))
 
 
-def _add_reductions(tag: Tag, joints: list[RobotArc], actuators: list[RobotArc], place: str) -> None:
+def _add_reductions(tag: Tag, joints: list[RobotArc], actuators: list[RobotArc], place: Reduction) -> None:
     """The reductions: each where it weighs, but the only one of a simple transmission where its author put it."""
     ends = [child for child in tag.children if isinstance(child, Tag) and child.name in ("joint", "actuator")]
     weights = [numbers_weight(arc) for arc in (*joints, *actuators)]
     if len(joints) == len(actuators) == 1 and weights[0] and not weights[1]:
-        target = {"actuator": ends[1], "joint": ends[0], "transmission": tag}[place]
+        target = {Reduction.ACTUATOR: ends[1], Reduction.JOINT: ends[0], Reduction.TRANSMISSION: tag}[place]
         target.children.append(_element("mechanicalReduction", number_text(weights[0][0])))
         return
     for end, weight in zip(ends, weights, strict=True):

@@ -12,8 +12,7 @@ from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
 from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Mesh
-from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle, unit_quat
-from hymeko_x.xml.tree import read_numbers
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import UsdSheet
@@ -94,11 +93,7 @@ def note_body_shapes(sheet: UsdSheet) -> None:
 
 def _noted_pose(mechanism: Mechanism, body: Id) -> Pose | None:
     """Where the body's prim stood in the stage that it was read from, if not where its joints put it."""
-    numbers = read_numbers(mechanism.notation(body, words.POSE) or "")
-    if numbers is None or len(numbers) != 7 or not any(numbers[3:]):
-        return None
-    x, y, z, qw, qx, qy, qz = numbers
-    return Pose((x, y, z), unit_quat((qw, qx, qy, qz)))
+    return mechanism.notation(body, words.POSE)
 
 
 def world_poses(mechanism: Mechanism) -> dict[Id, Pose]:

@@ -124,7 +124,7 @@ def _parallel_paths(sheet: UsdSheet, key: Id, names: list[str], numbered: list[s
 
     UsdPhysics' parser lists the joints of an articulation in that order, and Newton takes it for the order of the dofs.
     """
-    noted = (sheet.mechanism.notation(key, words.PATH) or "").split()
+    noted = sheet.mechanism.notation(key, words.PATH) or ()
     there = [Sdf.Path(text) for text in noted if Sdf.Path.IsValidPathString(text) and Sdf.Path(text) not in sheet.prims]
     if len(there) == len(names):
         return there
@@ -249,7 +249,7 @@ def write_loops(sheet: UsdSheet) -> None:
             continue
         spec = sheet.add_prim(key, "joints", _loop_type(sheet, key, loop))
         write_frames(sheet, spec, key, (ends[0], ends[1]), loop.dofs)
-        if sheet.mechanism.notation(key, "usd.articulated") is None:
+        if sheet.mechanism.notation(key, words.ARTICULATED) is None:
             put(spec, "physics:excludeFromArticulation", T.Bool, True)
         if not loop.active:
             put(spec, "physics:jointEnabled", T.Bool, False)

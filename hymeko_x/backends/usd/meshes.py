@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.backends.usd.sheet import Prim, Triangles, UsdSheet
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
+    from hymeko_x.ir.notations import Notation
     from hymeko_x.ir.values import Vec3
     from hymeko_x.meshes.submesh import Submesh
 
@@ -53,7 +54,7 @@ def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id
     return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
 
 
-def _says(mechanism: Mechanism, shape: Id, notation: str) -> bool:
+def _says(mechanism: Mechanism, shape: Id, notation: Notation[bool]) -> bool:
     """Whether the prim of a mesh gets such an attribute: new prims do, those from a stage where they had it."""
     return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, notation) is not None
 

@@ -41,7 +41,7 @@ def drop_stale_groups(mechanism: Mechanism, context: Context) -> Mechanism:
         return mechanism
     message = "exclusions have changed, so that the collision groups for them are left out; exclusions are written as pairs"
     context.report.note(codes.REWRITTEN, message)
-    gone = (GROUPS, GROUPED)
+    gone = (GROUPS.name, GROUPED.name)
     notations = {key: {name: text for name, text in own.items() if name not in gone} for key, own in mechanism.notations.items()}
     extras = {key: tuple(extra for extra in found if not _is_group(extra)) for key, found in mechanism.extras.items()}
     return replace(mechanism, notations=notations, extras=extras)

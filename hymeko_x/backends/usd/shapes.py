@@ -76,7 +76,7 @@ def _is_hull(mechanism: Mechanism, view: ShapeView, prim: gprims.Gprim | None) -
 
 def gprim_of(mechanism: Mechanism, view: ShapeView) -> gprims.Gprim | None:
     """The primitive of a shape: as its author wrote it where that still means the same, else the plainest one."""
-    noted = gprims.parse(mechanism.notation(view.id, gprims.NOTATION))
+    noted = mechanism.notation(view.id, gprims.GPRIM)
     if noted is not None and gprims.geometry_of(noted).geometry == view.shape.geometry:
         return noted
     return gprims.default_gprim(view.shape.geometry, view.shape.role)

@@ -158,9 +158,9 @@ class UsdSheet(Struct):
     def noted_path(self, key: Id) -> Any | None:
         """The path of the prim that an element was read from, where it is free."""
         noted = self.mechanism.notation(key, words.PATH)
-        if noted is None or not Sdf.Path.IsValidPathString(noted):
+        if noted is None or len(noted) != 1 or not Sdf.Path.IsValidPathString(noted[0]):
             return None
-        path = Sdf.Path(noted)
+        path = Sdf.Path(noted[0])
         is_free = path not in self.prims or not self.is_made(path)
         return path if path.IsAbsoluteRootOrPrimPath() and is_free else None
 

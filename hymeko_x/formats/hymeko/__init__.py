@@ -9,6 +9,7 @@ from hymeko_x import formats
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.notations import word
 from hymeko_x.ir.values import X
 
 if TYPE_CHECKING:
@@ -125,6 +126,8 @@ SHORT_TYPES: Mapping[tuple[str, str], str] = MappingProxyType(
 )
 """Types of the standard vocabulary that stand for an element's kind and its ``type``."""
 
+ROOT_NAME = word("hymeko.root")
+"""The notation of the mechanism that keeps the name of the root where it is not that of the mechanism."""
 CHILD_CLASS = "childclass"
 """The field of a body that names the default class of MJCF for everything in it; a notation."""
 

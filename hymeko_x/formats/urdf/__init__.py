@@ -5,7 +5,6 @@ Source: the urdfdom schema and its parser; URDF 1.0.
 
 from __future__ import annotations
 
-from enum import Enum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -72,51 +71,3 @@ SINGLE = frozenset(
     )
 )
 """What stands at most once in its link, joint, visual or collision."""
-
-# ---- notations ---------------------------------------------------------------------------------------------------------------
-
-STYLE = "urdf.style"
-"""Mechanism: words for what the author wrote although he could have left it out. The writer then always writes it."""
-
-STYLE_JOINT_ORIGIN = "joint"
-STYLE_VISUAL_ORIGIN = "visual"
-STYLE_COLLISION_ORIGIN = "collision"
-STYLE_INERTIAL_ORIGIN = "inertial"
-STYLE_CAPSULE = "capsule"
-STYLE_DYNAMICS = "dynamics"
-STYLE_SCALE = "scale"
-STYLE_VERSION = "version"
-
-FIXED = "urdf.fixed"
-"""Mechanism: the meaningless elements that most fixed joints carry, verbatim."""
-
-TYPE = "urdf.type"
-"""Joint: the word of its type where another one would be written by default."""
-
-# Choices that most elements make alike. The usual one is a word of the style (``defined=inline``), and an element that
-# differs has a notation (``urdf.defined``). The first value of each is the default.
-
-DEFINED = "defined"
-"""Material: where it is defined, a value of :class:`Defined`."""
-
-REDUCTION = "reduction"
-"""Drive: which element says the mechanical reduction of a simple transmission: actuator, joint or transmission."""
-
-TYPE_AS = "type-as"
-"""Drive: whether the transmission's type is a ``child`` (ROS 1) or an ``attribute`` (PR2)."""
-
-DEFAULT_CHOICES: Mapping[str, str] = MappingProxyType({DEFINED: "robot", REDUCTION: "actuator", TYPE_AS: "child"})
-
-
-def notation(choice: str) -> str:
-    """The key of the notation of an element that chose differently."""
-    return f"urdf.{choice}"
-
-
-class Defined(Enum):
-    """Where a named material's colour and texture stand."""
-
-    ROBOT = "robot"
-    INLINE = "inline"
-    FIRST = "first"
-    BOTH = "both"

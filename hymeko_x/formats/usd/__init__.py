@@ -8,22 +8,23 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir import parts, values
+from hymeko_x.ir.notations import Notation, flag, word, words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 FORMAT = "usd"
-PATH = "usd.path"
-"""The notation that keeps the path of the prim that an element was read from."""
-TYPE = "usd.type"
+PATH = words("usd.path")
+"""The notation that keeps the path of the prim that an element was read from; several paths where it was made of several."""
+TYPE = word("usd.type")
 """The notation of a joint that keeps the type of its prim where the dofs alone would make it another one."""
-REVERSED = "usd.reversed"
+REVERSED = flag("usd.reversed")
 """The notation of a joint whose parent in the tree is its ``body1``."""
-EQUALITY = "usd.equality"
+EQUALITY = flag("usd.equality")
 """The notation of a coupling that has MuJoCo's schema alone, without Newton's."""
-NORMALS = "usd.normals"
+NORMALS = flag("usd.normals", "faces")
 """The notation of a mesh shape whose prim has the normal of each triangle as computed from its points."""
-TEXCOORDS = "usd.texcoords"
+TEXCOORDS = flag("usd.texcoords", "corners")
 """The notation of a mesh shape whose prim has texture coordinates by corner with indices, in the form that the writer uses."""
 MATERIAL_BIND = "materialBind"
 """The family of the subsets of a mesh that show other materials."""
@@ -32,13 +33,29 @@ FAMILY = f"subsetFamily:{MATERIAL_BIND}:familyType"
 NON_OVERLAPPING = "nonOverlapping"
 FACE = "face"
 """What a subset is made of."""
-HELD = "usd.held"
+HELD = flag("usd.held")
 """The notation of a joint without a prim: its body is fixed because its simulation is switched off."""
-POSE = "usd.pose"
-"""The notation of a body with the pose of its prim (x y z qw qx qy qz) where that is not the pose that its joints give."""
-GROUND = ("usd.body0", "usd.body1")
+ARTICULATED = flag("usd.articulated")
+"""The notation of a closure whose joint is part of the articulation."""
+
+
+def _pose_text(pose: values.Pose) -> str:
+    return values.numbers_text((*pose.xyz, *pose.quat))
+
+
+def _pose(text: str) -> values.Pose | None:
+    try:
+        x, y, z, qw, qx, qy, qz = map(float, text.split())
+    except ValueError:
+        return None
+    return values.Pose((x, y, z), values.unit_quat((qw, qx, qy, qz))) if any((qw, qx, qy, qz)) else None
+
+
+POSE = Notation("usd.pose", _pose_text, _pose)
+"""The notation of a body with the pose of its prim where that is not the pose that its joints give."""
+GROUND = (word("usd.body0"), word("usd.body1"))
 """The notations of a joint that keep the group that stood for the world on either side."""
-ROOT_PRIM = "usd.root"
+ROOT_PRIM = word("usd.root")
 """The notation of the mechanism with the path of the prim that represents the robot."""
 
 WRAPS = ("inputs:wrapS", "inputs:wrapT")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import hashlib
 from typing import TYPE_CHECKING
 
+from hymeko_x.ir.notations import word
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -14,10 +16,10 @@ if TYPE_CHECKING:
 # ---- collision groups ------------------------------------------------------------------------------------------------------------
 
 GROUP = "PhysicsCollisionGroup"
-GROUPED = "usd.grouped"
+GROUPED = word("usd.grouped")
 """The notation of an exclusion from collision groups: ``groups`` where it is theirs alone, ``both`` where a filtered pair has it, too."""
 BY_GROUPS, BY_BOTH = "groups", "both"
-GROUPS = "usd.groups"
+GROUPS = word("usd.groups")
 """The notation of the mechanism with the digest of the exclusions that its collision groups mean."""
 
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct
 
+from hymeko_x.ir.notations import Notation
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Plane, Role, Sphere
 from hymeko_x.ir.values import NO_ROTATION, Quat, Vec3, X, Y, quat_about
 
@@ -22,9 +23,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from hymeko_x.ir.parts import Geometry
-
-NOTATION = "usd.gprim"
-"""The notation of a shape with its primitive where that is not the one that the writer chooses."""
 
 SIZES: Mapping[str, tuple[tuple[str, float], ...]] = MappingProxyType(
     {
@@ -69,9 +67,9 @@ class PlacedGeometry(NamedTuple):
     turn: Quat
 
 
-def parse(text: str | None) -> Gprim | None:
+def _parse(text: str) -> Gprim | None:
     """The primitive of a notation; None where there is none."""
-    found = _WRITTEN.fullmatch(text or "")
+    found = _WRITTEN.fullmatch(text)
     if found is None or found[1] not in SIZES:
         return None
     try:
@@ -79,6 +77,10 @@ def parse(text: str | None) -> Gprim | None:
     except ValueError:
         return None
     return Gprim(found[1], sizes, found[2], (x, y, z)) if len(sizes) == len(SIZES[found[1]]) else None
+
+
+GPRIM = Notation("usd.gprim", str, _parse)
+"""The notation of a shape with its primitive where that is not the one that the writer chooses."""
 
 
 def geometry_of(prim: Gprim) -> PlacedGeometry:

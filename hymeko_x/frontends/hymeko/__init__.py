@@ -12,7 +12,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, refuse
-from hymeko_x.formats.hymeko import AXES, FOREIGN, SETTINGS, attached_key
+from hymeko_x.formats.hymeko import AXES, FOREIGN, ROOT_NAME, SETTINGS, attached_key
 from hymeko_x.frontends.hymeko.block import Block, is_field, is_written, read_written, read_written_block
 from hymeko_x.frontends.hymeko.bodies import is_base_arc, read_body, read_fixed
 from hymeko_x.frontends.hymeko.builder import HymekoBuilder
@@ -23,7 +23,7 @@ from hymeko_x.frontends.hymeko.parts import has_attached, read_part
 from hymeko_x.frontends.hymeko.values import ValueReader, read_units
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Provenance
-from hymeko_x.ir.notations import take_provenance
+from hymeko_x.ir.provenance import take_provenance
 from hymeko_x.language.errors import with_excerpt
 from hymeko_x.language.expansion import Element, Expanded, expand
 from hymeko_x.language.markup import SECTION_COMMENT
@@ -80,7 +80,7 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder) -> Mechanism:
     for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _WITH_SHAPES):
         _read_element(builder, key, element)
     if expanded.root and expanded.root != expanded.name:
-        builder.note(ROOT, "hymeko.root", expanded.root)
+        builder.note(ROOT, ROOT_NAME, expanded.root)
     return builder.build(expanded.name, builder.source)
 
 

@@ -26,7 +26,8 @@ from hymeko_x.frontends.mjcf.references import check_references
 from hymeko_x.frontends.mjcf.sections import keep_sections, read_settings
 from hymeko_x.frontends.mjcf.sensors import read_sensors
 from hymeko_x.frontends.mjcf.tendons import read_tendons
-from hymeko_x.ir.mechanism import WORLD, Id
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import World
 
 if TYPE_CHECKING:
@@ -110,5 +111,5 @@ def _read_name(root: Element, source: Source, draft: Draft) -> str:
     name = root.take("model")
     if name:
         return name
-    draft.note_root("unnamed", "yes")
+    draft.note(ROOT, UNNAMED, True)
     return PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
+from hymeko_x.formats.mjcf.notations import LAYERS, MESHES
 from hymeko_x.formats.mjcf.places import MATERIAL, MESH
 from hymeko_x.formats.mjcf.words import joined
-from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
+from hymeko_x.ir.mechanism import ROOT, Id, file_stem, layer_edge
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Material, Mesh, Texture
 
 if TYPE_CHECKING:
@@ -38,7 +40,7 @@ def _note_order(names: list[str], draft: Draft) -> None:
     """Meshes are defined where they are used first, elsewhere; their order in the file is a list of places among the sorted names."""
     places = {name: place for place, name in enumerate(sorted(names))}
     if names != sorted(names):
-        draft.note_root("meshes", " ".join([str(places[name]) for name in names]))
+        draft.note(ROOT, MESHES, tuple(places[name] for name in names))
 
 
 def _uri(element: Element, file: str, folder: str, draft: Draft) -> str:
@@ -99,7 +101,7 @@ def read_texture(element: Element, draft: Draft) -> None:
     draft.base(element, key)
     draft.vertices[key] = Texture(uri, None if name == key.name else name)
     if not (name or stem):
-        draft.note(key, "unnamed", "yes")
+        draft.note(key, UNNAMED, True)
     draft.keep(element, key)
     draft.show(key)
 
@@ -116,12 +118,12 @@ def read_material(element: Element, draft: Draft) -> None:
     found = draft.values(element, MATERIAL, base, key)
     texture = found.pop("texture")
     rgba = found.pop("rgba") or None
-    draft.vertices[key] = Material(None if draft.notations.get(key, {}).get("unnamed") else key.name, rgba, **found)
+    draft.vertices[key] = Material(None if draft.noted(key, UNNAMED) else key.name, rgba, **found)
     draft.show(key)
     if texture:
         _put(element, texture, key, "rgb", draft)
     elif len([child for child in element.children if child.tag == "layer"]) == 1:
-        draft.note(key, "layers", "yes")
+        draft.note(key, LAYERS, True)
     for layer in element.detach("layer"):
         _put(layer, layer.attributes.get("texture", ""), key, layer.attributes.get("role", "rgb"), draft)
     draft.keep(element, key)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
+from hymeko_x.formats.mjcf import notations
 from hymeko_x.formats.mjcf.codec import POSE, BadAttribute
 from hymeko_x.formats.mjcf.places import INERTIAL, seen_from
 from hymeko_x.formats.mjcf.words import kind_of
@@ -74,10 +75,10 @@ def _read_body(element: Element, spot: Spot, draft: Draft) -> list[tuple[Element
     key = draft.own(element, "body", f"{spot.stem}_body")
     childclass = element.take("childclass")
     if childclass is not None:
-        draft.note(key, "childclass", childclass)
+        draft.note(key, notations.CHILDCLASS, childclass)
         draft.check_class(element, childclass)
     if spot.frame:
-        draft.note(key, "frame", spot.frame)
+        draft.note(key, notations.frame_of(), spot.frame)
     _check_mocap(element, spot)
     pose = placed(draft.values(element, _PLACE, {}, key, always=bool(spot.frame))["pose"], spot)
     draft.vertices[key] = Body(_read_inertial(element, key, draft))
@@ -116,7 +117,7 @@ def _read_framed_inertial(node: Element, spot: Spot, draft: Draft, *, in_world: 
         raise refuse(codes.UNKNOWN_WORD, "the world cannot have an inertial", node.origin)
     if draft.settings.inertia_from_geoms:
         return None
-    draft.note(spot.body, "inertial/frame", spot.frame)
+    draft.note(spot.body, notations.frame_of("inertial/"), spot.frame)
     groups = (seen_from(INERTIAL, spot.pose),)
     inertial: Inertial = draft.values(node, groups, {}, spot.body, "inertial/", always=True)["inertial"]
     draft.keep(node, spot.body, "inertial")
@@ -162,19 +163,18 @@ def _unframed(element: Element, here: Spot, draft: Draft) -> list[tuple[Element,
             found.append((child, spot))
             continue
         count += 1
-        inner = _read_frame(child, spot, str(count), draft)
+        inner = _read_frame(child, spot, count, draft)
         stack.extend((grandchild, inner) for grandchild in reversed(child.children))
     return found
 
 
-def _read_frame(element: Element, spot: Spot, number: str, draft: Draft) -> Spot:
+def _read_frame(element: Element, spot: Spot, number: int, draft: Draft) -> Spot:
     """A <frame>: noted with its attributes as they are, behind the number of the frame around it."""
-    said = " ".join(f'{name}="{value}"' for name, value in element.attributes.items())
-    draft.note(spot.body, f"frame{number}", f"{spot.frame or 0} {said}".strip())
+    draft.note(spot.body, notations.frame(number), notations.Frame(spot.frame or "0", element.attributes))
     try:
         pose = POSE.read(element.attributes, draft.settings)
     except BadAttribute as error:
         raise draft.bad(element, error) from error
     if "childclass" in element.attributes:
         draft.check_class(element, element.attributes["childclass"])
-    return Spot(spot.body, spot.stem, number, compose(spot.pose, pose), element.attributes.get("childclass", spot.childclass))
+    return Spot(spot.body, spot.stem, str(number), compose(spot.pose, pose), element.attributes.get("childclass", spot.childclass))

@@ -11,9 +11,11 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import merge
 from hymeko_x.formats.mjcf.codec import BadAttribute, plan_of
+from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.tree import verbatim
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import ROOT, Id, Provenance
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.xml.tree import read_numbers
 from hymeko_x.xml.unread import extra_of, unread_extras
 
@@ -54,7 +56,7 @@ class Draft(Builder):
             self.register(element, words.NAMESPACES.get(kind, kind), name, key)
         else:
             key = self.names.take(kind, unnamed)
-            self.note(key, "unnamed", "yes")
+            self.note(key, UNNAMED, True)
         self.origins[key] = element.origin
         return key
 
@@ -123,7 +125,7 @@ class Draft(Builder):
                 if not always and (group.exact or group.repeats(value, merged, settings) or self._says_again(group, value, base, own)):
                     continue
                 for name in touched:
-                    self.note(key, f"{prefix}@{name}", own[name])
+                    self.note(key, attribute(name, prefix), own[name])
         except BadAttribute as error:
             raise self.bad(element, error) from error
         for name in taken:
@@ -159,10 +161,6 @@ class Draft(Builder):
         return refuse(codes.BAD_NUMBER, f"<{element.tag} {error.attribute}> {said}, expected {error.expected}", element.origin)
 
     # ---- side tables -----------------------------------------------------------------------------------------------------
-
-    def note_root(self, name: str, text: str) -> None:
-        """Keep how the author wrote something about the whole."""
-        self.note(ROOT, name, text)
 
     def show(self, key: Id) -> None:
         """Give an element its place among all."""

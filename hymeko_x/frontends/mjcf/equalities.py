@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf.codec import BadAttribute, numbers_of
+from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import shifted
 from hymeko_x.frontends.mjcf.contacts import find_end
 from hymeko_x.frontends.mjcf.mounts import take_parameters
@@ -73,7 +74,7 @@ def _read_coupling(element: Element, draft: Draft) -> None:
     while len(coefficients) > 2 and coefficients[-1] == 0.0:
         coefficients.pop()
     if text is not None and (follower_ref or leader_ref):
-        draft.note(key, "@polycoef", text)
+        draft.note(key, attribute("polycoef"), text)
     active = element.take("active") != "false"
     arcs: tuple[RobotArc, ...] = (
         Arc(follower, 1, (1.0,), follower_role),
@@ -119,7 +120,7 @@ def _body_arcs(element: Element, key: Id, draft: Draft, placed: dict[Id, Pose]) 
         raise refuse(codes.REPEATED, f"<{element.tag}> joins '{first.name}' to itself", element.origin)
     said = {name: text for name in ("anchor", "relpose") if (text := element.take(name)) is not None}
     for name, text in said.items():
-        draft.note(key, f"@{name}", text)
+        draft.note(key, attribute(name), text)
     try:
         anchor = numbers_of(said, "anchor", 3, 3) or (0.0, 0.0, 0.0)
         relative = numbers_of(said, "relpose", 7, 7)

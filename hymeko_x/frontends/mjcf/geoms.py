@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x.formats.mjcf import notations
+from hymeko_x.formats.mjcf.notations import frame_of
 from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, Place
 from hymeko_x.formats.mjcf.words import PLACES
 from hymeko_x.frontends.mjcf.spot import Spot, placed
 from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.parts import Role, Shape
-from hymeko_x.ir.values import number_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,7 +34,7 @@ def read_geom(element: Element, spot: Spot, draft: Draft) -> None:
     if name is not None:
         draft.register(element, "geom", name, key)
     if spot.frame:
-        draft.note(key, "frame", spot.frame)
+        draft.note(key, frame_of(), spot.frame)
     fitted = "mesh" in said and said.get("type") != "mesh"
     found = draft.values(element, FITTED_GEOM if fitted else GEOM, base, key, always=bool(spot.frame))
     place: Place = found["place"]
@@ -41,8 +42,8 @@ def read_geom(element: Element, spot: Spot, draft: Draft) -> None:
     mesh = draft.find(element, "mesh", found["mesh"]) if found.get("mesh") else None
     material = draft.find(element, "material", found["material"]) if found["material"] else None
     draft.edges[key] = shape_edge(shape, spot.body, placed(place.pose, spot), mesh, material)
-    if place.grid not in (None, GRID):
-        draft.note(key, "grid", number_text(place.grid))
+    if place.grid is not None and place.grid != GRID:
+        draft.note(key, notations.GRID, place.grid)
     draft.keep(element, key)
 
 

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf.joints import JOINT
+from hymeko_x.formats.mjcf.notations import frame_of, is_joint
 from hymeko_x.ir.mechanism import WORLD, Id, joint_edge
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import UNLIMITED, Dof, DofKind, Joint, Limits
 from hymeko_x.ir.values import Z, apply, rotate
 
@@ -43,7 +45,7 @@ def _joint_id(found: list[tuple[Element, Spot]], body: Id, draft: Draft) -> Id:
         return Id("joint", name)
     key = draft.names.take("joint", body.name)
     if len(found) == 1:
-        draft.note(key, "unnamed", "yes")
+        draft.note(key, UNNAMED, True)
     return key
 
 
@@ -53,7 +55,7 @@ def _read_dof(element: Element, spot: Spot, key: Id, prefix: str, draft: Draft) 
         draft.register(element, "joint", name, key)
         draft.roles.setdefault(key, {})[name] = name if prefix else ""
     if spot.frame:
-        draft.note(key, f"{prefix}frame", spot.frame)
+        draft.note(key, frame_of(prefix), spot.frame)
     dof = _free(element, key, prefix, draft) if element.tag == "freejoint" else _typed(element, spot, key, prefix, draft)
     draft.keep(element, key, f"joint[{prefix}]" if prefix else "")
     return dof if not prefix or name is None else _named(dof, name)
@@ -73,7 +75,7 @@ def _typed(element: Element, spot: Spot, key: Id, prefix: str, draft: Draft) -> 
     base = draft.base(element, key, spot.childclass)
     found = draft.values(element, JOINT, base, key, prefix, always=bool(spot.frame))
     if found["type"] is DofKind.FREE:
-        draft.note(key, f"{prefix}tag", "joint")
+        draft.note(key, is_joint(prefix), "joint")
     axis, written = found["axis"]
     if spot.frame:
         axis, written = rotate(spot.pose.quat, axis), None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.mjcf.codec import parameter_value
+from hymeko_x.formats.mjcf.notations import frame_of
 from hymeko_x.formats.mjcf.places import CAMERA, LIGHT, SITE
 from hymeko_x.formats.mjcf.words import PLAIN_ATTRIBUTES
 from hymeko_x.frontends.mjcf.spot import Spot, placed
@@ -68,7 +69,7 @@ def _read(element: Element, spot: Spot, kind: str, groups: tuple[Group, ...], dr
     key = draft.own(element, kind, f"{spot.body.name}/{element.tag}")
     base = draft.base(element, key, spot.childclass)
     if spot.frame:
-        draft.note(key, "frame", spot.frame)
+        draft.note(key, frame_of(), spot.frame)
     found = draft.values(element, groups, base, key, always=bool(spot.frame))
     draft.show(key)
     mount = draft.names.take("mount", key.name)

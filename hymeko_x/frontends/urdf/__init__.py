@@ -12,6 +12,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf.notations import Explicit
 from hymeko_x.frontends.urdf.builder import UrdfBuilder
 from hymeko_x.frontends.urdf.joints import read_joints
 from hymeko_x.frontends.urdf.links import read_link
@@ -85,7 +86,7 @@ def _read_version(root: Node, builder: UrdfBuilder) -> None:
         return
     if version == "1.0":
         root.take("version")
-        builder.style.add(words.STYLE_VERSION)
+        builder.explicit.add(Explicit.VERSION)
     builder.version = version
 
 

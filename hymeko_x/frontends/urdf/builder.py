@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from typing import TYPE_CHECKING, Any
+from enum import Enum
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from msgspec import Struct, field
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf import notations
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import ROOT, Provenance
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
@@ -16,11 +18,15 @@ from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Code, Origin, Report
+    from hymeko_x.formats.urdf.notations import Explicit
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.ir.notations import Notation
     from hymeko_x.ir.parts import Rgba
     from hymeko_x.ir.values import Vec3
     from hymeko_x.xml.tree import Node
     from hymeko_x.xml.unread import Unread
+
+E = TypeVar("E", bound=Enum)
 
 
 class Definition(Struct):
@@ -52,8 +58,9 @@ class UrdfBuilder(Builder):
     materials: dict[str, list[Definition]] = field(default_factory=dict)
     actuators: dict[str, Id] = field(default_factory=dict)
     drives: dict[str, Id] = field(default_factory=dict)
-    choices: dict[str, dict[Id, str]] = field(default_factory=dict)
-    style: set[str] = field(default_factory=set)
+    choices: dict[Notation[Any], dict[Id, Enum]] = field(default_factory=dict)
+    explicit: set[Explicit] = field(default_factory=set)
+    usual: dict[Notation[Any], Enum] = field(default_factory=dict)
     version: str = "1.0"
 
     def own(self, node: Node, kind: str, name: str) -> Id:
@@ -69,19 +76,19 @@ class UrdfBuilder(Builder):
         """Report something wrong about a node, and what is used instead."""
         self.report.error(code, message, node.origin, element=node.element)
 
-    def choose(self, key: Id, choice: str, value: str) -> None:
+    def choose(self, key: Id, choice: Notation[E], value: E) -> None:
         """Keep which of several ways of writing the author chose, where most elements of a file choose alike."""
         self.choices.setdefault(choice, {})[key] = value
 
     def _settle_choices(self) -> None:
-        """The usual choice becomes a word of the style, the others are noted at their elements."""
+        """The usual choice becomes part of the style, the others are noted at their elements."""
         for choice, made in self.choices.items():
             usual = Counter(made.values()).most_common(1)[0][0]
-            if usual != words.DEFAULT_CHOICES[choice]:
-                self.style.add(f"{choice}={usual}")
+            if usual != notations.USUAL[choice]:
+                self.usual[choice] = usual
             for key, value in made.items():
                 if value != usual:
-                    self.note(key, words.notation(choice), value)
+                    self.note(key, choice, value)
 
     def close(self, node: Node) -> None:
         """Collect what is unread in a top-level element, and report children that it may have only once."""
@@ -95,8 +102,9 @@ class UrdfBuilder(Builder):
     def finish(self, name: str, around: list[Extra], file: str) -> Mechanism:
         """The finished mechanism; ``around`` are the extras from before and after the root element, and ``file`` is its name."""
         self._settle_choices()
-        if self.style:
-            self.note(ROOT, words.STYLE, " ".join(sorted(self.style)))
+        if self.explicit or self.usual:
+            usual = tuple((choice.name.removeprefix("urdf."), str(value.value)) for choice, value in self.usual.items())
+            self.note(ROOT, notations.STYLE, notations.Style(frozenset(self.explicit), usual))
         for key, extras in self.unread.finish().items():
             self.add_extras(key, *extras)
         self.add_extras(ROOT, *around)
@@ -122,7 +130,7 @@ def take_name(node: Node, kind: str, known: dict[str, Id], builder: UrdfBuilder)
 # ---- poses -------------------------------------------------------------------------------------------------------------------
 
 
-def read_origin(node: Node, style: str, builder: UrdfBuilder, *, turned: bool = True) -> Pose:
+def read_origin(node: Node, explicit: Explicit, builder: UrdfBuilder, *, turned: bool = True) -> Pose:
     """The pose of a node's <origin>: position in m, fixed-axis roll-pitch-yaw in rad; the identity without one.
 
     ``turned`` false: there is nothing that could be turned, so that the angles stay as written.
@@ -134,7 +142,7 @@ def read_origin(node: Node, style: str, builder: UrdfBuilder, *, turned: bool = 
     unturned = not turned and read_numbers(origin.attributes.get("rpy", "")) != ZERO
     found = Pose(xyz) if unturned else _turned(origin, xyz, builder)
     if found.xyz == ZERO and found.written is None:
-        builder.style.add(style)
+        builder.explicit.add(explicit)
     return found
 
 

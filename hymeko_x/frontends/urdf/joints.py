@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf import notations
+from hymeko_x.formats.urdf.notations import Explicit
 from hymeko_x.frontends.urdf.builder import read_origin, shortened, take_name, take_number, take_numbers
 from hymeko_x.ir.mechanism import ROOT, coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
@@ -48,10 +50,10 @@ def _read_joint(node: Node, builder: UrdfBuilder) -> Joint:
     key = take_name(node, "joint", builder.joints, builder)
     parent, child = _read_end(node, "parent", builder), _read_end(node, "child", builder)
     word = _read_type(node, builder)
-    pose = read_origin(node, words.STYLE_JOINT_ORIGIN, builder)
+    pose = read_origin(node, Explicit.JOINT_ORIGIN, builder)
     joint = Joint(_read_dofs(node, word, builder))
     if word != words.default_type(joint):
-        builder.note(key, words.TYPE, word)
+        builder.note(key, notations.TYPE, word)
     builder.edges[key] = joint_edge(joint, parent, child, pose)
     return joint
 
@@ -163,7 +165,7 @@ def _read_dynamics(joint: Node, builder: UrdfBuilder) -> tuple[float, float]:
         return 0.0, 0.0
     damping, friction = (_or_zero(node, name, builder) for name in ("damping", "friction"))
     if damping == friction == 0.0:
-        builder.style.add(words.STYLE_DYNAMICS)
+        builder.explicit.add(Explicit.DYNAMICS)
     return damping, friction
 
 
@@ -312,9 +314,9 @@ def _is_fixed(key: Id | None, builder: UrdfBuilder) -> bool:
 def _note_meaningless(joints: list[Node], builder: UrdfBuilder) -> None:
     """Note the meaningless elements that at least half of the fixed joints, and at least two, have alike; others stay extras."""
     fixed = [node for node in joints if _is_fixed(node.owner, builder)]
-    usual = [text for tag in words.MEANINGLESS_IF_FIXED if (text := _take_usual(fixed, tag))]
+    usual = tuple((tag, text) for tag in words.MEANINGLESS_IF_FIXED if (text := _take_usual(fixed, tag)))
     if usual:
-        builder.note(ROOT, words.FIXED, "".join(usual))
+        builder.note(ROOT, notations.FIXED, usual)
 
 
 def _take_usual(fixed: list[Node], tag: str) -> str:

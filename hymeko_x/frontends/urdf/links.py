@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf.notations import Explicit
 from hymeko_x.frontends.urdf.builder import read_origin, take_name, take_number, take_numbers
 from hymeko_x.frontends.urdf.materials import read_shape_material
 from hymeko_x.ir.mechanism import file_stem, shape_edge
+from hymeko_x.ir.notations import WITHOUT_TENSOR
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Inertial, InertialWritten, Mesh, MeshShape, NoShape, Shape, Sphere
 from hymeko_x.ir.values import rotate_tensor
-from hymeko_x.rewrite.solids import UNSAID, UNSAID_NOTATION
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.values import Tensor, Vec3
     from hymeko_x.xml.tree import Node
 
-_ORIGIN_STYLES = {"visual": words.STYLE_VISUAL_ORIGIN, "collision": words.STYLE_COLLISION_ORIGIN}
+_ORIGIN_STYLES = {"visual": Explicit.VISUAL_ORIGIN, "collision": Explicit.COLLISION_ORIGIN}
 _NO_GEOMETRY = "the shape has no geometry"
 _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
@@ -35,7 +36,7 @@ def read_link(node: Node, builder: UrdfBuilder) -> None:
     inertial = _read_inertial(node, builder)
     builder.vertices[key] = Body(inertial)
     if inertial is not None and inertial.tensor is None:
-        builder.note(key, UNSAID_NOTATION, UNSAID)
+        builder.note(key, WITHOUT_TENSOR, True)
     for tag, role in words.ROLES.items():
         for shape in node.take_children(tag):
             _read_shape(shape, role, key, builder)
@@ -61,7 +62,7 @@ def _read_inertial(link: Node, builder: UrdfBuilder) -> Inertial | None:
         return None
     mass = _read_mass(node, builder)
     tensor = _read_tensor(node, builder)
-    frame = read_origin(node, words.STYLE_INERTIAL_ORIGIN, builder, turned=tensor is not None)
+    frame = read_origin(node, Explicit.INERTIAL_ORIGIN, builder, turned=tensor is not None)
     if frame.written is None or tensor is None:
         return Inertial(mass, frame.xyz, tensor)
     return Inertial(mass, frame.xyz, rotate_tensor(frame.quat, tensor), InertialWritten(frame, tensor))
@@ -155,7 +156,7 @@ def _read_cylinder(node: Node, builder: UrdfBuilder) -> Geometry | None:
 
 def _read_capsule(node: Node, builder: UrdfBuilder) -> Geometry | None:
     radius, length = _sized(node, "radius", 1, builder), _sized(node, "length", 1, builder)
-    builder.style.add(words.STYLE_CAPSULE)
+    builder.explicit.add(Explicit.CAPSULE)
     return None if radius is None or length is None else Capsule(radius[0], length[0])
 
 
@@ -204,6 +205,6 @@ def _read_scale(node: Node, builder: UrdfBuilder) -> Vec3:
         return (one[0], one[0], one[0])
     found = take_numbers(node, "scale", 3, builder, instead="1 1 1 is used")
     if found == (1.0, 1.0, 1.0):
-        builder.style.add(words.STYLE_SCALE)
+        builder.explicit.add(Explicit.SCALE)
     x, y, z = found or (1.0, 1.0, 1.0)
     return (x, y, z)

@@ -10,8 +10,8 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.formats import urdf as words
-from hymeko_x.formats.urdf import Defined
+from hymeko_x.formats.urdf import notations
+from hymeko_x.formats.urdf.notations import Defined
 from hymeko_x.frontends.urdf.builder import Definition, take_numbers
 from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
 from hymeko_x.ir.parts import Material, Texture
@@ -165,7 +165,7 @@ def _note_places(builder: UrdfBuilder) -> None:
     places = dict(_places(builder))
     votes = Counter(place for suiting in places.values() for place in suiting)
     for key, suiting in places.items():
-        builder.choose(key, words.DEFINED, max(suiting, key=lambda place: votes[place]).value)
+        builder.choose(key, notations.DEFINED, max(suiting, key=lambda place: votes[place]))
 
 
 def _places(builder: UrdfBuilder) -> Iterator[tuple[Id, tuple[Defined, ...]]]:
@@ -174,7 +174,7 @@ def _places(builder: UrdfBuilder) -> Iterator[tuple[Id, tuple[Defined, ...]]]:
             if number == 0 and not definition.is_empty:
                 yield definition.id, _suiting(definition)
             elif definition.at_robot:
-                builder.note(definition.id, words.notation(words.DEFINED), Defined.ROBOT.value)
+                builder.note(definition.id, notations.DEFINED, Defined.ROBOT)
 
 
 def _suiting(definition: Definition) -> tuple[Defined, ...]:

@@ -9,7 +9,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf import notations
+from hymeko_x.formats.urdf.notations import Reduction, TypeAs
 from hymeko_x.frontends.urdf.builder import take_name
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Actuator, Drive
@@ -46,7 +47,7 @@ def _read_kind(node: Node, key: Id, builder: UrdfBuilder) -> str:
     child = node.take_child("type")
     kind = child.take_text() if child is not None else node.take("type")
     if kind is not None:
-        builder.choose(key, words.TYPE_AS, "child" if child is not None else "attribute")
+        builder.choose(key, notations.TYPE_AS, TypeAs.CHILD if child is not None else TypeAs.ATTRIBUTE)
     return kind or ""
 
 
@@ -93,7 +94,7 @@ def _simple_reductions(node: Node, key: Id, actuator: Node, joint: Node, builder
     places = [place for place, value in found.items() if value is not None]
     if len(places) != 1:
         return found["actuator"], found["joint"]
-    builder.choose(key, words.REDUCTION, places[0])
+    builder.choose(key, notations.REDUCTION, Reduction(places[0]))
     return None, found[places[0]]
 
 

@@ -73,7 +73,7 @@ class UsdBuilder(Builder, dict=True):
         path = prim.path
         self.elements.setdefault(path, []).append(key)
         if fallback is None:
-            self.note(key, words.PATH, path)
+            self.note(key, words.PATH, (path,))
         return key
 
     def _name(self, prim: Prim, fallback: str | None) -> str:

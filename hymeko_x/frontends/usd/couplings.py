@@ -41,7 +41,7 @@ def read_mimic(prim: Prim, end: DofRef, ends: dict[str, DofRef], builder: UsdBui
     builder.mark_read(prim, f"@{MIMIC}", by, "newton:mimicEnabled")
     coupling = builder.new_id(prim, "coupling", end.dof or end.joint.name)
     if by == "mjc:target":
-        builder.note(coupling, words.EQUALITY, "true")
+        builder.note(coupling, words.EQUALITY, True)
     arcs: tuple[RobotArc, ...] = (Arc(end.joint, 1, (1.0,), end.dof), Arc(leader.joint, -1, _polynomial(prim, dof, builder), leader.dof))
     builder.edges[coupling] = Edge(Coupling(enabled is not False), arcs)
 

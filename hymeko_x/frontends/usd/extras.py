@@ -48,8 +48,8 @@ def gather_extras(builder: UsdBuilder) -> None:
 
 def _home(key: Id, path: str, builder: UsdBuilder) -> str:
     """The prim from which the extras of an element are counted: the first one where it was made of several."""
-    noted = builder.notations.get(key, {}).get(words.PATH, "")
-    return noted.split()[0] if " " in noted else path
+    paths = builder.noted(key, words.PATH) or ()
+    return paths[0] if len(paths) > 1 else path
 
 
 class _Unread(Struct, frozen=True):

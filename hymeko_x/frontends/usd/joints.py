@@ -301,7 +301,7 @@ def _merged(group: list[ReadJoint], builder: UsdBuilder) -> list[ReadJoint]:
     if len(agreeing) < 2:
         return group
     dofs = tuple(_dof_seen_from(first, joint) for joint in agreeing)
-    builder.note(first.id, words.PATH, " ".join(joint.prim.path for joint in agreeing))
+    builder.note(first.id, words.PATH, tuple(joint.prim.path for joint in agreeing))
     for joint in agreeing:
         if joint.prim.display_name == joint.id.name:  # which the dof is called
             builder.mark_read(joint.prim, "displayName")

@@ -57,11 +57,11 @@ def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
     shape = Shape(geometry, role, name=builder.part_name(prim), rgba=_colour(prim, builder), friction=friction)
     key = builder.new_id(prim, "shape")
     if authored is not None and authored != gprims.default_gprim(geometry, role):
-        builder.note(key, gprims.NOTATION, str(authored))
+        builder.note(key, gprims.GPRIM, authored)
     if points is not None and read_normals(prim, builder):
-        builder.note(key, words.NORMALS, "faces")
+        builder.note(key, words.NORMALS, True)
     if points is not None and read_st_as_written(prim, builder):
-        builder.note(key, words.TEXCOORDS, "corners")
+        builder.note(key, words.TEXCOORDS, True)
     builder.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, builder))
     if points is not None:
         read_subsets(prim, key, builder)

@@ -17,7 +17,7 @@ from hymeko_x.frontends.usd.joints import DISTANCE, merge_parallel
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.parts import Dof, DofKind, Joint, Loop, World
-from hymeko_x.ir.values import IDENTITY, compose, inverse, numbers_text, rotation_angle, scaled
+from hymeko_x.ir.values import IDENTITY, compose, inverse, rotation_angle, scaled
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -65,7 +65,7 @@ def note_poses(builder: UsdBuilder) -> None:
         poses[body] = compose(poses.get(view.parent, IDENTITY), compose(view.parent_pose, inverse(view.child_pose)))
         is_near = math.dist(poses[body].xyz, stands.xyz) < _NEAR and rotation_angle(poses[body].quat, stands.quat) < _NEAR
         if not is_near:
-            builder.note(body, words.POSE, numbers_text((*stands.xyz, *stands.quat)))
+            builder.note(body, words.POSE, stands)
 
 
 def _split(joints: list[ReadJoint]) -> tuple[list[ReadJoint], set[Id]]:
@@ -128,7 +128,7 @@ def _add_joint(joint: ReadJoint, is_turned: bool, builder: UsdBuilder) -> None:
     dofs = joint.dofs
     if is_turned:
         dofs = tuple(_opposite(dof) for dof in reversed(dofs))
-        builder.note(joint.id, words.REVERSED, "true")
+        builder.note(joint.id, words.REVERSED, True)
     builder.edges[joint.id] = joint_edge(Joint(dofs), parent.body, child.body, parent.pose, child.pose)
 
 
@@ -148,12 +148,13 @@ def _add_loop(joint: ReadJoint, builder: UsdBuilder) -> None:
     arcs: tuple[RobotArc, ...] = tuple(Arc(end.body, 0, end.pose) for end in joint.ends)
     builder.edges[key] = Edge(Loop(kind, dofs, joint.is_enabled, parameters), arcs)
     builder.origins[key] = builder.origin
-    builder.notations[key] = {**builder.notations.pop(joint.id, {}), words.TYPE: joint.prim.kind}
+    builder.notations[key] = builder.notations.pop(joint.id, {})
+    builder.note(key, words.TYPE, joint.prim.kind)
     builder.elements[joint.prim.path] = [key]
     builder.mark_read(joint.prim, "physics:jointEnabled")
     builder.mark_read(joint.prim, "physics:excludeFromArticulation")
     if not joint.is_excluded:
-        builder.note(key, "usd.articulated", "true")
+        builder.note(key, words.ARTICULATED, True)
 
 
 def _loop_kind(joint: ReadJoint, builder: UsdBuilder) -> tuple[str, tuple[Dof, ...], Parameters]:
@@ -180,6 +181,6 @@ def _join_free_bodies(hung: set[Id], held: set[Id], builder: UsdBuilder) -> None
         key = builder.new_id(prim, "joint", body.name + FREE_SUFFIX)
         dofs = () if body in held else (Dof(DofKind.FREE),)
         if body in held:
-            builder.note(key, words.HELD, "true")
+            builder.note(key, words.HELD, True)
         builder.vertices.setdefault(WORLD, World())
         builder.edges[key] = joint_edge(Joint(dofs), WORLD, body, builder.transforms.of(prim).pose)

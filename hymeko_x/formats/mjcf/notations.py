@@ -1,0 +1,59 @@
+"""How authors wrote MJCF, where several ways mean the same."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from hymeko_x.formats.mjcf.tree import parse_text
+from hymeko_x.ir.notations import Notation, flag, word
+from hymeko_x.ir.values import number_text
+
+
+def attribute(name: str, prefix: str = "") -> Notation[str]:
+    """An attribute, verbatim, where printing its value would not give it again; ``prefix`` is that of a dof or of ``inertial/``."""
+    return word(f"{prefix}@{name}")
+
+
+def frame_of(prefix: str = "") -> Notation[str]:
+    """The number of the <frame> that an element is in."""
+    return word(f"{prefix}frame")
+
+
+class Frame(NamedTuple):
+    """A <frame> in a body: the number of the one around it (0 = none), and its attributes."""
+
+    outer: str
+    attributes: dict[str, str]
+
+
+def _frame_text(frame: Frame) -> str:
+    return " ".join([frame.outer, *(f'{name}="{value}"' for name, value in frame.attributes.items())])
+
+
+def _frame(text: str) -> Frame:
+    outer, _, rest = text.partition(" ")
+    return Frame(outer, parse_text(f"<frame {rest}/>").attributes)
+
+
+def frame(number: int) -> Notation[Frame]:
+    """The <frame> of this number in a body, counted from 1."""
+    return Notation(f"frame{number}", _frame_text, _frame)
+
+
+def is_joint(prefix: str) -> Notation[str]:
+    """The tag of a free dof that is a <joint> instead of a <freejoint>."""
+    return word(f"{prefix}tag")
+
+
+def _places(text: str) -> tuple[int, ...]:
+    return tuple(int(place) for place in text.split() if place.isdigit())
+
+
+CHILDCLASS = word("childclass")
+"""Body: the default class of the elements in it."""
+LAYERS = flag("layers", "yes")
+"""Material: its only texture is in a <layer>."""
+GRID = Notation("grid", number_text, float)
+"""Plane: the distance in m of the lines that are drawn on it."""
+MESHES = Notation[tuple[int, ...]]("meshes", lambda places: " ".join(map(str, places)), _places)
+"""Mechanism: the order of the meshes, as places among their sorted names."""

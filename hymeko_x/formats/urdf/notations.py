@@ -1,0 +1,96 @@
+"""How authors wrote URDF, where several ways mean the same."""
+
+from __future__ import annotations
+
+import re
+from enum import Enum
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
+
+from hymeko_x.ir.notations import Notation, choice, word
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+class Defined(Enum):
+    """Where a named material's colour and texture stand."""
+
+    ROBOT = "robot"
+    INLINE = "inline"
+    FIRST = "first"
+    BOTH = "both"
+
+
+class Reduction(Enum):
+    """Which element of a simple transmission has its mechanical reduction."""
+
+    ACTUATOR = "actuator"
+    JOINT = "joint"
+    TRANSMISSION = "transmission"
+
+
+class TypeAs(Enum):
+    """Whether a transmission's type is a child (ROS 1) or an attribute (PR2)."""
+
+    CHILD = "child"
+    ATTRIBUTE = "attribute"
+
+
+TYPE = word("urdf.type")
+"""Joint: its type where another one would be written by default."""
+DEFINED = choice("urdf.defined", Defined)
+"""Material: where it is defined, if not where most are."""
+REDUCTION = choice("urdf.reduction", Reduction)
+"""Drive: where its reduction is, if not where most are."""
+TYPE_AS = choice("urdf.type-as", TypeAs)
+"""Drive: how its type is written, if not as most are."""
+
+USUAL: Mapping[Notation[Any], Enum] = MappingProxyType(
+    {DEFINED: Defined.ROBOT, REDUCTION: Reduction.ACTUATOR, TYPE_AS: TypeAs.CHILD},
+)
+"""The choices that most elements of a file make alike, with the usual one of files in general."""
+
+
+class Explicit(Enum):
+    """What an author wrote although it could be left out; the writer then writes it everywhere."""
+
+    JOINT_ORIGIN = "joint"
+    VISUAL_ORIGIN = "visual"
+    COLLISION_ORIGIN = "collision"
+    INERTIAL_ORIGIN = "inertial"
+    CAPSULE = "capsule"
+    DYNAMICS = "dynamics"
+    SCALE = "scale"
+    VERSION = "version"
+
+
+class Style(Struct, frozen=True):
+    """What holds for a whole file: what it writes explicitly, and its usual choices where they are not those of :data:`USUAL`."""
+
+    explicit: frozenset[Explicit] = frozenset()
+    usual: tuple[tuple[str, str], ...] = ()
+
+
+def _style_text(style: Style) -> str:
+    return " ".join(sorted([*(word.value for word in style.explicit), *(f"{name}={value}" for name, value in style.usual)]))
+
+
+def _style(text: str) -> Style:
+    known = {member.value: member for member in Explicit}
+    usual = [item.partition("=")[::2] for item in text.split() if "=" in item]
+    return Style(frozenset(known[item] for item in text.split() if item in known), tuple(usual))
+
+
+STYLE = Notation("urdf.style", _style_text, _style)
+"""Mechanism: the style of the file."""
+
+_ELEMENT = re.compile(r"<([\w:.-]+)[^>]*/>")
+FIXED = Notation[tuple[tuple[str, str], ...]](
+    "urdf.fixed",
+    lambda elements: "".join(text for _, text in elements),
+    lambda text: tuple((found[1], found[0]) for found in _ELEMENT.finditer(text)),
+)
+"""Mechanism: tag and text of the meaningless elements that most fixed joints have."""

@@ -1,0 +1,29 @@
+"""The notations as texts and residues keep them: with the format and version of the source among those of the whole."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.mechanism import ROOT, Provenance
+
+if TYPE_CHECKING:
+    from collections.abc import Container, Mapping
+
+    from hymeko_x.ir.mechanism import Id, Mechanism
+
+
+def kept_notations(mechanism: Mechanism) -> Mapping[Id, Mapping[str, str]]:
+    """The notations by element; where the source has a version, the mechanism as a whole has an entry of the format's name."""
+    format, version, _ = mechanism.source
+    if not version:
+        return mechanism.notations
+    return {**mechanism.notations, ROOT: {**mechanism.notations.get(ROOT, {}), format: version}}
+
+
+def take_provenance(notations: Mapping[Id, dict[str, str]], formats: Container[str], otherwise: Provenance) -> Provenance:
+    """Take the entry of a format out of kept notations: the provenance that it means, or the other one without a version."""
+    own = notations.get(ROOT, {})
+    for name in own:
+        if name in formats:
+            return Provenance(name, own.pop(name), otherwise.file)
+    return otherwise if not otherwise.version else Provenance(file=otherwise.file)
