@@ -18,9 +18,9 @@ from hymeko_x.compare.ledger import losses_between
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.carrier import taken_off
 from hymeko_x.ir.parts import Mesh, Texture
-from hymeko_x.residue.align import aligned
-from hymeko_x.residue.bridge import other_words
-from hymeko_x.residue.delta import residue_behind
+from hymeko_x.residue.align import align
+from hymeko_x.residue.delta import residue_between
+from hymeko_x.residue.realign import alignment_differences
 from hymeko_x.residue.text import BadResidue, parse_residue, print_residue
 from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import Package, PackageFiles, PlacedFiles, Source
@@ -128,15 +128,15 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
     if format.frontend is None:
         return Result(mechanism, package, report, None)
     image = read_back(package, format, files)
-    bridge, crossed = aligned(image, mechanism)
+    alignment, aligned = align(image, mechanism)
     moved = with_references_of(packed, mechanism)
-    apart = leaves_between(moved, crossed)
+    leaves = leaves_between(moved, aligned)
     carry = None if options.pure else carrier_of(format)
-    losses = losses_between(moved, crossed, other_words(bridge), format, apart, is_carried=carry is not None)
+    losses = losses_between(moved, aligned, alignment_differences(alignment), format, leaves, is_carried=carry is not None)
     if carry is None:
         return Result(mechanism, package, report, losses)
     source = _standing_in(moved, packed) if options.within else mechanism
-    residue = residue_behind(source, image, bridge, crossed, leaves_again(source, moved, crossed, apart))
+    residue = residue_between(source, image, alignment, aligned, leaves_again(source, moved, aligned, leaves))
     bare = package.main
     if not residue.is_empty:
         package = carry(package, print_residue(residue))

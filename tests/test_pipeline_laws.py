@@ -17,8 +17,8 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
 from hymeko_x.ir.names import rename
-from hymeko_x.residue.align import aligned
-from hymeko_x.residue.bridge import other_words
+from hymeko_x.residue.align import align
+from hymeko_x.residue.realign import alignment_differences
 from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from hymeko_x.testing import TREES, mechanisms, urdf_mechanisms
@@ -122,8 +122,8 @@ def test_what_is_taken_out_of_the_result_is_in_the_ledger(format: str, mechanism
     victim = data.draw(st.sampled_from([key for key, _ in mechanism.vertices(parts.Body)]))
     package = pipeline.write(_without(mechanism, victim), found, Options(), NoFiles(), Report(), place)
     image = pipeline.read_back(package, found, NoFiles())
-    bridge, crossed = aligned(image, mechanism)
-    losses = losses_between(mechanism, crossed, other_words(bridge), found)
+    alignment, aligned = align(image, mechanism)
+    losses = losses_between(mechanism, aligned, alignment_differences(alignment), found)
     assert str(victim) in {loss.element for loss in losses}
 
 

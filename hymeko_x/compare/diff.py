@@ -68,28 +68,28 @@ _LONG, _SHOWN = 64, 8
 """Tuples with more items are the numbers of meshes, of which only a few are shown."""
 
 
-def diff(a: Mechanism, b: Mechanism, tolerance: Tolerance = EXACT, apart: Mapping[Id, Leaves] | None = None) -> tuple[Difference, ...]:
+def diff(a: Mechanism, b: Mechanism, tolerance: Tolerance = EXACT, leaves: Mapping[Id, Leaves] | None = None) -> tuple[Difference, ...]:
     """Everything that differs from ``a`` to ``b``: the name, elements, their fields and arcs, and their extras.
 
-    Order (of elements and of parameters), places and notations do not count. Linear in the size of both. ``apart`` are the leaves of
+    Order (of elements and of parameters), places and notations do not count. Linear in the size of both. ``leaves`` are the leaves of
     the elements that both have, if they are known.
     """
-    return tuple(_differences(a, b, tolerance, leaves_between(a, b) if apart is None else apart))
+    return tuple(_differences(a, b, tolerance, leaves_between(a, b) if leaves is None else leaves))
 
 
-def _differences(a: Mechanism, b: Mechanism, tolerance: Tolerance, apart: Mapping[Id, Leaves]) -> Iterator[Difference]:
+def _differences(a: Mechanism, b: Mechanism, tolerance: Tolerance, leaves: Mapping[Id, Leaves]) -> Iterator[Difference]:
     if a.name != b.name:
         yield Difference(ROOT, "name", repr(a.name), repr(b.name))
-    yield from _elements(a.graph.vertices, b.graph.vertices, tolerance, apart)
-    yield from _elements(a.graph.edges, b.graph.edges, tolerance, apart)
+    yield from _elements(a.graph.vertices, b.graph.vertices, tolerance, leaves)
+    yield from _elements(a.graph.edges, b.graph.edges, tolerance, leaves)
     for key in _union(a.extras, b.extras):
         yield from _extras(key, a.extras.get(key, ()), b.extras.get(key, ()))
 
 
-def _elements(a: Mapping[Id, P], b: Mapping[Id, P], tolerance: Tolerance, apart: Mapping[Id, Leaves]) -> Iterator[Difference]:
+def _elements(a: Mapping[Id, P], b: Mapping[Id, P], tolerance: Tolerance, leaves: Mapping[Id, Leaves]) -> Iterator[Difference]:
     for key, before in a.items():
-        if key in apart:
-            yield from [Difference(key, *found) for found in _found("", apart[key], tolerance)]
+        if key in leaves:
+            yield from [Difference(key, *found) for found in _found("", leaves[key], tolerance)]
         elif key not in b:
             yield Difference(key, "", _short(before), None)
     for key, after in b.items():

@@ -6,11 +6,12 @@ The ledger and the residue are made from the same leaves, which are looked for o
 from __future__ import annotations
 
 from math import copysign
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from msgspec import NODEFAULT
+from msgspec import NODEFAULT, Struct
+from msgspec.structs import replace
 
-from hymeko_x.ir.fields import identical, layout_of
+from hymeko_x.ir.fields import attributes_of, identical, layout_of
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.values import Pose
@@ -55,13 +56,13 @@ def _of_elements(a: Mapping[Id, object], b: Mapping[Id, object]) -> dict[Id, Lea
     return found
 
 
-def leaves_again(other: Mechanism, a: Mechanism, b: Mechanism, apart: Mapping[Id, Leaves]) -> Mapping[Id, Leaves]:
+def leaves_again(other: Mechanism, a: Mechanism, b: Mechanism, between: Mapping[Id, Leaves]) -> Mapping[Id, Leaves]:
     """The leaves between another mechanism and ``b``, given those between ``a``, most of whose vertices the other one shares, and ``b``."""
     if other.graph is a.graph:
-        return apart
+        return between
     again = {key: part for key, part in other.graph.vertices.items() if part is not a.graph.vertices.get(key)}
     changed = _of_elements(again, b.graph.vertices)
-    known = {key: apart[key] for key in apart if key not in again}
+    known = {key: between[key] for key in between if key not in again}
     return {key: leaves for key in (*other.graph.vertices, *other.graph.edges) if (leaves := changed.get(key) or known.get(key))}
 
 
@@ -142,3 +143,46 @@ def _are_alike(a: object, b: object) -> bool:
 def turn_of(pose: Pose) -> tuple[object, object]:
     """The rotation with its notation."""
     return pose.quat, pose.written
+
+
+# ---- one field by its path ---------------------------------------------------------------------------------------------
+
+
+def get(part: object, path: Path) -> object:
+    """The value at a path.
+
+    Raises: LookupError when the part has no such place.
+    """
+    for step in path:
+        if isinstance(part, Pose) and step == TURN:
+            return turn_of(part)
+        try:
+            part = part[step] if isinstance(step, int) else getattr(part, step)  # type: ignore[index]
+        except (AttributeError, TypeError) as error:
+            raise LookupError(step) from error
+    return part
+
+
+def put(part: Any, path: Path, value: object) -> Any:
+    """The part with another value at a path.
+
+    Raises: LookupError when the part has no such place.
+    """
+    if not path:
+        return value
+    step, rest = path[0], path[1:]
+    if isinstance(step, int):
+        return (*part[:step], put(get(part, (step,)), rest, value), *part[step + 1 :])
+    if isinstance(part, Pose) and step == TURN:
+        turn: Any = value
+        return replace(part, quat=turn[0], written=turn[1])
+    return replace(part, **{step: put(get(part, (step,)), rest, value)})
+
+
+def default_at(part: object, path: Path) -> object:
+    """The default of the field at a path; NODEFAULT where it has none."""
+    *above, last = path
+    owner = get(part, tuple(above))
+    if isinstance(owner, Pose) or not isinstance(owner, Struct):
+        return NODEFAULT
+    return next((item.default for item in attributes_of(owner) if item.name == last), NODEFAULT)

@@ -69,21 +69,21 @@ def _shown(value: str | None) -> str:
 
 def losses_between(
     mechanism: Mechanism,
-    crossed: Mechanism,
+    aligned: Mechanism,
     renamed: Iterable[Difference],
     format: Format,
-    apart: Mapping[Id, Leaves] | None = None,
+    leaves: Mapping[Id, Leaves] | None = None,
     *,
     is_carried: bool = False,
 ) -> tuple[Loss, ...]:
     """Everything in which what was written and read back differs from the mechanism; what it only says in other words, once.
 
-    ``crossed`` is what was read back, behind the bridge that leads to the mechanism; ``renamed`` is what only that bridge
-    changed; ``apart`` is in what their elements differ, if that is known; ``is_carried`` whether the file will carry what got lost.
+    ``aligned`` is what was read back, behind the bridge that leads to the mechanism; ``renamed`` is what only that bridge
+    changed; ``leaves`` is in what their elements differ, if that is known; ``is_carried`` whether the file will carry what got lost.
     """
-    kept = relevant(diff(mechanism, crossed, TOLERANCE, apart), mechanism, crossed, TOLERANCE)
+    kept = relevant(diff(mechanism, aligned, TOLERANCE, leaves), mechanism, aligned, TOLERANCE)
     renamed = (difference for difference in renamed if not _is_number(difference, mechanism))
-    found = (*renamed, *kept, *_unsaid_notes(mechanism, crossed))
+    found = (*renamed, *kept, *_unsaid_notes(mechanism, aligned))
     return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_boilerplate(difference, mechanism, format)])
 
 

@@ -10,7 +10,7 @@ Every entry is bound to an element and to a digest of what the image said there 
 image still says that. So what an editor changed wins, what he deleted stays deleted, and what he added is kept.
 
 Some differences are only another description of the same thing: another name, another frame on a body, a joint of
-several dofs as a chain. They are not entries but a :class:`Bridge`, which is crossed first, with all edits.
+several dofs as a chain. They are not entries but a :class:`Alignment`, which is aligned first, with all edits.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ class Join(NamedTuple):
     twin: Id
 
 
-class Bridge(Struct, frozen=True):
+class Alignment(Struct, frozen=True):
     """How the image says the same in other words.
 
-    ``names``: source id by the image's. ``folds`` and ``joins``: what the image takes apart. ``frames``: pose of the source's
+    ``names``: source id by the image's. ``folds`` and ``joins``: what the image takes leaves. ``frames``: pose of the source's
     body frame in the image's, where they differ. Coordinates of dofs are the same in both, as every writer sees to.
     """
 
@@ -96,14 +96,14 @@ class Sides(Struct, frozen=True):
     stereotypes: tuple[tuple[Id, tuple[str, ...]], ...] = ()
     is_plain: bool = False
     extras: tuple[tuple[Id, Extra], ...] = ()
-    strangers: tuple[tuple[Id, str], ...] = ()
+    foreign_extras: tuple[tuple[Id, str], ...] = ()
     """Extras that only the image has, by digest."""
 
 
 class Residue(Struct, frozen=True):
     """All of it. ``known`` are the digests by which renamed elements are found."""
 
-    bridge: Bridge = field(default_factory=Bridge)
+    alignment: Alignment = field(default_factory=Alignment)
     changes: tuple[Change, ...] = ()
     additions: tuple[Addition, ...] = ()
     removals: tuple[Removal, ...] = ()
@@ -118,4 +118,4 @@ class Residue(Struct, frozen=True):
     def is_empty(self) -> bool:
         """Whether the image says everything."""
         said = (self.changes, self.additions, self.removals, self.order)
-        return not any(said) and self.layout is None and self.bridge == Bridge() and self.sides == Sides()
+        return not any(said) and self.layout is None and self.alignment == Alignment() and self.sides == Sides()

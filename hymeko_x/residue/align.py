@@ -1,6 +1,6 @@
-"""Finding the bridge: which element of the image is which of the source, and what the image only describes otherwise.
+"""Finding the alignment: which element of the image is which of the source, and what the image only describes otherwise.
 
-A wrong guess is never a wrong result, only a longer residue: whatever differs behind the bridge becomes an entry.
+A wrong guess is never a wrong result, only a longer residue: whatever differs behind the alignment becomes an entry.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.parts import DofKind, Joint, Role, Shape
 from hymeko_x.ir.values import IDENTITY, Pose, add, compose, inverse, quat_about, rotate, rotation_angle, scaled
-from hymeko_x.residue import Bridge, Fold, Join
-from hymeko_x.residue.bridge import are_twins, cross, fold_chains, join_twins, move_frames
+from hymeko_x.residue import Alignment, Fold, Join
+from hymeko_x.residue.realign import are_twins, fold_chains, join_twins, move_frames, realign
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -27,21 +27,21 @@ _ROUNDING = 1e-13
 _SCALAR = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 
 
-def bridge_between(image: Mechanism, source: Mechanism) -> Bridge:
-    """The bridge that leads from the image to the source. Linear in both."""
-    return aligned(image, source)[0]
+def alignment_between(image: Mechanism, source: Mechanism) -> Alignment:
+    """The alignment that leads from the image to the source. Linear in both."""
+    return align(image, source)[0]
 
 
-def aligned(image: Mechanism, source: Mechanism) -> tuple[Bridge, Mechanism]:
-    """The bridge that leads from the image to the source, and the image behind it. Linear in both."""
+def align(image: Mechanism, source: Mechanism) -> tuple[Alignment, Mechanism]:
+    """The alignment that leads from the image to the source, and the image behind it. Linear in both."""
     names = _other_names(image, source)
-    renamed = cross(image, Bridge(tuple(names.items())))
+    renamed = realign(image, Alignment(tuple(names.items())))
     folds = tuple(_folds(renamed, source))
     folded = fold_chains(renamed, folds)
     joins = tuple(_joins(folded, source))
     joined = join_twins(folded, joins)
-    frames = {} if _stand_alike(joined, source) else dict(_frames(joined, source))
-    return Bridge(tuple(names.items()), folds, joins, tuple(frames.items())), move_frames(joined, frames)
+    frames = {} if _agree_in_poses(joined, source) else dict(_frames(joined, source))
+    return Alignment(tuple(names.items()), folds, joins, tuple(frames.items())), move_frames(joined, frames)
 
 
 # ---- names -----------------------------------------------------------------------------------------------------------------
@@ -120,9 +120,9 @@ class _Pairs:
             return
         alike: dict[object, list[Id]] = defaultdict(list)
         for key in reversed(new):
-            alike[_looks(self.source.edges[key])].append(key)
+            alike[_content(self.source.edges[key])].append(key)
         for key in old:
-            same = alike[_looks(self.image.edges[key])]
+            same = alike[_content(self.image.edges[key])]
             if same:
                 self.pair(key, same.pop())
         left, rest = [key for key in old if key in self.strange], [key for key in new if key in self.missing]
@@ -140,7 +140,7 @@ class _Pairs:
         return key.kind, tuple(targets)
 
 
-def _looks(edge: RobotEdge) -> object:
+def _content(edge: RobotEdge) -> object:
     """What an edge says, without names."""
     weights = tuple(arc.weight for arc in edge.arcs if arc.target.kind not in ("mesh", "material"))
     data = edge.data
@@ -193,10 +193,10 @@ def _joins(image: Mechanism, source: Mechanism) -> Iterable[Join]:
         free: dict[object, list[Id]] = defaultdict(list)
         for view in reversed(image.shapes[body]):
             if view.shape.role is Role.COLLISION and view.id not in source.graph.edges:
-                free[_looks(image.graph.edges[view.id])].append(view.id)
+                free[_content(image.graph.edges[view.id])].append(view.id)
         for key in both:
             seen = image.graph.edges.get(key)
-            twins = free[_looks(seen)] if seen is not None else []
+            twins = free[_content(seen)] if seen is not None else []
             if seen is not None and twins and are_twins(seen, image.graph.edges[twins[-1]]):
                 yield Join(key, twins.pop())
 
@@ -204,7 +204,7 @@ def _joins(image: Mechanism, source: Mechanism) -> Iterable[Join]:
 # ---- frames and coordinates --------------------------------------------------------------------------------------------------
 
 
-def _stand_alike(image: Mechanism, source: Mechanism) -> bool:
+def _agree_in_poses(image: Mechanism, source: Mechanism) -> bool:
     """Whether all bodies hang on the same bodies in the same places, so that no frame can be another one."""
     below = image.parent_joint
     for body, view in source.parent_joint.items():
@@ -228,13 +228,13 @@ def _frames(image: Mechanism, source: Mechanism) -> Iterable[tuple[Id, Pose]]:
     there: dict[Id, Pose] = {}
     here: dict[Id, Pose] = {}
     for body in image.depth_first():
-        here[body] = _standing(image, body, here)
+        here[body] = _zero_pose(image, body, here)
     for body in source.depth_first():
         above = source.parent_joint.get(body)
         if above is None or above.parent == WORLD or above.parent not in there:
             there[body] = here.get(body, IDENTITY)
             continue
-        there[body] = _standing(source, body, there)
+        there[body] = _zero_pose(source, body, there)
         if body not in here:
             continue
         shift = compose(inverse(here[body]), there[body])
@@ -242,7 +242,7 @@ def _frames(image: Mechanism, source: Mechanism) -> Iterable[tuple[Id, Pose]]:
             yield body, shift
 
 
-def _standing(mechanism: Mechanism, body: Id, poses: dict[Id, Pose]) -> Pose:
+def _zero_pose(mechanism: Mechanism, body: Id, poses: dict[Id, Pose]) -> Pose:
     """The pose of a body where all coordinates are zero, in its root's frame."""
     above = mechanism.parent_joint.get(body)
     if above is None:

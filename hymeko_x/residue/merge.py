@@ -2,34 +2,30 @@
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import defaultdict
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.compare.leaves import TURN
-from hymeko_x.formats.hymeko import FOREIGN
+from hymeko_x.compare.leaves import TURN, default_at, get, put
 from hymeko_x.ir.graph import Edge, Hypergraph
-from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Body, Drive, Mesh, Mount, Plane, Sense, Texture
-from hymeko_x.ir.provenance import kept_notations, take_provenance
+from hymeko_x.ir.mechanism import ROOT, StoredLook, StoredMesh
+from hymeko_x.ir.parts import Body, Drive, Layer, Material, Mesh, Mount, Plane, Role, Sense, Texture
 from hymeko_x.ir.types import is_sound, settled
-from hymeko_x.residue.bridge import cross
-from hymeko_x.residue.follow import renamed_since, with_new_names, with_old_names
-from hymeko_x.residue.order import by_kind, laid_out, moved
-from hymeko_x.residue.paths import default_at, digest, get, guard_of, put
-from hymeko_x.residue.prints import print_of, print_of_extra, shape_group, weight_print
-from hymeko_x.residue.stored import stored_meshes
+from hymeko_x.ir.values import X, Y, Z, rotate
+from hymeko_x.residue.digests import digest, digest_of, guard_of, mass_digest, shape_group
+from hymeko_x.residue.realign import realign, renamed_since, with_new_names, with_old_names
+from hymeko_x.residue.sides import by_kind, moved, with_sides
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Hashable, Iterable, Iterator, Mapping
 
     from hymeko_x.compare.leaves import Path
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotEdge
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge, ShapeView
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.residue import Change, Removal, Residue
 
@@ -48,8 +44,8 @@ def restore(image: Mechanism, residue: Residue, report: Report) -> Mechanism:
     names = renamed_since(image, residue)
     for new, old in names.items():
         report.note(codes.RESIDUE_FOLLOWED, f"{old} is called '{new.name}' now", element=str(new))
-    crossed = cross(with_old_names(image, names), residue.bridge)
-    return with_new_names(_Merge(crossed, residue, report).result(), names)
+    aligned = realign(with_old_names(image, names), residue.alignment)
+    return with_new_names(_Merge(aligned, residue, report).result(), names)
 
 
 @dataclass(slots=True)
@@ -72,7 +68,7 @@ class _Merge:
         self._let_nothing_dangle(removed)
         merged = replace(self.image, name=name, graph=self._ordered(), places={**self.image.places, **dict(self._places())})
         stored = stored_meshes(merged, self.image)
-        return _with_sides(replace(merged, stored=stored) if stored else merged, self.residue, self.image)
+        return with_sides(replace(merged, stored=stored) if stored else merged, self.residue, self.image)
 
     # ---- fields ------------------------------------------------------------------------------------------------------------
 
@@ -90,23 +86,23 @@ class _Merge:
             elif key in self.edges:
                 self.edges[key] = self._changed(key, self.edges[key], changes)
             else:
-                self._say(key, "is gone; what was carried for it stays away")
+                self._note(key, "is gone; what was carried for it stays away")
         return name
 
     def _changed(self, key: Id, part: P, changes: list[Change]) -> P:
         edited = [change for change in changes if not self._still_holds(key, part, change)]
         if edited:
-            self._say(key, f"was edited: {', '.join(dict.fromkeys(_path_text(change.path) for change in edited))} stays as it is now")
+            self._note(key, f"was edited: {', '.join(dict.fromkeys(_path_text(change.path) for change in edited))} stays as it is now")
         barred = _barred(part, changes, edited) if edited else set()
         changed = _with_changes(part, [change for change in changes if change.path not in barred])
         if changed is not None:
             return changed
-        self._say(key, "stays as it is: what was carried for it is damaged")
+        self._note(key, "stays as it is: what was carried for it is damaged")
         return part
 
     def _still_holds(self, key: Id, part: object, change: Change) -> bool:
         if change.path[0] == "inertial" and change.value is None and isinstance(part, Body):
-            return change.guard == weight_print(self.image, key)
+            return change.guard == mass_digest(self.image, key)
         try:
             value = get(part, change.path)
         except LookupError:
@@ -132,11 +128,11 @@ class _Merge:
         kept = {removal.element for group in edited for removal in stand_ins[group]}
         withheld = {key for key, part in self.residue.additions if isinstance(part, Edge) and shape_group(part) in edited}
         for key in withheld:
-            self._say(key, "is not restored, because what stands for it was edited")
+            self._note(key, "is not restored, because what stands for it was edited")
         return kept, withheld
 
     def _is_untouched(self, removal: Removal) -> bool:
-        return removal.element in self.image.graph and print_of(self.image, removal.element) == removal.guard
+        return removal.element in self.image.graph and digest_of(self.image, removal.element) == removal.guard
 
     def _add(self, withheld: set[Id]) -> None:
         """Put in what the image does not have; what it is on must be there."""
@@ -145,7 +141,7 @@ class _Merge:
             if key in withheld:
                 continue
             if key in self.vertices or key in self.edges:
-                self._say(key, "is there already; what was carried under this name stays away")
+                self._note(key, "is there already; what was carried under this name stays away")
             elif isinstance(part, Edge):
                 waiting.append((key, part))
             else:
@@ -160,7 +156,7 @@ class _Merge:
             if key in kept or key in gone or key not in self.image.graph:
                 continue
             if not self._is_untouched(removal):
-                self._say(key, "was edited, and stays")
+                self._note(key, "was edited, and stays")
                 continue
             gone[key] = self.vertices.pop(key) if key in self.vertices else self.edges.pop(key)
         return gone
@@ -183,7 +179,7 @@ class _Merge:
             for key in users[target]:
                 if key in self.edges:
                     edge = self.edges.pop(key)
-                    self._say(key, f"is not restored, because {target} is gone")
+                    self._note(key, f"is not restored, because {target} is gone")
                     queue += [key, *self._drop_things(edge, added)]
 
     def _drop_things(self, edge: RobotEdge, added: set[Id]) -> list[Id]:
@@ -224,8 +220,8 @@ class _Merge:
             runs[run.elements[0].kind].append(run)
         return Hypergraph(_sorted(self.vertices, runs), _sorted(self.edges, runs))
 
-    def _say(self, key: Id, what: str) -> None:
-        self.report.note(codes.RESIDUE_SUPERSEDED, f"{key} {what}", element=str(key))
+    def _note(self, key: Id, message: str) -> None:
+        self.report.note(codes.RESIDUE_SUPERSEDED, f"{key} {message}", element=str(key))
 
 
 def _sorted(table: dict[Id, P], runs: Mapping[str, list]) -> dict[Id, P]:  # type: ignore[type-arg]
@@ -298,42 +294,63 @@ def _path_text(path: Path) -> str:
     return ".".join(str(step) for step in path if step not in ("data", "arcs", "weight", TURN))
 
 
-# ---- side tables -------------------------------------------------------------------------------------------------------------
+# ---- meshes that the image holds -----------------------------------------------------------------------------------------
 
 
-def _with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mechanism:
-    sides = residue.sides
-    there = {ROOT, *mechanism.graph.vertices, *mechanism.graph.edges}
-    noted = kept_notations(image).items()
-    notations = {key: {name: text for name, text in table.items() if name not in sides.forgotten} for key, table in noted}
-    for key, name, text in sides.notations:
-        if text is None:
-            notations.get(key, {}).pop(name, None)
-        elif key in there:
-            notations.setdefault(key, {})[name] = text
-    source = take_provenance(notations, FOREIGN, image.source)
-    stereotypes = {} if sides.is_plain else {**image.stereotypes, **dict(sides.stereotypes)}
-    layout = image.layout if residue.layout is None else laid_out(image.layout, residue.layout, set(residue.unplaced))
-    return replace(
-        mechanism,
-        notations={key: table for key, table in notations.items() if table and key in there},
-        stereotypes={key: names for key, names in stereotypes.items() if names and key in there},
-        extras=_extras(residue, image, there),
-        layout=tuple(key for key in layout if key in there),
-        source=source,
-    )
+_PLACE_DIGITS = 6
+"""Places that agree to so many digits behind the point are the same."""
 
 
-def _extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict[Id, tuple[Extra, ...]]:
-    strangers = Counter(residue.sides.strangers)
-    extras: dict[Id, list[Extra]] = {}
-    for key, found in image.extras.items():
-        for extra in found:
-            mark = (key, print_of_extra(extra))
-            if strangers[mark]:
-                strangers[mark] -= 1
-            else:
-                extras.setdefault(key, []).append(extra)
-    for key, extra in residue.sides.extras:
-        extras.setdefault(key, []).append(extra)
-    return {key: tuple(found) for key, found in extras.items() if key in there}
+class _Shown(NamedTuple):
+    """A mesh where a shape shows it; equal ``place`` means that the same points are seen at the same place, for the same purpose."""
+
+    view: ShapeView
+    mesh: Mesh
+    place: Hashable
+
+
+def stored_meshes(mechanism: Mechanism, image: Mechanism) -> dict[str, StoredMesh]:
+    """By uri, what the image has where the mechanism refers to a file: what the shape of the same name shows."""
+    if not any(part.vertices for _, part in image.vertices(Mesh)):
+        return {}
+    found: dict[str, StoredMesh] = {}
+    for body, views in mechanism.shapes.items():
+        seen = {shown.view.id: shown for shown in _shown(image.shapes.get(body, ()), image)}
+        for shown in _shown(views, mechanism):
+            there, uri = seen.get(shown.view.id), shown.mesh.uri
+            if uri is None or there is None or there.place != shown.place or not there.mesh.vertices:
+                continue
+            if uri not in found or not found[uri].looks:
+                mesh = there.mesh
+                bare = Mesh(None, (1.0, 1.0, 1.0), None, mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces)
+                found[uri] = StoredMesh(bare, tuple(_appearances(there, mechanism, image)))
+    return found
+
+
+def _shown(views: Iterable[ShapeView], mechanism: Mechanism) -> Iterator[_Shown]:
+    for view in views:
+        mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh else None
+        if isinstance(mesh, Mesh):
+            axes = (rotate(view.pose.quat, axis) for axis in (X, Y, Z))
+            matrix = [factor * number for axis, factor in zip(axes, mesh.scale, strict=True) for number in axis]
+            place = tuple(round(number, _PLACE_DIGITS) + 0.0 for number in (*view.pose.xyz, *matrix))
+            yield _Shown(view, mesh, (view.shape.role, place))
+
+
+def _appearances(shown: _Shown, mechanism: Mechanism, image: Mechanism) -> Iterator[StoredLook]:
+    """The materials that only the image has, which are those of the file; first that of the shape, on the rest of the mesh."""
+    if shown.view.shape.role is not Role.VISUAL or shown.view.id in mechanism.subsets:
+        return
+    looks = [(subset.material, subset.faces) for subset in image.subsets.get(shown.view.id, ())]
+    if shown.view.material is not None:
+        taken = {face for _, faces in looks for face in faces}
+        looks.insert(0, (shown.view.material, tuple([face for face in range(len(shown.mesh.faces) // 3) if face not in taken])))
+    for key, faces in looks:
+        material = image.graph.vertices.get(key)
+        if faces and isinstance(material, Material) and key not in mechanism.graph.vertices:
+            textures = (image.graph.vertices.get(edge.arcs[0].target) for _, edge, _ in image.graph.edges_at(key) if _is_colour(edge.data))
+            yield StoredLook(material, next((part for part in textures if isinstance(part, Texture)), None), faces)
+
+
+def _is_colour(part: object) -> bool:
+    return isinstance(part, Layer) and part.use == "rgb"

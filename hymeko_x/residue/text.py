@@ -19,7 +19,7 @@ from hymeko_x.ir.values import Pose
 from hymeko_x.language.printer import Block, print_block, print_field, print_item, print_name
 from hymeko_x.language.syntax import ArcItem, Field, Node, Ref
 from hymeko_x.language.values import decoded, decoded_turn, encoded, encoded_turn, name_ref, said
-from hymeko_x.residue import Addition, Bridge, Change, Fold, Join, Removal, Residue, Run, Sides
+from hymeko_x.residue import Addition, Alignment, Change, Fold, Join, Removal, Residue, Run, Sides
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -47,10 +47,10 @@ class BadResidue(Exception):
 def print_residue(residue: Residue) -> str:
     """The text of a residue."""
     sections: tuple[tuple[str, Iterable[str | Block]], ...] = (
-        ("names", _names(residue.bridge.names)),
-        ("folds", map(_fold, residue.bridge.folds)),
-        ("joins", [print_field(join.shape.name, name_ref(join.twin.name)) for join in residue.bridge.joins]),
-        ("frames", [print_field(key.name, (*pose.xyz, *pose.quat)) for key, pose in residue.bridge.frames]),
+        ("names", _names(residue.alignment.names)),
+        ("folds", map(_fold, residue.alignment.folds)),
+        ("joins", [print_field(join.shape.name, name_ref(join.twin.name)) for join in residue.alignment.joins]),
+        ("frames", [print_field(key.name, (*pose.xyz, *pose.quat)) for key, pose in residue.alignment.frames]),
         ("changes", _grouped((change.element, _change(change)) for change in residue.changes)),
         ("additions", map(_addition, residue.additions)),
         ("removals", _removals(residue.removals)),
@@ -88,7 +88,7 @@ def _residue(document: Document) -> Residue:
         raise BadResidue(f"version {fields['version']}, and this program reads version {VERSION:g}")
     read = _Sections(sections)
     residue = Residue(
-        read.bridge(),
+        read.alignment(),
         tuple(Change(key, _path(key, item.name), _changed(item), item.type) for key, item in read.grouped("changes")),
         tuple(_added(item) for item in read.nodes("additions")),
         tuple(read.removals()),
@@ -158,11 +158,11 @@ class _Sections:
             for key, mark, group in zip(names[::3], names[1::3], names[2::3], strict=True):
                 yield Removal(Id(str(item.name), key), mark, "" if group == _NO_GROUP else group)
 
-    def bridge(self) -> Bridge:
+    def alignment(self) -> Alignment:
         names = [_renamed(item.name, old, new) for item in self.fields("names") for old, new in _pairs(_refs(item.value))]
         frames = [(Id("body", item.name), _pose(decoded(item.value))) for item in self.fields("frames")]
         joins = [Join(Id("shape", item.name), Id("shape", _refs((item.value,))[0])) for item in self.fields("joins")]
-        return Bridge(tuple(names), tuple(map(_folded, self.nodes("folds"))), tuple(joins), tuple(frames))
+        return Alignment(tuple(names), tuple(map(_folded, self.nodes("folds"))), tuple(joins), tuple(frames))
 
     def sides(self, is_plain: bool) -> Sides:
         return Sides(
@@ -219,7 +219,7 @@ def _pairs(items: list[T]) -> Iterator[tuple[T, T]]:
     return zip(items[::2], items[1::2], strict=True)
 
 
-# ---- the bridge ------------------------------------------------------------------------------------------------------------
+# ---- the alignment ------------------------------------------------------------------------------------------------------------
 
 
 def _names(names: Iterable[tuple[Id, Id]]) -> list[str]:
@@ -367,7 +367,7 @@ def _side_sections(sides: Sides) -> tuple[tuple[str, Iterable[str | Block]], ...
         ("forgotten", map(print_name, sides.forgotten)),
         ("stereotypes", _grouped((key, print_field("classes", encoded(names))) for key, names in sides.stereotypes)),
         ("extras", _grouped((key, _extra(extra)) for key, extra in sides.extras)),
-        ("strangers", _grouped((key, _list("gone", (mark,))) for key, mark in sides.strangers)),
+        ("strangers", _grouped((key, _list("gone", (mark,))) for key, mark in sides.foreign_extras)),
     )
 
 

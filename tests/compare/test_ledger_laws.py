@@ -19,8 +19,8 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Extra, Id, Mechanism, RobotEdge, joint_edge, shape_edge
 from hymeko_x.ir.values import Pose, Vec3, X, Y, Z, compose, inverse, rotate, scaled
-from hymeko_x.residue import Bridge
-from hymeko_x.residue.bridge import other_words
+from hymeko_x.residue import Alignment
+from hymeko_x.residue.realign import alignment_differences
 from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Package, PackageFiles, Source
 
@@ -243,31 +243,31 @@ def test_a_joint_that_moves_otherwise_is_a_loss(above: Vec3, below: Vec3, axis: 
     assert tuple(relevant(found, before, after, ledger.TOLERANCE)) == found
 
 
-def _told(before: Mechanism, after: Mechanism, bridge: Bridge) -> list[tuple[str, str]]:
-    return [(loss.element, loss.field) for loss in ledger.losses_between(before, after, other_words(bridge), formats.MJCF)]
+def _told(before: Mechanism, after: Mechanism, alignment: Alignment) -> list[tuple[str, str]]:
+    return [(loss.element, loss.field) for loss in ledger.losses_between(before, after, alignment_differences(alignment), formats.MJCF)]
 
 
 def test_what_a_format_says_of_an_element_that_is_new_is_told_with_the_element() -> None:
     key = Id("texture", "steel")
     after = Mechanism("r", Hypergraph({key: parts.Texture("steel.png")}), {key: (Extra("mjcf", "@type", "2d"),)})
-    assert _told(Mechanism("r"), after, Bridge()) == [(str(key), "")]
-    assert _told(Mechanism("r", after.graph), after, Bridge()) == [(str(key), "mjcf @type")]
+    assert _told(Mechanism("r"), after, Alignment()) == [(str(key), "")]
+    assert _told(Mechanism("r", after.graph), after, Alignment()) == [(str(key), "mjcf @type")]
 
 
 def test_a_mesh_that_the_file_holds_has_lost_its_uri_and_nothing_else() -> None:
     key, held = Id("mesh", "hip"), parts.Mesh(vertices=(0.0,) * 9, faces=(0, 1, 2))
     after = Mechanism("r", Hypergraph({key: held}))
-    assert _told(Mechanism("r", Hypergraph({key: parts.Mesh("hip.stl")})), after, Bridge(((Id("mesh", "visual"), key),))) == [
+    assert _told(Mechanism("r", Hypergraph({key: parts.Mesh("hip.stl")})), after, Alignment(((Id("mesh", "visual"), key),))) == [
         (str(key), "uri")
     ]
     there = replace(held, vertices=(1.0,) * 9)
-    assert _told(Mechanism("r", Hypergraph({key: there})), after, Bridge()) == [(str(key), "vertices")]
+    assert _told(Mechanism("r", Hypergraph({key: there})), after, Alignment()) == [(str(key), "vertices")]
     named = Mechanism("r", Hypergraph({key: replace(held, name="hip")}))
-    assert _told(named, after, Bridge()) == [(str(key), "name")]
+    assert _told(named, after, Alignment()) == [(str(key), "name")]
 
 
 @pytest.mark.parametrize(("uri", "told"), [("a/hip.stl", ["uri"]), ("a/thigh.stl", ["name", "uri"]), (None, ["name"])])
 def test_a_mesh_that_is_called_after_its_file_has_no_name_to_lose(uri: str | None, told: list[str]) -> None:
     key, other = Id("mesh", "hip#2"), Id("mesh", "visual")
     before, after = (Mechanism("r", Hypergraph({key: parts.Mesh(each, vertices=(0.0,) * 9)})) for each in (uri, None))
-    assert [field for _, field in _told(before, after, Bridge(((other, key),)))] == told
+    assert [field for _, field in _told(before, after, Alignment(((other, key),)))] == told

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from hymeko_x.compare.diff import diff
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import Mechanism
-from hymeko_x.residue.order import by_kind
+from hymeko_x.residue.sides import by_kind
 
 
 def unequal(a: Mechanism, b: Mechanism) -> list[str]:

@@ -1,38 +1,41 @@
-"""Crossing a bridge: the image in the source's words, frames and joints, with all that an editor did to it."""
+"""Realigning an edited image: its elements under the source's names, with the source's frames and joints, and renames followed."""
 
 from __future__ import annotations
 
+from collections import defaultdict
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
 from hymeko_x.compare.diff import Difference
-from hymeko_x.ir.mechanism import WORLD, joint_edge, pose_weight
+from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.mechanism import WORLD, Id, joint_edge, pose_weight
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate, rotate_tensor
+from hymeko_x.residue.digests import digest_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc, RobotEdge
+    from hymeko_x.ir.mechanism import JointView, Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.parts import Inertial, VertexPart
     from hymeko_x.ir.values import Pose
-    from hymeko_x.residue import Bridge, Fold, Join
+    from hymeko_x.residue import Alignment, Fold, Join, Residue
 
 
-def cross(image: Mechanism, bridge: Bridge) -> Mechanism:
-    """The same robot as the source describes it; what an editor has taken apart stays as it is."""
-    mechanism = _with_world(rename(image, _free_names(image, bridge)))
-    mechanism = fold_chains(mechanism, bridge.folds)
-    mechanism = join_twins(mechanism, bridge.joins)
-    return move_frames(mechanism, dict(bridge.frames))
+def realign(image: Mechanism, alignment: Alignment) -> Mechanism:
+    """The same robot as the source describes it; what an editor has taken leaves stays as it is."""
+    mechanism = _with_world(rename(image, _free_names(image, alignment)))
+    mechanism = fold_chains(mechanism, alignment.folds)
+    mechanism = join_twins(mechanism, alignment.joins)
+    return move_frames(mechanism, dict(alignment.frames))
 
 
-def _free_names(image: Mechanism, bridge: Bridge) -> dict[Id, Id]:
+def _free_names(image: Mechanism, alignment: Alignment) -> dict[Id, Id]:
     """The source's name of each of the image's elements, where no other element has come to be called so; a world may be there."""
-    names = {old: new for old, new in bridge.names if old != new and old in image.graph}
+    names = {old: new for old, new in alignment.names if old != new and old in image.graph}
     given: dict[Id, Id] = {}
     for old, new in names.items():
         given.setdefault(new, old)
@@ -50,16 +53,16 @@ def _with_world(mechanism: Mechanism) -> Mechanism:
     return mechanism.with_graph(mechanism.graph.replace(vertices={WORLD: World()}))
 
 
-def other_words(bridge: Bridge) -> Iterator[Difference]:
+def alignment_differences(alignment: Alignment) -> Iterator[Difference]:
     """What the image says in other words, as differences: names, chains, shapes said twice, frames and coordinates."""
-    for old, new in bridge.names:
+    for old, new in alignment.names:
         if old.name != new.name:
             yield Difference(new, "name", repr(new.name), repr(old.name))
-    for fold in bridge.folds:
+    for fold in alignment.folds:
         yield Difference(fold.joint, "chain", fold.joint.name, " ".join(key.name for key in fold.chain))
-    for shape, twin in bridge.joins:
+    for shape, twin in alignment.joins:
         yield Difference(shape, "role", "both", f"visual, and collision as '{twin.name}'")
-    for body, pose in bridge.frames:
+    for body, pose in alignment.frames:
         yield Difference(body, "frame", "its own", f"{numbers_text(pose.xyz)}, {numbers_text(pose.quat)} from there")
 
 
@@ -193,3 +196,55 @@ def _is_placed(arc: RobotArc) -> bool:
 
 def _placed(pose: Pose) -> Pose | None:
     return None if pose == IDENTITY else pose
+
+
+# ---- renames since -------------------------------------------------------------------------------------------------------
+
+
+def renamed_since(image: Mechanism, residue: Residue) -> dict[Id, Id]:
+    """The old ids of renamed elements by their new ones; those for which the evidence is not unique are left out."""
+    graph = image.graph
+    known = dict(residue.known)
+    missing = {key: mark for key, mark in known.items() if key not in graph}
+    if not missing:
+        return {}
+    kinds = {key.kind for key in missing}
+    unknown: dict[tuple[str, str], list[Id]] = defaultdict(list)
+    for key in (*graph.vertices, *graph.edges):
+        if key.kind in kinds and key not in known:
+            unknown[key.kind, digest_of(image, key)].append(key)
+    lost: dict[tuple[str, str], list[Id]] = defaultdict(list)
+    for key, mark in missing.items():
+        lost[key.kind, mark].append(key)
+    return {unknown[mark][0]: keys[0] for mark, keys in lost.items() if len(keys) == 1 and len(unknown[mark]) == 1}
+
+
+def with_old_names(image: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
+    """The image under the old names; what is called after its body (``foot/visual``, or the same) follows it."""
+    bodies = {new.name: old.name for new, old in names.items() if new.kind == "body"}
+    there = {*image.graph.vertices, *image.graph.edges}
+    followed: dict[Id, Id] = {}
+    for key in there if bodies else ():
+        body, stroke, rest = key.name.partition("/")
+        old = Id(key.kind, f"{bodies[body]}{stroke}{rest}") if body in bodies else key
+        if old not in there:
+            followed[key] = old
+    return rename(image, {**followed, **names})
+
+
+def with_new_names(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
+    """The restored mechanism with the new names, those of the dofs of joints included."""
+    if not names:
+        return mechanism
+    back = {old: new for new, old in names.items()}
+    dofs = {old.name: new.name for old, new in back.items() if old.kind == "joint"}
+    edges = {key: _with_dof_names(edge, dofs) for key, edge in mechanism.graph.edges.items() if isinstance(edge.data, Joint)}
+    return rename(mechanism.with_graph(mechanism.graph.replace(edges=edges)), back)
+
+
+def _with_dof_names(edge: RobotEdge, names: Mapping[str, str]) -> RobotEdge:
+    assert isinstance(edge.data, Joint)
+    if not any(dof.name in names for dof in edge.data.dofs):
+        return edge
+    dofs = tuple(replace(dof, name=names.get(dof.name, dof.name)) if dof.name else dof for dof in edge.data.dofs)
+    return Edge(replace(edge.data, dofs=dofs), edge.arcs)

@@ -1,0 +1,194 @@
+"""The order of elements and the side tables of mechanisms: how the image differs from the source in them, and restoring them."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections import Counter, defaultdict
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from hymeko_x.formats.hymeko import FOREIGN
+from hymeko_x.ir.fields import identical
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.provenance import kept_notations, take_provenance
+from hymeko_x.residue import Run, Sides
+from hymeko_x.residue.digests import digest_of_extra
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
+    from hymeko_x.residue import Residue
+
+    Notations = Mapping[Id, Mapping[str, str]]
+
+# ---- order ---------------------------------------------------------------------------------------------------------------
+
+
+def by_kind(keys: Iterable[Id]) -> dict[str, list[Id]]:
+    """The elements of each kind in their order, which is all of a graph's order that means something."""
+    found: dict[str, list[Id]] = defaultdict(list)
+    for key in keys:
+        found[key.kind].append(key)
+    return dict(found)
+
+
+def moves(have: Sequence[Id], want: Sequence[Id]) -> Iterator[Run]:
+    """The fewest elements to move so that one order becomes the other, of the same elements."""
+    if have == want:
+        return
+    place = {key: number for number, key in enumerate(have)}
+    staying = _rising([place[key] for key in want])
+    after: Id | None = None
+    run: list[Id] = []
+    for key in want:
+        if place[key] not in staying:
+            run.append(key)
+            continue
+        if run:
+            yield Run(after, tuple(run))
+            run = []
+        after = key
+    if run:
+        yield Run(after, tuple(run))
+
+
+def _rising(numbers: Sequence[int]) -> set[int]:
+    """A longest rising subsequence, in n log n."""
+    tops: list[int] = []
+    before: dict[int, int | None] = {}
+    for number in numbers:
+        level = bisect_left(tops, number)
+        before[number] = tops[level - 1] if level else None
+        tops[level : level + 1] = [number]
+    found: set[int] = set()
+    last: int | None = tops[-1] if tops else None
+    while last is not None:
+        found.add(last)
+        last = before[last]
+    return found
+
+
+def moved(have: Sequence[Id], runs: Sequence[Run]) -> list[Id]:
+    """The order with the runs in their places; a run whose place is gone stands behind the one before it."""
+    there = set(have)
+    going = {key for run in runs for key in run.elements if key in there}
+    behind: dict[Id | None, list[Id]] = defaultdict(list)
+    last: Id | None = None
+    for run in runs:
+        last = run.after if run.after is None or run.after in there else last
+        behind[last] += [key for key in run.elements if key in going]
+    result = list(behind[None])
+    for key in have:
+        if key not in going:
+            result.append(key)
+            result += behind.get(key, [])
+    placed = set(result)
+    return result + [key for key in have if key not in placed]
+
+
+def laid_out(have: Sequence[Id], want: Sequence[Id], known: set[Id]) -> tuple[Id, ...]:
+    """The wanted layout of the elements that are there; what is not known stays behind the element that it stood behind."""
+    behind: dict[Id | None, list[Id]] = defaultdict(list)
+    wanted = set(want)
+    last: Id | None = None
+    for key in have:
+        if key in wanted:
+            last = key
+        elif key not in known:
+            behind[last].append(key)
+    result = list(behind[None])
+    for key in want:
+        result += [key, *behind.get(key, [])]
+    return tuple(result)
+
+
+# ---- side tables -------------------------------------------------------------------------------------------------------------
+
+
+def sides_between(image: Mechanism, source: Mechanism) -> Sides:
+    """What stands beside the graph."""
+    written, noted = kept_notations(source), kept_notations(image)
+    used = {name for table in written.values() for name in table}
+    forgotten = {name for table in noted.values() for name in table} - used
+    extras = tuple(_extras(image, source))
+    return Sides(
+        tuple(_notations(noted, written, forgotten)),
+        tuple(sorted(forgotten)),
+        tuple(_stereotypes(image, source)) if source.stereotypes else (),
+        bool(image.stereotypes) and not source.stereotypes,
+        tuple((key, extra) for key, extra, new in extras if new),
+        tuple((key, digest_of_extra(extra)) for key, extra, new in extras if not new),
+    )
+
+
+def _notations(image: Notations, source: Notations, forgotten: set[str]) -> Iterator[tuple[Id, str, str | None]]:
+    for key, table in source.items():
+        mine = image.get(key, {})
+        yield from ((key, name, text) for name, text in table.items() if mine.get(name) != text)
+    for key, table in image.items():
+        theirs = source.get(key, {})
+        yield from ((key, name, None) for name in table if name not in theirs and name not in forgotten)
+
+
+def _stereotypes(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, tuple[str, ...]]]:
+    for key in dict.fromkeys([*source.stereotypes, *image.stereotypes]):
+        if image.stereotypes.get(key, ()) != source.stereotypes.get(key, ()):
+            yield key, source.stereotypes.get(key, ())
+
+
+def _extras(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, Extra, bool]]:
+    """The extras to add (True) and to take away (False): those that differ, or all where the order would."""
+    for key in dict.fromkeys([*source.extras, *image.extras]):
+        mine, theirs = image.extras.get(key, ()), source.extras.get(key, ())
+        if identical(mine, theirs):
+            continue
+        kept = [extra for extra in mine if any(identical(extra, other) for other in theirs)] if len(mine) < 100 else []
+        if not identical(tuple(kept), theirs[: len(kept)]):
+            kept = []
+        rest = list(kept)
+        for extra in mine:
+            if rest and rest[0] is extra:
+                rest.pop(0)
+            else:
+                yield key, extra, False
+        yield from ((key, extra, True) for extra in theirs[len(kept) :])
+
+
+def with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mechanism:
+    sides = residue.sides
+    there = {ROOT, *mechanism.graph.vertices, *mechanism.graph.edges}
+    noted = kept_notations(image).items()
+    notations = {key: {name: text for name, text in table.items() if name not in sides.forgotten} for key, table in noted}
+    for key, name, text in sides.notations:
+        if text is None:
+            notations.get(key, {}).pop(name, None)
+        elif key in there:
+            notations.setdefault(key, {})[name] = text
+    source = take_provenance(notations, FOREIGN, image.source)
+    stereotypes = {} if sides.is_plain else {**image.stereotypes, **dict(sides.stereotypes)}
+    layout = image.layout if residue.layout is None else laid_out(image.layout, residue.layout, set(residue.unplaced))
+    return replace(
+        mechanism,
+        notations={key: table for key, table in notations.items() if table and key in there},
+        stereotypes={key: names for key, names in stereotypes.items() if names and key in there},
+        extras=_restored_extras(residue, image, there),
+        layout=tuple(key for key in layout if key in there),
+        source=source,
+    )
+
+
+def _restored_extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict[Id, tuple[Extra, ...]]:
+    foreign = Counter(residue.sides.foreign_extras)
+    extras: dict[Id, list[Extra]] = {}
+    for key, found in image.extras.items():
+        for extra in found:
+            mark = (key, digest_of_extra(extra))
+            if foreign[mark]:
+                foreign[mark] -= 1
+            else:
+                extras.setdefault(key, []).append(extra)
+    for key, extra in residue.sides.extras:
+        extras.setdefault(key, []).append(extra)
+    return {key: tuple(found) for key, found in extras.items() if key in there}
