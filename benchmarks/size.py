@@ -20,6 +20,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.disk import open_source
 from hymeko_x.frontends import mjcf, urdf
 from hymeko_x.language.grammar import TOKENS
+from hymeko_x.rewrite import Options
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,7 +49,7 @@ def ratio(robot: Path, form: str) -> float:
 
 def _said(robot: Path, form: str) -> str:
     """The HyMeKo text of a robot, with the names of its files as its author wrote them."""
-    return write(_READERS[form](open_source(str(robot)), Report()), Report()).main.decode()
+    return write(_READERS[form](open_source(str(robot)), Report()).mechanism, Options(), Report()).main.decode()
 
 
 _MESH_ARRAY = re.compile(

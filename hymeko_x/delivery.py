@@ -51,5 +51,7 @@ class Delivery(Struct, frozen=True):
         disk.write_package(result.package, self.path, self.files, lambda folder: self.below(folder).package)
 
     def _converted(self, options: Options, report: Report, *, measured: bool) -> Result:
-        make = pipeline.convert if measured else pipeline.write_unmeasured
-        return make(self.mechanism, self.format, options, self.files, report, self.place)
+        if measured:
+            return pipeline.convert(self.mechanism, self.format, options, self.files, report, self.place)
+        package = pipeline.write(self.mechanism, self.format, options, self.files, report, self.place)
+        return pipeline.Result(self.mechanism, package, report, None)

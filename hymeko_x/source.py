@@ -7,12 +7,14 @@ Nothing here touches a disk. The shell gives a frontend a :class:`Source` whose 
 from __future__ import annotations
 
 import posixpath
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from msgspec import Struct, field
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
+
+    from hymeko_x.ir.mechanism import Mechanism
 
 
 class Files(Protocol):
@@ -58,15 +60,26 @@ class Source(Struct, frozen=True):
     variants: Mapping[str, str] = field(default_factory=dict)
 
 
+class Reading(NamedTuple):
+    """What a frontend reads: the mechanism, and the text of the residue that the file carries (empty = none)."""
+
+    mechanism: Mechanism
+    carried: str = ""
+
+
 class Package(Struct, frozen=True):
     """One output: the main file's bytes and the files beside it, by relative path with forward slashes.
 
-    ``copies`` names files that are to be copied as they are: relative path -> path in the source's ``files``.
+    ``copies`` names files that are to be copied as they are: relative path -> path in the source's ``files``. ``carry`` prints the
+    main file again with the text of a residue where other readers of the format ignore it; None for a format that represents
+    everything. ``enclose`` gives the package with files inside of the main one; None where they stand beside it.
     """
 
     main: bytes
     files: Mapping[str, bytes] = field(default_factory=dict)
     copies: Mapping[str, str] = field(default_factory=dict)
+    carry: Callable[[str], bytes] | None = None
+    enclose: Callable[[Mapping[str, bytes]], Package] | None = None
 
 
 class PackageFiles(Struct, frozen=True):

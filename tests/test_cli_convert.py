@@ -139,7 +139,8 @@ def test_json_and_the_result_do_not_share_standard_output(folder: Path, capsys: 
 def test_a_loss_is_measured_by_reading_the_result_back(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    lossy = Package(ARM.replace('effort="10"', 'effort="9"').encode())
+    main_file = ARM.replace('effort="10"', 'effort="9"').encode()
+    lossy = Package(main_file, carry=lambda residue: main_file)
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
     assert main(["convert", "arm.urdf", "lossy.urdf", "--json"]) == exits.DONE
     said = capsys.readouterr()

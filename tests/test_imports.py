@@ -12,8 +12,9 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 LAYERS = (
-    ("collector", "diagnostics", "codes", "source", "staging"),
+    ("collector", "diagnostics", "codes", "staging"),
     ("ir",),
+    ("source",),
     ("xml", "meshes"),
     ("formats",),
     ("rewrite", "compare", "language", "factor"),

@@ -114,7 +114,7 @@ def seen(main: Path) -> list[object]:
 
 
 def _bare(source: Source, format: formats.Format) -> Mechanism:
-    return pipeline.reader(format)(source, Report())
+    return pipeline.reader(format)(source, Report()).mechanism
 
 
 def _whole(source: Source, format: formats.Format) -> Mechanism:

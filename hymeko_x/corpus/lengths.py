@@ -34,7 +34,8 @@ def lengths(data: bytes, format: str) -> Lengths:
     if data.startswith(_BINARY) or len(data) > MOST_BYTES:
         return Lengths(len(data))
     text = data.decode("utf-8", "replace")
-    tokens = formats.loaded(formats.by_name(format).tokens)(text)
+    lexer = formats.by_name(format).tokens
+    tokens = formats.loaded(lexer)(text) if lexer else text.split()
     return Lengths(len(data), _black(text), sum(map(_black, tokens)), len(tokens), len(gzip.compress(data, 9, mtime=0)))
 
 

@@ -95,8 +95,8 @@ class Format(Struct, frozen=True):
     """The kinds of shapes that it cannot represent."""
 
     # ---- what the statistics of the corpus ask
-    tokens: str = _XML_TOKENS
-    """The function ``text -> list of tokens`` that counts its length."""
+    tokens: str | None = None
+    """The function ``text -> list of tokens`` by which its length is counted; None: words between white space."""
     includes: bytes | None = None
     """The pattern by which a file refers to others of its format, so that its length is not that of the robot."""
     holds_points: bool = False
@@ -136,6 +136,7 @@ URDF = Format(
     keeps_package_uris=True,
     reference="hymeko_x.verify.readers.urdf",
     engines=MappingProxyType({"pinocchio": "pin", "yourdfpy": "yourdfpy", "pydrake": "drake"}),
+    tokens=_XML_TOKENS,
     has_single_dof_joints=True,
     missing_shapes=frozenset({"plane", "hfield", "ellipsoid"}),
     claimed_reduction=50.0,
@@ -154,6 +155,7 @@ XACRO = Format(
     boilerplate=frozenset({"urdf @xmlns:xacro"}),  # each file declares its own prefix, and no expansion does
     reference="hymeko_x.verify.readers.xacro",
     engines=MappingProxyType({**URDF.engines, "xacro": "xacro"}),
+    tokens=_XML_TOKENS,
     has_single_dof_joints=True,
     missing_shapes=URDF.missing_shapes,
     includes=rb"<xacro:include\b",
@@ -174,6 +176,7 @@ MJCF = Format(
     has_compact_extras=True,
     reference="hymeko_x.verify.readers.mjcf",
     engines=MappingProxyType({"mujoco": "mujoco"}),
+    tokens=_XML_TOKENS,
     requires_mass=True,
     includes=rb"<include\b",
     claimed_reduction=20.0,
@@ -221,6 +224,7 @@ SDF = Format(
     "Simulation Description Format (Gazebo)",
     (".sdf", ".world"),
     roots=("sdf",),
+    tokens=_XML_TOKENS,
     reference="hymeko_x.verify.readers.sdf",
     engines=MappingProxyType({"pydrake": "drake"}),
 )
@@ -305,6 +309,14 @@ def of_input(name: str, data: bytes) -> Format:
 def of_root(root: str | None) -> Format | None:
     """The format whose XML files have this root element, or None."""
     return next((format for format in FORMATS if root in format.roots), None)
+
+
+def root_hint(root: str) -> str:
+    """How to read an XML file with this root element, for a message about another format; empty where no format has it."""
+    format = of_root(root)
+    if format is None:
+        return ""
+    return f"it looks like {format.title}: " + (f"read it with --from {format.name}" if format.frontend else "that format cannot be read")
 
 
 _BEFORE_ROOT = re.compile(rb"\s+|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>\[]*(?:\[.*?\]\s*)?>", re.DOTALL)

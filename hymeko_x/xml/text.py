@@ -63,3 +63,12 @@ def comment_markup(text: str) -> str:
 def is_name(text: str) -> bool:
     """Whether a text can be the name of an element."""
     return re.fullmatch(NAME, text) is not None
+
+
+_LONGEST_PART = 5_000_000
+"""Some readers of XML stop at ten million characters in one text."""
+
+
+def parts_of_text(text: str) -> list[str]:
+    """A long text in pieces that every reader accepts."""
+    return [text[start : start + _LONGEST_PART] for start in range(0, len(text), _LONGEST_PART)]

@@ -99,7 +99,7 @@ def _bare(package: Package, way: str) -> Mechanism:
     """What the stages of a package say themselves."""
     format = formats.by_name(way.partition(" ")[0])
     files = PackageFiles(package, NoFiles())
-    return replace(pipeline.reader(format)(Source(f"r.{format.name}", package.main, files), Report()), extras={})
+    return replace(pipeline.reader(format)(Source(f"r.{format.name}", package.main, files), Report()).mechanism, extras={})
 
 
 @pytest.mark.parametrize("way", [*[way for way in FORMATS if way not in LAYOUTS], *LAYOUTS])

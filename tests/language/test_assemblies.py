@@ -18,7 +18,7 @@ from hymeko_x.testing import mechanisms
 
 def read_text(text: str) -> Mechanism:
     report = Report()
-    mechanism = read(Source("robot.hymeko", text.encode()), report)
+    mechanism = read(Source("robot.hymeko", text.encode()), report).mechanism
     assert not report.diagnostics, [str(diagnostic) for diagnostic in report]
     return mechanism
 
@@ -135,7 +135,7 @@ def _mechanisms(draw: st.DrawFn) -> Mechanism:
 @given(_mechanisms())
 def test_whatever_names_begin_alike_reads_back_equal(mechanism: Mechanism) -> None:
     printed = write(mechanism, Options(), Report()).main
-    back = read(Source("robot.hymeko", printed), Report())
+    back = read(Source("robot.hymeko", printed), Report()).mechanism
     assert back == mechanism
     assert back.layout[: len(mechanism.layout)] == mechanism.layout
     assert write(back, Options(), Report()).main == printed

@@ -39,7 +39,7 @@ EXAMPLES = re.findall(r"```hymeko\n(.*?)```", LANGUAGE, re.DOTALL)
 @pytest.mark.parametrize("text", EXAMPLES, ids=lambda text: re.search(r"\w+(?= .*\{)", text)[0])  # type: ignore[index]
 def test_an_example_is_read_in_silence_and_round_trips(text: str) -> None:
     report = Report()
-    robot = read(Source("example.hymeko", text.encode()), report)
+    robot = read(Source("example.hymeko", text.encode()), report).mechanism
     assert [str(diagnostic) for diagnostic in report] == []
     assert robot.graph.edges
     again = hx.dumps(robot, "hymeko")

@@ -57,7 +57,7 @@ def test_a_file_that_is_imported_twice_is_read_once() -> None:
     files["60.hymeko"] = "part() : link { mass 2 }"
     robot = read(
         Source("a.hymeko", b'import "0.hymeko" import "60.hymeko" as parts\nr : robot { a : parts.part {} }', Folder(files)), Report()
-    )
+    ).mechanism
     assert [body.inertial.mass for body in robot.graph.vertices.values()] == [2.0]  # type: ignore[union-attr]
 
 
@@ -83,7 +83,7 @@ def test_a_long_line_is_cut_around_the_place() -> None:
 
 def test_the_words_that_are_left_over_are_kept_and_said() -> None:
     report = Report()
-    robot = read(Source("a.hymeko", b"arm : robot {\n  base { colour [1 0 0] }\n}"), report)
+    robot = read(Source("a.hymeko", b"arm : robot {\n  base { colour [1 0 0] }\n}"), report).mechanism
     assert [str(diagnostic) for diagnostic in report] == ["a.hymeko:2:10: warning[HX061]: body 'base' has no 'colour'; it is kept as it is"]
     assert [extra.text for extra in robot.extras[next(iter(robot.graph.vertices))]] == ["colour [1 0 0]"]
 

@@ -138,7 +138,7 @@ robot use std {
 
 
 def test_one_text_uses_everything() -> None:
-    robot = read(Source("spider.hymeko", HEXAPOD.encode()), Report())
+    robot = read(Source("spider.hymeko", HEXAPOD.encode()), Report()).mechanism
     assert robot.name == "spider"
     assert [key.name for key, _ in robot.vertices(parts.Body)] == ["trunk", "left_coxa", "left_tibia", "right_coxa", "right_tibia"]
     swing = robot.joints[Id("joint", "right_swing")]
@@ -151,7 +151,7 @@ def test_one_text_uses_everything() -> None:
     assert loop == parts.Loop("connect", parameters=(("solref", (0.02, 1.0)),))
     assert [arc.target.name for arc in arcs] == ["left_tibia", "right_tibia"]
     text = write(robot, Options(), Report()).main
-    assert read(Source("spider.hymeko", text), Report()) == robot
+    assert read(Source("spider.hymeko", text), Report()).mechanism == robot
 
 
 def test_forms_of_older_texts_are_read() -> None:

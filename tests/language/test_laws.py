@@ -27,7 +27,7 @@ def text_of(mechanism: Mechanism) -> str:
 
 def read_text(text: str) -> Mechanism:
     report = Report()
-    mechanism = read(Source("robot.hymeko", text.encode()), report)
+    mechanism = read(Source("robot.hymeko", text.encode()), report).mechanism
     assert not report.diagnostics, [str(diagnostic) for diagnostic in report]
     return mechanism
 

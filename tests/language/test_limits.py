@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 def read_text(text: str) -> Mechanism:
-    return read(Source("a.hymeko", text.encode()), Report())
+    return read(Source("a.hymeko", text.encode()), Report()).mechanism
 
 
 def refusal_of(text: str) -> str:

@@ -42,7 +42,7 @@ class Converted(Struct, frozen=True):
 
 def convert(source: Source, options: Options = FIXED) -> Converted:
     report = Report()
-    mechanism = urdf.read(source, report)
+    mechanism = urdf.read(source, report).mechanism
     legal = legalize(mechanism, "mjcf", options, report)
     packed, files, copies = pack(legal, formats.MJCF, source.files, None, report)
     assets = files | {name: source.files.read(path) for name, path in copies.items()}

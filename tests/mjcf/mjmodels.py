@@ -75,12 +75,12 @@ class Folder(Struct, frozen=True):
 
 def read(path: Path) -> Mechanism:
     """The mechanism in a file."""
-    return mjcf_in.read(Source(path.name, path.read_bytes(), Folder(path.parent)), Report())
+    return mjcf_in.read(Source(path.name, path.read_bytes(), Folder(path.parent)), Report()).mechanism
 
 
 def read_text(text: str, report: Report | None = None) -> Mechanism:
     """The mechanism in a piece of MJCF."""
-    return mjcf_in.read(Source("robot.xml", text.encode()), Report() if report is None else report)
+    return mjcf_in.read(Source("robot.xml", text.encode()), Report() if report is None else report).mechanism
 
 
 def write(mechanism: Mechanism) -> str:
@@ -91,7 +91,7 @@ def write(mechanism: Mechanism) -> str:
 def through_hymeko(mechanism: Mechanism) -> Mechanism:
     """What is left of a mechanism after a visit to HyMeKo text."""
     text = hymeko_out.write(mechanism, Options(), Report()).main
-    return hymeko_in.read(Source("robot.hymeko", text), Report())
+    return hymeko_in.read(Source("robot.hymeko", text), Report()).mechanism
 
 
 def compiled(text: str, folder: Path | None = None) -> mujoco.MjModel:

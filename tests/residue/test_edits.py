@@ -15,7 +15,6 @@ import hymeko_x as hx
 from hymeko_x import codes, formats, pipeline
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
-from hymeko_x.formats.carrier import taken_off
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism
 from hymeko_x.ir.parts import Mesh, Tendon
 from hymeko_x.rewrite import Options
@@ -29,7 +28,7 @@ _NEARLY = Tolerance(1e-9, 1e-9)
 
 def _native(data: bytes, format: str) -> Mechanism:
     """What the format itself says, without what the file carries."""
-    return taken_off(pipeline.reader(formats.by_name(format))(Source("<text>", data, NoFiles()), Report()))[0]
+    return pipeline.reader(formats.by_name(format))(Source("<text>", data, NoFiles()), Report()).mechanism
 
 
 def _written_again(robot: Mechanism, format: str) -> Mechanism:

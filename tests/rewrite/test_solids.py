@@ -80,7 +80,7 @@ def test_a_mesh_alone_says_nothing() -> None:
 
 def test_the_tensors_of_the_published_listing_are_written() -> None:
     text = b"scara { base { mass = 2.0 translation = [0.0, 0.0, 0.3] geometry { type = cylinder dimensions = [0.1, 0.6] } } }"
-    mechanism = hymeko.read(Source("scara.hymeko", text, MemoryFiles()), Report())
+    mechanism = hymeko.read(Source("scara.hymeko", text, MemoryFiles()), Report()).mechanism
     report = Report()
     inertial = legalize(mechanism, "urdf", Options(), report).vertex(Id("body", "base"), Body).inertial
     assert inertial is not None
@@ -92,7 +92,7 @@ def test_the_tensors_of_the_published_listing_are_written() -> None:
 def test_what_urdf_leaves_out_stays_out() -> None:
     shape = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
     text = f'<robot name="r"><link name="a"><inertial><mass value="2"/></inertial>{shape}</link></robot>'
-    assert tensor_of(urdf.read(Source("r.urdf", text.encode(), MemoryFiles()), Report())) is None
+    assert tensor_of(urdf.read(Source("r.urdf", text.encode(), MemoryFiles()), Report()).mechanism) is None
 
 
 @pytest.mark.parametrize("name", ["robot.urdf", "robot.xml"])

@@ -35,7 +35,7 @@ def visual(inside: str, tag: str = "visual") -> str:
 def load(text: str | bytes, report: Report | None = None) -> Mechanism:
     """The mechanism of a text."""
     data = text if isinstance(text, bytes) else text.encode()
-    return read(Source("robot.urdf", data), report if report is not None else Report())
+    return read(Source("robot.urdf", data), report if report is not None else Report()).mechanism
 
 
 def said(text: str | bytes) -> list[str]:

@@ -47,6 +47,6 @@ def test_every_mechanism_can_be_written_after_legalising_and_the_text_is_well_fo
     legal = legalize(own_words, "urdf", Options(base=base), Report())  # type: ignore[arg-type]
     text = write(legal, Options(), Report()).main
     assert not [message for message in said(text) if "HX005" in message]
-    result = read(Source("r.urdf", text), Report())
+    result = read(Source("r.urdf", text), Report()).mechanism
     assert {key for key, _ in legal.vertices(parts.Body)} == {key for key, _ in result.vertices(parts.Body)}
     assert legalize(legal, "urdf", Options(base=base), Report()).graph == legal.graph  # type: ignore[arg-type]

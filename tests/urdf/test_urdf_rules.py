@@ -217,7 +217,7 @@ def test_ellipsoids_of_all_sizes_share_one_file() -> None:
     both = {
         Id("shape", name): shape_edge(Shape(Ellipsoid(radii), Role.BOTH), A) for name, radii in (("s", (1.0, 2.0, 3.0)), ("t", (1.0,) * 3))
     }
-    assert list(write(legal(Mechanism("r", Hypergraph({A: Body()}, both))), Report()).files) == ["shapes/a_ellipsoid.obj"]
+    assert list(write(legal(Mechanism("r", Hypergraph({A: Body()}, both))), Options(), Report()).files) == ["shapes/a_ellipsoid.obj"]
 
 
 def _determinant(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:

@@ -40,14 +40,14 @@ def read_text(
 ) -> Mechanism:
     """The mechanism of a stage; without a report nothing may be said."""
     said = report if report is not None else Report()
-    mechanism = usd.read(Source(name, text.encode(), Texts(files or {})), said)
+    mechanism = usd.read(Source(name, text.encode(), Texts(files or {})), said).mechanism
     assert report is not None or [str(item) for item in said] == []
     return mechanism
 
 
 def read_file(path: Path) -> Mechanism:
     """The mechanism of a file on disk, whatever it says about it."""
-    return usd.read(Source(path.name, path.read_bytes(), DiskFiles(path.parent)), Report())
+    return usd.read(Source(path.name, path.read_bytes(), DiskFiles(path.parent)), Report()).mechanism
 
 
 def written(mechanism: Mechanism, format: str = "usd") -> bytes:

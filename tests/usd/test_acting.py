@@ -81,7 +81,7 @@ MODEL = """<mujoco><worldbody>
 
 
 def test_what_mjcf_says_stands_in_the_schemas_of_the_stage(tmp_path: Path) -> None:
-    mechanism = mjcf.read(Source("m.xml", MODEL.encode()), Report())
+    mechanism = mjcf.read(Source("m.xml", MODEL.encode()), Report()).mechanism
     data = pipeline.write(mechanism, formats.USD, Options(), NoFiles(), Report()).main
     stage = opened(data, tmp_path)
     root = stage.GetDefaultPrim().GetPath()

@@ -30,7 +30,7 @@ HAND = """<robot name="hand">
 
 def hand() -> Mechanism:
     report = Report()
-    mechanism = urdf.read(Source("hand.urdf", HAND.encode()), report)
+    mechanism = urdf.read(Source("hand.urdf", HAND.encode()), report).mechanism
     assert [item.code for item in report if item.code != codes.MISSING_PART] == []
     return mechanism
 

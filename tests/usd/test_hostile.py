@@ -50,7 +50,7 @@ def test_a_layer_that_is_its_own_sublayer_or_payload_ends() -> None:
 def test_a_missing_payload_is_a_warning() -> None:
     report = Report()
     text = robot(body("a"), 'def "b" (\n    payload = @../../../../../../../../../../etc/passwd@\n)\n{\n}\n')
-    mechanism = usd.read(Source("robot.usda", text.encode()), report)
+    mechanism = usd.read(Source("robot.usda", text.encode()), report).mechanism
     assert [item.code for item in report] == [codes.ASSET_NOT_FOUND]
     assert [key.name for key, _ in mechanism.vertices(Body)] == ["a"]
 
@@ -59,7 +59,7 @@ def test_a_missing_payload_is_a_warning() -> None:
 def test_a_hundred_thousand_prims_are_read_in_bounded_time() -> None:
     group = "".join(f'    def Xform "p{number}"\n    {{\n        int count = {number}\n    }}\n' for number in range(100_000))
     start = time.process_time()
-    mechanism = usd.read(Source("robot.usda", robot(body("a"), group).encode()), Report())
+    mechanism = usd.read(Source("robot.usda", robot(body("a"), group).encode()), Report()).mechanism
     assert [key.name for key, _ in mechanism.vertices(Body)] == ["a"]
     assert sum(len(found) for found in mechanism.extras.values()) >= 100_000
     assert time.process_time() - start < 300.0

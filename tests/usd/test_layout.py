@@ -138,7 +138,7 @@ def test_layers_inside_of_a_package_are_found_there() -> None:
     main = HEADER + 'def Xform "robot"\n{\n    def "a" (\n        prepend references = @./parts/part.usda@\n    )\n    {\n    }\n}\n'
     data = package_of({"main.usda": main, "parts/part.usda": PART, "../outside.usda": PART})
     report = Report()
-    mechanism = usd.read(Source("robot.usdz", data), report)
+    mechanism = usd.read(Source("robot.usdz", data), report).mechanism
     assert [str(item) for item in report] == []
     assert [key.name for key, _ in mechanism.vertices(Body)] == ["a"]
 
@@ -172,7 +172,7 @@ VARIANTS = (
 )
 def test_variants_are_chosen_also_those_that_another_one_brings_forth(variants: dict[str, str], bodies: list[str]) -> None:
     source = replace(Source("robot.usda", VARIANTS.encode()), variants=variants)
-    mechanism = usd.read(source, Report())
+    mechanism = usd.read(source, Report()).mechanism
     assert sorted(key.name for key, _ in mechanism.vertices(Body)) == bodies
     assert Id("body", "short_arm") in mechanism.graph.vertices or variants
 

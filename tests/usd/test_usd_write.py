@@ -12,15 +12,15 @@ from pxr import Sdf, Usd, UsdGeom, UsdPhysics
 
 import hymeko_x as hx
 from hymeko_x import formats, pipeline
-from hymeko_x.backends.usd.layers import carry_in_text
+from hymeko_x.backends.usd.layers import text_with_residue
 from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Report
-from hymeko_x.formats import carrier
+from hymeko_x.formats.usd import RESIDUE
 from hymeko_x.frontends import urdf, usd
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.parts import Body, Mesh
 from hymeko_x.rewrite import Options
-from hymeko_x.source import NoFiles, Package, Source
+from hymeko_x.source import NoFiles, Source
 from tests.usd.stages import Texts, again, opened, parsed, written
 
 ARM = """<robot name="my arm">
@@ -44,7 +44,7 @@ ARM = """<robot name="my arm">
 
 def arm() -> Mechanism:
     report = Report()
-    mechanism = urdf.read(Source("arm.urdf", ARM.encode()), report)
+    mechanism = urdf.read(Source("arm.urdf", ARM.encode()), report).mechanism
     assert list(report) == []
     return mechanism
 
@@ -113,7 +113,7 @@ def test_what_a_shape_is_for_is_its_purpose(tmp_path: Path) -> None:
 def test_a_root_link_that_stands_for_the_world_does_not_fall(tmp_path: Path) -> None:
     text = """<robot name="r"><link name="world"/><link name="a"/>
       <joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint></robot>"""
-    mechanism = urdf.read(Source("r.urdf", text.encode()), Report())
+    mechanism = urdf.read(Source("r.urdf", text.encode()), Report()).mechanism
     joints = parsed(opened(written(mechanism), tmp_path)).joints
     assert {path: said[:2] for path, said in joints.items()} == {
         "/r/joints/world_base": ("FixedJoint", ""),
@@ -169,7 +169,7 @@ MESHES = """<robot name="m"><link name="a">
 
 def test_a_mesh_that_is_shown_twice_is_stored_once_and_keeps_its_file(tmp_path: Path) -> None:
     files = Texts({"a.obj": OBJ})
-    mechanism = urdf.read(Source("m.urdf", MESHES.encode(), files), Report())
+    mechanism = urdf.read(Source("m.urdf", MESHES.encode(), files), Report()).mechanism
     data = pipeline.convert(mechanism, formats.USD, Options(), files, Report()).package.main
     assert data.count(b"point3f[] points") == 1
     stage = opened(data, tmp_path)
@@ -179,9 +179,9 @@ def test_a_mesh_that_is_shown_twice_is_stored_once_and_keeps_its_file(tmp_path: 
 
 
 def test_without_its_file_a_mesh_has_the_points_of_the_stage() -> None:
-    mechanism = urdf.read(Source("m.urdf", MESHES.encode()), Report())
+    mechanism = urdf.read(Source("m.urdf", MESHES.encode()), Report()).mechanism
     data = pipeline.write(mechanism, formats.by_name("usd"), Options(), Texts({"a.obj": OBJ}), Report()).main
-    ((_, mesh),) = usd.read(Source("m.usda", data), Report()).vertices(Mesh)
+    ((_, mesh),) = usd.read(Source("m.usda", data), Report()).mechanism.vertices(Mesh)
     assert (mesh.uri, len(mesh.vertices), len(mesh.faces)) == (None, 12, 12)
     shown = {tuple(factor * x for factor, x in zip(mesh.scale, mesh.vertices[at : at + 3], strict=True)) for at in range(0, 12, 3)}
     assert (0.0, 0.0, pytest.approx(0.1)) in [tuple(abs(x) for x in point) for point in shown]
@@ -199,7 +199,7 @@ def test_a_written_stage_needs_no_other_layer(tmp_path: Path) -> None:
 def shown_once(factor: float) -> str:
     """A stage with one mesh as we write it, its normals multiplied."""
     robot = b'<robot name="m"><link name="a"><visual><geometry><mesh filename="a.obj"/></geometry></visual></link></robot>'
-    mechanism = urdf.read(Source("m.urdf", robot), Report())
+    mechanism = urdf.read(Source("m.urdf", robot), Report()).mechanism
     layer = Sdf.Layer.CreateAnonymous(".usda")
     layer.ImportFromString(pipeline.write(mechanism, formats.USD, Options(), Texts({"a.obj": OBJ}), Report()).main.decode())
     normals = layer.GetAttributeAtPath("/m/a/visual.normals")
@@ -210,7 +210,7 @@ def shown_once(factor: float) -> str:
 @pytest.mark.parametrize(("factor", "kept"), [(1.0, False), (-1.0, True)])
 def test_normals_that_follow_from_the_triangles_are_no_extra_and_are_written_again(factor: float, kept: bool) -> None:
     text = shown_once(factor)
-    mechanism = usd.read(Source("m.usda", text.encode()), Report())
+    mechanism = usd.read(Source("m.usda", text.encode()), Report()).mechanism
     assert any("normals" in extra.text for extras in mechanism.extras.values() for extra in extras) is kept
     result = Sdf.Layer.CreateAnonymous(".usda")
     result.ImportFromString(pipeline.write(mechanism, formats.USD, Options(), NoFiles(), Report()).main.decode())
@@ -226,6 +226,6 @@ def test_a_residue_in_the_header_leaves_the_rest_of_the_text_as_it_was(comment: 
     layer.ImportFromString(written(arm()).decode())
     layer.comment = comment
     whole = layer.ExportToString()
-    carried = carry_in_text(Package(whole.encode()), 'said "so"\n)\n').main.decode()
-    layer.customLayerData = {**layer.customLayerData, carrier.USD_KEY: 'said "so"\n)\n'}
+    carried = text_with_residue(layer, whole, 'said "so"\n)\n').decode()
+    layer.customLayerData = {**layer.customLayerData, RESIDUE: 'said "so"\n)\n'}
     assert carried == layer.ExportToString()

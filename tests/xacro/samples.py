@@ -51,7 +51,7 @@ class Folder:
     def read(self, body: str, report: Report | None = None, **how: object) -> Mechanism:
         """The mechanism of ``r.xacro`` with this body."""
         self.put("r.xacro", robot(body))
-        return read(self.source(**how), Report() if report is None else report)  # type: ignore[arg-type]
+        return read(self.source(**how), Report() if report is None else report).mechanism  # type: ignore[arg-type]
 
     def expand(self, body: str, limits: Limits = LIMITS, **how: object) -> Expansion:
         """The expansion of ``r.xacro`` with this body."""

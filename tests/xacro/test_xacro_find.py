@@ -27,7 +27,7 @@ def package(folder: Folder, place: str, name: str | None, link: str) -> Path:
 def found(folder: Folder, name: str = "robots/r.xacro", body: str = INCLUDE, **how: object) -> list[str]:
     """The links of the robot in a file."""
     folder.put(name, f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n{body}\n</robot>')
-    mechanism = read(folder.source(name, **how), Report())
+    mechanism = read(folder.source(name, **how), Report()).mechanism
     return [key.name for key in mechanism.graph.vertices if key.kind == "body"]
 
 
@@ -135,7 +135,7 @@ def test_confined_reading_leaves_the_folder_by_no_way(folder: Folder) -> None:
 
 def read_or_refusal(source: Source, report: Report) -> object:
     try:
-        mechanism = read(source, report)
+        mechanism = read(source, report).mechanism
     except Refusal as refusal:
         return refusal.diagnostic.code
     assert [key.name for key in mechanism.graph.vertices if key.kind == "body"] == ["a"]

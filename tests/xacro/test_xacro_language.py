@@ -222,7 +222,7 @@ def test_a_library_of_macros_is_no_robot(folder: Folder) -> None:
 
 @pytest.mark.parametrize("name", ["<stdin>", "folder/r.XACRO"])
 def test_text_without_a_file_around_it_expands(name: str) -> None:
-    mechanism = read(Source(name, b'<robot name="r"><link name="${1 + 1}"/></robot>'), Report())
+    mechanism = read(Source(name, b'<robot name="r"><link name="${1 + 1}"/></robot>'), Report()).mechanism
     assert mechanism.origins == {ROOT: Origin(name, 1), body("2"): Origin(name, 1)}
 
 

@@ -92,15 +92,15 @@ def test_a_real_robot_expands_as_xacro_itself_does(robot: Path, corpus_root: Pat
 def test_the_urdf_of_a_real_robot_is_its_expansion(robot: Path) -> None:
     """Element for element, as far as URDF has a meaning: the URDF backend has one order for what is in a link or joint."""
     source = disk.open_source(str(robot))
-    mechanism = read(source, Report())
-    assert diff(mechanism, urdf_in.read(replace(source, data=expand(source, Report()).text), Report())) == ()
+    mechanism = read(source, Report()).mechanism
+    assert diff(mechanism, urdf_in.read(replace(source, data=expand(source, Report()).text), Report()).mechanism) == ()
     assert members(urdf.write(mechanism, Options(), Report()).main) == members(expand(source, Report()).text)
 
 
 @pytest.mark.robots("xacro")
 def test_a_real_robot_converts_to_hymeko_urdf_and_mjcf(robot: Path) -> None:
     source = disk.open_source(str(robot))
-    mechanism = read(source, Report())
+    mechanism = read(source, Report()).mechanism
     text = pipeline.convert(mechanism, formats.by_name("hymeko"), Options(), source.files, Report())
     assert text.losses == ()
     assert pipeline.convert(mechanism, formats.by_name("urdf"), Options(), source.files, Report()).losses == ()
@@ -110,7 +110,7 @@ def test_a_real_robot_converts_to_hymeko_urdf_and_mjcf(robot: Path) -> None:
 @pytest.mark.robots("xacro")
 def test_every_element_of_a_real_robot_stands_where_its_file_says(robot: Path) -> None:
     """Each link and joint is written on its line: the line begins the tag, in whichever file it is."""
-    mechanism = read(disk.open_source(str(robot)), Report())
+    mechanism = read(disk.open_source(str(robot)), Report()).mechanism
     for key, origin in mechanism.origins.items():
         if key.kind in ("body", "joint") and origin.line:
             line = Path(origin.file).read_text("utf-8").splitlines()[origin.line - 1]

@@ -84,7 +84,7 @@ def test_left_and_right_are_calls_of_one_macro() -> None:
 
 
 def test_comments_stay_and_headings_go() -> None:
-    back = read(Source("r.xacro", backend.write(load(PAIR), Options(), Report()).main), Report())
+    back = read(Source("r.xacro", backend.write(load(PAIR), Options(), Report()).main), Report()).mechanism
     assert diff(load(PAIR), back) == ()
     assert [extra.text for extras in back.extras.values() for extra in extras if extra.format == "comment"] == ["the base"]
 
@@ -155,15 +155,15 @@ def test_the_xacro_of_a_real_robot_expands_to_its_urdf(robot: Path) -> None:
 @pytest.mark.robots("xacro")
 def test_xacro_through_a_mechanism_and_back_is_the_expansion_of_the_source(robot: Path) -> None:
     source = disk.open_source(str(robot))
-    mechanism = read(source, Report())
+    mechanism = read(source, Report()).mechanism
     text = check(mechanism)
-    assert diff(mechanism, read(Source("again.xacro", text.encode()), Report())) == ()
+    assert diff(mechanism, read(Source("again.xacro", text.encode()), Report()).mechanism) == ()
 
 
 @pytest.mark.robots("xacro")
 def test_macros_in_a_file_of_their_own_expand_to_the_same(robot: Path, tmp_path: Path) -> None:
     source = disk.open_source(str(robot))
-    mechanism = read(source, Report())
+    mechanism = read(source, Report()).mechanism
     options = Options(split=True, pure=True)
     package = pipeline.write(mechanism, formats.by_name("xacro"), options, source.files, Report())
     (tmp_path / "robot.xacro").write_bytes(package.main)

@@ -5,10 +5,7 @@ A mechanism that came from MJCF keeps its classes and notations, so that MuJoCo 
 
 from __future__ import annotations
 
-from itertools import count
 from typing import TYPE_CHECKING
-
-from msgspec.structs import replace
 
 from hymeko_x.backends.mjcf.actuators import write_actuators
 from hymeko_x.backends.mjcf.assets import write_assets
@@ -19,10 +16,11 @@ from hymeko_x.backends.mjcf.equalities import write_equalities
 from hymeko_x.backends.mjcf.sensors import write_sensors
 from hymeko_x.backends.mjcf.sheet import open_sheet
 from hymeko_x.backends.mjcf.tendons import write_tendons
-from hymeko_x.formats import carrier
+from hymeko_x.formats.mjcf import RESIDUE
 from hymeko_x.formats.mjcf.words import SECTIONS
 from hymeko_x.source import Package
-from hymeko_x.xml.text import escaped
+from hymeko_x.xml.printing import render
+from hymeko_x.xml.text import escaped, parts_of_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -54,12 +52,15 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     sheet.write_kept("")
     if not sheet.from_mjcf:
         write_defaults(sheet)
-    return Package(sheet.bytes())
+    lines = render(sheet.root)
+    return Package("\n".join([*lines, ""]).encode(), carry=lambda residue: _with_residue(sheet, lines, residue))
 
 
-def carry_residue(package: Package, text: str) -> Package:
-    """The package with a residue in its file: the data of texts that mean nothing to MuJoCo."""
-    names = (f"{carrier.MJCF_NAME}{number or ''}" for number in count())
-    texts = [f'    <text name="{name}" data="{escaped(part)}"/>\n' for name, part in zip(names, carrier.parts(text), strict=False)]
-    markup = f"  <custom>\n{''.join(texts)}  </custom>\n"
-    return replace(package, main=carrier.inserted(package.main, markup))
+def _with_residue(sheet: MjcfSheet, lines: list[str], residue: str) -> bytes:
+    """The lines of the document with a residue before their last one: the data of texts that mean nothing to MuJoCo."""
+    if not sheet.root.children:
+        sheet.root.has_end = True
+        lines = render(sheet.root)
+    parts = enumerate(parts_of_text(residue))
+    texts = [f'    <text name="{RESIDUE}{number or ""}" data="{escaped(part)}"/>' for number, part in parts]
+    return "\n".join([*lines[:-1], "  <custom>", *texts, "  </custom>", lines[-1], ""]).encode()

@@ -25,7 +25,7 @@ from hymeko_x.ir.mechanism import ROOT, file_stem
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Joint, Mesh, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose, compose, numbers_text
-from hymeko_x.xml.printing import Tag, render
+from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -233,10 +233,6 @@ class MjcfSheet:
         for _, extra in items:
             tag = _as_tag(extra)
             self.root.children += [tag] if isinstance(tag, str) else ["", tag]
-
-    def bytes(self) -> bytes:
-        """The document in UTF-8, with a newline at its end."""
-        return ("\n".join(render(self.root)) + "\n").encode()
 
 
 def open_sheet(mechanism: Mechanism, others: Classes) -> MjcfSheet:

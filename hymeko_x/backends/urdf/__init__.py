@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from msgspec.structs import replace
-
 from hymeko_x.backends.urdf.joints import joint_tag
 from hymeko_x.backends.urdf.links import link_tag
 from hymeko_x.backends.urdf.materials import robot_material_tag
@@ -17,13 +15,12 @@ from hymeko_x.backends.urdf.meshes import contents_of
 from hymeko_x.backends.urdf.order import order
 from hymeko_x.backends.urdf.sheet import Sheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
-from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf.notations import STYLE, Explicit, Style
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Package
 from hymeko_x.xml.printing import Tag, foreign_text, put_back, ready, render
-from hymeko_x.xml.text import escaped
+from hymeko_x.xml.text import escaped, escaped_lines, parts_of_text
 from hymeko_x.xml.unread import COMMENT, FOLLOWING, PRECEDING
 
 if TYPE_CHECKING:
@@ -55,8 +52,12 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     del report  # printing takes no decisions, so there is nothing to say
     made = draft(mechanism, options.within)
     made.root.children += [element if isinstance(element, str) else ready(element, 1) for element in made.elements]
-    lines = ['<?xml version="1.0"?>', *made.before, *render(made.root), *made.after, ""]
-    return Package("\n".join(lines).encode(), made.meshes)
+
+    def printed(residue: str) -> bytes:
+        root = Tag(made.root.name, made.root.attributes, [*made.root.children, *residue_elements(residue)])
+        return "\n".join(['<?xml version="1.0"?>', *made.before, *render(root), *made.after, ""]).encode()
+
+    return Package(printed(""), made.meshes, carry=printed)
 
 
 def draft(mechanism: Mechanism, within: str = "") -> Draft:
@@ -71,9 +72,10 @@ def draft(mechanism: Mechanism, within: str = "") -> Draft:
     return Draft(root, _merged(extras, sheet), _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)
 
 
-def carry_residue(package: Package, text: str) -> Package:
-    """The package with a residue in its file."""
-    return replace(package, main=carrier.inserted(package.main, carrier.xml_elements(text)))
+def residue_elements(text: str, *, readable: bool = True) -> list[str]:
+    """The elements that carry a residue; ``readable`` allows CDATA, which xacro would not unescape."""
+    texts = [f"<![CDATA[\n{part}]]>" if readable and "]]>" not in part else escaped_lines(part) for part in parts_of_text(text)]
+    return [f'<{words.RESIDUE} xmlns:hymeko="{words.RESIDUE_NAMESPACE}">{part}</{words.RESIDUE}>' for part in texts]
 
 
 def _root_tag(mechanism: Mechanism) -> Tag:

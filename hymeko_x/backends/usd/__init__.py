@@ -15,8 +15,7 @@ from hymeko_x.backends.usd.contacts import write_contacts, write_frictions
 from hymeko_x.backends.usd.couplings import write_mimics
 from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
-from hymeko_x.backends.usd.layers import carry_in_text as carry_residue
-from hymeko_x.backends.usd.layers import encoded, set_points_aside, split
+from hymeko_x.backends.usd.layers import encoded, set_points_aside, split, text_with_residue
 from hymeko_x.backends.usd.materials import write_materials
 from hymeko_x.backends.usd.mounts import write_mounts
 from hymeko_x.backends.usd.shapes import write_shapes
@@ -30,8 +29,6 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.rewrite.context import Options
-
-__all__ = ["carry_residue", "write"]
 
 _ARTICULATION = "PhysicsArticulationRootAPI"
 _SECTIONS = (
@@ -55,8 +52,10 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     layers = write_layers(mechanism, options, report, ".usda")
     if options.beside and len(layers) == 1:
         layers |= set_points_aside(layers[""], f"{options.within}{options.beside}_meshes.usdc")
-    written = {name: encoded(layer) if name.endswith(".usdc") else layer.ExportToString().encode() for name, layer in layers.items()}
-    return Package(written.pop(""), written)
+    root = layers.pop("")
+    main = root.ExportToString()
+    beside = {name: encoded(layer) if name.endswith(".usdc") else layer.ExportToString().encode() for name, layer in layers.items()}
+    return Package(main.encode(), beside, carry=lambda residue: text_with_residue(root, main, residue))
 
 
 def write_layers(mechanism: Mechanism, options: Options, report: Report, suffix: str) -> dict[str, Any]:

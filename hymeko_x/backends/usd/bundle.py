@@ -8,11 +8,10 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from msgspec.structs import replace
 from pxr import Sdf
 
 from hymeko_x.backends.usd.crate import write as write_crate
-from hymeko_x.backends.usd.layers import with_residue
+from hymeko_x.backends.usd.layers import crate_with_residue
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -28,19 +27,16 @@ _MAIN = "stage.usdc"
 def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The mechanism as a package, which passes through a temporary file like a crate. Its first file is the one to open."""
     crate = write_crate(mechanism, options, report)
-    return Package(zipped({_MAIN: crate.main, **crate.files}))
+    return _packed({_MAIN: crate.main, **crate.files})
 
 
-def enclose(package: Package, files: Mapping[str, bytes]) -> Package:
-    """The package with the files in it that would lie beside it."""
-    return replace(package, main=zipped(unzipped(package.main) | dict(files)))
-
-
-def carry_residue(package: Package, text: str) -> Package:
-    """The package with a residue in the first layer of its zip file; everything else in it stays."""
-    files = unzipped(package.main)
-    first = next(iter(files))
-    return replace(package, main=zipped(files | {first: with_residue(files[first], text)}))
+def _packed(files: Mapping[str, bytes]) -> Package:
+    """The files in one archive, which takes more of them in, and carries a residue in the first one."""
+    return Package(
+        zipped(files),
+        carry=lambda residue: zipped({**files, _MAIN: crate_with_residue(files[_MAIN], residue)}),
+        enclose=lambda others: _packed({**files, **others}),
+    )
 
 
 _BEGINNING = (1980, 1, 1, 0, 0, 0, 0, 0, -1)
@@ -59,12 +55,3 @@ def zipped(files: Mapping[str, bytes]) -> bytes:
                 os.utime(inner, (date, date))
                 archive.AddFile(str(inner), name)
         return outer.read_bytes()
-
-
-def unzipped(data: bytes) -> dict[str, bytes]:
-    """The files in an archive, in their order."""
-    with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
-        path = Path(folder) / "stage.usdz"
-        path.write_bytes(data)
-        archive = Sdf.ZipFile.Open(str(path))
-        return {name: archive.GetFile(name) for name in archive.GetFileNames()}

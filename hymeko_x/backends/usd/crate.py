@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.usd import write_layers
-from hymeko_x.backends.usd.layers import carry_in_crate as carry_residue
-from hymeko_x.backends.usd.layers import encoded
+from hymeko_x.backends.usd.layers import crate_with_residue, encoded
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -14,10 +13,9 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.rewrite.context import Options
 
-__all__ = ["carry_residue", "write"]
-
 
 def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The mechanism as a crate file. Textures are not part of it: `assets.pack` returns them."""
     crates = {name: encoded(layer) for name, layer in write_layers(mechanism, options, report, ".usdc").items()}
-    return Package(crates.pop(""), crates)
+    main = crates.pop("")
+    return Package(main, crates, carry=lambda residue: crate_with_residue(main, residue))

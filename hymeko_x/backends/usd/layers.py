@@ -11,15 +11,13 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from msgspec.structs import replace
-from pxr import Sdf, Tf
+from pxr import Sdf
 
-from hymeko_x.formats import carrier
+from hymeko_x.formats import usd as words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.source import Package
 
 GEOMETRY, MATERIALS, PHYSICS = ASPECTS = ("geometry", "materials", "physics")
 _CONTENTS = "contents"
@@ -174,41 +172,27 @@ def _schema_aspect(schema: str, home: str) -> str:
 # ---- residue -----------------------------------------------------------------------------------------------------------------------
 
 
-def carry_in_text(package: Package, text: str) -> Package:
-    """The package with a residue in its text layer, of which only the header is parsed."""
-    whole = package.main.decode()
-    head, end, prims = whole.partition("\n)\n")
-    header = _parsed_layer(head + end)
-    if header is None:  # a string in the header contains the end of a header
-        header, prims = _parsed_layer(whole), ""
-    assert header is not None
-    _put(header, text)
-    authored = header.ExportToString()
-    return replace(package, main=(authored.rstrip("\n") + "\n" + prims if prims else authored).encode())
+def text_with_residue(layer: Any, main: str, residue: str) -> bytes:
+    """A layer, which is ``main`` as text, with a residue in its header; what stands behind that stays as it is."""
+    header = Sdf.Layer.CreateAnonymous(".usda")
+    header.TransferContent(layer)
+    for prim in list(header.rootPrims):
+        del header.rootPrims[prim.name]
+    prims = main[len(header.ExportToString()) :]
+    _put(header, residue)
+    return f"{header.ExportToString()}{prims}".encode()
 
 
-def _parsed_layer(text: str) -> Any | None:
-    layer = Sdf.Layer.CreateAnonymous(".usda")
-    try:
-        return layer if layer.ImportFromString(text) else None
-    except Tf.ErrorException:
-        return None
-
-
-def carry_in_crate(package: Package, text: str) -> Package:
-    """The package with a residue in its crate file."""
-    return replace(package, main=with_residue(package.main, text))
-
-
-def with_residue(crate: bytes, text: str) -> bytes:
+def crate_with_residue(crate: bytes, residue: str) -> bytes:
+    """A crate file with a residue in its header."""
     with tempfile.TemporaryDirectory(prefix="hymeko-usd-") as folder:
         old, new = Path(folder) / "old.usdc", Path(folder) / "new.usdc"
         old.write_bytes(crate)
         layer = Sdf.Layer.OpenAsAnonymous(str(old))
-        _put(layer, text)
+        _put(layer, residue)
         layer.Export(str(new))
         return new.read_bytes()
 
 
 def _put(layer: Any, text: str) -> None:
-    layer.customLayerData = {**layer.customLayerData, carrier.USD_KEY: text}
+    layer.customLayerData = {**layer.customLayerData, words.RESIDUE: text}

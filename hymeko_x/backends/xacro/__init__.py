@@ -9,15 +9,12 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from msgspec.structs import replace
-
 from hymeko_x.backends import urdf
 from hymeko_x.backends.xacro.dialect import DIALECT
 from hymeko_x.backends.xacro.elements import top_level
 from hymeko_x.backends.xacro.printing import print_file, print_macros
 from hymeko_x.backends.xacro.remarks import placed
 from hymeko_x.factor import factor
-from hymeko_x.formats import carrier
 from hymeko_x.formats.xacro import macros_file
 from hymeko_x.source import Package
 
@@ -37,13 +34,16 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     forms, remarks = top_level(draft.elements, mechanism)
     factored = factor(forms, DIALECT)
     if not factored.macros or not options.split:
-        return Package(print_file(draft, factored, placed(factored, remarks)).encode(), draft.meshes)
+        lines = print_file(draft, factored, placed(factored, remarks))
+        return Package(_file(lines, draft), draft.meshes, carry=lambda residue: _file(lines, draft, residue))
     beside = f"{options.within}{macros_file(mechanism.name)}"
-    main = print_file(draft, factored, placed(factored, remarks), beside)
-    return Package(main.encode(), {**draft.meshes, beside: print_macros(draft, factored, placed(factored, remarks)).encode()})
+    lines = print_file(draft, factored, placed(factored, remarks), beside)
+    files = {**draft.meshes, beside: print_macros(draft, factored, placed(factored, remarks)).encode()}
+    return Package(_file(lines, draft), files, carry=lambda residue: _file(lines, draft, residue))
 
 
-def carry_residue(package: Package, text: str) -> Package:
-    """The package with a residue in its file, in which nothing is left for xacro to evaluate."""
-    plain = re.sub(r"\$+(?=[{(])", r"\g<0>$", text)
-    return replace(package, main=carrier.inserted(package.main, carrier.xml_elements(plain, readable=False)))
+def _file(lines: list[str], draft: urdf.Draft, residue: str = "") -> bytes:
+    """The file with the end of its root, and before that a residue in which nothing is left for xacro to evaluate."""
+    plain = re.sub(r"\$+(?=[{(])", r"\g<0>$", residue)
+    carried = [f"  {element}" for element in urdf.residue_elements(plain, readable=False)]
+    return "\n".join([*lines, *carried, "</robot>", *draft.after, ""]).encode()

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 _INDENT = "  "
 
 
-def print_file(draft: Draft, factored: Factored, remarks: Placed, included: str | None = None) -> str:
-    """The whole file; where macros stand in a file that is ``included``, without them."""
+def print_file(draft: Draft, factored: Factored, remarks: Placed, included: str | None = None) -> list[str]:
+    """The lines of the file but the end of its root; where macros stand in a file that is ``included``, without them."""
     page = Page(factored, remarks)
     page.lines += ['<?xml version="1.0"?>', *draft.before, root_start(draft)]
     if included is None:
@@ -31,8 +31,7 @@ def print_file(draft: Draft, factored: Factored, remarks: Placed, included: str 
         page.lines.append(f'{_INDENT}<xacro:include filename="{included}"/>')
     page.heading("The robot", factored.macros and factored.items)
     page.body("", factored.items, 1)
-    page.lines += ["</robot>", *draft.after, ""]
-    return "\n".join(page.lines)
+    return page.lines
 
 
 def print_macros(draft: Draft, factored: Factored, remarks: Placed) -> str:

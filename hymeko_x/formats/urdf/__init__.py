@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 FORMAT = "urdf"
 
+RESIDUE = "hymeko:residue"
+"""The element that carries a residue as the last child of the root, which all other readers ignore."""
+RESIDUE_NAMESPACE = "urn:hymeko-x"
+
 
 class JointType(NamedTuple):
     """A word of ``<joint type>``: the kinds of the joint's dofs, and whether ``<limit>`` bounds the position."""

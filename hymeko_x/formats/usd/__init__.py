@@ -14,6 +14,9 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 FORMAT = "usd"
+
+RESIDUE = "hymeko:residue"
+"""The string in the custom data of the root layer that carries a residue."""
 PATH = words("usd.path")
 """The notation that keeps the path of the prim that an element was read from; several paths where it was made of several."""
 TYPE = word("usd.type")

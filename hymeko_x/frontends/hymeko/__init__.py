@@ -31,6 +31,7 @@ from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Comment, Field, QuotedName
 from hymeko_x.language.templates import decode
+from hymeko_x.source import Reading
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -43,7 +44,7 @@ MAX_BYTES = 2**28
 _WITH_SHAPES = frozenset({"body", "world"})  # read first: their shapes have no declaration of their own
 
 
-def read(source: Source, report: Report) -> Mechanism:
+def read(source: Source, report: Report) -> Reading:
     """The mechanism that a HyMeKo text describes.
 
     Raises: Refusal with the place in the text: HX060 syntax, HX061 types, HX062 values, HX063 templates, HX064 expressions,
@@ -62,7 +63,7 @@ def read(source: Source, report: Report) -> Mechanism:
 
     try:
         expanded = expand(parse(text, source.name), source.name, fetch)
-        return _read_expanded(expanded, HymekoBuilder(reader=ValueReader(source.name, report)))
+        return Reading(_read_expanded(expanded, HymekoBuilder(reader=ValueReader(source.name, report))))
     except Refusal as refusal:
         raise with_excerpt(refusal, text, source.name) from refusal
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from hymeko_x import codes
+from hymeko_x import codes, formats
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats import carrier
+from hymeko_x.formats.mjcf import RESIDUE
 from hymeko_x.formats.mjcf.classes import Classes
 from hymeko_x.formats.mjcf.tree import parse
 from hymeko_x.formats.mjcf.words import DELEGATED
@@ -29,24 +29,24 @@ from hymeko_x.frontends.mjcf.tendons import read_tendons
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import World
+from hymeko_x.source import Reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Source
 
 
-def read(source: Source, report: Report) -> Mechanism:
-    """The mechanism that an MJCF file describes.
+def read(source: Source, report: Report) -> Reading:
+    """The mechanism that an MJCF file describes, and the residue that it carries.
 
     Raises: Refusal for what MuJoCo refuses as well, with file and line.
     """
     root = parse(source, report)
     _check_root(root)
-    carried = list(_take_carried(root))
+    carried = "".join(_take_carried(root))
     root = expand_includes(root, source, report)
     words = check_words(root)
     if words.tags & DELEGATED:
@@ -70,13 +70,13 @@ def read(source: Source, report: Report) -> Mechanism:
     read_sensors(root.detach("sensor"), draft)
     check_references(words.references, draft)
     draft.keep_rest(root)
-    return carrier.with_residue(draft.finish(name), carried)
+    return Reading(draft.finish(name), carried)
 
 
 def _take_carried(root: Element) -> Iterator[str]:
     """The texts that carry a residue, out of the sections that hold them."""
     for section in root_sections(root, "custom"):
-        own = [text for text in section.children if text.tag == "text" and text.attributes.get("name", "").startswith(carrier.MJCF_NAME)]
+        own = [text for text in section.children if text.tag == "text" and text.attributes.get("name", "").startswith(RESIDUE)]
         if not own:
             continue
         yield from (text.attributes.get("data", "") for text in own)
@@ -93,12 +93,8 @@ def root_sections(root: Element, tag: str) -> list[Element]:
 def _check_root(root: Element) -> None:
     if root.tag == "mujoco":
         return
-    known = {
-        "robot": "it looks like URDF: read it with --from urdf",
-        "sdf": "it looks like SDF: read it with --from sdf",
-        "mujocoinclude": "it is a part that other files include, and no model of its own",
-    }
-    raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <mujoco>", root.origin, hint=known.get(root.tag, ""))
+    hint = "it is a part that other files include, and no model of its own" if root.tag == "mujocoinclude" else formats.root_hint(root.tag)
+    raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <mujoco>", root.origin, hint=hint)
 
 
 def _warn_of_ignored(root: Element, report: Report) -> None:

@@ -8,9 +8,8 @@ from __future__ import annotations
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
-from hymeko_x import codes
+from hymeko_x import codes, formats
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats import carrier
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf.notations import Explicit
 from hymeko_x.frontends.urdf.builder import UrdfBuilder
@@ -19,18 +18,19 @@ from hymeko_x.frontends.urdf.links import read_link
 from hymeko_x.frontends.urdf.materials import finish_materials, read_robot_material
 from hymeko_x.frontends.urdf.structure import check_structure
 from hymeko_x.frontends.urdf.transmissions import read_transmission
+from hymeko_x.source import Reading
 from hymeko_x.xml.parse import parse
 from hymeko_x.xml.unread import FOLLOWING, PRECEDING, Unread, extra_of
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Extra, Mechanism
+    from hymeko_x.ir.mechanism import Extra
     from hymeko_x.source import Source
     from hymeko_x.xml.tree import Document, Node
 
 
-def read(source: Source, report: Report) -> Mechanism:
-    """The mechanism that a URDF file describes.
+def read(source: Source, report: Report) -> Reading:
+    """The mechanism that a URDF file describes, and the residue that it carries.
 
     Raises: Refusal with HX004 (not XML), HX006 (the root is not <robot>), HX007 (too large), HX008 (entities).
     """
@@ -39,7 +39,7 @@ def read(source: Source, report: Report) -> Mechanism:
     _check_root(root)
     builder = UrdfBuilder(report, Unread(root, document.data, words.FORMAT, report))
     name = _read_name(root, source, builder)
-    carried = [_whole_text(node) for node in root.take_children(carrier.XML_TAG)]
+    carried = [_whole_text(node) for node in root.take_children(words.RESIDUE)]
     _read_version(root, builder)
     for node in root.take_children("material"):
         read_robot_material(root, node, builder)
@@ -51,7 +51,7 @@ def read(source: Source, report: Report) -> Mechanism:
     finish_materials(builder)
     check_structure(root, builder)
     _check_templates(root, builder)
-    return carrier.with_residue(builder.finish(name, _around(document), source.name), carried)
+    return Reading(builder.finish(name, _around(document), source.name), "".join(carried))
 
 
 def _whole_text(node: Node) -> str:
@@ -63,8 +63,8 @@ def _whole_text(node: Node) -> str:
 def _check_root(root: Node) -> None:
     if root.tag == "robot":
         return
-    known = {"mujoco": "this is the root of an MJCF file", "sdf": "this is the root of an SDF file"}
-    raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <robot>", root.origin, hint=known.get(root.tag, ""))
+    message = f"the root element is <{root.tag}>, not <robot>"
+    raise refuse(codes.WRONG_ROOT, message, root.origin, hint=formats.root_hint(root.tag))
 
 
 def _read_name(root: Node, source: Source, builder: UrdfBuilder) -> str:

@@ -13,7 +13,6 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
-from hymeko_x.formats import carrier
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd.actuators import PRIM as ACTUATOR
 from hymeko_x.frontends.usd.actuators import read_actuator, read_drives
@@ -33,6 +32,7 @@ from hymeko_x.frontends.usd.transforms import check_ops
 from hymeko_x.frontends.usd.trees import build_trees, note_poses
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism, Provenance
 from hymeko_x.ir.parts import Texture
+from hymeko_x.source import Reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -44,13 +44,13 @@ if TYPE_CHECKING:
 _ARTICULATION = "PhysicsArticulationRootAPI"
 
 
-def read(source: Source, report: Report) -> Mechanism:
-    """The mechanism that a USD file describes, with everything that it refers to composed.
+def read(source: Source, report: Report) -> Reading:
+    """The mechanism that a USD file describes, with everything that it refers to composed, and the residue that it carries.
 
     Raises: Refusal with HX001 (USD cannot read it), HX007 (too large).
     """
     with open_scene(source, report) as scene:
-        residue = list(_take_residue(scene))
+        residue = _take_residue(scene)
         builder = UsdBuilder(source, report, scene)
         prims = _prims(scene)
         for prim in prims:
@@ -65,17 +65,17 @@ def read(source: Source, report: Report) -> Mechanism:
         _read_things(prims, _read_joints(prims, bare, builder), builder)
         note_poses(builder)
         gather_extras(builder)
-        return carrier.with_residue(_finished(scene, builder), residue)
+        return Reading(_finished(scene, builder), residue)
 
 
-def _take_residue(scene: Scene) -> Iterator[str]:
+def _take_residue(scene: Scene) -> str:
     """The residue that the root layer carries, out of its custom data."""
-    text = scene.stage.GetRootLayer().customLayerData.get(carrier.USD_KEY)
+    text = scene.stage.GetRootLayer().customLayerData.get(words.RESIDUE)
     if not isinstance(text, str):
-        return
+        return ""
     for layer in (scene.stage.GetRootLayer(), scene.layer):  # the same, or one that everything was flattened into
-        layer.customLayerData = {key: value for key, value in layer.customLayerData.items() if key != carrier.USD_KEY}
-    yield text
+        layer.customLayerData = {key: value for key, value in layer.customLayerData.items() if key != words.RESIDUE}
+    return text
 
 
 def _prims(scene: Scene) -> list[Prim]:

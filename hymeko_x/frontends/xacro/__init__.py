@@ -14,10 +14,10 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.frontends import urdf
 from hymeko_x.frontends.xacro.expand import expand
 from hymeko_x.ir.mechanism import ROOT, Provenance
+from hymeko_x.source import Reading
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.xacro.expand import Expansion
-    from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Source
 
 _SRDF = frozenset(
@@ -43,8 +43,8 @@ _OTHER_ROOTS = {
 }
 
 
-def read(source: Source, report: Report) -> Mechanism:
-    """The mechanism that a xacro file describes.
+def read(source: Source, report: Report) -> Reading:
+    """The mechanism that a xacro file describes, and the residue that it carries.
 
     Raises: Refusal HX050 to HX058 when it cannot be expanded or is no URDF, and those of URDF.
     """
@@ -53,12 +53,12 @@ def read(source: Source, report: Report) -> Mechanism:
     if "link" not in expansion.children:
         hint = "a file that only defines macros is meant to be included by a robot that calls them"
         report.warn(codes.NOT_URDF, "the expansion has no links", Origin(source.name), hint=hint)
-    mechanism = _read_text(expansion, source, report)
+    mechanism, carried = _read_text(expansion, source, report)
     lines = {key: origin.line for key, origin in mechanism.origins.items()}
     origins = {key: expansion.origin(line) for key, line in lines.items()}
     macros = {key: (macro,) for key, line in lines.items() if (macro := expansion.macro(line))}
     provenance = Provenance("xacro", file=source.name)
-    return replace(mechanism, origins={ROOT: expansion.root_origin, **origins}, stereotypes=macros, source=provenance)
+    return Reading(replace(mechanism, origins={ROOT: expansion.root_origin, **origins}, stereotypes=macros, source=provenance), carried)
 
 
 def _check_is_urdf(expansion: Expansion) -> None:
@@ -73,7 +73,7 @@ def _check_is_urdf(expansion: Expansion) -> None:
     raise refuse(codes.NOT_URDF, f"the file expands to {found}", expansion.root_origin, hint=hint)
 
 
-def _read_text(expansion: Expansion, source: Source, report: Report) -> Mechanism:
+def _read_text(expansion: Expansion, source: Source, report: Report) -> Reading:
     """Read the expansion as URDF; whatever is said of it is said of the source."""
     said = Report()
     try:

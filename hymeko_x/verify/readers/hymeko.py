@@ -31,7 +31,7 @@ def read(path: Path, places: Places) -> KinematicModel:
     """The robot that the text describes. Raises: Refusal HX302 when it cannot be read."""
     try:
         files = places.files(path.parent)
-        mechanism = hymeko.read(Source(str(path), path.read_bytes(), files), Report())
+        mechanism = hymeko.read(Source(str(path), path.read_bytes(), files), Report()).mechanism
     except Refusal as refusal:
         raise refuse(codes.ENGINE_REFUSED, f"the HyMeKo text cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
     if next(mechanism.vertices(Body), None) is None:
