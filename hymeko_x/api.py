@@ -1,55 +1,79 @@
-"""The public functions, on files and on bytes: load, loads, dump, dumps, convert."""
+"""The public functions, on files and on bytes: load, loads, dump, dumps, convert. Every option of the command line is an argument here."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
-
-from msgspec.structs import replace
+from typing import TYPE_CHECKING, Literal, TypedDict, Unpack
 
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.delivery import Delivery
-from hymeko_x.diagnostics import Origin, Report
-from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.delivery import Delivery, report_unwritten
+from hymeko_x.diagnostics import Report
 from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files
 
-    Place = str | os.PathLike[str]
-    Base = Literal["fixed", "free"] | None
-    Assets = Literal["copy", "reference"] | None
-    Actuators = Literal["none", "motor", "position", "velocity"] | None
-    Layout = Literal["single", "layered"] | None
+Place = str | os.PathLike[str]
 
 
-def load(
-    path: Place,
-    format: str | None = None,
-    *,
-    packages: Mapping[str, Place] | None = None,
-    arguments: Mapping[str, str] | None = None,
-    environment: Mapping[str, str] | None = None,
-    variants: Mapping[str, str] | None = None,
-    report: Report | None = None,
-) -> Mechanism:
-    """The robot in a file. The format is taken from suffix and content unless it is given.
+class Finding(TypedDict, total=False):
+    """How files are found to which a robot refers."""
 
-    ``packages`` says where `package://NAME` is, ``arguments`` and ``environment`` what $(arg NAME) and $(env NAME) are in
-    a xacro file, ``variants`` which variant of a variant set of USD to read. What there is to say goes into ``report``.
+    packages: Mapping[str, Place] | None
+    """Where ``package://NAME`` and ``model://NAME`` are."""
+    search_path: Iterable[Place]
+    """The folders in which packages stand; the command line takes them from ROS_PACKAGE_PATH and the like."""
+    confine: Place | None
+    """The folder outside of which no file is read."""
+
+
+class Reading(Finding, total=False):
+    """How a file is read."""
+
+    arguments: Mapping[str, str] | None
+    """The values of ``$(arg NAME)`` in a xacro file."""
+    environment: Mapping[str, str] | None
+    """The values of ``$(env NAME)`` in a xacro file."""
+    variants: Mapping[str, str] | None
+    """Which variant of a variant set of USD to read, by set."""
+
+
+class Writing(TypedDict, total=False):
+    """How a robot is written."""
+
+    base: Literal["fixed", "free"] | None
+    """What becomes of a base that the source leaves open (None = usual for the format)."""
+    actuators: Literal["none", "motor", "position", "velocity"] | None
+    """The actuators to write (None = those that the robot has)."""
+    layout: Literal["single", "layered"] | None
+    """USD: one file, or an interface with files for geometry, materials and physics behind it."""
+    nested: bool | None
+    """USD: whether each body stands inside of its parent."""
+    split: bool
+    """xacro: whether the macros go into a file of their own."""
+    pure: bool
+    """Whether the output carries no residue of what its format cannot represent."""
+
+
+Assets = Literal["copy", "reference"] | None
+"""Copy meshes beside the output, or refer to them where they are; None = usual for the format."""
+
+
+def load(path: Place, format: str | None = None, *, report: Report | None = None, **reading: Unpack[Reading]) -> Mechanism:
+    """The robot in a file; :class:`Reading` lists the options. The format is taken from suffix and content unless it is given.
+
+    Diagnostics go into ``report``.
 
     Raises: Refusal when the file cannot be read.
     """
-    source = disk.open_source(os.fspath(path), packages=_folders(packages))
-    source = replace(source, arguments=dict(arguments or {}), environment=dict(environment or {}), variants=dict(variants or {}))
-    robot = pipeline.read(source, _input_format(source, format), Report() if report is None else report)
-    return replace(robot, origins={ROOT: Origin(source.name), **robot.origins})  # files are looked for beside the first of them
+    source = _source(path, **reading)
+    return pipeline.read(source, _input_format(source, format), Report() if report is None else report)
 
 
 def loads(data: bytes | str, format: str | None = None, *, files: Files | None = None, report: Report | None = None) -> Mechanism:
@@ -66,27 +90,23 @@ def dump(
     path: Place,
     format: str | None = None,
     *,
-    packages: Mapping[str, Place] | None = None,
-    base: Base = None,
-    actuators: Actuators = None,
-    layout: Layout = None,
-    nested: bool | None = None,
     assets: Assets = None,
-    pure: bool = False,
+    packages: Mapping[str, Place] | None = None,
+    search_path: Iterable[Place] = (),
+    confine: Place | None = None,
+    **writing: Unpack[Writing],
 ) -> Report:
-    """Write a robot with its meshes to a file; return what there is to say. The format is taken from the suffix unless given.
+    """Write a robot with its meshes to a file; return the diagnostics. The format is taken from the suffix unless given.
 
-    Relative meshes are looked for beside the file that the robot was read from. ``assets``: copy meshes beside the
-    output, or refer to them where they are (None = what is usual for the format). ``layout`` and ``nested`` say how a stage of
-    USD is laid out. ``pure`` leaves out what the format cannot say itself, which it carries otherwise.
+    Relative meshes are looked for beside the file that the robot was read from, and otherwise as :class:`Finding` says;
+    :class:`Writing` lists the other options.
 
     Raises: Refusal when it cannot be written; then nothing was changed.
     """
     report = Report()
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
-    files = _files_of(robot, packages)
-    options = Options(base, actuators, layout, nested, pure=pure, beside=Path(path).stem)
-    delivery = Delivery(robot, target, options, files, _place(path, assets), os.fspath(path))
+    files = _files_of(robot, packages, search_path, confine)
+    delivery = Delivery(robot, target, Options(**writing, beside=Path(path).stem), files, _place(path, assets), os.fspath(path))
     delivery.put(delivery.convert(report))
     return report
 
@@ -95,20 +115,22 @@ def dumps(
     robot: Mechanism,
     format: str,
     *,
-    base: Base = None,
-    actuators: Actuators = None,
-    nested: bool | None = None,
-    pure: bool = False,
     report: Report | None = None,
+    packages: Mapping[str, Place] | None = None,
+    search_path: Iterable[Place] = (),
+    confine: Place | None = None,
+    **writing: Unpack[Writing],
 ) -> str:
-    """A robot as text; meshes are referred to from the working folder, and nothing is written.
+    """A robot as text; meshes are referred to from the working folder, and nothing is written. Options as for :func:`dump`.
+
+    Files that would stand beside the text (layers of USD, macros of xacro) are named in a warning.
 
     Raises: Refusal when the format cannot be written.
     """
-    said = Report() if report is None else report
-    options = Options(base, actuators, nested=nested, pure=pure)
-    place = pipeline.Place(assets="reference")
-    result = pipeline.convert(robot, formats.by_name(format), options, _files_of(robot, None), said, place)
+    report = Report() if report is None else report
+    files = _files_of(robot, packages, search_path, confine)
+    result = pipeline.convert(robot, formats.by_name(format), Options(**writing), files, report, pipeline.Place(assets="reference"))
+    report_unwritten(result.package, "a text", report)
     return result.package.main.decode()
 
 
@@ -118,33 +140,48 @@ def convert(
     *,
     from_format: str | None = None,
     to_format: str | None = None,
-    packages: Mapping[str, Place] | None = None,
-    arguments: Mapping[str, str] | None = None,
-    environment: Mapping[str, str] | None = None,
-    variants: Mapping[str, str] | None = None,
-    base: Base = None,
-    actuators: Actuators = None,
-    layout: Layout = None,
-    nested: bool | None = None,
     assets: Assets = None,
+    base: Literal["fixed", "free"] | None = None,
+    actuators: Literal["none", "motor", "position", "velocity"] | None = None,
+    layout: Literal["single", "layered"] | None = None,
+    nested: bool | None = None,
+    split: bool = False,
     pure: bool = False,
+    **reading: Unpack[Reading],
 ) -> pipeline.Result:
-    """Convert a file with its meshes; return the mechanism, what was written, what there is to say and what got lost.
+    """Convert a file with its meshes; return the mechanism, the package, the diagnostics and the losses.
 
-    The output carries what its format cannot say itself, unless it is to be ``pure``.
+    :class:`Reading` and :class:`Writing` list the options. The output carries what its format cannot represent, unless it is ``pure``.
 
     Raises: Refusal when the input cannot be read or the output not written; then nothing was changed.
     """
     report = Report()
-    given = disk.open_source(os.fspath(source), packages=_folders(packages))
-    given = replace(given, arguments=dict(arguments or {}), environment=dict(environment or {}), variants=dict(variants or {}))
+    given = _source(source, **reading)
     robot = pipeline.read(given, _input_format(given, from_format), report)
-    form = formats.of_output(os.fspath(target), to_format)
-    options = Options(base, actuators, layout, nested, pure=pure, beside=Path(target).stem)
-    delivery = Delivery(robot, form, options, given.files, _place(target, assets), os.fspath(target))
+    options = Options(base, actuators, layout, nested, split, pure, beside=Path(target).stem)
+    format = formats.of_output(os.fspath(target), to_format)
+    delivery = Delivery(robot, format, options, given.files, _place(target, assets), os.fspath(target))
     result = delivery.convert(report)
     delivery.put(result)
     return result
+
+
+def _source(
+    path: Place,
+    packages: Mapping[str, Place] | None = None,
+    search_path: Iterable[Place] = (),
+    confine: Place | None = None,
+    arguments: Mapping[str, str] | None = None,
+    environment: Mapping[str, str] | None = None,
+    variants: Mapping[str, str] | None = None,
+) -> Source:
+    given = disk.open_source(
+        os.fspath(path),
+        packages=_folders(packages),
+        search_path=tuple(map(Path, search_path)),
+        confine=None if confine is None else Path(confine),
+    )
+    return Source(given.name, given.data, given.files, dict(arguments or {}), dict(environment or {}), dict(variants or {}))
 
 
 def _input_format(source: Source, format: str | None) -> formats.Format:
@@ -159,6 +196,7 @@ def _folders(packages: Mapping[str, Place] | None) -> dict[str, Path]:
     return {name: Path(folder) for name, folder in (packages or {}).items()}
 
 
-def _files_of(robot: Mechanism, packages: Mapping[str, Place] | None) -> Files:
+def _files_of(robot: Mechanism, packages: Mapping[str, Place] | None, search_path: Iterable[Place], confine: Place | None) -> Files:
     """The files beside the one that the robot was read from; those of the working folder if it was made by a program."""
-    return DiskFiles(Path(robot.source.file).parent, _folders(packages))
+    folder = Path(robot.source.file).parent
+    return DiskFiles(folder, _folders(packages), tuple(map(Path, search_path)), None if confine is None else Path(confine))

@@ -8,7 +8,6 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, disk, pipeline
-from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Report
 
 if TYPE_CHECKING:
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.pipeline import Place, Result
     from hymeko_x.rewrite import Options
-    from hymeko_x.source import Files
+    from hymeko_x.source import Files, Package
 
 
 class Delivery(Struct, frozen=True):
@@ -30,28 +29,29 @@ class Delivery(Struct, frozen=True):
     path: str
 
     def convert(self, report: Report, *, measured: bool = True) -> Result:
-        """What is to be written. Its assets go below a folder named like the main file when those of another output are in the way.
+        """The result to write. Its files go below a folder named like the main file when those of another output are in the way.
 
-        Raises: as :func:`hymeko_x.pipeline.convert`.
+        Without ``measured`` it is not read back. Raises: as :func:`hymeko_x.pipeline.convert`.
         """
-        result = self._converted(self.options, report, measured=measured)
-        folder = f"{safe_name(self.options.beside)}/"
-        other = disk.in_the_way(result.package, self.path, folder, self.files) if self.path else None
-        if other is None:
-            return result
-        report.note(codes.ASSETS_APART, f"'{other}' beside the output has another content and stays; files of this output go to '{folder}'")
-        return replace(self.below(folder, measured=measured), report=report)
+        place = replace(self.place, in_the_way=self._in_the_way if self.path else None)
+        return pipeline.convert(self.mechanism, self.format, self.options, self.files, report, place, measured=measured)
 
-    def below(self, folder: str, *, measured: bool = True) -> Result:
-        """The same with every file beside the main one below this folder, which ends in a slash. Raises: as :meth:`convert`."""
-        return self._converted(replace(self.options, within=folder), Report(), measured=measured)
+    def below(self, folder: str) -> Package:
+        """The output with every file beside the main one below this folder, which ends in a slash. Raises: as :meth:`convert`."""
+        options = replace(self.options, within=folder)
+        return pipeline.convert(self.mechanism, self.format, options, self.files, Report(), self.place).package
 
     def put(self, result: Result) -> None:
         """Write what :meth:`convert` made, whole or not at all. Raises: Refusal HX002."""
-        disk.write_package(result.package, self.path, self.files, lambda folder: self.below(folder).package)
+        disk.write_package(result.package, self.path, self.files, self.below)
 
-    def _converted(self, options: Options, report: Report, *, measured: bool) -> Result:
-        if measured:
-            return pipeline.convert(self.mechanism, self.format, options, self.files, report, self.place)
-        package = pipeline.write(self.mechanism, self.format, options, self.files, report, self.place)
-        return pipeline.Result(self.mechanism, package, report, None)
+    def _in_the_way(self, package: Package, folder: str) -> str | None:
+        return disk.in_the_way(package, self.path, folder, self.files)
+
+
+def report_unwritten(package: Package, where: str, report: Report) -> None:
+    """Warn of the files beside a main file that goes where they cannot go."""
+    beside = [*package.files, *package.copies]
+    if beside:
+        names = ", ".join(beside[:3]) + (f" and {len(beside) - 3} more" if len(beside) > 3 else "")
+        report.warn(codes.ASSET_NOT_WRITTEN, f"{where} cannot carry {names}", hint="-o FILE writes them beside the file")

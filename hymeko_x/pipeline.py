@@ -11,6 +11,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack
+from hymeko_x.assets.shelf import safe_name
 from hymeko_x.assets.stored import with_stored_meshes
 from hymeko_x.collector import uncollected
 from hymeko_x.compare.leaves import leaves_again, leaves_between
@@ -25,7 +26,7 @@ from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import PackageFiles, PlacedFiles, Source
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from hymeko_x.compare.ledger import Loss
     from hymeko_x.formats import Format
@@ -51,10 +52,15 @@ class Writer(Protocol):
 
 
 class Place(Struct, frozen=True):
-    """Where the output goes: its ``folder``, and whether files go beside it or are referred to (None = the format's own way)."""
+    """Where the output goes: its ``folder``, and whether files go beside it or are referred to (None = the format's own way).
+
+    ``in_the_way(package, other_folder)`` names a file of another output that one of the package's would overwrite; then all of them go
+    below the other folder, which ends in a slash.
+    """
 
     folder: str = "."
     assets: Literal["copy", "reference"] | None = None
+    in_the_way: Callable[[Package, str], str | None] | None = None
 
 
 HERE = Place()
@@ -75,10 +81,14 @@ class Result(Struct, frozen=True):
 
 
 class _Printed(NamedTuple):
-    """A package, and the mechanism as it was printed: legal, with the paths of its files."""
+    """A package, and the mechanism as it was printed: legal, with the paths of its files.
+
+    ``is_moved`` says that its files are below a folder of their own, so that its residue must not lead back to those in the way.
+    """
 
     package: Package
     mechanism: Mechanism
+    is_moved: bool
 
 
 # ---- the stages ------------------------------------------------------------------------------------------------------------------
@@ -104,19 +114,21 @@ def write(mechanism: Mechanism, format: Format, options: Options, files: Files, 
 
 
 @uncollected()
-def convert(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Result:
+def convert(
+    mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE, *, measured: bool = True
+) -> Result:
     """Write a mechanism, read the result back if the format has a reader, measure the losses, and let the file carry them.
 
-    With the option ``pure`` it carries no residue.
+    With the option ``pure`` it carries no residue; without ``measured`` it is only written.
 
     Raises: Refusal when the format cannot be written; HX901 when our own reader refuses the output.
     """
-    package, printed = _printed(mechanism, format, options, files, report, place)
-    if format.frontend is None:
+    package, printed, is_moved = _printed(mechanism, format, options, files, report, place)
+    if format.frontend is None or not measured:
         return Result(mechanism, package, report, None)
     carry = None if options.pure else package.carry
     image = read_back(package, format, files)
-    losses, residue = _compared(mechanism, printed, image, format, stands_in=bool(options.within), is_carried=carry is not None)
+    losses, residue = _compared(mechanism, printed, image, format, is_moved=is_moved, is_carried=carry is not None)
     if carry is None:
         return Result(mechanism, package, report, losses)
     return Result(mechanism, replace(package, main=carry(residue)) if residue else package, report, losses, package.main)
@@ -124,15 +136,26 @@ def convert(mechanism: Mechanism, format: Format, options: Options, files: Files
 
 def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
     """Rewritten, with its files placed, and printed."""
-    write_format = writer(format)
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
     complete = _completed(with_stored_meshes(mechanism, format, files, report), format, files, report)
     legal = legalize(complete, format.name, options, report)
+    printed = _placed_and_printed(legal, format, options, files, report, place)
+    folder = f"{safe_name(options.beside)}/"
+    other = None if place.in_the_way is None else place.in_the_way(printed.package, folder)
+    if other is None:
+        return printed
+    report.note(codes.ASSETS_APART, f"'{other}' beside the output has another content and stays; files of this output go to '{folder}'")
+    return _placed_and_printed(legal, format, replace(options, within=folder), files, Report(), place)
+
+
+def _placed_and_printed(legal: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
+    """A legal mechanism with its files placed, and printed."""
     placed, new, copies = pack(legal, format, files, place.assets, report, out_dir=place.folder, within=options.within)
-    package = write_format(placed, options, report)
+    package = writer(format)(placed, options, report)
     if package.enclose is not None and (new or copies):
-        return _Printed(package.enclose({**new, **dict(_contents(copies, files))}), placed)
-    return _Printed(replace(package, files={**package.files, **new}, copies={**package.copies, **copies}), placed)
+        return _Printed(package.enclose({**new, **dict(_contents(copies, files))}), placed, bool(options.within))
+    package = replace(package, files={**package.files, **new}, copies={**package.copies, **copies})
+    return _Printed(package, placed, bool(options.within))
 
 
 def read_back(package: Package, format: Format, files: Files) -> Mechanism:
@@ -148,11 +171,11 @@ def read_back(package: Package, format: Format, files: Files) -> Mechanism:
 
 
 def _compared(
-    mechanism: Mechanism, printed: Mechanism, image: Mechanism, format: Format, *, stands_in: bool, is_carried: bool
+    mechanism: Mechanism, printed: Mechanism, image: Mechanism, format: Format, *, is_moved: bool, is_carried: bool
 ) -> tuple[tuple[Loss, ...], str]:
     """The losses, and the text of the residue if the file is to carry one: empty where the image is the mechanism.
 
-    A file that ``stands_in`` for another one carries nothing that leads back to the files which are being replaced.
+    Where files are moved, the residue has nothing that leads back to those in the way.
     """
     alignment, aligned = align(image, mechanism)
     moved = with_references_of(printed, mechanism)
@@ -161,7 +184,7 @@ def _compared(
     if not is_carried:
         return losses, ""
     source = mechanism
-    if stands_in:
+    if is_moved:
         source = moved if formats.native_format(moved) is None else replace(moved, extras=printed.extras)
     residue = residue_between(source, image, alignment, aligned, leaves_again(source, moved, aligned, leaves))
     return losses, "" if residue.is_empty else print_residue(residue)

@@ -98,7 +98,7 @@ def written(way: Way, source: Path) -> Written:
     delivery = Delivery(robot, format, options, files, place, path="")
     package = delivery.convert(Report()).package
     draws = len(package.files) + len(package.copies) + 1  # the names of what is staged
-    below = delivery.below(f".{way.target}-{draws.to_bytes(6).hex()}.part/").package
+    below = delivery.below(f".{way.target}-{draws.to_bytes(6).hex()}.part/")
     return Written(package, lambda folder: below, files)
 
 

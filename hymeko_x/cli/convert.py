@@ -13,7 +13,7 @@ from hymeko_x.cli.compare import CODES, engine_arguments, verdict_lines, verdict
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, read_input
 from hymeko_x.cli.terminal import show, show_losses
-from hymeko_x.delivery import Delivery
+from hymeko_x.delivery import Delivery, report_unwritten
 from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Package
@@ -129,10 +129,8 @@ def _deliver(given: Input, output: Output, chosen: argparse.Namespace, report: R
     options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, Path(path).stem)
     delivery = Delivery(given.mechanism, output.format, options, given.source.files, _place(output, chosen.assets), path)
     result = delivery.convert(report, measured=measured)
-    beside = [*result.package.files, *result.package.copies]
-    if output.path == "-" and beside:
-        names = ", ".join(beside[:3]) + (f" and {len(beside) - 3} more" if len(beside) > 3 else "")
-        report.warn(codes.ASSET_NOT_WRITTEN, f"standard output cannot carry {names}", hint="-o FILE writes them beside the file")
+    if output.path == "-":
+        report_unwritten(result.package, "standard output", report)
     failed = is_reached(chosen.fail_on, report, result.losses)
     if not failed:
         _write(delivery, output, result)
