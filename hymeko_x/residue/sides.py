@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.formats.hymeko import FOREIGN
+from hymeko_x import formats
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.provenance import kept_notations, take_provenance
@@ -166,7 +166,7 @@ def with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mech
             notations.get(key, {}).pop(name, None)
         elif key in there:
             notations.setdefault(key, {})[name] = text
-    source = take_provenance(notations, FOREIGN, image.source)
+    source = take_provenance(notations, {format.family for format in formats.FORMATS}, image.source)
     stereotypes = {} if sides.is_plain else {**image.stereotypes, **dict(sides.stereotypes)}
     layout = image.layout if residue.layout is None else laid_out(image.layout, residue.layout, set(residue.unplaced))
     return replace(
