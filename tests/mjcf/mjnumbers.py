@@ -7,8 +7,8 @@ from xml.sax.saxutils import quoteattr
 
 from msgspec import Struct
 
-from hymeko_x.formats.mjcf.schema import _ATTRIBUTES, attributes_of
-from hymeko_x.formats.mjcf.types import REQUIRED, Kind, kinds_of
+from hymeko_x.formats.mjcf.schema import Kind, attributes_of, kinds_of, schema
+from tests.mjcf.make_schema import BESIDE
 
 UNASKED = (
     *("asset/model", "body/attach", "body/flexcomp", "body/replicate", "extension", "deformable", "asset/skin"),
@@ -26,45 +26,6 @@ _SECTIONS = {
     "tendon": '<fixed name="tn"><joint joint="j" coef="1"/></fixed>',
     "actuator": '<motor name="m" joint="j"/>',
 }
-BESIDE: dict[str, dict[str, str]] = {
-    "default/default": {"class": "c1"},
-    "asset/material": {"name": "m2"},
-    "asset/mesh": {"name": "m2", "vertex": "0 0 0 1 0 0 0 1 0 0 0 1"},
-    "asset/texture": {"name": "t2", "type": "2d", "builtin": "flat", "width": "2", "height": "2"},
-    "asset/hfield": {"name": "h2", "nrow": "2", "ncol": "2", "size": "1 1 1 1"},
-    "body/geom": {"size": "1 1 1"},
-    "body/inertial": {"mass": "1", "pos": "0 0 0", "diaginertia": "1 1 1"},
-    "body/joint": {"type": "hinge"},
-    "equality/connect": {"body1": "b", "anchor": "0 0 0"},
-    "equality/weld": {"body1": "b"},
-    "equality/joint": {"joint1": "j"},
-    "equality/tendon": {"tendon1": "tn"},
-    "contact/pair": {"geom1": "g", "geom2": "h"},
-    "contact/exclude": {"body1": "b", "body2": "c"},
-    "tendon/spatial/geom": {"geom": "g"},
-    "tendon/spatial/pulley": {"divisor": "1"},
-    "tendon/fixed/joint": {"joint": "k", "coef": "1"},
-    "sensor/distance": {"geom1": "g", "geom2": "h"},
-    "sensor/normal": {"geom1": "g", "geom2": "h"},
-    "sensor/fromto": {"geom1": "g", "geom2": "h"},
-    "sensor/contact": {"geom1": "g"},
-    "sensor/rangefinder": {"site": "s"},
-    "sensor/camprojection": {"site": "s", "camera": "cam"},
-    "sensor/user": {"dim": "1"},
-    "sensor/ballquat": {"joint": "ball"},
-    "sensor/ballangvel": {"joint": "ball"},
-    "actuator/adhesion": {"body": "b"},
-    "actuator/dcmotor": {"joint": "j", "motorconst": "1", "resistance": "1"},
-    "actuator/muscle": {"joint": "j", "lengthrange": "0 1"},
-    "actuator/damper": {"joint": "j", "ctrlrange": "0 1"},
-    "actuator/orientation": {"joint": "ball"},
-    "custom/numeric": {"name": "n", "data": "1"},
-    "custom/text": {"name": "n", "data": "x"},
-    "custom/tuple": {"name": "n"},
-    "custom/tuple/element": {"objtype": "body", "objname": "b"},
-    "default/dcmotor": {"motorconst": "1", "resistance": "1"},
-}
-"""What an element needs beside its required attributes."""
 _REFERENCES = {
     "joint": "j",
     "site": "s",
@@ -160,7 +121,7 @@ class Place(Struct, frozen=True):
 
 
 def _needed(path: str) -> dict[str, str]:
-    found = {name: _REFERENCES.get(name, "1") for name in REQUIRED.get(path, ())}
+    found = {name: _REFERENCES.get(name, "1") for name in schema().required.get(path, ())}
     if path.startswith("actuator/") and path not in ("actuator/adhesion", "actuator/orientation"):
         found = {"joint": "j"} | found
     return found | BESIDE.get(path, {})
@@ -168,6 +129,6 @@ def _needed(path: str) -> dict[str, str]:
 
 def places() -> Iterator[Place]:
     """Every attribute that holds numbers and is asked about."""
-    for path in sorted(_ATTRIBUTES):
+    for path in sorted(schema().elements):
         if not path.startswith(UNASKED) and path != "mujoco":
             yield from (Place(path, name, kind) for name, kind in sorted(kinds_of(path).items()) if not kind.words)

@@ -13,9 +13,8 @@ from msgspec import Struct
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.mjcf.classes import ANY_TURN
-from hymeko_x.formats.mjcf.schema import CHILDREN, REMOVED, attributes_of
+from hymeko_x.formats.mjcf.schema import EXCLUSIVE, REMOVED, attributes_of, children, kinds_of, schema
 from hymeko_x.formats.mjcf.tree import COMMENT
-from hymeko_x.formats.mjcf.types import EXCLUSIVE, FILLED, REQUIRED, kinds_of
 from hymeko_x.frontends.mjcf.references import Reference, references_at, references_of
 from hymeko_x.frontends.mjcf.rules import complaint, rules_of
 from hymeko_x.ir.mechanism import file_stem
@@ -26,8 +25,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from hymeko_x.diagnostics import Refusal
+    from hymeko_x.formats.mjcf.schema import Kind
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.formats.mjcf.types import Kind
     from hymeko_x.frontends.mjcf.rules import Rule
 
 _NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|0x[\da-f.]+(?:p[+-]?\d+)?|inf(?:inity)?|nan)", re.ASCII | re.IGNORECASE)
@@ -84,8 +83,8 @@ def _place_of(path: str) -> _Place:
     return _Place(
         attributes_of(path),
         MappingProxyType({name: kind for name, kind in kinds_of(path).items() if name not in _READ_ELSEWHERE}),
-        frozenset(FILLED.get(path, ())),
-        REQUIRED.get(path, ()),
+        frozenset(schema().filled.get(path, ())),
+        schema().required.get(path, ()),
         EXCLUSIVE.get(path, ()),
         rules_of(path),
         references_at(path),
@@ -128,7 +127,7 @@ def check_words(root: Element) -> Words:
 
 def _known_children(element: Element, path: str) -> list[tuple[Element, str]]:
     """The elements inside with their places in the schema, the last one first."""
-    known = CHILDREN.get(path, {})
+    known = children().get(path, {})
     below = []
     for child in element.children:
         if child.tag == COMMENT:
