@@ -153,8 +153,6 @@ ROOMS = re.compile(r"(formats|frontends|backends|verify/readers)/(?!__init__\.py
 
 STILL_NAMED = frozenset(
     {
-        "rewrite/urdf.py",
-        "rewrite/urdf_shapes.py",
         "verify/checks/inertia.py",
         "verify/checks/shapes.py",
         "verify/checks/tendons.py",

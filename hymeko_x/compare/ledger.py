@@ -78,7 +78,7 @@ def losses_between(
 ) -> tuple[Loss, ...]:
     """Everything in which what was written and read back differs from the mechanism; what it only says in other words, once.
 
-    ``aligned`` is what was read back, behind the bridge that leads to the mechanism; ``renamed`` is what only that bridge
+    ``aligned`` is what was read back, aligned with the mechanism; ``renamed`` is what only the alignment
     changed; ``leaves`` is in what their elements differ, if that is known; ``is_carried`` whether the file will carry what got lost.
     """
     kept = relevant(diff(mechanism, aligned, TOLERANCE, leaves), mechanism, aligned, TOLERANCE)

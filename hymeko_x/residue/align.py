@@ -33,7 +33,7 @@ def alignment_between(image: Mechanism, source: Mechanism) -> Alignment:
 
 
 def align(image: Mechanism, source: Mechanism) -> tuple[Alignment, Mechanism]:
-    """The alignment that leads from the image to the source, and the image behind it. Linear in both."""
+    """The alignment that leads from the image to the source, and the aligned image. Linear in both."""
     names = _other_names(image, source)
     renamed = realign(image, Alignment(tuple(names.items())))
     folds = tuple(_folds(renamed, source))

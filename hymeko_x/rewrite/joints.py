@@ -1,38 +1,38 @@
-"""Joints that a format with hinges, slides, balls and free roots cannot say as they are."""
+"""Joints, their dofs and limits, for formats with hinges, slides, balls and free roots."""
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.kinematics import edges_to_moved_dofs
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, coupling_edge, joint_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import UNLIMITED, Body, Coupling, Dof, DofKind, Drive, Joint, Sense, Tendon
+from hymeko_x.ir.parts import UNLIMITED, Body, Dof, DofKind, Joint, Limits
 from hymeko_x.ir.values import IDENTITY, X, Y, Z
 from hymeko_x.rewrite.names import usable_name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
     from hymeko_x.ir.values import Vec3
     from hymeko_x.rewrite.context import Context
+
+
+# ---- dofs --------------------------------------------------------------------------------------------------------------
+
 
 VELOCITIES = {DofKind.HINGE: 1, DofKind.SLIDE: 1, DofKind.SCREW: 1, DofKind.BALL: 3, DofKind.FREE: 6}
 _MOST_VELOCITIES = 6
 _TURNS = (DofKind.HINGE, DofKind.BALL)
 _LETTERS: Mapping[Vec3, str] = {X: "X", Y: "Y", Z: "Z"}
-
-Place = tuple[Id, str]
-"""A dof, from outside: its joint, and the role that names it there (empty where the joint has only one)."""
-
-
-# ---- rules ---------------------------------------------------------------------------------------------------------------
 
 
 def expand_screws(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -41,13 +41,13 @@ def expand_screws(mechanism: Mechanism, context: Context) -> Mechanism:
     if not screws:
         return mechanism
     edges: dict[Id, RobotEdge] = {}
-    moved: dict[Place, Place] = {}
+    moved: dict[tuple[Id, int], tuple[Id, str]] = {}
     names = names_in_use(mechanism)
     for view in screws:
         dofs: list[Dof] = []
         for number, dof in enumerate(view.joint.dofs):
             name = dof.name or (view.id.name if len(view.joint.dofs) == 1 else f"{view.id.name}_{number}")
-            _remember(moved, view, number, (view.id, name))
+            moved[view.id, number] = (view.id, name)
             if dof.kind is not DofKind.SCREW:
                 dofs.append(replace(dof, name=name))
                 continue
@@ -87,7 +87,7 @@ def lower_inner_free_joints(mechanism: Mechanism, context: Context) -> Mechanism
 def name_dofs(mechanism: Mechanism, context: Context) -> Mechanism:
     """Every dof gets a name of its own: the joint's where it is the only one, else that with what moves (``_TX``, ``_RZ``)."""
     edges: dict[Id, RobotEdge] = {}
-    moved: dict[Place, Place] = {}
+    moved: dict[tuple[Id, int], tuple[Id, str]] = {}
     alone = {_only_name(view) for view in mechanism.joints.values() if len(view.joint.dofs) == 1}
     seen: set[str] = set()
     for view in mechanism.joints.values():
@@ -101,7 +101,7 @@ def name_dofs(mechanism: Mechanism, context: Context) -> Mechanism:
             seen.add(name)
             if len(dofs) > 1 or wanted != name:
                 dof = replace(dof, name=name)
-                _remember(moved, view, number, (view.id, name))
+                moved[view.id, number] = (view.id, name)
             new.append(dof)
         if tuple(new) != dofs:
             edges[view.id] = _with_dofs(mechanism, view.id, tuple(new))
@@ -115,7 +115,7 @@ def name_dofs_once(mechanism: Mechanism, context: Context) -> Mechanism:
     if len(taken) == len(named):
         return mechanism
     changed: dict[Id, list[Dof]] = {}
-    moved: dict[Place, Place] = {}
+    moved: dict[tuple[Id, int], tuple[Id, str]] = {}
     seen: set[str] = set()
     for view, number, wanted in named:
         if wanted not in seen:
@@ -125,7 +125,7 @@ def name_dofs_once(mechanism: Mechanism, context: Context) -> Mechanism:
         _warn_of_name(mechanism, view.id, wanted, name, context.report)
         taken.add(name)
         changed.setdefault(view.id, list(view.joint.dofs))[number] = replace(view.joint.dofs[number], name=name)
-        _remember(moved, view, number, (view.id, name))
+        moved[view.id, number] = (view.id, name)
     return _with_edges(mechanism, {key: _with_dofs(mechanism, key, tuple(dofs)) for key, dofs in changed.items()}, moved)
 
 
@@ -144,17 +144,18 @@ def split_overfull_joints(mechanism: Mechanism, context: Context) -> Mechanism:
         return mechanism
     vertices: dict[Id, Body] = {}
     edges: dict[Id, RobotEdge] = {}
-    moved: dict[Place, Place] = {}
+    moved: dict[tuple[Id, int], tuple[Id, str]] = {}
     names = names_in_use(mechanism)
     for view in overfull:
         groups = _legal_groups(view.joint.dofs)
         above, pose = view.parent, view.parent_pose
-        for group in groups[:-1]:
+        for number, group in enumerate(groups[:-1]):
+            first = sum(map(len, groups[:number]))
             body = names.take("body", f"{view.child.name}_carrier")
             joint = names.take("joint", f"{view.id.name}_carrier")
             vertices[body] = Body()
             edges[joint] = joint_edge(Joint(group), above, body, pose)
-            moved |= {(view.id, dof.name or ""): (joint, dof.name or "") for dof in group}
+            moved |= {(view.id, place): (joint, dof.name or "") for place, dof in enumerate(group, first)}
             above, pose = body, IDENTITY
         edges[view.id] = joint_edge(Joint(groups[-1]), above, view.child, pose, view.child_pose)
         context.report.note(
@@ -232,30 +233,99 @@ def _with_dofs(mechanism: Mechanism, joint: Id, dofs: tuple[Dof, ...]) -> RobotE
     return Edge(Joint(dofs), mechanism.graph.edges[joint].arcs)
 
 
-def _remember(moved: dict[Place, Place], view: JointView, number: int, place: Place) -> None:
-    """Every role under which arcs may have named this dof leads to its new place."""
-    dof = view.joint.dofs[number]
-    moved[view.id, str(number)] = place
-    if len(view.joint.dofs) == 1:
-        moved[view.id, ""] = place
-    if dof.name:
-        moved[view.id, dof.name] = place
-
-
-def _with_edges(mechanism: Mechanism, edges: Mapping[Id, RobotEdge], moved: Mapping[Place, Place]) -> Mechanism:
-    """The mechanism with these edges, and with the arcs to dofs that moved following them."""
+def _with_edges(mechanism: Mechanism, edges: Mapping[Id, RobotEdge], moved: Mapping[tuple[Id, int], tuple[Id, str]]) -> Mechanism:
+    """The mechanism with these edges, and with the arcs to dofs that move following them."""
     if not edges:
         return mechanism
-    followed = dict(_following(mechanism.graph.edges.items(), moved)) if moved else {}
+    followed = edges_to_moved_dofs(mechanism, moved) if moved else {}
     return mechanism.with_graph(mechanism.graph.replace(edges={**followed, **edges}))
 
 
-def _following(edges: Iterable[tuple[Id, RobotEdge]], moved: Mapping[Place, Place]) -> Iterable[tuple[Id, RobotEdge]]:
-    for key, edge in edges:
-        if isinstance(edge.data, Coupling | Drive | Sense | Tendon) and any((arc.target, arc.role) in moved for arc in edge.arcs):
-            yield key, replace(edge, arcs=tuple(_moved_arc(arc, moved) for arc in edge.arcs))
+# ---- limits ------------------------------------------------------------------------------------------------------------
 
 
-def _moved_arc(arc: RobotArc, moved: Mapping[Place, Place]) -> RobotArc:
-    target, role = moved.get((arc.target, arc.role), (arc.target, arc.role))
-    return replace(arc, target=target, role=role)
+FAR = 1e10
+"""Stands for "no bound" on the other side of a one-sided limit, in rad or m."""
+_PLAY = 1e-9
+"""The width of the interval that stands for a locked coordinate, in rad or m."""
+
+Said = list[tuple[bool, str]]
+"""What was changed: whether it deserves a warning, and the words."""
+
+
+def make_limits_intervals(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Every dof has either no position limits or lower < upper, and either no effort limit or a positive one."""
+    edges: dict[Id, RobotEdge] = {}
+    for view in mechanism.joints.values():
+        said: Said = []
+        dofs = tuple(_legal_dof(dof, said) for dof in view.joint.dofs)
+        for serious, words in said:
+            say = context.report.warn if serious else context.report.note
+            say(codes.REWRITTEN, f"{view.id}: {words}", mechanism.origin(view.id), element=str(view.id))
+        if dofs != view.joint.dofs:
+            edges[view.id] = Edge(Joint(dofs), mechanism.graph.edges[view.id].arcs)
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+
+
+def _legal_dof(dof: Dof, said: Said) -> Dof:
+    lower, upper = _interval(dof, said)
+    old, effort = dof.limits, _effort(dof.limits, said)
+    if (lower, upper, effort) == (old.lower, old.upper, old.effort):
+        return dof
+    return replace(dof, limits=replace(old, lower=lower, upper=upper, effort=effort))
+
+
+def _interval(dof: Dof, said: Said) -> tuple[float | None, float | None]:
+    lower, upper = _finite(dof.limits.lower), _finite(dof.limits.upper)
+    if dof.kind is DofKind.FREE and not (lower is None and upper is None):
+        said.append((True, "position limits on a free joint have no meaning; they are left out"))
+        return None, None
+    if dof.kind is DofKind.BALL:
+        return None if lower else lower, upper  # the angle from straight, of which MJCF says the lower bound 0
+    return interval(dof.limits, said)
+
+
+def interval(limits: Limits, said: Said) -> tuple[float | None, float | None]:
+    """The bounds of one coordinate with lower < upper, or none."""
+    lower, upper = _finite(limits.lower), _finite(limits.upper)
+    if lower is None and upper is None:
+        return None, None
+    if lower is None or upper is None:
+        side = "lower" if lower is None else "upper"
+        said.append((False, f"has no {side} limit; {FAR:g} stands for the missing bound"))
+        return _below(upper) if lower is None else lower, _above(lower) if upper is None else upper
+    if lower > upper:
+        said.append((True, f"lower limit {lower!r} is above upper limit {upper!r}; it is written without position limits"))
+        return None, None
+    if lower == upper == 0.0:
+        said.append((True, "both limits are 0, as where URDF leaves them out; it is written without position limits"))
+        return None, None
+    if lower == upper:
+        said.append((False, f"both limits are {lower!r}; {_PLAY:g} of play stands for a locked joint"))
+        return lower, max(lower + _PLAY, math.nextafter(lower, math.inf))
+    return lower, upper
+
+
+def _effort(limits: Limits, said: Said) -> float | None:
+    effort = _finite(limits.effort)
+    if effort is None:
+        return None
+    if effort == 0.0:
+        said.append((False, "effort limit 0 cannot be told from no limit; it is left out"))
+        return None
+    if effort < 0.0:
+        said.append((True, f"effort limit {effort!r} is negative; {-effort!r} is written"))
+    return abs(effort)
+
+
+def _below(upper: float | None) -> float:
+    return -FAR if upper is None else min(-FAR, math.nextafter(upper, -math.inf))
+
+
+def _above(lower: float | None) -> float:
+    return FAR if lower is None else max(FAR, math.nextafter(lower, math.inf))
+
+
+def _finite(value: float | None) -> float | None:
+    """The bound, or None where it says that there is none: infinite, or beyond what stands for no bound."""
+    return value if value is not None and abs(value) <= 2.0 * FAR else None

@@ -140,7 +140,7 @@ def test_a_link_called_world_inside_the_tree_is_renamed() -> None:
 
 def test_an_open_base_is_fixed_by_default_and_that_is_said() -> None:
     mechanism = chain(hinge(axis=Z))
-    assert legal(mechanism, Options()) == (mechanism, ["note HX101 body 'b0' hangs on nothing; it is written as fixed to the world"])
+    assert legal(mechanism, Options()) == (mechanism, ["note HX101 body 'b0' has no parent joint; it is fixed to the world"])
 
 
 def test_an_open_base_floats_where_the_user_wants_it() -> None:

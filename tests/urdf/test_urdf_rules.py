@@ -152,7 +152,9 @@ def test_several_roots_are_fixed_to_one() -> None:
     after = legalize(Mechanism("r", Hypergraph({A: Body(), B: Body()}, {})), "urdf", Options(), report)
     assert after.roots == (Id("body", "world"),)
     assert {view.child for view in after.joints.values()} == {A, B}
-    assert [str(d) for d in report] == ["warning[HX101]: URDF has one root, and 2 links have no parent; fixed to link 'world': 'a', 'b'"]
+    assert [str(d) for d in report] == [
+        "warning[HX101]: the format has one root, and 2 links have no parent; fixed to link 'world': 'a', 'b'"
+    ]
 
 
 @pytest.mark.parametrize(("base", "kind"), [("fixed", "fixed"), ("free", "floating")])

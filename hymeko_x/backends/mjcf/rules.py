@@ -14,17 +14,21 @@ from hymeko_x.formats.mjcf.words import NAME, compiler_has
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Actuator, DofKind
 from hymeko_x.rewrite.actuators import choose_actuators, drop_idle_actuators
-from hymeko_x.rewrite.base import choose_base, put_world_link_into_world
-from hymeko_x.rewrite.couplings import make_couplings_scalar
-from hymeko_x.rewrite.inertia import give_moving_bodies_mass, make_tensors_physical
-from hymeko_x.rewrite.joints import expand_screws, lower_inner_free_joints, name_dofs, name_dofs_once, split_overfull_joints
-from hymeko_x.rewrite.limits import make_limits_intervals
+from hymeko_x.rewrite.couplings import drop_odd_tendons, make_couplings_scalar, make_tendons_sound, name_wrapped_shapes
+from hymeko_x.rewrite.inertia import fill_tensors, give_moving_bodies_mass, make_tensors_physical
+from hymeko_x.rewrite.joints import (
+    expand_screws,
+    lower_inner_free_joints,
+    make_limits_intervals,
+    name_dofs,
+    name_dofs_once,
+    split_overfull_joints,
+)
 from hymeko_x.rewrite.loops import anchor_closures, close_by_points, open_second_parents
 from hymeko_x.rewrite.names import make_names_usable, name_assets_once
+from hymeko_x.rewrite.roots import choose_base, put_world_link_into_world
 from hymeko_x.rewrite.shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
-from hymeko_x.rewrite.solids import fill_tensors
 from hymeko_x.rewrite.subsets import split_subsets
-from hymeko_x.rewrite.tendons import drop_odd_tendons, make_tendons_sound, name_wrapped_shapes
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

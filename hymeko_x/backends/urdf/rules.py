@@ -4,28 +4,59 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x.formats.urdf.notations import STYLE, TYPE, Explicit, Style
+from hymeko_x.ir.mechanism import ROOT
+from hymeko_x.ir.parts import Capsule, Dof, DofKind, Ellipsoid, Plane
+from hymeko_x.ir.values import IDENTITY, plane_axes
+from hymeko_x.rewrite.chains import chain_dofs
+from hymeko_x.rewrite.inertia import fill_tensors
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
-from hymeko_x.rewrite.shapes import drop_engine_shapes
-from hymeko_x.rewrite.solids import fill_tensors
+from hymeko_x.rewrite.roots import hold_or_free_open_bases, join_roots, make_world_a_link
+from hymeko_x.rewrite.shapes import approximate_shapes, drop_engine_shapes, prefer_own_colours, split_shared_shapes
 from hymeko_x.rewrite.subsets import part_meshes_by_looks
-from hymeko_x.rewrite.urdf import chain_dofs, hold_or_free_open_bases, join_roots, make_world_a_link
-from hymeko_x.rewrite.urdf_shapes import approximate_shapes, prefer_own_colours, split_shared_shapes
 
 if TYPE_CHECKING:
-    from hymeko_x.rewrite.context import Rule
+    from hymeko_x.ir.mechanism import JointView, Mechanism
+    from hymeko_x.rewrite.context import Context, Rule
+
+
+def chain_joints(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A joint that is no URDF joint becomes a chain of joints with one dof each."""
+    return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if not _is_joint(view, mechanism)])
+
+
+def _is_joint(view: JointView, mechanism: Mechanism) -> bool:
+    """Whether URDF can represent the joint as it is."""
+    dofs = view.joint.dofs
+    if view.child_pose != IDENTITY or any(any(dof.anchor) or dof.ref for dof in dofs):
+        return False
+    kinds = tuple(dof.kind for dof in dofs)
+    if kinds == (DofKind.BALL,):  # only where a URDF file had one (``spherical``)
+        return mechanism.notation(view.id, TYPE) is not None
+    if kinds == (DofKind.SLIDE, DofKind.SLIDE, DofKind.HINGE):
+        plain = all(dof == Dof(dof.kind, dof.axis) for dof in dofs)  # a planar joint has one name, and no limits or damping
+        return plain and tuple(dof.axis for dof in dofs[:2]) == plane_axes(dofs[2].axis)
+    return not dofs or (len(dofs) == 1 and kinds[0] in (DofKind.HINGE, DofKind.SLIDE, DofKind.FREE))
+
+
+def approximate_primitives(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Ellipsoids, planes, and capsules, unless the URDF file that the mechanism came from has <capsule>, are approximated."""
+    keeps_capsules = Explicit.CAPSULE in (mechanism.notation(ROOT, STYLE) or Style()).explicit
+    return approximate_shapes(mechanism, context, (Ellipsoid, Plane) if keeps_capsules else (Ellipsoid, Plane, Capsule))
+
 
 RULES: tuple[Rule, ...] = (
     make_names_usable,
     drop_engine_shapes,
     fill_tensors,
     expand_screws,
-    chain_dofs,
+    chain_joints,
     hold_or_free_open_bases,
     make_world_a_link,
     join_roots,
     prefer_own_colours,
-    approximate_shapes,
+    approximate_primitives,
     split_shared_shapes,
     part_meshes_by_looks,
     make_names_usable,  # once more, for what the rules have added

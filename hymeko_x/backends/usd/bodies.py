@@ -10,6 +10,7 @@ from pxr import Gf, Vt
 from hymeko_x.backends.usd.shapes import gprim_of, gprim_pose
 from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
 from hymeko_x.formats import usd as words
+from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Mesh
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle
@@ -28,7 +29,7 @@ def write_bodies(sheet: UsdSheet) -> None:
 
     One inside of another for another reason starts again from the world.
     """
-    poses = world_poses(sheet.mechanism)
+    poses = reference_poses(sheet.mechanism)
     note_body_shapes(sheet)
     placed: set[Any] = set()
     for key in _parents_first(sheet.mechanism) if sheet.is_nested else [key for key, _ in sheet.mechanism.vertices(Body)]:
@@ -94,18 +95,6 @@ def note_body_shapes(sheet: UsdSheet) -> None:
 def _noted_pose(mechanism: Mechanism, body: Id) -> Pose | None:
     """Where the body's prim stood in the stage that it was read from, if not where its joints put it."""
     return mechanism.notation(body, words.POSE)
-
-
-def world_poses(mechanism: Mechanism) -> dict[Id, Pose]:
-    """Where each body is when every coordinate is at its reference. Not recursive."""
-    poses: dict[Id, Pose] = {WORLD: IDENTITY}
-    for body in mechanism.depth_first():
-        view = mechanism.parent_joint.get(body)
-        if view is None:
-            poses[body] = IDENTITY
-        else:
-            poses[body] = compose(poses.get(view.parent, IDENTITY), compose(view.parent_pose, inverse(view.child_pose)))
-    return poses
 
 
 # ---- mass --------------------------------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from hymeko_x.formats import usd as words
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, scaled, unit_quat
-from hymeko_x.rewrite.urdf import stands_for_world
+from hymeko_x.rewrite.roots import stands_for_world
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import UsdSheet

@@ -12,7 +12,7 @@ from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Contact, Loop
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
-from hymeko_x.rewrite.urdf import hold_or_free_open_bases
+from hymeko_x.rewrite.roots import hold_or_free_open_bases
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Mechanism

@@ -1,0 +1,120 @@
+"""Joints of several dofs as chains of joints with one dof each, in the frame of their child.
+
+Bodies keep their frames: where a joint turns beside the frame of its child, a body without mass in between has the joint's frame.
+So every body of the source is in the result, at the same place for the same coordinates.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from hymeko_x import codes
+from hymeko_x.ir.kinematics import edges_to_moved_dofs
+from hymeko_x.ir.mechanism import Id, JointView, Mechanism, joint_edge
+from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.parts import UNLIMITED, Body, Dof, DofKind, Joint
+from hymeko_x.ir.values import IDENTITY, ZERO, Pose, X, Y, Z, add, compose, inverse, quat_about, scaled
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.mechanism import RobotEdge
+    from hymeko_x.ir.names import Names
+    from hymeko_x.rewrite.context import Context
+
+
+class _Step(NamedTuple):
+    """A joint of a chain: where it stands, seen from the joint before, and what moves."""
+
+    pose: Pose
+    dof: Dof
+    number: int
+
+
+class _Chains(Struct):
+    """The links and joints that chains are made of, and the new joint and role of each old dof."""
+
+    names: Names
+    vertices: dict[Id, Body]
+    edges: dict[Id, RobotEdge]
+    moved: dict[tuple[Id, int], tuple[Id, str]]
+
+
+def chain_dofs(mechanism: Mechanism, context: Context, chained: list[JointView]) -> Mechanism:
+    """Each of these joints becomes a chain of joints with one dof; balls become three hinges about x, y and z."""
+    if not chained:
+        return mechanism
+    chains = _Chains(names_in_use(mechanism), {}, {}, {})
+    for view in chained:
+        count = _add_chain(view, chains)
+        if count:
+            message = f"{view.id} has dofs or a frame that the format cannot represent; it is written as a chain of {count + 1} joints"
+            context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
+    edges = edges_to_moved_dofs(mechanism, chains.moved) | chains.edges
+    old = {view.id for view in chained}
+    return mechanism.with_graph(mechanism.graph.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges)))
+
+
+def _add_chain(view: JointView, chains: _Chains) -> int:
+    """Add the chain of a joint; returns how many links it adds."""
+    steps, offset = _steps(view)
+    if not steps:
+        chains.edges[view.id] = joint_edge(Joint(), view.parent, view.child, offset)
+        return 0
+    parent = view.parent
+    count = len(steps) - (offset == IDENTITY)
+    for place, step in enumerate(steps):
+        last = place == len(steps) - 1
+        body = view.child if last and offset == IDENTITY else chains.names.take("body", f"{view.child.name}_carrier")
+        if body != view.child:
+            chains.vertices[body] = Body()
+        key = _joint_name(view, step, last, chains)
+        chains.moved[view.id, step.number] = (key, "")
+        chains.edges[key] = joint_edge(Joint((step.dof,)), parent, body, step.pose)
+        parent = body
+    if offset != IDENTITY:
+        chains.edges[chains.names.take("joint", f"{view.id.name}_frame")] = joint_edge(Joint(), parent, view.child, offset)
+    return count
+
+
+def _joint_name(view: JointView, step: _Step, last: bool, chains: _Chains) -> Id:
+    """The dof's own name if it has one; the last nameless one keeps the joint's unless a dof has it, the others are numbered."""
+    name = view.id.name
+    is_nameless_last = last and step.dof.name is None and all(dof.name != name for dof in view.joint.dofs)
+    if is_nameless_last or (step.dof.name == name and view.id not in chains.edges):
+        return view.id
+    return chains.names.take("joint", step.dof.name or f"{view.id.name}_{step.number + 1}")
+
+
+def _steps(view: JointView) -> tuple[list[_Step], Pose]:
+    """The joints of the chain, each with its frame in the one before, and the child's frame in the last one.
+
+    Tr(a) M(q - ref) Tr(-a) is a joint at Tr(a) M(-ref) with the same axis and coordinate, followed by Tr(-a).
+    """
+    steps = []
+    frame = view.parent_pose
+    for number, dof in enumerate(view.joint.dofs):
+        for single in _singles(dof):
+            at = compose(frame, Pose(dof.anchor))
+            steps.append(_Step(compose(at, _moved_by(single, -dof.ref)), replace(single, anchor=ZERO, ref=0.0), number))
+            frame = Pose(add(ZERO, scaled(dof.anchor, -1.0)))  # a sum has no negative zeros
+    if not steps:
+        return [], compose(frame, inverse(view.child_pose))
+    return steps, compose(frame, inverse(view.child_pose))
+
+
+def _singles(dof: Dof) -> list[Dof]:
+    """The dof itself, or three hinges for a ball; their damping and friction are those of the ball."""
+    if dof.kind is not DofKind.BALL:
+        return [dof]
+    same = replace(dof, kind=DofKind.HINGE, limits=UNLIMITED, written=None)
+    return [replace(same, axis=axis, name=f"{dof.name}_{letter}" if dof.name else None) for axis, letter in ((X, "x"), (Y, "y"), (Z, "z"))]
+
+
+def _moved_by(dof: Dof, coordinate: float) -> Pose:
+    if not coordinate:
+        return IDENTITY
+    if dof.kind is DofKind.SLIDE:
+        return Pose(scaled(dof.axis, coordinate))
+    return Pose(ZERO, quat_about(dof.axis, coordinate)) if dof.kind is DofKind.HINGE else IDENTITY

@@ -1,0 +1,155 @@
+"""Where the tree begins: the world, a link that represents it, and bases that are fixed, floating or open."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
+from hymeko_x.ir.names import names_in_use, rename
+from hymeko_x.ir.parts import Body, Dof, DofKind, Joint, World
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.rewrite.context import Context
+
+
+# ---- for formats with a world ------------------------------------------------------------------------------------------
+
+
+_WORLD_LINK = Id("body", WORLD.name)
+
+
+def put_world_link_into_world(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A root link called ``world`` without a mass is the world; any other body of that name is renamed."""
+    body = mechanism.graph.vertices.get(_WORLD_LINK)
+    if not isinstance(body, Body):
+        return mechanism
+    if _WORLD_LINK not in mechanism.parent_joint and _massless(body):
+        return rename(_with_world(mechanism), {_WORLD_LINK: WORLD})
+    new = names_in_use(mechanism).take("body", "world_link")
+    why = "has a mass" if not _massless(body) else "is not the root"
+    context.report.warn(
+        codes.RENAMED,
+        f"link 'world' {why}, so it is not the world itself, which alone may have this name; it is written as '{new.name}'",
+        mechanism.origin(_WORLD_LINK),
+        element=str(new),
+    )
+    return rename(mechanism, {_WORLD_LINK: new})
+
+
+def choose_base(mechanism: Mechanism, context: Context) -> Mechanism:
+    """An open base gets a free joint where the user wants it to float; else it stays fixed where it is, which is reported."""
+    above = mechanism.parent_joint
+    open_bases = [root for root in mechanism.roots if root not in above]
+    if context.options.base == "free":
+        return _floating(mechanism, open_bases, context.report)
+    if context.options.base is None:
+        for root in open_bases:
+            context.report.note(
+                codes.REWRITTEN,
+                f"{root} has no parent joint; it is fixed to the world",
+                mechanism.origin(root),
+                element=str(root),
+                hint="--base free makes it floating, --base fixed silences this note",
+            )
+    return mechanism
+
+
+def _floating(mechanism: Mechanism, open_bases: list[Id], report: Report) -> Mechanism:
+    if not open_bases:
+        _report_fixed_bases(mechanism, report)
+        return mechanism
+    names = names_in_use(mechanism)
+    free = Joint((Dof(DofKind.FREE),))
+    edges = {names.take("joint", f"{root.name}_free"): joint_edge(free, WORLD, root) for root in open_bases}
+    mechanism = _with_world(mechanism)
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
+
+
+def _report_fixed_bases(mechanism: Mechanism, report: Report) -> None:
+    """Report the joints that fix bases to the world; none when the base floats already."""
+    for joint in mechanism.children.get(WORLD, ()):
+        if not joint.joint.dofs:
+            report.warn(
+                codes.REWRITTEN,
+                f"{joint.child} does not float: {joint.id} fixes it to the world",
+                mechanism.origin(joint.id),
+                element=str(joint.child),
+                hint="remove that joint or the link 'world' to let the robot float",
+            )
+
+
+def _massless(body: Body) -> bool:
+    inertial = body.inertial
+    return inertial is None or (not inertial.mass and not any(inertial.tensor or ()))
+
+
+def _with_world(mechanism: Mechanism) -> Mechanism:
+    if WORLD in mechanism.graph.vertices:
+        return mechanism
+    return mechanism.with_graph(mechanism.graph.replace(vertices={WORLD: World()}))
+
+
+# ---- for formats without one -------------------------------------------------------------------------------------------
+
+
+def hold_or_free_open_bases(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Where the user says what the base does, each open base gets a fixed or a free joint to the world."""
+    if context.options.base is None:
+        return mechanism
+    joint = Joint((Dof(DofKind.FREE),)) if context.options.base == "free" else Joint()
+    names = names_in_use(mechanism)
+    open_bases = [root for root in mechanism.roots if root not in mechanism.parent_joint and not stands_for_world(root, mechanism)]
+    edges = {names.take("joint", f"{root.name}_base"): joint_edge(joint, WORLD, root) for root in open_bases}
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+
+
+def stands_for_world(root: Id, mechanism: Mechanism) -> bool:
+    """Whether a root is the link without mass that stands for the world."""
+    return root.name.partition("#")[0] == WORLD.name and mechanism.vertex(root, Body).inertial is None
+
+
+def make_world_a_link(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """The world, if anything is attached to it, is a link called ``world`` without mass: the usual way to fix a base.
+
+    So is the world of a mechanism without bodies: such formats need a link. A link that stands for the world already needs no other.
+    """
+    mechanism = _without_held_worlds(mechanism)
+    there, alone = WORLD in mechanism.graph.vertices, not any(True for _ in mechanism.vertices(Body))
+    used = any(WORLD in [arc.target for arc in edge.arcs] for edge in mechanism.graph.edges.values())
+    if not used and not (there and alone):
+        return mechanism.with_graph(mechanism.graph.replace(without=[WORLD])) if there else mechanism
+    link = names_in_use(mechanism).take("body", WORLD.name)
+    mechanism = rename(mechanism, {WORLD: link})
+    return mechanism.with_graph(mechanism.graph.replace(vertices={link: Body()}))
+
+
+def _without_held_worlds(mechanism: Mechanism) -> Mechanism:
+    """Without the joints that hold a link which stands for the world right there."""
+    idle = [
+        joint.id
+        for joint in mechanism.children.get(WORLD, ())
+        if not joint.joint.dofs and joint.parent_pose == joint.child_pose and stands_for_world(joint.child, mechanism)
+    ]
+    return mechanism.with_graph(mechanism.graph.replace(without=idle)) if idle else mechanism
+
+
+def join_roots(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Several trees are fixed to one root: the world's link if it is a root, else a new link without mass."""
+    roots = mechanism.roots
+    if len(roots) < 2:
+        return mechanism
+    names = names_in_use(mechanism)
+    world = Id("body", WORLD.name)
+    root = world if world in roots else names.take("body", WORLD.name)
+    others = [other for other in roots if other != root]
+    edges = {names.take("joint", f"{other.name}_base"): joint_edge(Joint(), root, other) for other in others}
+    listed = ", ".join(f"'{other.name}'" for other in others[:5]) + (", ..." if len(others) > 5 else "")
+    context.report.warn(
+        codes.REWRITTEN,
+        f"the format has one root, and {len(roots)} links have no parent; fixed to link '{root.name}': {listed}",
+        element=str(root),
+    )
+    vertices = {} if root in mechanism.graph.vertices else {root: Body()}
+    return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
