@@ -148,7 +148,7 @@ XACRO = Format(
     (".xacro",),
     "hymeko_x.frontends.xacro",
     "hymeko_x.backends.xacro",
-    "hymeko_x.backends.xacro.rules",
+    "hymeko_x.backends.urdf.rules",
     expands_to="urdf",
     has_arguments=True,
     keeps_package_uris=True,

@@ -9,7 +9,8 @@ import pytest
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Diagnostic, Refusal, Report
 from hymeko_x.frontends.xacro import read
-from hymeko_x.frontends.xacro.expand import LIMITS, Expansion, Limits, expand
+from hymeko_x.frontends.xacro.child.limits import ExpansionLimits
+from hymeko_x.frontends.xacro.expand import LIMITS, Expansion, expand
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.source import Source
 
@@ -53,7 +54,7 @@ class Folder:
         self.put("r.xacro", robot(body))
         return read(self.source(**how), Report() if report is None else report).mechanism  # type: ignore[arg-type]
 
-    def expand(self, body: str, limits: Limits = LIMITS, **how: object) -> Expansion:
+    def expand(self, body: str, limits: ExpansionLimits = LIMITS, **how: object) -> Expansion:
         """The expansion of ``r.xacro`` with this body."""
         self.put("r.xacro", robot(body))
         return expand(self.source(**how), Report(), limits)  # type: ignore[arg-type]
@@ -67,7 +68,7 @@ class Folder:
             return [*(self._line(diagnostic) for diagnostic in report), self._line(refusal.diagnostic)]
         return [self._line(diagnostic) for diagnostic in report]
 
-    def refusal(self, body: str, limits: Limits = LIMITS, **how: object) -> Diagnostic:
+    def refusal(self, body: str, limits: ExpansionLimits = LIMITS, **how: object) -> Diagnostic:
         """Why ``r.xacro`` with this body is refused."""
         with pytest.raises(Refusal) as refusal:
             self.expand(body, limits, **how)

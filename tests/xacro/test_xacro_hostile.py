@@ -9,11 +9,12 @@ import pytest
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.frontends.xacro.expand import Limits, expand
+from hymeko_x.frontends.xacro.child.limits import ExpansionLimits
+from hymeko_x.frontends.xacro.expand import expand
 from hymeko_x.source import Source
 from tests.xacro.samples import Folder
 
-SMALL = Limits(cpu_seconds=1, wall_seconds=20.0, memory_bytes=200 * 2**20)
+SMALL = ExpansionLimits(cpu_seconds=1, wall_seconds=20.0, memory_bytes=200 * 2**20)
 DOUBLING = "".join(f'<xacro:macro name="m{n}"><xacro:m{n + 1}/><xacro:m{n + 1}/></xacro:macro>' for n in range(40))
 
 
@@ -43,7 +44,7 @@ def test_what_never_ends_is_stopped(folder: Folder, body: str, reason: str) -> N
 
 
 def test_a_child_that_does_nothing_is_stopped_by_the_clock(folder: Folder) -> None:
-    said = folder.refusal("${python.sum(python.range(10**12))}", Limits(cpu_seconds=1000, wall_seconds=0.5))
+    said = folder.refusal("${python.sum(python.range(10**12))}", ExpansionLimits(cpu_seconds=1000, wall_seconds=0.5))
     assert (said.code, said.message) == (codes.EXPANSION_LIMIT, "the expansion was stopped: it takes more than 0.5 s")
 
 

@@ -15,15 +15,15 @@ from hymeko_x.ir.values import IDENTITY, number_text, numbers_text, plane_axes, 
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.urdf.sheet import Sheet
+    from hymeko_x.backends.urdf.sheet import UrdfSheet
     from hymeko_x.ir.mechanism import Id, JointView
     from hymeko_x.ir.parts import Calibration, Dof, Limits, Safety
 
 
-def joint_tag(key: Id, sheet: Sheet) -> Tag:
+def joint_tag(key: Id, sheet: UrdfSheet) -> Tag:
     """The <joint> of a joint.
 
-    Raises: Refusal with HX104 when URDF cannot say the joint.
+    Raises: Refusal with HX104 when URDF cannot represent the joint.
     """
     view = sheet.mechanism.joints[key]
     word = _type(view, sheet)
@@ -39,14 +39,14 @@ def joint_tag(key: Id, sheet: Sheet) -> Tag:
     return tag
 
 
-def _type(view: JointView, sheet: Sheet) -> str:
+def _type(view: JointView, sheet: UrdfSheet) -> str:
     """The word for the joint: its author's if it still fits, else the usual one."""
     usual = words.default_type(view.joint)
     own = sheet.mechanism.notation(view.id, notations.TYPE)
     word = own if own is not None and _fits(own, view.joint, usual) else usual
     if word is None or view.child_pose != IDENTITY or not _is_standard(view.joint):
-        said = f"{view.id} has dofs or a frame that URDF has no word for"
-        raise refuse(codes.NOT_SAID, said, sheet.mechanism.origin(view.id), element=str(view.id))
+        message = f"{view.id} has dofs or a frame that URDF cannot represent"
+        raise refuse(codes.NOT_SAID, message, sheet.mechanism.origin(view.id), element=str(view.id))
     return word
 
 
@@ -64,7 +64,7 @@ def _is_standard(joint: Joint) -> bool:
     return len(joint.dofs) < 3 or tuple(dof.axis for dof in joint.dofs[:2]) == plane_axes(joint.dofs[2].axis)
 
 
-def _add_dofs(tag: Tag, dofs: tuple[Dof, ...], word: str, sheet: Sheet) -> None:
+def _add_dofs(tag: Tag, dofs: tuple[Dof, ...], word: str, sheet: UrdfSheet) -> None:
     dof = dofs[-1]
     if dof.kind in (DofKind.HINGE, DofKind.SLIDE):
         tag.add("axis", xyz=numbers_text(_written_axis(dof)))
@@ -89,15 +89,15 @@ def _written_axis(dof: Dof) -> tuple[float, ...]:
 
 def _add_limits(tag: Tag, limits: Limits, *, bounded: bool) -> None:
     """<limit>, with the largest numbers where URDF requires one and there is none."""
-    said: dict[str, float | None] = {}
+    values: dict[str, float | None] = {}
     if bounded:
-        said["lower"] = -words.NO_LIMIT if limits.lower is None else limits.lower
-        said["upper"] = words.NO_LIMIT if limits.upper is None else limits.upper
+        values["lower"] = -words.NO_LIMIT if limits.lower is None else limits.lower
+        values["upper"] = words.NO_LIMIT if limits.upper is None else limits.upper
     required = bounded or limits.effort is not None or limits.velocity is not None
     for name, value in (("effort", limits.effort), ("velocity", limits.velocity)):
-        said[name] = words.NO_LIMIT if value is None and required else value
-    said |= {"acceleration": limits.acceleration, "jerk": limits.jerk}
-    attributes = said_numbers({name: value for name, value in said.items() if value is not None})
+        values[name] = words.NO_LIMIT if value is None and required else value
+    values |= {"acceleration": limits.acceleration, "jerk": limits.jerk}
+    attributes = said_numbers({name: value for name, value in values.items() if value is not None})
     if attributes:
         tag.add("limit", **attributes)
 
@@ -117,7 +117,7 @@ def _add_calibration(tag: Tag, calibration: Calibration) -> None:
     tag.add("calibration", **said_numbers({name: value for name, value in values.items() if value is not None}))
 
 
-def _add_mimic(tag: Tag, key: Id, sheet: Sheet) -> None:
+def _add_mimic(tag: Tag, key: Id, sheet: UrdfSheet) -> None:
     leader = sheet.leaders.get(key)
     if leader is None:
         return

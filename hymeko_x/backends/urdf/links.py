@@ -14,7 +14,7 @@ from hymeko_x.ir.values import Pose, number_text, numbers_text, rotate_tensor, s
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.urdf.sheet import Sheet
+    from hymeko_x.backends.urdf.sheet import UrdfSheet
     from hymeko_x.ir.mechanism import Id, ShapeView
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Tensor
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _ORIGIN_STYLES = {"visual": Explicit.VISUAL_ORIGIN, "collision": Explicit.COLLISION_ORIGIN}
 
 
-def link_tag(key: Id, sheet: Sheet) -> Tag:
+def link_tag(key: Id, sheet: UrdfSheet) -> Tag:
     """The <link> of a body."""
     tag = Tag("link", {"name": key.name})
     inertial = sheet.mechanism.vertex(key, Body).inertial
@@ -36,7 +36,7 @@ def link_tag(key: Id, sheet: Sheet) -> Tag:
     return tag
 
 
-def _add_inertial(link: Tag, inertial: Inertial, sheet: Sheet) -> None:
+def _add_inertial(link: Tag, inertial: Inertial, sheet: UrdfSheet) -> None:
     tag = link.add("inertial")
     frame, tensor = _as_written(inertial)
     sheet.add_origin(tag, frame, always=Explicit.INERTIAL_ORIGIN in sheet.explicit)
@@ -55,7 +55,7 @@ def _as_written(inertial: Inertial) -> tuple[Pose, Tensor | None]:
     return Pose(inertial.com, written.frame.quat, written.frame.written), written.tensor
 
 
-def _add_shape(link: Tag, name: str, view: ShapeView, sheet: Sheet) -> None:
+def _add_shape(link: Tag, name: str, view: ShapeView, sheet: UrdfSheet) -> None:
     tag = link.add(name)
     if view.shape.name is not None:
         tag.attributes["name"] = view.shape.name
@@ -65,7 +65,7 @@ def _add_shape(link: Tag, name: str, view: ShapeView, sheet: Sheet) -> None:
     sheet.put_back(tag, view.id)
 
 
-def _add_geometry(tag: Tag, view: ShapeView, sheet: Sheet) -> None:
+def _add_geometry(tag: Tag, view: ShapeView, sheet: UrdfSheet) -> None:
     match view.shape.geometry:
         case Box(size):
             tag.add("box", size=numbers_text(size))
@@ -80,10 +80,12 @@ def _add_geometry(tag: Tag, view: ShapeView, sheet: Sheet) -> None:
         case NoShape():
             pass
         case other:
-            raise refuse(codes.NOT_SAID, f"{view.id} is a {type(other).__name__.lower()}, for which URDF has no word", element=str(view.id))
+            raise refuse(
+                codes.NOT_SAID, f"{view.id} is a {type(other).__name__.lower()}, which URDF cannot represent", element=str(view.id)
+            )
 
 
-def _add_mesh(tag: Tag, view: ShapeView, sheet: Sheet) -> None:
+def _add_mesh(tag: Tag, view: ShapeView, sheet: UrdfSheet) -> None:
     if view.mesh is None:
         return
     mesh = sheet.mechanism.vertex(view.mesh, Mesh)

@@ -17,11 +17,11 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Rgba
 
 FOLDER = "shapes"
-_LOOK = "look"
+_MATERIAL = "look"
 _WHITE = (1.0, 1.0, 1.0, 1.0)
 
 
-class _Look(NamedTuple):
+class _MtlMaterial(NamedTuple):
     """A material of an MTL file: its name there, its colour, the path of its image, and the triangles that show it (None = all)."""
 
     name: str
@@ -31,7 +31,7 @@ class _Look(NamedTuple):
 
 
 def files_of_meshes(mechanism: Mechanism, within: str) -> dict[Id, str]:
-    """The relative path, below the folder ``within``, of every mesh that has its points, made of what is harmless in its name.
+    """The relative path, below the folder ``within``, of every mesh that has its points, made of the harmless characters of its name.
 
     Equal points share a file.
     """
@@ -62,7 +62,7 @@ def _numbered(stem: str) -> Iterator[str]:
 
 
 def _shown(mechanism: Mechanism) -> dict[Id, ShapeView]:
-    """The first shape that shows each mesh; what only collides shows nothing."""
+    """The first shape that shows each mesh; a collision shows nothing."""
     found: dict[Id, ShapeView] = {}
     for view in mechanism.every_shape():
         if view.mesh is not None and view.shape.role is not Role.COLLISION:
@@ -80,11 +80,13 @@ def contents_of(mechanism: Mechanism, paths: Mapping[Id, str], images: Mapping[I
     found: dict[str, bytes] = {}
     for key, path in paths.items():
         mesh = mechanism.vertex(key, Mesh)
-        looks = _looks(mechanism, mesh, shown.get(key), images) or _image(mesh, images[imaged[key]] if key in imaged else None)
+        materials = _subset_materials(mechanism, mesh, shown.get(key), images) or _image(
+            mesh, images[imaged[key]] if key in imaged else None
+        )
         library = posixpath.splitext(path)[0] + ".mtl"
-        if path not in found or (looks and library not in found):
-            found[path] = obj_text(mesh, posixpath.basename(library), looks)
-            found |= {library: _library(looks)} if looks else {}
+        if path not in found or (materials and library not in found):
+            found[path] = obj_text(mesh, posixpath.basename(library), materials)
+            found |= {library: _library(materials)} if materials else {}
     return found
 
 
@@ -97,17 +99,17 @@ def _imaged(mechanism: Mechanism, images: Mapping[Id, str]) -> dict[Id, Id]:
     return found
 
 
-# ---- looks ---------------------------------------------------------------------------------------------------------------------
+# ---- materials ---------------------------------------------------------------------------------------------------------------------
 
 
-def _image(mesh: Mesh, image: str | None) -> tuple[_Look, ...]:
-    """The one look of a mesh that shows an image."""
-    way = _way_to(image) if image is not None and mesh.texcoords else None
-    return () if way is None else (_Look(_LOOK, None, way),)
+def _image(mesh: Mesh, image: str | None) -> tuple[_MtlMaterial, ...]:
+    """The one material of a mesh that shows an image."""
+    path = _path_to(image) if image is not None and mesh.texcoords else None
+    return () if path is None else (_MtlMaterial(_MATERIAL, None, path),)
 
 
-def _looks(mechanism: Mechanism, mesh: Mesh, view: ShapeView | None, images: Mapping[Id, str]) -> tuple[_Look, ...]:
-    """What a shape shows on subsets of its mesh, and first what it shows on the rest; nothing where it has no subsets."""
+def _subset_materials(mechanism: Mechanism, mesh: Mesh, view: ShapeView | None, images: Mapping[Id, str]) -> tuple[_MtlMaterial, ...]:
+    """The materials of the subsets of a mesh, first that of the other triangles; none where it has no subsets."""
     total = len(mesh.faces) // 3
     subsets = mechanism.subsets.get(view.id, ()) if view is not None else ()
     known = [(subset.material, subset.faces) for subset in subsets if subset.faces and min(subset.faces) >= 0 and max(subset.faces) < total]
@@ -119,17 +121,17 @@ def _looks(mechanism: Mechanism, mesh: Mesh, view: ShapeView | None, images: Map
     found = []
     for material, faces in [(view.material, rest), *known] if rest else known:
         part = mechanism.graph.vertices.get(material) if material is not None else None
-        stem = _harmless(material.name if material is not None else "") or _LOOK
+        stem = _harmless(material.name if material is not None else "") or _MATERIAL
         name = next(name for name in _numbered(stem) if name not in names)
         names.add(name)
         own = view.shape.rgba if faces is rest else None
         rgba = own or (part.rgba if isinstance(part, Material) else None)
         image = images.get(material) if own is None and mesh.texcoords and material is not None else None
-        found.append(_Look(name, rgba, None if image is None else _way_to(image), faces))
+        found.append(_MtlMaterial(name, rgba, None if image is None else _path_to(image), faces))
     return tuple(found)
 
 
-def _way_to(image: str) -> str | None:
+def _path_to(image: str) -> str | None:
     """The path of an image from the folder of the meshes; None where it is not named relative to the URDF file."""
     is_relative = not image.startswith("/") and ":" not in image and "\\" not in image
     return posixpath.relpath(image, FOLDER) if is_relative else None
@@ -138,10 +140,10 @@ def _way_to(image: str) -> str | None:
 # ---- texts ---------------------------------------------------------------------------------------------------------------------
 
 
-def _library(looks: tuple[_Look, ...]) -> bytes:
-    """The MTL file; the colour of an image is its own, and a material about which nothing is known says nothing."""
+def _library(materials: tuple[_MtlMaterial, ...]) -> bytes:
+    """The MTL file; the colour of an image is its own, and an unknown material has none."""
     lines: list[str] = []
-    for name, rgba, image, _ in looks:
+    for name, rgba, image, _ in materials:
         lines.append(f"newmtl {name}")
         colour = _WHITE if image is not None else rgba
         if colour is not None:
@@ -151,25 +153,25 @@ def _library(looks: tuple[_Look, ...]) -> bytes:
     return "\n".join([*lines, ""]).encode()
 
 
-def obj_text(mesh: Mesh, library: str = "", looks: tuple[_Look, ...] = ()) -> bytes:
+def obj_text(mesh: Mesh, library: str = "", materials: tuple[_MtlMaterial, ...] = ()) -> bytes:
     """The points and faces of a mesh in their order, unscaled, as Wavefront OBJ, with its texture coordinates and materials."""
     rows = mesh.texfaces or mesh.faces
     has_places = bool(mesh.texcoords) and len(rows) == len(mesh.faces)
     words = [f"{a + 1}/{b + 1}" for a, b in zip(mesh.faces, rows, strict=True)] if has_places else [str(a + 1) for a in mesh.faces]
-    lines = [f"mtllib {library}"] if looks else []
+    lines = [f"mtllib {library}"] if materials else []
     lines += [f"v {numbers_text(mesh.vertices[at : at + 3])}" for at in range(0, len(mesh.vertices), 3)]
     if has_places:
         lines += [f"vt {numbers_text(mesh.texcoords[at : at + 2])}" for at in range(0, len(mesh.texcoords), 2)]
-    used = _uses(looks)
+    used = _uses(materials)
     for number, at in enumerate(range(0, len(words), 3)):
         lines += [f"usemtl {used[number]}"] if number in used else []
         lines.append(f"f {' '.join(words[at : at + 3])}")
     return "\n".join([*lines, ""]).encode()
 
 
-def _uses(looks: tuple[_Look, ...]) -> dict[int, str]:
+def _uses(materials: tuple[_MtlMaterial, ...]) -> dict[int, str]:
     """The triangles before which another material begins, with its name."""
-    if len(looks) == 1 and looks[0].faces is None:
-        return {0: looks[0].name}
-    owner = {face: look.name for look in looks for face in look.faces or ()}
+    if len(materials) == 1 and materials[0].faces is None:
+        return {0: materials[0].name}
+    owner = {face: material.name for material in materials for face in material.faces or ()}
     return {face: name for face, name in sorted(owner.items()) if owner.get(face - 1) != name}

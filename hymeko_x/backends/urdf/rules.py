@@ -1,4 +1,4 @@
-"""What makes a mechanism legal in URDF."""
+"""The rules that make a mechanism legal in URDF, and in xacro."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""<transmission> (ROS 1): type, joints and actuators with what they say of themselves."""
+"""<transmission> (ROS 1): its type, joints and actuators with their parameters."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from hymeko_x.xml.printing import Tag
 from hymeko_x.xml.text import escaped, is_name
 
 if TYPE_CHECKING:
-    from hymeko_x.backends.urdf.sheet import Sheet
+    from hymeko_x.backends.urdf.sheet import UrdfSheet
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Parameters
 
 
-def transmission_tag(key: Id, sheet: Sheet) -> Tag:
+def transmission_tag(key: Id, sheet: UrdfSheet) -> Tag:
     """The <transmission> of a drive."""
     edge = sheet.mechanism.graph.edges[key]
     assert isinstance(edge.data, Drive)
@@ -47,14 +47,14 @@ def _add_end(tag: Tag, name: str, arc: RobotArc, parameters: Parameters) -> None
     if arc.role:
         end.children.append(_element("role", arc.role))
     for key, value in parameters:
-        if not is_name(key):  # from another format, where any word will do; the ledger lists it
+        if not is_name(key):  # from another format, where a name may be any text; the ledger lists it
             continue
         text = value if isinstance(value, str) else numbers_text(value) if isinstance(value, tuple) else number_text(value)
         end.children.append(_element(key, text))
 
 
 def _add_reductions(tag: Tag, joints: list[RobotArc], actuators: list[RobotArc], place: Reduction) -> None:
-    """The reductions: each where it weighs, but the only one of a simple transmission where its author put it."""
+    """The reductions: each with its arc, but the only one of a simple transmission where its author put it."""
     ends = [child for child in tag.children if isinstance(child, Tag) and child.name in ("joint", "actuator")]
     weights = [numbers_weight(arc) for arc in (*joints, *actuators)]
     if len(joints) == len(actuators) == 1 and weights[0] and not weights[1]:

@@ -1,12 +1,13 @@
-"""The tags of the URDF backend as forms, and the comments that stood between them."""
+"""The tags of the URDF backend as forms, the comments between them, and the costs of xacro's text for factoring them."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 from xml.parsers import expat
 
+from hymeko_x.factor import Dialect
 from hymeko_x.factor.forms import Element
-from hymeko_x.formats.xacro import PREFIX
+from hymeko_x.formats.xacro import PREFIX, TAKEN, survives
 from hymeko_x.xml.text import unescaped
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 TEXT = "#text"
 INSTRUCTION = "#instruction"
-"""Tags of what is no element. The words of an element without children are its leaf without a name.
+"""Tags of texts and processing instructions. The text of an element without children is its leaf without a name.
 
 A comment is a tag of its own, because xacro fills no holes in it.
 """
@@ -45,7 +46,7 @@ class _Open:
 
 
 def top_level(elements: Iterable[Tag | str], mechanism: Mechanism) -> tuple[list[Element], Remarks]:
-    """What is to stand in the root element: forms, and the comments before each of them."""
+    """The content of the root element: forms, and the comments before each of them."""
     forms: list[Element] = []
     remarks: Remarks = {}
     for child in elements:
@@ -84,12 +85,12 @@ class _Reader:
     def __init__(self, text: str) -> None:
         self.root = _Open("", ())
         self._stack = [self.root]
-        self._said: list[str] = []
+        self._texts: list[str] = []
         parser = expat.ParserCreate()
         parser.ordered_attributes = True
         parser.StartElementHandler = self._start
         parser.EndElementHandler = self._end
-        parser.CharacterDataHandler = self._said.append
+        parser.CharacterDataHandler = self._texts.append
         parser.ProcessingInstructionHandler = self._instruction
         parser.CommentHandler = self._comment
         parser.Parse(text, True)
@@ -114,5 +115,45 @@ class _Reader:
         self._stack[-1].kids.append(Element(f"<!--{words}-->"))
 
     def _flush(self) -> None:
-        self._stack[-1].kids += _words("".join(self._said))
-        self._said.clear()
+        self._stack[-1].kids += _words("".join(self._texts))
+        self._texts.clear()
+
+
+# ---- costs --------------------------------------------------------------------------------------------------------------------
+
+
+def can_be_default(text: str) -> bool:
+    """Whether a text can stand as the default of a parameter."""
+    return not set(text) & set("'\"$\n\r\t")
+
+
+def can_be_value(text: str) -> bool:
+    """Whether a text can be that of a property, which xacro evaluates again wherever it is used."""
+    return survives(text) and not set(text) & set("'\"$\n\r\t")
+
+
+_LEAVES = {"xyz": "xyz", "rpy": "rpy", "value": "", "name": "", "link": "", "rgba": "rgba", "filename": "mesh"}
+
+
+def _leaf_name(tag: str, leaf: str) -> str:
+    return _LEAVES.get(leaf, leaf) or tag
+
+
+DIALECT = Dialect(
+    element=len("</>"),
+    block=len("<></>") - len("</>"),
+    closes_by_tag=True,
+    leaf=len('=""'),
+    macro=len('<xacro:macroname=""params=""></xacro:macro>'),
+    parameter=0,
+    default=len(":="),
+    call=len("<xacro:/>"),
+    argument=len('=""'),
+    hole=len("${}"),
+    value=len('<xacro:propertyname=""value=""/>'),
+    leaf_name=_leaf_name,
+    taken=TAKEN,
+    can_be_default=can_be_default,
+    values=True,
+    can_be_value=can_be_value,
+)

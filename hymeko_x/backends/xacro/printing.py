@@ -5,8 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.xacro.elements import INSTRUCTION, TEXT
-from hymeko_x.backends.xacro.quoting import arguments_to_quote
-from hymeko_x.backends.xacro.texts import argument, default, spelled
+from hymeko_x.backends.xacro.spelling import argument, arguments_to_quote, default, spelled
 from hymeko_x.factor.forms import Call
 from hymeko_x.formats.xacro import NAMESPACE
 from hymeko_x.xml.text import escaped
@@ -14,17 +13,17 @@ from hymeko_x.xml.text import escaped
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from hymeko_x.backends.urdf import Draft
+    from hymeko_x.backends.urdf.document import Document
     from hymeko_x.backends.xacro.remarks import Placed
     from hymeko_x.factor.forms import Element, Factored, Item, Macro, Parameter
 
 _INDENT = "  "
 
 
-def print_file(draft: Draft, factored: Factored, remarks: Placed, included: str | None = None) -> list[str]:
+def print_file(document: Document, factored: Factored, remarks: Placed, included: str | None = None) -> list[str]:
     """The lines of the file but the end of its root; where macros stand in a file that is ``included``, without them."""
     page = Page(factored, remarks)
-    page.lines += ['<?xml version="1.0"?>', *draft.before, root_start(draft)]
+    page.lines += ['<?xml version="1.0"?>', *document.before, root_start(document)]
     if included is None:
         page.definitions()
     else:
@@ -34,20 +33,20 @@ def print_file(draft: Draft, factored: Factored, remarks: Placed, included: str 
     return page.lines
 
 
-def print_macros(draft: Draft, factored: Factored, remarks: Placed) -> str:
+def print_macros(document: Document, factored: Factored, remarks: Placed) -> str:
     """The file that is included: properties and macros, under the prefixes that the robot declares."""
     page = Page(factored, remarks)
-    page.lines += ['<?xml version="1.0"?>', root_start(draft, "xmlns:")]
+    page.lines += ['<?xml version="1.0"?>', root_start(document, "xmlns:")]
     page.definitions()
     page.lines += ["</robot>", ""]
     return "\n".join(page.lines)
 
 
-def root_start(draft: Draft, beginning: str = "") -> str:
+def root_start(document: Document, beginning: str = "") -> str:
     """The start tag of the root, which declares xacro's prefix; of its attributes those whose names begin so."""
-    own = {name: value for name, value in draft.root.attributes.items() if name != "xmlns:xacro" and name.startswith(beginning)}
-    said = "".join([f' {name}="{escaped(spelled(value))}"' for name, value in own.items()])
-    return f'<robot{said} xmlns:xacro="{NAMESPACE}">'
+    own = {name: value for name, value in document.root.attributes.items() if name != "xmlns:xacro" and name.startswith(beginning)}
+    attributes = "".join([f' {name}="{escaped(spelled(value))}"' for name, value in own.items()])
+    return f'<robot{attributes} xmlns:xacro="{NAMESPACE}">'
 
 
 class Page:
@@ -74,8 +73,8 @@ class Page:
         if self._factored.values:
             self.lines += ["", f"{_INDENT}<!-- Values -->"]
         for value in self._factored.values:
-            said = escaped(argument(value.text, quoted=False))
-            self.lines.append(f'{_INDENT}<xacro:property name="{value.name}" value="{said}"/>')
+            text = escaped(argument(value.text, quoted=False))
+            self.lines.append(f'{_INDENT}<xacro:property name="{value.name}" value="{text}"/>')
 
     def _macro(self, macro: Macro) -> None:
         names = " ".join(map(_parameter, macro.parameters))
@@ -86,14 +85,14 @@ class Page:
     def body(self, name: str, items: Sequence[Item], depth: int) -> None:
         """The items of the file ("") or of a macro, with the comments between them."""
         for place, item in enumerate(items):
-            self._comments((name, place), depth, apart=isinstance(item, Call))
+            self._comments((name, place), depth, spaced=isinstance(item, Call))
             self._item(item, depth)
-        self._comments((name, len(items)), depth, apart=False)
+        self._comments((name, len(items)), depth, spaced=False)
 
-    def _comments(self, place: tuple[str, int], depth: int, *, apart: bool) -> None:
-        said = self._remarks.get(place, ())
-        self.lines += [_INDENT * depth + comment for comment in said]
-        if said and apart:
+    def _comments(self, place: tuple[str, int], depth: int, *, spaced: bool) -> None:
+        comments = self._remarks.get(place, ())
+        self.lines += [_INDENT * depth + comment for comment in comments]
+        if comments and spaced:
             self.lines.append("")
 
     def _item(self, top: Item, depth: int) -> None:
@@ -119,7 +118,7 @@ class Page:
 
 
 def _about(macro: Macro) -> str:
-    """What a macro is, in words for its heading."""
+    """The heading of a macro."""
     return macro.name.replace("_", " ")
 
 

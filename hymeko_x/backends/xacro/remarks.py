@@ -33,11 +33,11 @@ def placed(factored: Factored, remarks: Remarks) -> Placed:
 
 
 def _shared(instances: list[tuple[tuple[str, int], dict[int, list[str]]]], found: Placed) -> dict[int, list[str]]:
-    """What all instances of a macro have at the same place; the rest goes before the calls."""
+    """The comments that all instances of a macro have at the same place; others go before the calls."""
     if not instances:
         return {}
     first = instances[0][1]
-    shared = {offset: said for offset, said in first.items() if all(own.get(offset) == said for _, own in instances)}
+    shared = {offset: comments for offset, comments in first.items() if all(own.get(offset) == comments for _, own in instances)}
     for place, own in instances:
         rest = [line for offset in sorted(own) if offset not in shared for line in own[offset]]
         if rest:
@@ -53,7 +53,7 @@ def _hand_down(
     found: Placed,
     waiting: dict[str, list[tuple[tuple[str, int], dict[int, list[str]]]]],
 ) -> None:
-    """Give each item of a body what stands before it or, where it is a call, in it."""
+    """Give each item of a body the comments before it or, where it is a call, in it."""
     offset = 0
     for place, item in enumerate(body):
         length = 1 if isinstance(item, Element) else spans[item.macro]
@@ -69,7 +69,7 @@ def _hand_down(
 
 
 def _spans(factored: Factored) -> dict[str, int]:
-    """How many forms each macro stands for."""
+    """How many forms each macro expands to."""
     spans: dict[str, int] = {}
     for macro in factored.macros:
         spans[macro.name] = sum(spans[item.macro] if isinstance(item, Call) else 1 for item in macro.body)

@@ -1,4 +1,4 @@
-"""The words of URDF that its reader and its writer share, and the few rules that both go by.
+"""The words of URDF that its reader and its writer share, and the few rules for both.
 
 Source: the urdfdom schema and its parser; URDF 1.0.
 """
@@ -23,7 +23,7 @@ RESIDUE_NAMESPACE = "urn:hymeko-x"
 
 
 class JointType(NamedTuple):
-    """A word of ``<joint type>``: the kinds of the joint's dofs, and whether ``<limit>`` bounds the position."""
+    """A value of ``<joint type>``: the kinds of the joint's dofs, and whether ``<limit>`` bounds the position."""
 
     dofs: tuple[DofKind, ...] = ()
     bounded: bool = False
@@ -45,7 +45,7 @@ JOINT_TYPES: Mapping[str, JointType] = MappingProxyType(
 
 
 def default_type(joint: Joint) -> str | None:
-    """The word for a joint by its dofs; None when URDF has none. A slide is always bounded, a hinge if it has limits."""
+    """The type of a joint by its dofs; None when URDF has none. A slide is always bounded, a hinge if it has limits."""
     dofs = joint.dofs
     if len(dofs) != 1:
         kinds = tuple(dof.kind for dof in dofs)
@@ -57,7 +57,7 @@ def default_type(joint: Joint) -> str | None:
 
 
 NO_LIMIT = 1.7976931348623157e308
-"""The largest double: what Pinocchio takes for "no limit", and what is written where URDF requires a number."""
+"""The largest double: "no limit" for Pinocchio, and written where URDF requires a number."""
 
 ROLES: Mapping[str, Role] = MappingProxyType({"visual": Role.VISUAL, "collision": Role.COLLISION})
 """The elements of a link that hold a shape."""
@@ -66,7 +66,7 @@ VERSIONS = ("1.0", "1.1", "1.2")
 """Known values of ``<robot version>``; from 1.1 on readers of 1.1 understand ``quat_xyzw`` and ``<capsule>``."""
 
 MEANINGLESS_IF_FIXED = ("axis", "limit", "dynamics")
-"""What many exporters write into fixed joints, where it means nothing."""
+"""Elements that many exporters write into fixed joints, where they mean nothing."""
 
 SINGLE = frozenset(
     (
@@ -74,4 +74,4 @@ SINGLE = frozenset(
         *("parent", "child", "axis", "limit", "dynamics", "safety_controller", "calibration", "mimic"),
     )
 )
-"""What stands at most once in its link, joint, visual or collision."""
+"""Elements that a link, joint, visual or collision contains at most once."""

@@ -1,4 +1,4 @@
-"""The words of xacro: the names that it takes for itself, and how it turns texts into values."""
+"""The words of xacro: its reserved names, and how it turns texts into values."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _FUNCTIONS = (
     *("python", "math", "xacro", "load_yaml", "abs_filename", "dotify", "arg"),
 )
 GLOBALS = frozenset((*_FUNCTIONS, *(name for name in vars(math) if not name.startswith("_"))))
-"""What every expression knows already; a parameter of such a name is a warning."""
+"""The names that every expression has already; a parameter of such a name is a warning."""
 
 TAKEN = TAGS | GLOBALS | frozenset(kwlist)
-"""What neither macros, parameters nor properties are called here."""
+"""Names that macros, parameters and properties never get here."""
 
 
 def macros_file(robot: str) -> str:
@@ -33,7 +33,7 @@ def macros_file(robot: str) -> str:
 
 
 def literal(text: str) -> str | int | float | bool:
-    """What a parameter is inside a macro that is given this text.
+    """The value of a parameter inside a macro that is given this text.
 
     Source: xacro 2.1, ``Table._eval_literal``.
     """

@@ -1,46 +1,15 @@
-"""xacro in: the file is expanded, and what it stands for is read as URDF. Everything knows its place in the xacro files.
+"""The xacro frontend: a file is expanded in a child process and read as URDF, with the origins in the xacro files.
 
-Source: the xacro language as the library `xacro` evaluates it; docs/mapping/xacro.md says what is answered differently.
+Source: the xacro language as the library `xacro` evaluates it; docs/mapping/xacro.md lists the differences.
 """
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from msgspec.structs import replace
-
-from hymeko_x import codes
-from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
-from hymeko_x.frontends import urdf
-from hymeko_x.frontends.xacro.expand import expand
-from hymeko_x.ir.mechanism import ROOT, Provenance
-from hymeko_x.source import Reading
-
 if TYPE_CHECKING:
-    from hymeko_x.frontends.xacro.expand import Expansion
-    from hymeko_x.source import Source
-
-_SRDF = frozenset(
-    (
-        "group",
-        "group_state",
-        "virtual_joint",
-        "end_effector",
-        "passive_joint",
-        "disable_collisions",
-        "enable_collisions",
-        "link_sphere_approximation",
-    )
-)
-"""Elements of a semantic description, whose root is a <robot> too."""
-
-_OTHER_ROOTS = {
-    "sdf": "SDF (Gazebo)",
-    "world": "SDF (Gazebo)",
-    "model": "SDF (Gazebo)",
-    "mujoco": "MJCF (MuJoCo)",
-    "launch": "a launch file",
-}
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.source import Reading, Source
 
 
 def read(source: Source, report: Report) -> Reading:
@@ -48,37 +17,6 @@ def read(source: Source, report: Report) -> Reading:
 
     Raises: Refusal HX050 to HX058 when it cannot be expanded or is no URDF, and those of URDF.
     """
-    expansion = expand(source, report)
-    _check_is_urdf(expansion)
-    if "link" not in expansion.children:
-        hint = "a file that only defines macros is meant to be included by a robot that calls them"
-        report.warn(codes.NOT_URDF, "the expansion has no links", Origin(source.name), hint=hint)
-    mechanism, carried = _read_text(expansion, source, report)
-    lines = {key: origin.line for key, origin in mechanism.origins.items()}
-    origins = {key: expansion.origin(line) for key, line in lines.items()}
-    macros = {key: (macro,) for key, line in lines.items() if (macro := expansion.macro(line))}
-    provenance = Provenance("xacro", file=source.name)
-    return Reading(replace(mechanism, origins={ROOT: expansion.root_origin, **origins}, stereotypes=macros, source=provenance), carried)
+    from hymeko_x.frontends.xacro import reading  # here: the child process loads this file as well, and has to start quickly
 
-
-def _check_is_urdf(expansion: Expansion) -> None:
-    if expansion.root == "robot" and ("link" in expansion.children or not expansion.children & _SRDF):
-        return
-    found = f"<{expansion.root}>"
-    if expansion.root == "robot":
-        found = f"SRDF, which says what a robot means and not what it is: <{min(expansion.children & _SRDF)}>"
-    elif expansion.root in _OTHER_ROOTS:
-        found = f"{_OTHER_ROOTS[expansion.root]}: <{expansion.root}>"
-    hint = "read the URDF that it belongs to" if expansion.root == "robot" else "expected <robot> with links"
-    raise refuse(codes.NOT_URDF, f"the file expands to {found}", expansion.root_origin, hint=hint)
-
-
-def _read_text(expansion: Expansion, source: Source, report: Report) -> Reading:
-    """Read the expansion as URDF; whatever is said of it is said of the source."""
-    said = Report()
-    try:
-        return urdf.read(replace(source, name=expansion.name, data=expansion.text), said)
-    except Refusal as refusal:
-        raise Refusal(expansion.traced(refusal.diagnostic)) from refusal
-    finally:
-        report.extend(expansion.traced(diagnostic) for diagnostic in said)
+    return reading.read(source, report)

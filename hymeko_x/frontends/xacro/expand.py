@@ -1,6 +1,6 @@
-"""Expanding a xacro file: a child process evaluates it, and this side gives out the files that it asks for.
+"""Expanding a xacro file: a child process evaluates it, and this side provides the files that it asks for.
 
-The child (`frontends/xacro_child`) has limits on time and memory, no environment, and opens no file itself, so that what it may
+The child (`frontends/xacro/child`) has limits on time and memory, no environment, and opens no file itself, so that what it may
 read is decided here, by the `Files` of the source. Python in ${} is the reason: xacro's own fence around it has gaps.
 """
 
@@ -24,30 +24,21 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Diagnostic, Origin, refuse
-from hymeko_x.frontends.xacro import wording
+from hymeko_x.frontends.xacro import messages
+from hymeko_x.frontends.xacro.child.limits import ExpansionLimits
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.diagnostics import Report
-    from hymeko_x.frontends.xacro.wording import Message
+    from hymeko_x.frontends.xacro.messages import Message
     from hymeko_x.source import Source
 
-CHILD = "hymeko_x.frontends.xacro_child"
+CHILD = "hymeko_x.frontends.xacro.child"
 MOST_HEADER = 2**28
 MOST_BYTES = 2**30
 MOST_SOURCE = 2**28
-
-
-class Limits(Struct, frozen=True):
-    """What an expansion may use: a hundred times what a real robot needs, and some 25,000 links of macros."""
-
-    cpu_seconds: int = 20
-    wall_seconds: float = 60.0
-    memory_bytes: int = 2**30
-
-
-LIMITS = Limits()
+LIMITS = ExpansionLimits()
 
 
 @runtime_checkable
@@ -68,7 +59,7 @@ class Packages(Protocol):
 
 
 class Expansion(Struct, frozen=True, dict=True):
-    """The URDF that a xacro file stands for, and where its elements were written.
+    """The URDF that a xacro file expands to, and the origins of its elements.
 
     ``name`` is what the text is called while it is read. On ``lines`` (rising) of the text elements start, which stand
     in the source at ``places``: file, line, and the macro around them. ``root`` and ``children`` are the names of the
@@ -93,12 +84,12 @@ class Expansion(Struct, frozen=True, dict=True):
         number = bisect_right(self.lines, line or 0) - 1
         return self.places[number][2] if number >= 0 else None
 
-    def traced(self, said: Diagnostic) -> Diagnostic:
-        """What was said about the text, said about the source."""
-        origin = said.origin and (self.origin(said.origin.line) if said.origin.file == self.name else said.origin)
-        return replace(said, origin=origin, message=self._retold(said.message), hint=self._retold(said.hint))
+    def traced(self, diagnostic: Diagnostic) -> Diagnostic:
+        """A diagnostic about the text as one about the source."""
+        origin = diagnostic.origin and (self.origin(diagnostic.origin.line) if diagnostic.origin.file == self.name else diagnostic.origin)
+        return replace(diagnostic, origin=origin, message=self._traced_text(diagnostic.message), hint=self._traced_text(diagnostic.hint))
 
-    def _retold(self, text: str) -> str:
+    def _traced_text(self, text: str) -> str:
         return self._mentions.sub(lambda found: str(self.origin(int(found[1]))), text)
 
     @property
@@ -111,18 +102,17 @@ class Expansion(Struct, frozen=True, dict=True):
         return re.compile(rf"(?<![\w./-]){re.escape(self.name)}:(\d+)(?::\d+)?")
 
 
-def expand(source: Source, report: Report, limits: Limits = LIMITS) -> Expansion:
+def expand(source: Source, report: Report, limits: ExpansionLimits = LIMITS) -> Expansion:
     """Expand a xacro file as the library `xacro` does, with our own answers to $(find ...).
 
     Raises: Refusal HX050 to HX058, HX004 when a file is not XML, HX008 when it defines entities.
     """
     if len(source.data) > MOST_SOURCE:
         raise refuse(codes.TOO_LARGE, f"the file has {len(source.data)} bytes, at most {MOST_SOURCE} are read", Origin(source.name))
-    talk = Talk(source, limits)
-    message, text = talk.last_word()
+    message, text = Conversation(source, limits).result()
     if "failed" in message:
-        raise wording.refusal(cast("Message", message["failed"]), source.name, limits)
-    report.extend(wording.notice(said, source.name) for said in cast("list[Message]", message["notices"]))
+        raise messages.refusal(cast("Message", message["failed"]), source.name, limits)
+    report.extend(messages.notice(facts, source.name) for facts in cast("list[Message]", message["notices"]))
     starts = cast("list[tuple[int, str, int, str | None]]", message["places"])
     return Expansion(
         source=source.name,
@@ -135,18 +125,18 @@ def expand(source: Source, report: Report, limits: Limits = LIMITS) -> Expansion
     )
 
 
-class Talk:
-    """One conversation with a child, from the job to its last word."""
+class Conversation:
+    """The messages to and from one child, from the job to its result."""
 
-    def __init__(self, source: Source, limits: Limits) -> None:
+    def __init__(self, source: Source, limits: ExpansionLimits) -> None:
         self._source = source
         self._limits = limits
         self._out_of_time = False
 
-    def last_word(self) -> tuple[Message, bytes]:
+    def result(self) -> tuple[Message, bytes]:
         """The child's result or failure.
 
-        Raises: Refusal HX054 when a limit ended the child before it could say so.
+        Raises: Refusal HX054 when a limit ended the child before it could report that.
         """
         process = self._started()
         clock = threading.Timer(self._limits.wall_seconds, self._stop, [process])
@@ -156,11 +146,11 @@ class Talk:
                 return self._converse(process)
             except (EOFError, BrokenPipeError) as error:
                 process.wait()
-                raise wording.ended(process.returncode, self._source.name, self._limits, slow=self._out_of_time) from error
+                raise messages.ended(process.returncode, self._source.name, self._limits, slow=self._out_of_time) from error
             finally:
                 clock.cancel()
                 process.kill()
-                _hang_up(process)
+                _close(process)
 
     def _started(self) -> subprocess.Popen[bytes]:
         pipe, nowhere = subprocess.PIPE, subprocess.DEVNULL
@@ -232,15 +222,15 @@ class Talk:
         return {"folder": folder or files.guess_package(package, beside), "guessed": folder is None}
 
 
-def _hang_up(process: subprocess.Popen[bytes]) -> None:
-    """Close the way to the child, who may be gone with half a message unread."""
+def _close(process: subprocess.Popen[bytes]) -> None:
+    """Close the pipe to the child, which may have ended with half a message unread."""
     assert process.stdin is not None
     with suppress(OSError):
         process.stdin.close()
 
 
 def _receive(process: subprocess.Popen[bytes]) -> tuple[Message, bytes]:
-    """The child's next message. Raises: EOFError when it ended, or speaks nonsense because somebody broke out of xacro."""
+    """The child's next message. Raises: EOFError when it ended, or sends anything else because an expression broke out of xacro."""
     assert process.stdout is not None
     line = process.stdout.readline(MOST_HEADER)
     if not line.endswith(b"\n"):
@@ -256,17 +246,17 @@ def _receive(process: subprocess.Popen[bytes]) -> tuple[Message, bytes]:
 
 
 def _command() -> list[str]:
-    """Python without site packages of its own, which would only cost time: the environment says where the libraries are."""
+    """Python without site packages of its own, which would only cost time: the environment has the folders of the libraries."""
     return [sys.executable, "-S", "-P", "-m", CHILD]
 
 
 def _environment() -> Mapping[str, str]:
-    """Nothing that is the user's own: where the libraries are, and a fixed seed, so that the same file gives the same text."""
+    """Nothing of the user's own: the folders of the libraries, and a fixed seed, so that the same file gives the same text."""
     kept = {name: os.environ[name] for name in ("SYSTEMROOT", "LD_LIBRARY_PATH") if name in os.environ}
     return {"PYTHONPATH": os.pathsep.join(_library_folders()), "PYTHONHASHSEED": "0", **kept}
 
 
 def _library_folders() -> list[str]:
-    """The folders in which this program and the two libraries of the child stand."""
+    """The folders of this program and of the two libraries of the child."""
     places = [spec.origin for name in ("hymeko_x", "xacro", "yaml") if (spec := find_spec(name)) and spec.origin]
     return list(dict.fromkeys(str(Path(place).parents[1]) for place in places))

@@ -1,15 +1,24 @@
-"""Limits of the operating system on this process."""
+"""Limits of an expansion, and how the operating system imposes them on the child process."""
 
 from __future__ import annotations
 
 import signal
-from typing import NoReturn
+from typing import NamedTuple, NoReturn
 
-from hymeko_x.frontends.xacro_child.channel import Trouble
+from hymeko_x.frontends.xacro.child.channel import Trouble
+
+
+class ExpansionLimits(NamedTuple):
+    """Time and memory of an expansion: a hundred times what a real robot needs, and some 25,000 links of macros."""
+
+    cpu_seconds: int = 20
+    wall_seconds: float = 60.0
+    memory_bytes: int = 2**30
+
 
 GRACE_BYTES = 64 * 1024 * 1024
 GRACE_SECONDS = 2
-"""What there is on top of the limits in order to report that one was reached."""
+"""Added to the limits, so that the child can report that one was reached."""
 
 
 def set_limits(cpu_seconds: int, memory_bytes: int) -> None:

@@ -1,4 +1,4 @@
-"""Texts in xacro's spelling: what has a meaning for xacro is escaped, and holes become expressions that give the same letters."""
+"""Texts in xacro's spelling: characters with a meaning for xacro are escaped, and holes become expressions with the same text."""
 
 from __future__ import annotations
 
@@ -7,13 +7,13 @@ import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
-from hymeko_x.factor.forms import Hole, Signed
+from hymeko_x.factor.forms import Call, Hole, Signed, fill
 from hymeko_x.formats.xacro import survives
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.factor.forms import Piece, Text
+    from hymeko_x.factor.forms import Factored, Item, Piece, Text
 
 _BEFORE_BRACE = re.compile(r"\$+(?=[{(])")
 _LONE = re.compile(r"\$(?=\$)")
@@ -22,15 +22,15 @@ _DECIMAL = re.compile(r"(\d+(?:\.\d+)?)(e[+-]?\d+)?")
 
 
 def _constants() -> dict[str, str]:
-    """The letters of multiples of pi, and what one writes for them."""
-    known: dict[str, str] = {}
+    """The digits of multiples of pi, and the expressions for them."""
+    found: dict[str, str] = {}
     for words in _MATHS:
         value = 1.0
         for sign, factor in re.findall(r"(^|[*/])(pi|\d+)", words):
             number = math.pi if factor == "pi" else int(factor)
             value = value / number if sign == "/" else value * number
-        known.setdefault(repr(value), words)
-    return known
+        found.setdefault(repr(value), words)
+    return found
 
 
 CONSTANTS = MappingProxyType(_constants())
@@ -46,16 +46,16 @@ def spelled(text: Text) -> str:
 
 def argument(text: Text, *, quoted: bool) -> str:
     """The value of a parameter. In quotes it stays the text that it is; xacro would read it as a number or a truth value."""
-    said = spelled(text)
+    value = spelled(text)
     if isinstance(text, str):
         quoted = not survives(text)
-    return f"'{said}'" if quoted else said
+    return f"'{value}'" if quoted else value
 
 
 def default(text: str) -> str:
     """A default in a list of parameters."""
-    said = spelled(text)
-    return said if survives(text) and re.fullmatch(r"[\w./+-]+", said) else f"'{said}'"
+    value = spelled(text)
+    return value if survives(text) and re.fullmatch(r"[\w./+-]+", value) else f"'{value}'"
 
 
 def _plain(text: str) -> str:
@@ -97,3 +97,22 @@ def _is_kept(digits: str) -> Iterator[bool]:
     yield not re.match(r"0\d", digits)
     number = float(digits) if "." in digits else int(digits)
     yield str(number) == digits
+
+
+def arguments_to_quote(factored: Factored) -> set[tuple[int, str]]:
+    """Identity of the call and name of each argument with holes that xacro, in one of its expansions, would read as another number."""
+    macros = {macro.name: macro for macro in factored.macros}
+    known = {value.name: value.text for value in factored.values}
+    found: set[tuple[int, str]] = set()
+    stack: list[tuple[Item, dict[str, str]]] = [(item, known) for item in factored.items]
+    while stack:
+        item, scope = stack.pop()
+        if not isinstance(item, Call):
+            stack += [(child, scope) for child in item.children]
+            continue
+        given = {name: fill(text, scope) for name, text in item.arguments}
+        found.update((id(item), name) for name, text in given.items() if not survives(text))
+        macro = macros[item.macro]
+        inner = known | {parameter.name: parameter.default for parameter in macro.parameters if parameter.default is not None} | given
+        stack += [(part, inner) for part in macro.body]
+    return found

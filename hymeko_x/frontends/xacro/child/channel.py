@@ -1,4 +1,4 @@
-"""Between the child and its parent: questions, answers, and the one exception that ends an expansion.
+"""Messages between the child and its parent, and the one exception that ends an expansion.
 
 A message in either direction is one line of JSON, followed by as many bytes as its ``bytes`` says. The parent's first
 message is the job; the child's last one is ``done`` or ``failed``.
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Trouble(BaseException):
-    """What ends an expansion, with what the parent needs to word it. No Exception: xacro must not wrap or swallow it."""
+    """What ends an expansion, with the facts that the parent needs for its message. No Exception: xacro must not wrap or swallow it."""
 
     def __init__(self, kind: str, **facts: object) -> None:
         super().__init__(kind)
@@ -29,7 +29,7 @@ class Parent:
         self._incoming = incoming
         self._outgoing = outgoing
 
-    def hear(self) -> tuple[dict[str, Any], bytes]:
+    def receive(self) -> tuple[dict[str, Any], bytes]:
         """The next message. Ends this process when the parent is gone."""
         line = self._incoming.readline()
         if not line:
@@ -37,12 +37,12 @@ class Parent:
         message: dict[str, Any] = json.loads(line)
         return message, self._incoming.read(message["bytes"])
 
-    def tell(self, data: bytes = b"", **message: object) -> None:
+    def send(self, data: bytes = b"", **message: object) -> None:
         """Send a message."""
         self._outgoing.write(json.dumps({**message, "bytes": len(data)}).encode() + b"\n" + data)
         self._outgoing.flush()
 
     def ask(self, question: str, **facts: object) -> tuple[dict[str, Any], bytes]:
         """Send a question and wait for the answer."""
-        self.tell(b"", ask=question, **facts)
-        return self.hear()
+        self.send(b"", ask=question, **facts)
+        return self.receive()

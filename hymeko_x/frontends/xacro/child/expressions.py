@@ -7,8 +7,8 @@ import builtins
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.frontends.xacro_child.channel import Trouble
-from hymeko_x.frontends.xacro_child.places import EXPRESSION
+from hymeko_x.frontends.xacro.child.channel import Trouble
+from hymeko_x.frontends.xacro.child.dom import EXPRESSION
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping

@@ -1,18 +1,18 @@
-"""What xacro asks the world for: files, packages, variables, arguments, and somebody who listens to its warnings."""
+"""What xacro asks the world for, as the parent provides it: files, packages, variables, arguments; and its output, as notices."""
 
 from __future__ import annotations
 
 import io
 from typing import TYPE_CHECKING, BinaryIO, NoReturn
 
-from hymeko_x.frontends.xacro_child.channel import Trouble
-from hymeko_x.frontends.xacro_child.places import current_place
+from hymeko_x.frontends.xacro.child.channel import Trouble
+from hymeko_x.frontends.xacro.child.dom import current_place
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.frontends.xacro_child.channel import Parent
-    from hymeko_x.frontends.xacro_child.places import Place
+    from hymeko_x.frontends.xacro.child.channel import Parent
+    from hymeko_x.frontends.xacro.child.dom import Place
 
 MOST_NOTICES = 200
 
@@ -37,7 +37,7 @@ class Arguments(dict[str, str]):
 
 
 class Desk:
-    """Files, packages and variables, as the parent gives them out."""
+    """Files, packages and variables, as the parent provides them."""
 
     def __init__(self, parent: Parent, environment: Mapping[str, str]) -> None:
         self._parent = parent
@@ -47,11 +47,11 @@ class Desk:
         self.notices: list[dict[str, object]] = []
         self.files: list[str] = []
 
-    def notice(self, kind: str, place: Place | None, **facts: object) -> None:
-        """Something to say when all is done, once for each place."""
-        said = {"kind": kind, "file": place and place.file, "line": place and place.line, **facts}
-        if said not in self.notices and len(self.notices) < MOST_NOTICES:
-            self.notices.append(said)
+    def notice(self, kind: str, place: Place | None, **more: object) -> None:
+        """Something to report when the expansion is done, once for each place."""
+        facts = {"kind": kind, "file": place and place.file, "line": place and place.line, **more}
+        if facts not in self.notices and len(self.notices) < MOST_NOTICES:
+            self.notices.append(facts)
 
     def read(self, path: str) -> tuple[str, bytes]:
         """A file as the user would call it, and its content."""
@@ -100,7 +100,7 @@ class Desk:
         return self._environment.get(name, default)
 
 
-class Said(io.TextIOBase):
+class Output(io.TextIOBase):
     """Standard error and output while xacro works: its messages become notices."""
 
     _PLACES = ("when instantiating macro:", "instantiated from:", "in file:", "when processing file:", "included from:")

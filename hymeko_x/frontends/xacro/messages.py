@@ -1,4 +1,4 @@
-"""What the child said, in words for the user: why an expansion ended, and what there is to say about one that did not."""
+"""Diagnostics from the messages of the child: why an expansion failed, and notices about one that succeeded."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from hymeko_x.diagnostics import Code, Diagnostic, Origin, Refusal, Severity, re
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.frontends.xacro.expand import Limits
+    from hymeko_x.frontends.xacro.child.limits import ExpansionLimits
 
     Message = Mapping[str, object]
     """A message of the child, as JSON gives it."""
 
 LONGEST_TEXT = 600
 _KILLED = (-9, -24)
-"""What the system does to a process whose time is up, where it had no chance to say so: SIGKILL, SIGXCPU."""
+"""How the system ends a process whose time is up: SIGKILL, SIGXCPU."""
 _XACRO_NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
-def refusal(failed: Message, source: str, limits: Limits) -> Refusal:
-    """The refusal that says why the child gave up."""
+def refusal(failed: Message, source: str, limits: ExpansionLimits) -> Refusal:
+    """The refusal with the reason why the child failed."""
     code, message, hint = _reason(failed, limits)
-    return refuse(code, message, _place(failed, source), hint=hint, excerpt=_calls(failed))
+    return refuse(code, message, _origin(failed, source), hint=hint, excerpt=_calls(failed))
 
 
-def _reason(failed: Message, limits: Limits) -> tuple[Code, str, str]:
+def _reason(failed: Message, limits: ExpansionLimits) -> tuple[Code, str, str]:
     name = str(failed.get("name", ""))
     match failed["kind"]:
         case "argument":
@@ -72,7 +72,7 @@ def _xml_hint(text: str) -> str:
     return f"if the prefix is xacro: the root element needs {_XACRO_NAMESPACE}" if "prefix" in text else ""
 
 
-def _limit(what: str, limits: Limits) -> tuple[str, str]:
+def _limit(what: str, limits: ExpansionLimits) -> tuple[str, str]:
     reached = {
         "depth": "macros, includes or expressions are nested too deep",
         "memory": f"it needs more than {limits.memory_bytes // 2**20} MiB of memory",
@@ -82,36 +82,36 @@ def _limit(what: str, limits: Limits) -> tuple[str, str]:
     return f"the expansion was stopped: {reached[what]}", hint
 
 
-def ended(status: int, source: str, limits: Limits, *, slow: bool) -> Refusal:
-    """The refusal for a child that ended without a word, with its exit status; ``slow`` when the clock ran out."""
+def ended(status: int, source: str, limits: ExpansionLimits, *, slow: bool) -> Refusal:
+    """The refusal for a child that ended without a message, with its exit status; ``slow`` when the clock ran out."""
     if slow:
-        said = f"it takes more than {limits.wall_seconds:g} s"
+        problem = f"it takes more than {limits.wall_seconds:g} s"
     elif status in _KILLED:
-        said, _ = _limit("time", limits)
-        return refuse(codes.EXPANSION_LIMIT, said, Origin(source))
+        problem, _ = _limit("time", limits)
+        return refuse(codes.EXPANSION_LIMIT, problem, Origin(source))
     else:
         bounds = f"the limits are {limits.cpu_seconds} s of processor time and {limits.memory_bytes // 2**20} MiB of memory"
-        said = f"its process ended with status {status}; {bounds}"
-    return refuse(codes.EXPANSION_LIMIT, f"the expansion was stopped: {said}", Origin(source))
+        problem = f"its process ended with status {status}; {bounds}"
+    return refuse(codes.EXPANSION_LIMIT, f"the expansion was stopped: {problem}", Origin(source))
 
 
-def notice(said: Message, source: str) -> Diagnostic:
-    """Something that the child has to say about an expansion that worked."""
-    origin = _place(said, source)
-    name = str(said.get("name", ""))
-    match said["kind"]:
+def notice(facts: Message, source: str) -> Diagnostic:
+    """A notice of the child about an expansion that succeeded."""
+    origin = _origin(facts, source)
+    name = str(facts.get("name", ""))
+    match facts["kind"]:
         case "guessed":
-            message = f"there is no package '{name}'; the folder '{said['folder']}' is taken for it"
+            message = f"there is no package '{name}'; the folder '{facts['folder']}' is taken for it"
             return Diagnostic(codes.PACKAGE_NOT_FOUND, Severity.WARNING, message, origin, hint=f"say where it is: --package {name}=DIR")
         case "closed":
-            message = f"the environment variable '{name}' is not passed on; its default '{_short(said['default'])}' is used"
+            message = f"the environment variable '{name}' is not passed on; its default '{_short(facts['default'])}' is used"
             return Diagnostic(codes.ENVIRONMENT_CLOSED, Severity.NOTE, message, origin, hint=f"pass it on with --env {name}")
         case "unknown":
-            known = ", ".join(cast("list[str]", said["known"])) or "none"
+            known = ", ".join(cast("list[str]", facts["known"])) or "none"
             message = f"the argument '{name}' has no effect: the file does not mention it"
             return Diagnostic(codes.ARGUMENT_UNKNOWN, Severity.WARNING, message, origin, hint=f"arguments of the file: {known}")
         case _:
-            return _of_xacro(str(said["text"]), origin)
+            return _of_xacro(str(facts["text"]), origin)
 
 
 def _of_xacro(text: str, origin: Origin) -> Diagnostic:
@@ -123,13 +123,13 @@ def _of_xacro(text: str, origin: Origin) -> Diagnostic:
     return Diagnostic(codes.XACRO_SAID, Severity.NOTE, f"xacro: {_short(text)}", origin)
 
 
-def _place(said: Message, source: str) -> Origin:
-    file, line = said.get("file"), said.get("line")
+def _origin(facts: Message, source: str) -> Origin:
+    file, line = facts.get("file"), facts.get("line")
     return Origin(str(file), cast("int | None", line)) if file else Origin(source)
 
 
 def _calls(failed: Message) -> tuple[str, ...]:
-    """How xacro got to the place of the failure, from the inside."""
+    """The calls that led to the failure, from the inside."""
     calls = cast("list[Message]", failed.get("calls", []))
     here = (failed.get("file"), failed.get("line"))
     return tuple(f"  from {call['file']}:{call['line']}: {call['what']}" for call in calls if (call["file"], call["line"]) != here)

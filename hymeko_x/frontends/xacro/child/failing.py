@@ -1,24 +1,24 @@
-"""Why and where an expansion ended, from an exception and the stack that it left."""
+"""Why and where an expansion failed, from an exception and its stack."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x.frontends.xacro_child.channel import Trouble
-from hymeko_x.frontends.xacro_child.places import place_in, place_of
+from hymeko_x.frontends.xacro.child.channel import Trouble
+from hymeko_x.frontends.xacro.child.dom import place_in, place_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from types import FrameType, TracebackType
 
-    from hymeko_x.frontends.xacro_child.places import Place
+    from hymeko_x.frontends.xacro.child.dom import Place
 
 MOST_CALLS = 5
 """How many macro calls and includes a failure shows, from the inside."""
 
 
 def failure(error: BaseException, trace: TracebackType | None, document: Any) -> dict[str, object]:
-    """What the parent needs to say why and where the expansion ended."""
+    """The facts for the parent's message: why and where the expansion failed."""
     facts = _facts(error)
     steps = [(frame, place) for frame in _traced(trace) if (place := place_in(frame))]
     if steps and "file" not in facts:
@@ -40,15 +40,15 @@ def _facts(error: BaseException) -> dict[str, object]:
         return {"kind": "file", "path": missing.filename, "reason": missing.strerror}
     if isinstance(error, ImportError):
         return {"kind": "import", "text": str(error)}
-    return {"kind": "xacro", "text": _said(error) or type(error).__name__}
+    return {"kind": "xacro", "text": _message(error) or type(error).__name__}
 
 
-def _said(error: BaseException) -> str:
-    """The message of an error. XacroException wraps others, and sometimes says them twice."""
+def _message(error: BaseException) -> str:
+    """The message of an error. XacroException wraps others, and sometimes repeats their text."""
     if not hasattr(error, "exc") or not error.args:
         return str(error)
     own = "" if error.args[0] is None or str(error.args[0]).startswith("<class ") else str(error.args[0])
-    inner = _said(error.exc) if error.exc is not None else ""
+    inner = _message(error.exc) if error.exc is not None else ""
     return " ".join(part for part in (own, inner, getattr(error, "suffix", None)) if part)
 
 

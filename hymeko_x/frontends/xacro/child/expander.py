@@ -6,16 +6,15 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 from xml.parsers import expat
 
-from hymeko_x.frontends.xacro_child import quick
-from hymeko_x.frontends.xacro_child.channel import Trouble
-from hymeko_x.frontends.xacro_child.expressions import eval_extension, safe_eval
-from hymeko_x.frontends.xacro_child.places import PlacingBuilder, written
+from hymeko_x.frontends.xacro.child.channel import Trouble
+from hymeko_x.frontends.xacro.child.dom import PlacingBuilder, make_quick, written
+from hymeko_x.frontends.xacro.child.expressions import eval_extension, safe_eval
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from hymeko_x.frontends.xacro_child.desk import Arguments, Desk
-    from hymeko_x.frontends.xacro_child.places import Lines
+    from hymeko_x.frontends.xacro.child.desk import Arguments, Desk
+    from hymeko_x.frontends.xacro.child.dom import Lines
 
 
 class Expander:
@@ -26,7 +25,7 @@ class Expander:
         import yaml  # noqa: F401  (xacro imports it when it is needed first, and then no file can be opened any more)
         from xacro import substitution_args
 
-        quick.install()
+        make_quick()
         self._xacro = xacro
         self._desk = desk
         self._arguments = arguments
