@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING
+from xml.parsers import expat
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -61,8 +62,14 @@ def comment_markup(text: str) -> str:
 
 
 def is_name(text: str) -> bool:
-    """Whether a text can be the name of an element."""
-    return re.fullmatch(NAME, text) is not None
+    """Whether a text can be the name of an element, also for expat, which knows fewer letters than Python."""
+    if re.fullmatch(NAME, text) is None:
+        return False
+    try:
+        expat.ParserCreate().Parse(f"<{text}/>", True)
+    except expat.ExpatError:
+        return False
+    return True
 
 
 _LONGEST_PART = 5_000_000

@@ -207,7 +207,7 @@ def test_warnings_of_xacro_and_messages_of_the_file_are_said_once_each(folder: F
     [
         ('<sdf xmlns:xacro="x" version="1.6"/>', "SDF (Gazebo): <sdf>"),
         ("<mujoco/>", "MJCF (MuJoCo): <mujoco>"),
-        ('<robot name="r"><group name="arm"/></robot>', "SRDF, which says what a robot means and not what it is: <group>"),
+        ('<robot name="r"><group name="arm"/></robot>', "SRDF, which describes the use of a robot and not the robot: <group>"),
         ("<plugin/>", "<plugin>"),
     ],
 )
