@@ -1,9 +1,9 @@
-"""Factoring: finds what repeats in forms up to parameters, and says it once.
+"""Factoring: forms that repeat up to parameters are written once, as macros.
 
 Works on any tree of tags and texts, so that one pass serves every backend. A backend
 
 1. hands in its own text as forms (:class:`~hymeko_x.factor.forms.Element`: tag, leaves, children) and a :class:`Dialect`:
-   what definitions, calls and holes cost in its text, in characters;
+   the costs of definitions, calls and holes in its text, in characters;
 2. gets back :class:`~hymeko_x.factor.forms.Factored`: macros with parameters and defaults, named values, and the items with calls
    among them. ``expand(factor(forms, dialect)) == forms``, to the last digit of every number;
 3. prints holes, calls and macros in its own spelling::
@@ -26,12 +26,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.collector import uncollected
-from hymeko_x.factor.apply import apply
-from hymeko_x.factor.dialect import Dialect
 from hymeko_x.factor.find import families
-from hymeko_x.factor.finish import finish
-from hymeko_x.factor.flat import Flat, Grown, grow
-from hymeko_x.factor.values import name_texts
+from hymeko_x.factor.finish import finish, name_texts
+from hymeko_x.factor.flat import Flat, Workspace, to_forms
+from hymeko_x.factor.forms import Dialect
+from hymeko_x.factor.macros import apply
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -41,16 +40,16 @@ if TYPE_CHECKING:
 __all__ = ["Dialect", "factor"]
 
 _MOST_ROUNDS = 12
-"""Each round looks at what the one before left, so that macros come to call macros; real robots need three to five."""
+"""Each round looks at the result of the one before, so that macros come to call macros; real robots need three to five."""
 
 
 def factor(forms: Iterable[Element], dialect: Dialect) -> Factored:
-    """The forms with everything said once that repeats and is shorter so. Deterministic and near-linear in their number."""
+    """The forms with macros for everything that repeats and is shorter so. Deterministic and near-linear in their number."""
     with uncollected():
-        grown = Grown(grow(forms))
+        workspace = Workspace(to_forms(forms))
         for _ in range(_MOST_ROUNDS):
-            flat = Flat(grown, dialect)
-            if not apply(families(flat, dialect), flat, grown, dialect):
+            flat = Flat(workspace, dialect)
+            if not apply(families(flat, dialect), flat, workspace, dialect):
                 break
-        done = finish(grown, dialect)
+        done = finish(workspace, dialect)
         return name_texts(done, dialect) if dialect.values else done

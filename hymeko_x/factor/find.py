@@ -1,4 +1,4 @@
-"""Finding what may become a macro: forms of one shape, and runs of siblings that repeat, with what each would save.
+"""Finding candidates for macros: forms of one shape, and runs of siblings that repeat, with the characters that each would save.
 
 Runs are found along diagonals: two forms whose names differ in one word (``LF_hip``, ``RF_hip``) are a likely pair, and a row
 of pairs at one distance is a run that repeats. So only likely places are looked at, and the time stays near linear.
@@ -17,15 +17,15 @@ from hymeko_x.factor.unify import unify
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterator
 
-    from hymeko_x.factor.dialect import Dialect
     from hymeko_x.factor.flat import Flat
+    from hymeko_x.factor.forms import Dialect
     from hymeko_x.factor.unify import Unified, Vector
 
 Run = tuple[int, int]
 """The numbers of the first and the last form of a run of siblings."""
 
 _NAME = 7
-"""How long a name is thought to be before it is there."""
+"""The assumed length of a name that is not chosen yet."""
 _WORK_PER_TEXT = 4
 _LEAST_WORK = 200_000
 """How many texts are compared in a round, at most."""
@@ -45,7 +45,7 @@ class Family(Struct, frozen=True):
 
 
 def families(flat: Flat, dialect: Dialect) -> list[Family]:
-    """What is worth a macro, the best first."""
+    """The families that a macro makes shorter, the best first."""
     bounds = {runs: _bound(runs, flat) for runs in _candidates(flat, dialect) if len(runs) > 1}
     candidates = sorted((runs for runs, bound in bounds.items() if bound >= dialect.least), key=lambda runs: (-bounds[runs], runs))
     work = max(_LEAST_WORK, _WORK_PER_TEXT * len(flat.texts))
@@ -61,7 +61,7 @@ def families(flat: Flat, dialect: Dialect) -> list[Family]:
 
 
 def _bound(runs: tuple[Run, ...], flat: Flat) -> int:
-    """What a macro could save at the most."""
+    """The most that a macro could save."""
     return (len(runs) - 1) * _size(runs[0], flat)
 
 
@@ -127,7 +127,7 @@ def _groups(flat: Flat, keys: _Keys) -> Iterator[tuple[Run, ...]]:
 
 
 def _is_covered(group: list[int], groups: dict[int, list[int]], labels: list[int], flat: Flat) -> bool:
-    """Whether all that a group has in common stands inside of forms that have even more in common."""
+    """Whether all forms of a group are inside of forms that have even more in common."""
     around = {flat.up[number] for number in group}
     if len(around) < len(group) or min(around) < 0:
         return False
@@ -166,13 +166,13 @@ class _Row:
     """All siblings in a row, list after list, with a gap between lists."""
 
     def __init__(self, flat: Flat) -> None:
-        kids: dict[int, list[int]] = {}
+        children: dict[int, list[int]] = {}
         for number, up in enumerate(flat.up):
-            kids.setdefault(up, []).append(number)
+            children.setdefault(up, []).append(number)
         self.numbers: list[int] = []
         self.shapes: list[int] = []
         self.place: dict[int, int] = {}
-        for row in kids.values():
+        for row in children.values():
             for number in row:
                 self.place[number] = len(self.numbers)
                 self.numbers.append(number)
@@ -211,7 +211,7 @@ def _segments(pairs: dict[int, list[int]], row: _Row) -> Iterator[tuple[int, int
 
 
 class _Keys:
-    """What makes two forms likely partners: names that differ in one word, or numbers that are equal up to their sign."""
+    """The keys by which two forms are likely partners: names that differ in one word, or numbers that are equal up to their sign."""
 
     def __init__(self, flat: Flat, dialect: Dialect) -> None:
         self._dialect = dialect
@@ -226,13 +226,13 @@ class _Keys:
         """A number for each form; the same where shapes are, and numbers up to their signs."""
         known: dict[Hashable, int] = {}
         alike = [0] * len(flat)
-        kids: dict[int, list[int]] = {}
+        children: dict[int, list[int]] = {}
         for number in range(len(flat) - 1, -1, -1):
             texts = tuple([self._unsigned(text) for text in flat.forms[number].texts])
-            key = (flat.shape[number], texts, tuple(kids.pop(number, ())))
+            key = (flat.shape[number], texts, tuple(children.pop(number, ())))
             alike[number] = known.setdefault(key, len(known))
             if flat.up[number] >= 0:
-                kids.setdefault(flat.up[number], []).append(alike[number])
+                children.setdefault(flat.up[number], []).append(alike[number])
         return alike
 
     @staticmethod
@@ -241,7 +241,7 @@ class _Keys:
         return text.replace("-", "") if isinstance(text, str) and text[:1] in _NUMERIC else ""
 
     def of(self, number: int) -> Iterator[Hashable]:
-        """The keys of a form: whoever shares one is a likely partner."""
+        """The keys of a form: forms with a common key are likely partners."""
         shape, form = self._flat.shape[number], self._flat.forms[number]
         yield self.alike[number]
         if self._dialect.name not in form.leaves:

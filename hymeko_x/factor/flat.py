@@ -13,26 +13,25 @@ from hymeko_x.factor.forms import Call, Element, Hole, Signed
 if TYPE_CHECKING:
     from collections.abc import Hashable, Iterable
 
-    from hymeko_x.factor.dialect import Dialect
-    from hymeko_x.factor.forms import Item, Text
+    from hymeko_x.factor.forms import Dialect, Item, Text
 
 
 class Form:
     """A form or a call while it is worked on; the only mutable thing in factoring."""
 
-    __slots__ = ("hint", "is_call", "kids", "leaves", "tag", "texts")
+    __slots__ = ("children", "hint", "is_call", "leaves", "tag", "texts")
 
     def __init__(self, tag: str, leaves: tuple[str, ...], texts: tuple[Text, ...], *, is_call: bool = False, hint: str = "") -> None:
         self.tag = tag
         self.leaves = leaves
         self.texts = texts
-        self.kids: list[Form] | tuple[()] = ()
+        self.children: list[Form] | tuple[()] = ()
         self.is_call = is_call
         self.hint = hint
 
 
-class Draft:
-    """A macro while it is worked on: its name, parameters in order, what most calls give for each, and its body."""
+class OpenMacro:
+    """A macro while it is worked on: its name, parameters in order, the value that most calls give for each, and its body."""
 
     __slots__ = ("body", "name", "parameters", "usual")
 
@@ -43,12 +42,12 @@ class Draft:
         self.body = body
 
 
-class Grown:
+class Workspace:
     """All forms under work: the items at top level, and the macros found so far."""
 
     def __init__(self, items: list[Form]) -> None:
         self.items = items
-        self.macros: dict[str, Draft] = {}
+        self.macros: dict[str, OpenMacro] = {}
 
     @property
     def lists(self) -> list[list[Form]]:
@@ -56,7 +55,7 @@ class Grown:
         return [self.items, *(macro.body for macro in self.macros.values())]
 
 
-def grow(forms: Iterable[Element]) -> list[Form]:
+def to_forms(forms: Iterable[Element]) -> list[Form]:
     """Forms to work on."""
     top: list[Form] = []
     stack: list[tuple[Element, list[Form]]] = [(form, top) for form in reversed(list(forms))]
@@ -66,36 +65,36 @@ def grow(forms: Iterable[Element]) -> list[Form]:
         made = Form(form.tag, names, tuple([text for _, text in form.leaves]), hint=form.hint)
         out.append(made)
         if form.children:
-            kids: list[Form] = []
-            made.kids = kids
-            stack += [(kid, kids) for kid in reversed(form.children) if isinstance(kid, Element)]
+            children: list[Form] = []
+            made.children = children
+            stack += [(kid, children) for kid in reversed(form.children) if isinstance(kid, Element)]
     return top
 
 
-def rest(forms: list[Form], items_of: dict[int, Call]) -> tuple[Item, ...]:
-    """Forms as they are handed out. ``items_of`` says what becomes of calls, by the id of their form."""
+def to_items(forms: list[Form], items_of: dict[int, Call]) -> tuple[Item, ...]:
+    """Forms as items. ``items_of`` are the finished calls, by the id of their form."""
     top: list[Item] = []
     work: list[tuple[Form, list[Item], list[Item] | None]] = [(form, top, None) for form in reversed(forms)]
     while work:
-        form, out, kids = work.pop()
+        form, out, children = work.pop()
         if form.is_call:
             out.append(items_of[id(form)])
-        elif kids is None and form.kids:
-            kids = []
-            work.append((form, out, kids))
-            work += [(kid, kids, None) for kid in reversed(form.kids)]
+        elif children is None and form.children:
+            children = []
+            work.append((form, out, children))
+            work += [(kid, children, None) for kid in reversed(form.children)]
         else:
             leaves = tuple(zip(form.leaves, form.texts, strict=True))
-            out.append(Element(form.tag, leaves, tuple(kids or ()), form.hint))
+            out.append(Element(form.tag, leaves, tuple(children or ()), form.hint))
     return tuple(top)
 
 
 class Flat:
     """Arrays over all forms, by number. Texts of a run of siblings are one slice of ``texts``."""
 
-    def __init__(self, grown: Grown, dialect: Dialect) -> None:
+    def __init__(self, workspace: Workspace, dialect: Dialect) -> None:
         self._sizes: dict[str, int] = {}
-        self._macros = grown.macros
+        self._macros = workspace.macros
         self._dialect = dialect
         self.forms: list[Form] = []
         self.end: list[int] = []
@@ -105,7 +104,7 @@ class Flat:
         self.texts: list[Text] = []
         self.start: list[int] = []
         """Where each form's texts start; one entry more than there are forms."""
-        self._number(grown.lists)
+        self._number(workspace.lists)
         self.size = self._measured()
         self.shape = self._shapes()
 
@@ -122,8 +121,8 @@ class Flat:
                 self.up.append(up)
                 self.start.append(len(self.texts))
                 self.texts += form.texts
-                if form.kids:
-                    stack += [(kid, number) for kid in reversed(form.kids)]
+                if form.children:
+                    stack += [(kid, number) for kid in reversed(form.children)]
         self.start.append(len(self.texts))
         self.end = list(range(1, len(self.forms) + 1))
         for number in range(len(self.forms) - 1, -1, -1):
@@ -142,7 +141,7 @@ class Flat:
     def _own(self, form: Form) -> int:
         costs = self._dialect
         own = costs.element + len(form.tag) + sum([len(name) + costs.leaf for name in form.leaves])
-        if form.kids:
+        if form.children:
             own += costs.block + (len(form.tag) if costs.closes_by_tag else 0)
         return own + sum([self.length(text) for text in form.texts])
 
@@ -150,23 +149,23 @@ class Flat:
         costs = self._dialect
         usual = self._macros[form.tag].usual
         given = zip(form.leaves, form.texts, usual, strict=True)
-        said = [costs.argument + len(name) + self.length(text) for name, text, default in given if text != default]
-        return costs.call + len(form.tag) + sum(said)
+        arguments = [costs.argument + len(name) + self.length(text) for name, text, default in given if text != default]
+        return costs.call + len(form.tag) + sum(arguments)
 
     def _shapes(self) -> list[int]:
         known: dict[Hashable, int] = {}
         shape = [0] * len(self.forms)
-        kids: dict[int, list[int]] = {}
+        children: dict[int, list[int]] = {}
         for number in range(len(self.forms) - 1, -1, -1):
             form = self.forms[number]
-            below = tuple(reversed(kids.pop(number, ())))
+            below = tuple(reversed(children.pop(number, ())))
             shape[number] = known.setdefault((form.tag, form.is_call, form.leaves, below), len(known))
             if self.up[number] >= 0:
-                kids.setdefault(self.up[number], []).append(shape[number])
+                children.setdefault(self.up[number], []).append(shape[number])
         return shape
 
     def length(self, text: Text) -> int:
-        """What a text costs."""
+        """The cost of a text."""
         if isinstance(text, str):
             found = self._sizes.get(text)
             if found is None:
@@ -175,7 +174,7 @@ class Flat:
         return sum([self.length(piece) if isinstance(piece, str) else self.length_of_hole(piece) for piece in text])
 
     def length_of_hole(self, hole: Hole | Signed) -> int:
-        """What a hole costs."""
+        """The cost of a hole."""
         if isinstance(hole, Hole):
             return self._dialect.hole + len(hole.name)
         return self._dialect.hole + sum([len(name) + 1 for name in hole.factors]) + hole.negative + len(hole.magnitude)

@@ -1,4 +1,4 @@
-"""Forms: what a text of any format consists of once its words are forgotten, and what it is when what repeats is said once.
+"""Forms: the structure of a text of any format, before and after factoring; and the costs of a format's text.
 
 A form is a tag, leaves (a name and a text each) and children. A macro is a run of forms with holes in their texts; a call
 of it stands for the run with the holes filled. All of it is immutable and knows no format.
@@ -6,7 +6,13 @@ of it stands for the run with the holes filled. All of it is immutable and knows
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+from msgspec import Struct
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 class Hole(NamedTuple):
@@ -29,7 +35,7 @@ Text = str | tuple[Piece, ...]
 
 
 class Element(NamedTuple):
-    """A form. ``hint`` is what its source called the thing that it was made from (a class, macro or template), if known."""
+    """A form. ``hint`` is the name of the class, macro or template that it was made from, if known."""
 
     tag: str
     leaves: tuple[tuple[str, Text], ...] = ()
@@ -38,7 +44,7 @@ class Element(NamedTuple):
 
 
 class Call(NamedTuple):
-    """What stands in place of a run of forms: the macro, and the values that are not its defaults."""
+    """A run of forms as a macro with those values that are not its defaults."""
 
     macro: str
     arguments: tuple[tuple[str, Text], ...] = ()
@@ -70,7 +76,7 @@ class Value(NamedTuple):
 
 
 class Factored(NamedTuple):
-    """Forms in which nothing is said twice: named values, macros (those that others call first), and the items."""
+    """Factored forms: named values, macros (those that others call first), and the items."""
 
     items: tuple[Item, ...]
     macros: tuple[Macro, ...] = ()
@@ -138,3 +144,55 @@ def joined(pieces: list[Piece]) -> Text:
     if not out:
         return ""
     return out[0] if len(out) == 1 and isinstance(out[0], str) else tuple(out)
+
+
+# ---- dialects -----------------------------------------------------------------------------------------------------------------
+
+_PIECE = re.compile(r"(?<!\S)[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?!\S)|\s+|[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^A-Za-z0-9\s]")
+
+
+def words(text: str) -> tuple[str, ...]:
+    """A text cut into numbers, words, digits behind words, and single separators: ``LF_hip2`` -> LF _ hip 2."""
+    return tuple(_PIECE.findall(text))
+
+
+def _leaf_name(tag: str, leaf: str) -> str:
+    """The name of a parameter for the text of this leaf."""
+    return tag if leaf in ("name", "value", "") else leaf
+
+
+class Dialect(Struct, frozen=True):
+    """The costs of a backend's text, in characters without white space, and its rules for names.
+
+    ``element`` are the characters around tag and leaves of a form (``</>``: 3), ``block`` those that children add, the tag
+    again where ``closes_by_tag``; ``leaf`` those around a leaf's name and text (``=""``: 3). ``macro``, ``parameter``,
+    ``default``, ``call``, ``argument``, ``hole`` and ``value`` likewise: the characters around the names and texts of a definition, a
+    parameter in it, a default, a call, an argument, the name in a hole, and the definition of a named value.
+
+    A macro must save ``least`` characters. ``cut`` cuts a text into the pieces that a hole
+    may take; return ``(text,)`` where only the whole text can be one. ``leaf_name`` proposes a parameter's name from
+    tag and leaf. ``taken`` are reserved names. ``name`` is the leaf that names a form. ``can_be_default``
+    tells whether a text can be a default, ``signs`` whether the dialect can write a number with the sign of a parameter,
+    ``values`` whether it has named values, and ``can_be_value`` which texts can be one.
+    """
+
+    element: int = 3
+    block: int = 2
+    closes_by_tag: bool = True
+    leaf: int = 3
+    macro: int = 45
+    parameter: int = 0
+    default: int = 2
+    call: int = 9
+    argument: int = 3
+    hole: int = 3
+    value: int = 33
+    least: int = 40
+    cut: Callable[[str], tuple[str, ...]] = words
+    leaf_name: Callable[[str, str], str] = _leaf_name
+    taken: frozenset[str] = frozenset()
+    name: str = "name"
+    can_be_default: Callable[[str], bool] = bool
+    signs: bool = True
+    values: bool = False
+    can_be_value: Callable[[str], bool] = bool

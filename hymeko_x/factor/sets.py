@@ -1,7 +1,7 @@
-"""Factoring of what has no order: sets of (name, text) that several things share, such as the attributes of joints.
+"""Factoring without order: sets of (name, text) that several elements share, such as the attributes of joints.
 
 Serves formats in which an element may take fields from a class or a stereotype, and classes refine classes. Format-free,
-exact and deterministic, as :mod:`hymeko_x.factor` is for what has an order and holes.
+exact and deterministic, as :mod:`hymeko_x.factor` is for forms with an order and holes.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ if TYPE_CHECKING:
 Pair = tuple[str, str]
 """The name and the text of a field."""
 Row = list[Pair]
-"""The fields of one thing."""
+"""The fields of one element."""
 Members = frozenset[int]
-"""The numbers of the rows that have something."""
+"""The numbers of the rows with a field."""
 
-_NOBODY: Members = frozenset()
+_NO_MEMBERS: Members = frozenset()
 _SEEDS = 24
 _LEAST = 12
-"""Letters that a set must save before anybody thinks about it."""
+"""Letters that a set must save to be a candidate."""
 _MOST = 32
-"""Sets that are found in one group of things."""
+"""The most sets in one group of elements."""
 
 
 class Costs(Struct, frozen=True):
-    """In letters: what stands around a definition, around a field, and what saying its set costs a row; and what a set must save."""
+    """In letters: the costs of a definition, of a field, and of naming its set in a row; and the least that a set must save."""
 
     definition: int
     field: int
@@ -90,8 +90,8 @@ def _ranked(rows: Sequence[Row]) -> list[tuple[frozenset[Pair], Members]]:
     owners = _owners(rows)
 
     def common(members: Members) -> frozenset[Pair]:
-        """All that these rows share: some of the fields of any one of them, so that nothing else is looked at."""
-        return frozenset(pair for pair in rows[min(members)] if members <= owners.get(pair, _NOBODY))
+        """All fields that these rows share: a subset of those of any one of them."""
+        return frozenset(pair for pair in rows[min(members)] if members <= owners.get(pair, _NO_MEMBERS))
 
     sharing: dict[Members, list[Pair]] = {}
     for pair, members in owners.items():

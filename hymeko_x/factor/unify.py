@@ -1,6 +1,6 @@
 """Anti-unification: the most special text that several texts are instances of, for all columns of a family at once.
 
-A column holds the texts that one leaf has in each instance. What is equal stays; what differs becomes a hole, and holes that
+A column holds the texts that one leaf has in each instance. Equal pieces stay, different ones become holes, and holes that
 differ in the same way share a parameter. A sign that changes in several columns in the same way is a parameter, too.
 """
 
@@ -30,7 +30,7 @@ _MAGNITUDE = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
 
 class _Varying(Struct, frozen=True):
-    """A place that differs: the whole values, and where that is possible what they are piece by piece."""
+    """A place that differs: the whole values and, where that is possible, their pieces."""
 
     values: Vector
     pieces: tuple[Piece | Vector, ...] = ()
@@ -86,7 +86,7 @@ def _is_constant(column: tuple[object, ...]) -> bool:
 
 
 def _aligned(column: Vector, cut: Callable[[str], tuple[str, ...]]) -> list[Piece | _Varying]:
-    """Common pieces in front and behind, and what varies between them."""
+    """Common pieces in front and behind, and the varying ones between them."""
     rows = [_pieces(text, cut) for text in column]
     shortest = min(map(len, rows))
     first = rows[0]
@@ -125,7 +125,7 @@ def _cut(text: str, cut: Callable[[str], tuple[str, ...]]) -> tuple[str, ...]:
 
 
 class _Usage:
-    """What is known of all columns of a family: which vectors occur several times, and which signs go together."""
+    """Facts about all columns of a family: which vectors occur several times, and which signs change together."""
 
     def __init__(self, drafts: list[list[Piece | _Varying]], *, signs: bool) -> None:
         varying = [part for parts in drafts for part in parts if isinstance(part, _Varying)]
@@ -141,13 +141,13 @@ class _Usage:
         self._factors = _basis(patterns)
 
     def signed(self, vector: Vector) -> tuple[tuple[Signs, ...], bool, str] | None:
-        """The sign parameters, and the rest, of numbers that differ by sign alone; None where that is not worth it."""
+        """The sign parameters, and the rest, of numbers that differ by sign alone; None where it occurs only once."""
         found = _signs(vector) if self._factors else None
         factors = self._factors.get(_normal(found[0])) if found else None
         return (factors, found[0][0], found[1]) if found and factors else None
 
     def decided(self, part: _Varying) -> tuple[Piece | Vector, ...]:
-        """What varies, as a whole or piece by piece: by pieces where others use each of the pieces as well."""
+        """The varying values as a whole, or piece by piece where each of the pieces occurs elsewhere as well."""
         if len(part.pieces) == 1:
             return part.pieces
         if not part.pieces or self._vectors[part.values] > 1:

@@ -16,8 +16,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.backends.hymeko.values import value_of
-from hymeko_x.factor.dialect import words
-from hymeko_x.factor.forms import Hole, Signed
+from hymeko_x.factor.forms import Hole, Signed, words
 from hymeko_x.factor.unify import unify
 from hymeko_x.formats.hymeko import AXES, RESERVED
 from hymeko_x.ir.mechanism import KINDS, Id
