@@ -1,6 +1,6 @@
-"""Values of the IR as values of the language, and back: any part, pose, notation, id or number, without a word of its own.
+"""Values of the IR as values of the language, and back: any part, pose, notation, id or number.
 
-A part is a list of its class and of what is not a default (``[Limits lower -1 upper 1]``), an id a path of kind and name
+A part is a list of its class and of the fields that are not defaults (``[Limits lower -1 upper 1]``), an id a path of kind and name
 (``body.torso``), a rotation with its notation ``[rpy [0 0 1.57]]``.
 """
 
@@ -54,9 +54,7 @@ def id_ref(key: Id) -> Ref:
 
 
 def encoded(value: object) -> Value:
-    """A value of the IR as the language says it. Depth is that of the parts."""
-    if type(value) is float or type(value) is str:
-        return value
+    """A value of the IR as a value of the language, as deep as the parts are."""
     if isinstance(value, bool) or value is None:
         return name_ref("none" if value is None else str(value).lower())
     if isinstance(value, NUMBERS):
@@ -71,10 +69,10 @@ def encoded(value: object) -> Value:
         return (name_ref("Written"), value.kind, value.numbers)
     if isinstance(value, tuple):
         return value if are_numbers(value) else tuple([encoded(item) for item in value])
-    return (name_ref(type(value).__name__), *(word for name, inner in said(value) for word in (name_ref(name), inner)))
+    return (name_ref(type(value).__name__), *(word for name, inner in given_fields(value) for word in (name_ref(name), inner)))
 
 
-def said(part: object) -> Iterator[tuple[str, Value]]:
+def given_fields(part: object) -> Iterator[tuple[str, Value]]:
     """The fields of a part that are not their defaults."""
     for item in attributes_of(part):
         value = getattr(part, item.name)
@@ -83,7 +81,7 @@ def said(part: object) -> Iterator[tuple[str, Value]]:
 
 
 def encoded_turn(turn: tuple[values.Quat, Written | None]) -> Value:
-    """A rotation with its notation: the quaternion, or what was written where that means exactly this quaternion."""
+    """A rotation with its notation: the quaternion, or the notation alone where that means exactly this quaternion."""
     quat, written = turn
     if written is None:
         return quat
@@ -98,7 +96,7 @@ def encoded_turn(turn: tuple[values.Quat, Written | None]) -> Value:
 def decoded(value: Value | None) -> Any:
     """The value that :func:`encoded` was given.
 
-    Raises: ValueError, LookupError or TypeError for what it never writes.
+    Raises: ValueError, LookupError or TypeError for other values.
     """
     if isinstance(value, Ref):
         return Id(*map(str, value.path)) if len(value.path) == 2 else _WORDS[value.dotted]
@@ -124,7 +122,7 @@ def _part(kind: type, words: tuple[Value, ...]) -> object:
 def decoded_turn(value: Value | None) -> tuple[values.Quat, Written | None]:
     """The rotation that :func:`encoded_turn` was given.
 
-    Raises: ValueError, LookupError or TypeError for what it never writes.
+    Raises: ValueError, LookupError or TypeError for other values.
     """
     items = _items(value)
     if len(items) == 4:

@@ -1,7 +1,7 @@
-"""A residue as HyMeKo text, and back: what a file of another format carries of the robot that it cannot say itself.
+"""A residue as HyMeKo text, and back: the part of a mechanism that a file of another format carries but cannot represent.
 
-Elements that differ in the same way stand together (``of [a b c]``). ``field <mark> value`` says that the file's own text means
-a value with this digest; without a mark the file says nothing there.
+Elements that differ in the same way stand together (``of [a b c]``). ``field <mark> value`` means that the file's own text has
+a value with this digest; without a mark the file has no value there.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from hymeko_x.ir.types import fits, is_sound
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.printer import Block, print_block, print_field, print_item, print_name
 from hymeko_x.language.syntax import ArcItem, Field, Node, Ref
-from hymeko_x.language.values import decoded, decoded_turn, encoded, encoded_turn, name_ref, said
+from hymeko_x.language.values import decoded, decoded_turn, encoded, encoded_turn, given_fields, name_ref
 from hymeko_x.residue import Addition, Alignment, Change, Fold, Join, Removal, Residue, Run, Sides
 
 if TYPE_CHECKING:
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
     from hymeko_x.compare.leaves import Path
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
-    from hymeko_x.ir.parts import VertexPart
     from hymeko_x.language.syntax import Document, Item, Value
 
 VERSION = 1.0
@@ -47,16 +46,16 @@ class BadResidue(Exception):
 def print_residue(residue: Residue) -> str:
     """The text of a residue."""
     sections: tuple[tuple[str, Iterable[str | Block]], ...] = (
-        ("names", _names(residue.alignment.names)),
+        ("names", _by_kind((new.kind, old.name, new.name) for old, new in residue.alignment.names)),
         ("folds", map(_fold, residue.alignment.folds)),
         ("joins", [print_field(join.shape.name, name_ref(join.twin.name)) for join in residue.alignment.joins]),
         ("frames", [print_field(key.name, (*pose.xyz, *pose.quat)) for key, pose in residue.alignment.frames]),
         ("changes", _grouped((change.element, _change(change)) for change in residue.changes)),
         ("additions", map(_addition, residue.additions)),
-        ("removals", _removals(residue.removals)),
+        ("removals", _by_kind((*key, guard, group or _NO_GROUP) for key, guard, group in residue.removals)),
         *_side_sections(residue.sides),
         ("order", map(_moved, residue.order)),
-        ("known", _marks(residue.known)),
+        ("known", _by_kind((*key, mark) for key, mark in residue.known)),
     )
     items: list[str | Block] = [print_field("version", VERSION)]
     items += ["plain"] if residue.sides.is_plain else []
@@ -91,22 +90,19 @@ def _residue(document: Document) -> Residue:
         read.alignment(),
         tuple(Change(key, _path(key, item.name), _changed(item), item.type) for key, item in read.grouped("changes")),
         tuple(_added(item) for item in read.nodes("additions")),
-        tuple(read.removals()),
+        tuple(Removal(Id(kind, key), mark, "" if group == _NO_GROUP else group) for kind, key, mark, group in read.rows("removals", 3)),
         read.sides("plain" in fields),
         tuple(_run(item) for item in read.fields("order")),
         tuple(decoded(fields["layout"])) if "layout" in fields else None,
         tuple(decoded(fields.get("unplaced", ()))),
-        tuple(read.marks("known")),
+        tuple((Id(kind, key), mark) for kind, key, mark in read.rows("known", 2)),
     )
     _check(residue)
     return residue
 
 
 def _check(residue: Residue) -> None:
-    """Whether the side tables hold what they may hold; parts are checked as they are read.
-
-    Raises: TypeError.
-    """
+    """Raise TypeError for side tables with values of other types; parts are checked as they are read."""
     sides = residue.sides
     for name, value, hint in (
         ("notations", sides.notations, tuple[tuple[Id, str, str | None], ...]),
@@ -124,42 +120,26 @@ class _Sections:
     def __init__(self, sections: Mapping[str, tuple[Item, ...]]) -> None:
         self._sections = sections
 
-    def fields(self, name: str) -> Iterator[Field]:
-        for item in self._sections.get(name, ()):
-            if not isinstance(item, Field):
-                raise TypeError(f"{name} holds something else")
-            yield item
+    def fields(self, name: str) -> list[Field]:
+        return _only(Field, self._sections.get(name, ()))
 
-    def nodes(self, name: str) -> Iterator[Node]:
-        for item in self._sections.get(name, ()):
-            if not isinstance(item, Node):
-                raise TypeError(f"{name} holds something else")
-            yield item
+    def nodes(self, name: str) -> list[Node]:
+        return _only(Node, self._sections.get(name, ()))
 
     def grouped(self, name: str) -> Iterator[tuple[Id, Field]]:
         """Each field of each element of each group."""
         for node in self.nodes(name):
-            names, *rest = node.items
-            assert isinstance(names, Field)
-            for element in _refs(names.value):
-                for item in rest:
-                    if not isinstance(item, Field):
-                        raise TypeError(f"{name} holds something else")
-                    yield Id(str(node.name), element), item
+            names, *rest = _only(Field, node.items)
+            yield from ((Id(str(node.name), element), item) for element in _refs(names.value) for item in rest)
 
-    def marks(self, name: str) -> Iterator[tuple[Id, str]]:
+    def rows(self, name: str, width: int) -> Iterator[tuple[str, ...]]:
+        """The kind and the names of each row of :func:`_by_kind`, with so many names."""
         for item in self.fields(name):
-            names = _refs(item.value)
-            yield from ((Id(str(item.name), key), mark) for key, mark in zip(names[::2], names[1::2], strict=True))
-
-    def removals(self) -> Iterator[Removal]:
-        for item in self.fields("removals"):
-            names = _refs(item.value)
-            for key, mark, group in zip(names[::3], names[1::3], names[2::3], strict=True):
-                yield Removal(Id(str(item.name), key), mark, "" if group == _NO_GROUP else group)
+            names = iter(_refs(item.value))
+            yield from ((str(item.name), *row) for row in zip(*[names] * width, strict=True))
 
     def alignment(self) -> Alignment:
-        names = [_renamed(item.name, old, new) for item in self.fields("names") for old, new in _pairs(_refs(item.value))]
+        names = [_renamed(*row) for row in self.rows("names", 2)]
         frames = [(Id("body", item.name), _pose(decoded(item.value))) for item in self.fields("frames")]
         joins = [Join(Id("shape", item.name), Id("shape", _refs((item.value,))[0])) for item in self.fields("joins")]
         return Alignment(tuple(names), tuple(map(_folded, self.nodes("folds"))), tuple(joins), tuple(frames))
@@ -190,18 +170,19 @@ def _grouped(entries: Iterable[tuple[Id, str]]) -> Iterator[Block]:
         yield Block(print_name(kind), (_list("of", names), *alike))
 
 
-def _marks(entries: Iterable[tuple[Id, str]]) -> list[str]:
+def _by_kind(rows: Iterable[tuple[str, ...]]) -> list[str]:
+    """A field with names for each kind, from rows of a kind and names."""
     kinds: dict[str, list[str]] = defaultdict(list)
-    for key, mark in entries:
-        kinds[key.kind] += [key.name, mark]
+    for kind, *names in rows:
+        kinds[kind] += names
     return [_list(kind, names) for kind, names in kinds.items()]
 
 
-def _removals(removals: Iterable[Removal]) -> list[str]:
-    kinds: dict[str, list[str]] = defaultdict(list)
-    for key, guard, group in removals:
-        kinds[key.kind] += [key.name, guard, group or _NO_GROUP]
-    return [_list(kind, names) for kind, names in kinds.items()]
+def _only(kind: type[T], items: Iterable[object]) -> list[T]:
+    found = [item for item in items if isinstance(item, kind)]
+    if len(found) != len(tuple(items)):
+        raise TypeError(f"a section holds something else than {kind.__name__}s")
+    return found
 
 
 def _refs(value: object) -> list[str]:
@@ -215,22 +196,11 @@ def _refs(value: object) -> list[str]:
     return names
 
 
-def _pairs(items: list[T]) -> Iterator[tuple[T, T]]:
-    return zip(items[::2], items[1::2], strict=True)
-
-
-# ---- the alignment ------------------------------------------------------------------------------------------------------------
-
-
-def _names(names: Iterable[tuple[Id, Id]]) -> list[str]:
-    kinds: dict[str, list[str]] = defaultdict(list)
-    for old, new in names:
-        kinds[new.kind] += [old.name, new.name]
-    return [_list(kind, pairs) for kind, pairs in kinds.items()]
+# ---- the alignment ----------------------------------------------------------------------------------------------------------
 
 
 def _renamed(kind: str, old: str, new: str) -> tuple[Id, Id]:
-    """What was renamed is of the same kind, but for a body that stands for the world."""
+    """The old and the new id: of the same kind, but for a body that stands for the world."""
     if kind == WORLD.kind and new != WORLD.name:
         raise ValueError(f"there is no other world '{new}'")
     return Id("body" if kind == WORLD.kind else kind, old), Id(kind, new)
@@ -298,7 +268,7 @@ def _addition(addition: Addition) -> Block:
     """An element as a node: its part's fields, and an edge's arcs behind them."""
     key, part = addition
     data = part.data if isinstance(part, Edge) else part
-    items = [print_field(name, value) for name, value in said(data)]
+    items = [print_field(name, value) for name, value in given_fields(data)]
     if isinstance(part, Edge):
         items += map(_arc_text, part.arcs)
     return Block(f"{print_name(key.name)} : {print_name(key.kind)}", tuple(items))
@@ -319,20 +289,12 @@ def _added(node: Node) -> Addition:
             words += [name_ref(item.name), item.value]
     data: Any = decoded(tuple(words))
     if key.kind not in _EDGES:
-        return Addition(key, _vertex(data))
+        return Addition(key, data)
     arcs = tuple(_arc(item) for item in node.items if isinstance(item, ArcItem))
-    edge: RobotEdge = Edge(_edge_part(data), arcs)
+    edge: RobotEdge = Edge(data, arcs)
     if not is_sound(edge):
         raise ValueError(f"no {key.kind}: {node.name}")
     return Addition(key, edge)
-
-
-def _vertex(data: VertexPart) -> VertexPart:
-    return data
-
-
-def _edge_part(data: EdgePart) -> EdgePart:
-    return data
 
 
 def _arc(item: ArcItem) -> RobotArc:
@@ -372,8 +334,8 @@ def _side_sections(sides: Sides) -> tuple[tuple[str, Iterable[str | Block]], ...
 
 
 def _extra(extra: Extra) -> str:
-    said = (extra.path, extra.text)
-    return print_field(extra.format, (*said, float(extra.index)) if extra.index else said)
+    values = (extra.path, extra.text)
+    return print_field(extra.format, (*values, float(extra.index)) if extra.index else values)
 
 
 def _read_extra(item: Field) -> Extra:
