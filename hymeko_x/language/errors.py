@@ -50,7 +50,7 @@ _CHARACTER_HINTS = {
 
 
 def explain_syntax_error(text: str, name: str) -> Refusal:
-    """The refusal (HX060) for a text that is not HyMeKo: lark reads it again, because it knows what it expected where."""
+    """The refusal (HX060) for a text that is not HyMeKo: lark reads it again, for the terminals that it expected."""
     from lark.exceptions import UnexpectedCharacters, UnexpectedToken
 
     try:

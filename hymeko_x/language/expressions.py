@@ -61,7 +61,7 @@ def evaluate(text: str, parameters: Environment) -> float | str:
         raise ExpressionError(f"the expression has more than {_MAX_LENGTH} characters")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("error", SyntaxWarning)  # what Python would rather not read, such as 1or 2
+            warnings.simplefilter("error", SyntaxWarning)  # for texts such as 1or 2
             tree = ast.parse(text.strip(), mode="eval")
     except (SyntaxError, ValueError, MemoryError, RecursionError) as error:
         raise ExpressionError("it is not arithmetic") from error

@@ -33,7 +33,7 @@ _MAX_DEPTH = 50
 
 
 class Spacing(NamedTuple):
-    """White space between the tags of pretty XML: what stands before the closing tag, and what every level adds."""
+    """White space between the tags of pretty XML: the white space before the closing tag, and that which every level adds."""
 
     base: str
     step: str
@@ -200,7 +200,7 @@ def _line(spacing: Spacing, depth: int) -> str:
 
 
 def _parts_of(node: Node) -> tuple[str | None, tuple[Item, ...]]:
-    """The beginning of the element's tag, and what stands in the element."""
+    """The beginning of the element's tag, and its children."""
     if node.parameters is None:
         values = [(item.name, item.value) for item in node.items if isinstance(item, Field)]
         children: tuple[Item, ...] = tuple(item for item in node.items if not isinstance(item, Field))

@@ -1,4 +1,4 @@
-"""Units of the language: what a suffix or a `units { }` block means in SI."""
+"""Units of the language: the SI values of a suffix or of a `units { }` block."""
 
 from __future__ import annotations
 
@@ -58,6 +58,6 @@ def unit_factor(unit: str) -> float | None:
 
 
 def unit_dimension(unit: str) -> str:
-    """What the first factor of a unit measures (``rad/s``: angle), or nothing when that is none of the base dimensions."""
+    """The dimension of the first factor of a unit (``rad/s``: angle), or nothing when that is none of the base dimensions."""
     first = re.split(r"[/*·^-]", unit, maxsplit=1)[0]
     return next((dimension for dimension, units in BASE_UNITS.items() if first in units), "")

@@ -1,4 +1,4 @@
-"""Mechanism to canonical HyMeKo text: what is a default is not said, what is used once stands where it is used.
+"""Mechanism to canonical HyMeKo text: defaults are not written, and parts that are used once stand where they are used.
 
 Elements stand in the order in which their author wrote them (``Mechanism.layout``), all others behind, by kind.
 """
@@ -88,7 +88,7 @@ def _is_plain(mechanism: Mechanism) -> bool:
 
 
 def _settings(sheet: HymekoSheet, plain: bool) -> list[Item]:
-    """What stands at the head of the root: units, the prefix of files, notations of the whole."""
+    """The head of the root: units, the prefix of files, notations and extras of the whole."""
     items: list[Item] = []
     if not plain and not sheet.angles.degrees:
         items.append(Node("units", (Field("angle"), Field("rad"))))
@@ -138,7 +138,7 @@ def _assembled(pieces: Sequence[Piece]) -> list[Item]:
 
 
 def _rows(sheet: HymekoSheet) -> list[Row]:
-    """The elements in layout order, with what a format said about the whole mechanism in its place among them."""
+    """The elements in layout order, with the extras of the whole in their places among them."""
     standing, _ = _in_place(sheet.mechanism)
     rows: list[Row] = []
     place = 0
@@ -165,7 +165,7 @@ def _elements(sheet: HymekoSheet) -> list[Item]:
 
 
 def _in_place(mechanism: Mechanism) -> tuple[list[Extra], list[Extra]]:
-    """What is said of the whole: what stands among the elements, by place, and the rest as it comes."""
+    """The extras of the whole: those that stand among the elements, by place, and the others as they come."""
     extras = [extra for extra in mechanism.extras.get(ROOT, ()) if not _is_outer(extra)]
     places: dict[str, list[int]] = {}
     for extra in extras:

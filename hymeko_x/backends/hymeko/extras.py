@@ -1,23 +1,12 @@
-"""What formats said of an element and HyMeKo has no word for: blocks of attributes and elements, or the texts as they are."""
+"""Extras as HyMeKo text: comments, blocks of attributes and elements of a format, or the texts as they are."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import FOREIGN
-from hymeko_x.language.markup import (
-    COMMENT,
-    INDENT,
-    ONE_LINE,
-    PLACE,
-    SECTION,
-    SECTION_COMMENT,
-    TEXT,
-    block_of,
-    markup_of,
-    usual_spacing,
-    value_of_text,
-)
+from hymeko_x.language import markup
+from hymeko_x.language.markup import INDENT, PLACE, TEXT, block_of, markup_of, usual_spacing
 from hymeko_x.language.syntax import Comment, Field, Item, Node, QuotedName, Ref, Value
 
 if TYPE_CHECKING:
@@ -27,59 +16,53 @@ if TYPE_CHECKING:
     from hymeko_x.language.markup import Spacing
 
 _FORMATS = FOREIGN - {"hymeko"}
-_OWN_WORDS = frozenset({PLACE, INDENT, TEXT, COMMENT})
+_OWN_WORDS = frozenset({PLACE, INDENT, TEXT, markup.COMMENT})
 
 
 def foreign_items(extras: Iterable[Extra], *, at_root: bool = False) -> list[Item]:
-    """The items of all extras of one element: comments, a block for each format, and what no block can say, verbatim."""
+    """The items of all extras of one element: comments, a block for each format, and verbatim the texts that no block represents."""
     by_format: dict[str, list[Extra]] = {}
     for extra in extras:
         by_format.setdefault(extra.format, []).append(extra)
     items: list[Item] = []
-    for form, found in by_format.items():
-        items.extend(_comments(found) if form == "comment" and not at_root else _of_format(form, found, at_root=at_root))
+    for format, found in by_format.items():
+        items.extend(_comments(found) if format == "comment" and not at_root else _of_format(format, found, at_root=at_root))
     return items
 
 
 def standing_items(extras: list[Extra]) -> list[Item]:
-    """What stands among the elements of the root, in order: a comment each, and one block for neighbours of one format."""
+    """The extras that stand among the elements of the root, in order: comments, and one block for neighbours of one format."""
     items: list[Item] = []
-    run: list[Node] = []
-    form = ""
     for extra in extras:
-        node = _standing(extra)
-        if node is None or extra.format != form:
-            items.extend(_block(form, run))
-            run, form = [], extra.format
-        if node is not None:
-            run.append(node)
+        node = _standing_block(extra)
+        last = items[-1] if items else None
+        if node is not None and isinstance(last, Node) and last.name == extra.format:
+            items[-1] = last._replace(items=(*last.items, node))
+        elif node is not None:
+            items.append(Node(extra.format, (node,)))
         elif extra.format == "comment" and is_standing(extra):
             items.append(Comment(f"[{extra.path}] {extra.text}" if extra.path else extra.text))
         else:
             items.append(verbatim(extra, at_root=True))
-    return [*items, *_block(form, run)]
+    return items
 
 
 def is_standing(extra: Extra) -> bool:
-    """Whether what a format said of the whole has its place among the elements: also comments in a section, ``// [asset] text``."""
+    """Whether an extra of the whole has its place among the elements: also comments in a section, ``// [asset] text``."""
     if extra.format != "comment":
         return not extra.path
     if not sound_comment(extra.text):
         return False
-    return bool(extra.text and SECTION.fullmatch(extra.path)) if extra.path else SECTION_COMMENT.match(extra.text) is None
+    return bool(extra.text and markup.SECTION.fullmatch(extra.path)) if extra.path else markup.SECTION_COMMENT.match(extra.text) is None
 
 
-def _standing(extra: Extra) -> Node | None:
-    """The block of an element that needs no word about its white space."""
+def _standing_block(extra: Extra) -> Node | None:
+    """The block of an element with the usual white space."""
     if extra.format not in _FORMATS or extra.path:
         return None
     found = block_of(extra.text)
     usual = usual_spacing(extra.format, at_root=True)
     return found[0] if found is not None and markup_of(found[0], usual) == extra.text else None
-
-
-def _block(form: str, nodes: list[Node]) -> list[Item]:
-    return [Node(form, tuple(nodes))] if nodes else []
 
 
 def sound_comment(text: str) -> bool:
@@ -97,23 +80,23 @@ def _comments(extras: list[Extra]) -> list[Item]:
 # ---- one format ------------------------------------------------------------------------------------------------------------
 
 
-def _of_format(form: str, extras: list[Extra], *, at_root: bool) -> list[Item]:
-    """The block of one format, then the texts that it cannot say. Those of one place stay together, because they are in order."""
+def _of_format(format: str, extras: list[Extra], *, at_root: bool) -> list[Item]:
+    """The block of one format, then the texts that it cannot represent. Those of one place stay together, because they are in order."""
     places: dict[str, list[Extra]] = {}
     for extra in extras:
         places.setdefault(_home(extra.path), []).append(extra)
-    said: list[Item] = []
+    own: list[Item] = []
     left: list[Item] = []
     inner: list[Item] = []
     for home, found in places.items():
-        items = _place_items(found, form, at_root=at_root) if form in _FORMATS else None
+        items = _place_items(found, format, at_root=at_root) if format in _FORMATS else None
         if items is None:
             left.extend(verbatim(extra) for extra in found)
         elif home:
             inner.extend(_wrapped(QuotedName(f"{home}/"), items))
         else:
-            said = items
-    return [*_wrapped(form, said, inner), *left]
+            own = items
+    return [*_wrapped(format, own, inner), *left]
 
 
 def _home(path: str) -> str:
@@ -142,18 +125,18 @@ def _is_text(node: Node) -> bool:
     return node.parameters == () and len(node.items) == 1 and getattr(node.items[0], "name", "") == TEXT
 
 
-def _place_items(extras: list[Extra], form: str, *, at_root: bool) -> list[Item] | None:
-    """The attributes and elements of one place; None where one of them cannot be said."""
+def _place_items(extras: list[Extra], format: str, *, at_root: bool) -> list[Item] | None:
+    """The attributes and elements of one place; None where a block cannot represent one of them."""
     items: list[Item] = []
     children: list[Item] = []
     place = 0
-    spacing = usual_spacing(form, at_root=at_root)
+    spacing = usual_spacing(format, at_root=at_root)
     for extra in extras:
         name = extra.path.rsplit("@", 1)[-1] if _is_attribute(extra.path) else None
         if name is not None:
             if extra.index or not name or name in _OWN_WORDS:
                 return None
-            items.append(Field(name, value_of_text(extra.text)))
+            items.append(Field(name, markup.value_of_text(extra.text)))
             continue
         found = block_of(extra.text)
         if found is None or extra.path.endswith("text()"):
@@ -175,7 +158,7 @@ def _is_attribute(path: str) -> bool:
 
 def _indent(spacing: Spacing | None) -> Field:
     if spacing is None:
-        return Field(INDENT, Ref((ONE_LINE,)))
+        return Field(INDENT, Ref((markup.ONE_LINE,)))
     if spacing.base.strip(" ") or spacing.step.strip(" "):
         return Field(INDENT, (spacing.base, spacing.step))
     return Field(INDENT, (float(len(spacing.base)), float(len(spacing.step))))

@@ -1,8 +1,8 @@
 """Stereotypes: fields that many elements share are written once, ``drive() { effort 87 velocity 2.2 }``.
 
 Works on the finished syntax tree. Elements of one kind are compared field by field; the set of fields that saves most
-letters becomes a stereotype of its own, named after the default class or after what the names of its elements share, and so
-on with the elements that are left. Reading merges the fields again, in the same order.
+letters becomes a stereotype of its own, named after the default class or after the words that the names of its elements share, and
+so on with the elements that are left. Reading merges the fields again, in the same order.
 """
 
 from __future__ import annotations
@@ -147,7 +147,7 @@ def _elements(items: Sequence[Item]) -> Iterable[_Element]:
 
 
 def _group(element: _Element) -> tuple[str, str]:
-    """Elements of one group may share a stereotype: what they are, and the type that they are written with."""
+    """The kind and the type of an element; elements of one group may share a stereotype."""
     node = element.node
     if len(element.path) > 1 and not node.stereotypes:
         return node.name, ""

@@ -50,7 +50,7 @@ def read_fixed(builder: HymekoBuilder, key: Id, element: Element) -> None:
     """The joint without dofs between a body and the one that its block names."""
     arcs = [item for item in element.node.items if isinstance(item, ArcItem) and is_base_arc(item)]
     if len(arcs) > 1:
-        raise builder.reader.refuse(arcs[1], f"body '{key.name}' is fixed to several others; joints say that")
+        raise builder.reader.refuse(arcs[1], f"body '{key.name}' is fixed to several others; only one is possible without joints")
     builder.edges[key] = attached_edge(Id("body", key.name), (builder.arc("joint", arcs[0], element.scope),))
 
 
