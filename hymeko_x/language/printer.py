@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from functools import lru_cache
 from itertools import zip_longest
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir.values import are_numbers, number_text, numbers_text
 from hymeko_x.language.syntax import (
@@ -25,6 +25,9 @@ from hymeko_x.language.syntax import (
     Value,
 )
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
 
 class Block(NamedTuple):
     """A node whose signature and items are texts already, or blocks again."""
@@ -35,8 +38,7 @@ class Block(NamedTuple):
 
 Piece = Item | Block | str
 _OPEN = (Node, Block)
-_APART = (Node, Block, Comment)
-
+_ON_LINES_OF_THEIR_OWN = (Node, Block, Comment)
 
 WIDTH = 120
 INDENT = "  "
@@ -46,21 +48,18 @@ _FEW_ESCAPES = str.maketrans(
     {chr(code): f"\\u{code:04x}" for code in (*range(32), 0x7F, 0xFFFE, 0xFFFF) if chr(code) not in "\n\t"}
     | {"\\": "\\\\", "\r": "\\r", "\0": "\\0"}
 )
-"""Of characters without a sign only line feeds and tabs stand in a text as they are; files that carry it could not hold the others."""
+"""Of control characters only line feeds and tabs stand in a text as they are; files that carry it cannot hold the others."""
 _ESCAPES = {**_FEW_ESCAPES, **str.maketrans({"\n": "\\n", "\t": "\\t"})}
 
 
 def print_document(document: Document) -> str:
     """The text of a whole document, ending in a newline."""
+    items = [Field(document.header), *document.items] if document.header else [*document.items]
     lines: list[str] = []
-    if document.header:
-        lines.append(print_name(document.header))
-    for item, following in zip_longest(document.items, document.items[1:]):
+    for item, following in zip_longest(items, items[1:]):
         lines.extend(_lines(item))
         if following is not None and _needs_comma(item, following):
             lines[-1] += ","
-    if document.header and document.items and _needs_comma(Field(document.header), document.items[0]):
-        lines[0] += ","
     return "\n".join(lines) + "\n"
 
 
@@ -81,8 +80,7 @@ def print_item(item: Item) -> str:
         case Import():
             return f"import {print_text(item.path)}" + (f" as {print_name(item.alias)}" if item.alias else "")
         case Node():
-            inner = _joined(item.items)
-            return f"{_signature(item)} {{ {inner} }}" if inner else f"{_signature(item)} {{}}"
+            return f"{_signature(item)} {{ {_joined(item.items)} }}" if item.items else f"{_signature(item)} {{}}"
 
 
 def print_field(name: str, value: Value | None, type: str = "") -> str:
@@ -96,7 +94,7 @@ def print_field(name: str, value: Value | None, type: str = "") -> str:
 def print_name(name: str) -> str:
     """A name, in backticks unless it is a plain word (or was quoted by its author)."""
     if name.isidentifier() and name.isascii() and type(name) is str and name not in _WORDS:
-        return name  # nearly all, and seen sooner than a cache misses
+        return name
     return _print_rare_name(name)
 
 
@@ -119,15 +117,10 @@ def print_text(text: str) -> str:
 
 def print_value(value: Value) -> str:
     """A value as it stands behind a field's name."""
-    kind = type(value)
-    if kind is float:
-        return number_text(value)  # type: ignore[arg-type]
-    if kind is tuple:
-        if are_numbers(value):  # type: ignore[arg-type]
-            return f"[{numbers_text(value)}]"  # type: ignore[arg-type]
-        return "[" + " ".join([number_text(item) if type(item) is float else print_value(item) for item in value]) + "]"  # type: ignore[union-attr]
-    if kind is Ref:
-        return _ref(value)  # type: ignore[arg-type]
+    if type(value) is float:
+        return number_text(value)
+    if type(value) is tuple:
+        return f"[{numbers_text(value) if are_numbers(value) else ' '.join(map(print_value, value))}]"  # type: ignore[arg-type]
     if isinstance(value, str):
         return print_text(value)
     match value:
@@ -139,8 +132,7 @@ def print_value(value: Value) -> str:
             return f"${{{value.text}}}"
         case Query():
             return "<?>"
-    assert isinstance(value, tuple)
-    return "[" + " ".join(map(print_value, value)) + "]"
+    raise AssertionError(value)
 
 
 # ---- layout ------------------------------------------------------------------------------------------------------------
@@ -169,35 +161,27 @@ def _lines(item: Item | Block) -> list[str]:
 
 
 def _text(piece: Piece) -> str:
-    """What is no node or block with items, in one line."""
+    """A piece in one line."""
     if isinstance(piece, Block):
-        return f"{piece.signature} {{}}"
+        return f"{piece.signature} {{ {_joined(piece.items)} }}" if piece.items else f"{piece.signature} {{}}"
     return piece if isinstance(piece, str) else print_item(piece)
+
+
+def _in_line(node: Node | Block, room: int) -> str | None:
+    """A node with items in one line; None when that is longer than ``room`` or has line breaks."""
+    head = _head(node)
+    used = len(head) + 4
+    texts = []
+    for text in _texts(node.items):
+        used += len(text) + 1
+        if used > room or "\n" in text:
+            return None
+        texts.append(text)
+    return f"{head} {{ {' '.join(texts)} }}"
 
 
 def _head(node: Node | Block) -> str:
     return node.signature if isinstance(node, Block) else _signature(node)
-
-
-def _in_line(node: Node | Block, room: int) -> str | None:
-    """A node with items in one line; None as soon as it is clear that it is longer than ``room`` or has line breaks."""
-    head = _head(node)
-    if isinstance(node, Block) and {*map(type, node.items)} == {str}:
-        line = f"{head} {{ {' '.join(node.items)} }}"  # type: ignore[arg-type]
-        return line if len(line) <= room and "\n" not in line else None
-    used = len(head) + 4
-    texts = []
-    for item, following in zip_longest(node.items, node.items[1:]):
-        text = _in_line(item, room - used - 1) if isinstance(item, _OPEN) and item.items else _text(item)
-        if text is None or "\n" in text:
-            return None
-        if following is not None and _needs_comma(item, following):
-            text += ","
-        used += len(text) + 1
-        if used > room:
-            return None
-        texts.append(text)
-    return f"{head} {{ {' '.join(texts)} }}"
 
 
 def _is_long(node: Node | Block) -> bool:
@@ -216,7 +200,7 @@ def _broken(items: tuple[Piece, ...], width: int) -> list[Piece]:
     parts: list[Piece] = []
     run: list[Piece] = []
     for item in items:
-        if isinstance(item, _APART):
+        if isinstance(item, _ON_LINES_OF_THEIR_OWN):
             parts.extend(_filled(run, width, item))
             run = []
             parts.append(item)
@@ -226,15 +210,11 @@ def _broken(items: tuple[Piece, ...], width: int) -> list[Piece]:
     return parts
 
 
-def _filled(items: list[Piece], width: int, behind: Piece | None = None) -> list[Piece]:
-    """Lines of items, each as full as the width allows; ``behind`` is what follows them."""
+def _filled(items: list[Piece], width: int, following: Piece | None = None) -> list[Piece]:
+    """Lines of items, each as full as the width allows; ``following`` is the piece behind them."""
     lines: list[Piece] = []
     line = ""
-    for position, item in enumerate(items):
-        text = item if isinstance(item, str) else _text(item)
-        following = items[position + 1] if position + 1 < len(items) else behind
-        if following is not None and _needs_comma(item, following):
-            text += ","
+    for text in _texts(items, following):
         if line and len(line) + 1 + len(text) > width:
             lines.append(line)
             line = text
@@ -243,12 +223,14 @@ def _filled(items: list[Piece], width: int, behind: Piece | None = None) -> list
     return [*lines, line] if line else lines
 
 
-def _joined(items: tuple[Item, ...]) -> str:
-    texts = [print_item(item) for item in items]
-    for position, following in enumerate(items[1:]):
-        if _needs_comma(items[position], following):
-            texts[position] += ","
-    return " ".join(texts)
+def _texts(items: Sequence[Piece], behind: Piece | None = None) -> Iterator[str]:
+    """Each item in one line, with the comma that the grammar needs before the next one."""
+    for item, following in zip_longest(items, items[1:], fillvalue=behind):
+        yield _text(item) + "," * (following is not None and _needs_comma(item, following))  # type: ignore[arg-type]
+
+
+def _joined(items: Sequence[Piece]) -> str:
+    return " ".join(_texts(items))
 
 
 def _needs_comma(item: Piece, following: Piece) -> bool:
