@@ -210,8 +210,6 @@ def _end_of(text: str) -> tuple[int, int]:
     return rest.count("\n") + 1, len(rest) - (rest.rfind("\n") + 1) + 1
 
 
-# ---- excerpts ------------------------------------------------------------------------------------------------------------
-
 _MAX_LINE = 160
 _WORD = re.compile(r"@?\s*(?:`[^`]*`|[\w.]+)")
 

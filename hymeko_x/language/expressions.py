@@ -103,9 +103,6 @@ def _named(name: str, parameters: Environment) -> float:
     return value
 
 
-# ---- items ---------------------------------------------------------------------------------------------------------------
-
-
 def fill(item: Item, environment: Environment, file: str) -> Item:
     """The item of a template with every expression replaced by its value.
 

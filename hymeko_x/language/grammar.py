@@ -67,9 +67,6 @@ def _token_pattern() -> re.Pattern[str]:
     return re.compile(f"(?P<space>{space})|(?P<comment>{comment})|(?P<token>{terminals}|.)", re.DOTALL)
 
 
-# ---- tables -------------------------------------------------------------------------------------------------------------
-
-
 def _rule_order(rule: dict[str, Any]) -> tuple[str, int]:
     return rule["origin"]["name"], rule["order"]
 

@@ -80,7 +80,7 @@ class Machine:
     def __init__(self, names: frozenset[str]) -> None:
         """``names``: the rules that have an action; other rules of one symbol hand its value on."""
         tables = json.loads(files("hymeko_x.language").joinpath("tables.json").read_text(encoding="utf-8"))
-        self._rules: list[tuple[str, tuple[int, ...]]] = [(rule["name"], tuple(rule["symbols"])) for rule in tables["rules"]]
+        self._rules: list[str] = [rule["name"] for rule in tables["rules"]]
         reductions = [
             _Reduction(_ENTRY * len(rule["symbols"]), rule["origin"], number, _picker(tuple(rule["symbols"])))
             for number, rule in enumerate(tables["rules"])
@@ -88,7 +88,8 @@ class Machine:
         states: list[_State] = [{} for _ in tables["states"]]
         for state, row in zip(states, tables["states"], strict=True):
             state.update({kind: states[action] if action >= 0 else reductions[-1 - action] for kind, action in row.items()})
-        _skip_handing_on(states, {item for item in reductions if self._hands_on(item, names)})
+        handing_on = {item for item in reductions if item.size == _ENTRY and item.pick is None and not item.origin.startswith("_")}
+        _skip_handing_on(states, {item for item in handing_on if self._rules[item.number] not in names})
         self._start, self._end = states[tables["start"]], states[tables["end"]]
         self._keywords: dict[str, str] = tables["keywords"]
         opening = set(tables["opening"])
@@ -98,9 +99,6 @@ class Machine:
         self._token = re.compile(ignored + _alternatives([*words, *(item for item in tables["terminals"] if item[0] not in opening)]))
         self._first = re.compile(ignored + _alternatives([*words, *tables["terminals"]]))
 
-    def _hands_on(self, item: _Reduction, names: frozenset[str]) -> bool:
-        return item.size == _ENTRY and item.pick is None and self._rules[item.number][0] not in names and not item.origin.startswith("_")
-
     def run(self, text: str, terminals: Mapping[str, Convert], actions: Mapping[str, Reduce], gaps: list[Gap]) -> Any:
         """The value of the start rule for a text.
 
@@ -109,7 +107,7 @@ class Machine:
 
         Raises: ParseError, or TooDeep.
         """
-        make = [_maker(name, actions) for name, _ in self._rules]
+        make = [_maker(name, actions) for name in self._rules]
         stack: list[Any] = [self._start, None, 0]  # state, value, offset; and again
         for kind, word, start in self._tokens(text, gaps):
             action = stack[-3].get(kind)
@@ -183,16 +181,9 @@ def _skip_handing_on(states: list[_State], handing_on: set[_Reduction]) -> None:
             state[kind] = target
 
 
-# ---- children of a rule --------------------------------------------------------------------------------------------------
-
-
 def _maker(name: str, actions: Mapping[str, Reduce]) -> Reduce:
     """The action of a rule; a rule without one makes a sequence or hands its only child on."""
-    return _as_sequence if name.startswith("_") else actions.get(name, _only_child)
-
-
-def _only_child(children: list[Any], _: int) -> Any:
-    return children[0]
+    return _as_sequence if name.startswith("_") else actions.get(name, lambda children, _: children[0])
 
 
 def _as_sequence(children: list[Any], _: int) -> Any:
@@ -229,9 +220,6 @@ def _collect(children: list[Any], symbols: tuple[int, ...]) -> list[Any]:
         elif symbol == 2 and number:
             result.extend(children[number])
     return result
-
-
-# ---- patterns ------------------------------------------------------------------------------------------------------------
 
 
 def _alternatives(terminals: list[list[str]]) -> str:

@@ -39,9 +39,6 @@ class Spacing(NamedTuple):
     step: str
 
 
-# ---- values --------------------------------------------------------------------------------------------------------------
-
-
 def value_of_text(text: str) -> Value:
     """A number, a list of numbers or a word where that reads back to the same characters, else the text."""
     if _NUMBERS.fullmatch(text):
@@ -67,9 +64,6 @@ def text_of_value(value: Value | None) -> str | None:
         parts = [number_text(part) if type(part) is float else None for part in value]  # type: ignore[union-attr]
         return None if None in parts else " ".join(map(str, parts))
     return None
-
-
-# ---- XML to a block --------------------------------------------------------------------------------------------------------
 
 
 class _Open(NamedTuple):
@@ -150,9 +144,6 @@ def _spacing(xml: str) -> Spacing | None:
     return Spacing(last[1], first[1].removeprefix(last[1]))
 
 
-# ---- a block to XML --------------------------------------------------------------------------------------------------------
-
-
 def markup_of(node: Node, spacing: Spacing | None) -> str | None:
     """The XML of a block; None where XML cannot represent it."""
     parts: list[str] = []
@@ -212,8 +203,6 @@ def _parts_of(node: Node) -> tuple[str | None, tuple[Item, ...]]:
         return None, ()
     return f"<{node.name}" + "".join(f' {name}="{text}"' for name, text in texts), children
 
-
-# ---- places and white space ----------------------------------------------------------------------------------------------
 
 PLACE = "place"
 """``place 3``: the number that the next child has among the children of its parent; those behind it count on."""

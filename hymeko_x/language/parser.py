@@ -153,10 +153,6 @@ def _malformed_number(text: str, offset: int) -> _Malformed:
     return _Malformed(offset, "this is not a list of numbers")
 
 
-def _name(text: str, offset: int) -> str:
-    return QuotedName(_unescape(text[1:-1], offset)) if text[0] == "`" else text
-
-
 _TERMINALS: Mapping[str, Convert] = MappingProxyType(
     {
         "NUMBER": lambda text, _: float(text),
@@ -166,7 +162,7 @@ _TERMINALS: Mapping[str, Convert] = MappingProxyType(
         "QUERY": lambda text, _: Query(),
         "NUMBERS": _numbers,
         "MATRIX": _matrix,
-        "NAME": _name,
+        "NAME": lambda text, offset: QuotedName(_unescape(text[1:-1], offset)) if text[0] == "`" else text,
     }
 )
 """The value of a token, from its text and offset; other tokens are their text."""
@@ -179,10 +175,6 @@ def _start(parts: list[Any], _: int) -> Document:
     if parts and type(parts[0]) is str:
         return Document(tuple(parts[1:]), parts[0][1:-1].strip())
     return Document(tuple(parts))
-
-
-def _relation(parts: list[Any], _: int) -> Ref:
-    return Ref(parts[-1].path, parts[-2], parts[0] if len(parts) == 3 else "")
 
 
 def _signature(parts: list[Any], _: int) -> _Signature:
@@ -200,7 +192,7 @@ _ACTIONS: Mapping[str, Reduce] = MappingProxyType(
         "start": _start,
         "block": lambda parts, _: _Block(parts),
         "ref": lambda parts, _: Ref(tuple(parts)),
-        "relation": _relation,
+        "relation": lambda parts, _: Ref(parts[-1].path, parts[-2], parts[0] if len(parts) == 3 else ""),
         "vector": lambda parts, _: tuple(parts),
         "type": lambda parts, _: _TypeName(parts[0].dotted),
         "signature": _signature,

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from functools import lru_cache
 from itertools import zip_longest
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -93,17 +92,9 @@ def print_field(name: str, value: Value | None, type: str = "") -> str:
 
 def print_name(name: str) -> str:
     """A name, in backticks unless it is a plain word (or was quoted by its author)."""
-    if name.isidentifier() and name.isascii() and type(name) is str and name not in _WORDS:
-        return name
-    return _print_rare_name(name)
-
-
-@lru_cache(8192, typed=True)
-def _print_rare_name(name: str) -> str:
     if _PLAIN_NAME.fullmatch(name) and name not in _WORDS and not isinstance(name, QuotedName):
         return name
-    escaped = name.translate(_ESCAPES).replace("`", "\\`")
-    return f"`{escaped}`"
+    return "`" + name.translate(_ESCAPES).replace("`", "\\`") + "`"
 
 
 def print_text(text: str) -> str:

@@ -32,9 +32,6 @@ def standard_templates() -> Mapping[str, Node]:
     return {item.name: item for item in parse(text, "std/kinematics.hymeko").items if isinstance(item, Node)}
 
 
-# ---- definitions ---------------------------------------------------------------------------------------------------------
-
-
 def is_definition(item: Item) -> bool:
     """Whether an item defines a template, or imports some, and is no element itself."""
     return isinstance(item, Import) or (isinstance(item, Node) and item.parameters is not None)
@@ -94,9 +91,6 @@ def decode(data: bytes, name: str) -> str:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise refuse(codes.SYNTAX, f"byte {error.start} is not UTF-8", Origin(name)) from error
-
-
-# ---- types ---------------------------------------------------------------------------------------------------------------
 
 
 class Preset(NamedTuple):
@@ -209,9 +203,6 @@ class Templates:
 def _named_class(item: Item, name: str) -> Item:
     """The field ``class`` without a value means the template's own name."""
     return item._replace(value=name) if isinstance(item, Field) and item.name == "class" and item.value is None else item
-
-
-# ---- merging -------------------------------------------------------------------------------------------------------------
 
 
 def _combined(strong: Preset, weak: Preset) -> Preset:

@@ -45,14 +45,6 @@ def name_ref(name: str) -> Ref:
     return Ref((name,))
 
 
-def id_ref(key: Id) -> Ref:
-    """An element by kind and name."""
-    return Ref((key.kind, key.name))
-
-
-# ---- writing -----------------------------------------------------------------------------------------------------------
-
-
 def encoded(value: object) -> Value:
     """A value of the IR as a value of the language, as deep as the parts are."""
     if isinstance(value, bool) or value is None:
@@ -64,7 +56,7 @@ def encoded(value: object) -> Value:
     if isinstance(value, Enum):
         return name_ref(str(value.value))
     if isinstance(value, Id):
-        return id_ref(value)
+        return Ref((value.kind, value.name))
     if isinstance(value, Written):
         return (name_ref("Written"), value.kind, value.numbers)
     if isinstance(value, tuple):
@@ -88,9 +80,6 @@ def encoded_turn(turn: tuple[values.Quat, Written | None]) -> Value:
     if identical(pose_as_written(ZERO, written).quat, quat):
         return (name_ref(written.kind), written.numbers)
     return (name_ref(written.kind), written.numbers, quat)
-
-
-# ---- reading -----------------------------------------------------------------------------------------------------------
 
 
 def decoded(value: Value | None) -> Any:

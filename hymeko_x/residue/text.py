@@ -7,7 +7,6 @@ a value with this digest; without a mark the file has no value there.
 from __future__ import annotations
 
 from collections import defaultdict
-from functools import lru_cache
 from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 from hymeko_x.compare.leaves import TURN
@@ -246,9 +245,8 @@ def _change(change: Change) -> str:
     return print_field(_path_text(change.path), value, change.guard)
 
 
-@lru_cache(1024)
 def _path_text(path: Path) -> str:
-    """A path as it is printed, of which there are few in all robots."""
+    """A path as it is printed."""
     return ".".join(map(str, path[1:] if path[0] == "data" else path))
 
 

@@ -58,7 +58,8 @@ def document(mechanism: Mechanism) -> Document:
         attached_arcs(mechanism),
         shortest_angles(mechanism),
     )
-    items = [*_settings(sheet, plain), *(_elements(sheet) if plain else _grouped(sheet))]
+    items = _settings(sheet, plain)
+    items += [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})] if plain else _grouped(sheet)
     root = mechanism.notation(ROOT, ROOT_NAME)
     name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""
@@ -157,11 +158,6 @@ def _rows(sheet: HymekoSheet) -> list[Row]:
 def _texts(within: Mapping[str, HymekoSheet], row: Row, homes: Mapping[Id, str]) -> list[Item]:
     """The items of a row, as they stand in its assembly."""
     return standing_items(row) if isinstance(row, list) else [_element(within[homes.get(row, "")], row)]
-
-
-def _elements(sheet: HymekoSheet) -> list[Item]:
-    """The elements one after the other."""
-    return [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})]
 
 
 def _in_place(mechanism: Mechanism) -> tuple[list[Extra], list[Extra]]:

@@ -79,10 +79,10 @@ def assemblies(rows: Sequence[Row], sheet: HymekoSheet, refused: frozenset[str])
 
 
 def _members(rows: Sequence[Row], sheet: HymekoSheet, refused: frozenset[str]) -> dict[str, list[int]]:
-    """By the beginnings of names, up to an underscore, the places of the elements that have them."""
+    """By the beginnings of names, up to an underscore, the places of their elements; in assemblies comments in a block are not kept."""
     members: dict[str, list[int]] = {}
     for place, row in enumerate(rows):
-        if not isinstance(row, Id) or row.kind == _BARE or _has_comment(row, sheet):
+        if not isinstance(row, Id) or row.kind == _BARE or any(extra.format == "comment" for extra in sheet.mechanism.extras.get(row, ())):
             continue
         for prefix in _prefixes(row.name):
             if prefix not in refused:
@@ -101,11 +101,6 @@ def _prefixes(name: str) -> Iterator[str]:
         cut = name.find("_", cut + 1)
 
 
-def _has_comment(key: Id, sheet: HymekoSheet) -> bool:
-    """Comments in a block are kept in the blocks of the root only."""
-    return any(extra.format == "comment" for extra in sheet.mechanism.extras.get(key, ()))
-
-
 def _mentions(key: Id, sheet: HymekoSheet) -> tuple[str, ...]:
     """The names that an element's text has, its own first."""
     edge = sheet.mechanism.graph.edges.get(key)
@@ -118,15 +113,11 @@ def _pieces(places: Sequence[int], rows: Sequence[Row]) -> list[list[int]]:
     pieces: list[list[int]] = []
     for place in places:
         gap = rows[pieces[-1][-1] + 1 : place] if pieces and place - pieces[-1][-1] <= 2 else None
-        if gap is not None and all(_is_comment(row) for row in gap):
+        if gap is not None and all(isinstance(row, list) and all(extra.format == "comment" for extra in row) for row in gap):
             pieces[-1].append(place)
         else:
             pieces.append([place])
     return pieces
-
-
-def _is_comment(row: Row) -> bool:
-    return isinstance(row, list) and all(extra.format == "comment" for extra in row)
 
 
 def _worth(prefix: str, pieces: list[list[int]], weight: Mapping[int, tuple[str, ...]]) -> list[list[int]]:

@@ -64,9 +64,6 @@ def _axes(frame: Pose, angles: Angles) -> Value:
     return rotation[1:] if isinstance(rotation[1], str) else (0.0, 0.0, 0.0)
 
 
-# ---- shapes --------------------------------------------------------------------------------------------------------------
-
-
 def _shape(sheet: HymekoSheet, view: ShapeView, names: Names) -> Item:
     """``visual { .. }``, or ``visual "file"`` and ``visual=mesh`` for a mesh alone."""
     word = SHAPE_ROLES[view.shape.role]
@@ -149,9 +146,6 @@ def _material(sheet: HymekoSheet, key: Id) -> Item:
     rgba = sheet.mechanism.vertex(key, parts.Material).rgba
     assert rgba is not None
     return Field("color", rgba[:3] if rgba[3] == 1.0 else rgba)
-
-
-# ---- assets that are defined in place ------------------------------------------------------------------------------------
 
 
 def _first_uses(mechanism: Mechanism) -> dict[Id, Id]:

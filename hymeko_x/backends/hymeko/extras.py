@@ -77,9 +77,6 @@ def _comments(extras: list[Extra]) -> list[Item]:
     return [Comment(extra.text) for extra in sorted(extras, key=lambda extra: extra.index)]
 
 
-# ---- one format ------------------------------------------------------------------------------------------------------------
-
-
 def _of_format(format: str, extras: list[Extra], *, at_root: bool) -> list[Item]:
     """The block of one format, then the texts that it cannot represent. Those of one place stay together, because they are in order."""
     places: dict[str, list[Extra]] = {}
@@ -132,8 +129,8 @@ def _place_items(extras: list[Extra], format: str, *, at_root: bool) -> list[Ite
     place = 0
     spacing = usual_spacing(format, at_root=at_root)
     for extra in extras:
-        name = extra.path.rsplit("@", 1)[-1] if _is_attribute(extra.path) else None
-        if name is not None:
+        if extra.path.startswith("@") or "/@" in extra.path:
+            name = extra.path.rsplit("@", 1)[-1]
             if extra.index or not name or name in _OWN_WORDS:
                 return None
             items.append(Field(name, markup.value_of_text(extra.text)))
@@ -152,19 +149,12 @@ def _place_items(extras: list[Extra], format: str, *, at_root: bool) -> list[Ite
     return [*items, *children]
 
 
-def _is_attribute(path: str) -> bool:
-    return path.startswith("@") or "/@" in path
-
-
 def _indent(spacing: Spacing | None) -> Field:
     if spacing is None:
         return Field(INDENT, Ref((markup.ONE_LINE,)))
     if spacing.base.strip(" ") or spacing.step.strip(" "):
         return Field(INDENT, (spacing.base, spacing.step))
     return Field(INDENT, (float(len(spacing.base)), float(len(spacing.step))))
-
-
-# ---- as it is ----------------------------------------------------------------------------------------------------------------
 
 
 def verbatim(extra: Extra, *, at_root: bool = False) -> Field:

@@ -79,9 +79,6 @@ def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
     return found
 
 
-# ---- dofs ----------------------------------------------------------------------------------------------------------------
-
-
 def dof_node(dof: parts.Dof, angles: Angles) -> Node:
     """The block of one of several dofs: ``roll : hinge { .. }``, and ``dof : hinge { .. }`` for one without a name."""
     name = "dof" if dof.name is None else QuotedName(dof.name) if dof.name in DOF_BLOCKS else dof.name

@@ -96,9 +96,6 @@ def limit_items(limits: parts.Limits, angles: Angles, motion: str) -> list[Field
     return [Field("limit", bounds), *word_fields(limits, LIMIT_WORDS[2:], angles, motion)]
 
 
-# ---- edges in the block of a vertex --------------------------------------------------------------------------------------
-
-
 def attached_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
     """By vertex the arcs that stand in its block: of an edge that follows it and has nothing but these arcs."""
     marked = {*mechanism.extras, *mechanism.notations, *mechanism.stereotypes}

@@ -219,17 +219,14 @@ def _stereotypes(kind: str, elements: list[_Element], names: set[str]) -> list[_
 def _best(kind: str, elements: list[_Element]) -> tuple[list[_Unit], list[_Element]] | None:
     """The set of units that saves most, and the elements that it serves."""
     for shared in candidates([element.pairs for element in elements]):
-        members = [element for element in elements if all(_has(element, pair) for pair in shared)]
+        members = [
+            element for element in elements if all(slot in element.units and element.units[slot].text == text for slot, text in shared)
+        ]
         units = _in_order(kind, shared, members)
         members = [element for element in members if _keeps_order(kind, units, element)]
         if len(members) > 1 and _saving(kind, units, members) >= _LEAST:
             return units, members
     return None
-
-
-def _has(element: _Element, pair: Pair) -> bool:
-    unit = element.units.get(pair[0])
-    return unit is not None and unit.text == pair[1]
 
 
 def _in_order(kind: str, shared: frozenset[Pair], members: list[_Element]) -> list[_Unit]:

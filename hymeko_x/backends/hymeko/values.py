@@ -82,9 +82,6 @@ def pose_value(pose: Pose, angles: Angles) -> tuple[Value, ...]:
     return (pose.xyz, pose.quat)
 
 
-# ---- the unit of angles ------------------------------------------------------------------------------------------------
-
-
 def in_degrees(radians: float) -> float | None:
     """The shortest number of degrees that reads back to the same double, or None."""
     for digits in _DIGITS:

@@ -102,9 +102,6 @@ def _preset(element: Element, name: str) -> str | None:
     return next((str(item.value) for item in element.node.items if is_field(item, (name,)) and isinstance(item.value, str)), None)
 
 
-# ---- the root ------------------------------------------------------------------------------------------------------------
-
-
 def _read_root(builder: HymekoBuilder, expanded: Expanded, kinds: list[str]) -> None:
     """Settings in the root: the prefix of files, notations and extras of the whole, each extra with its place among the elements."""
     place = 0
@@ -179,9 +176,6 @@ def _loose_extra(builder: HymekoBuilder, item: ArcItem | Comment, place: int, *,
         raise reader.refuse(item, message, hint=hint)
     reader.report.warn(codes.UNKNOWN_TYPE, f"{message}; it is kept as it is", reader.origin(item), hint=hint)
     return Extra("hymeko", "", print_item(item), place)
-
-
-# ---- declarations --------------------------------------------------------------------------------------------------------
 
 
 def _declare(builder: HymekoBuilder, expanded: Expanded, kinds: list[str]) -> list[tuple[Id, Element]]:

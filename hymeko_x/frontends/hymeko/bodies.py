@@ -77,9 +77,6 @@ def _with_geometry(item: Item, block: Block) -> Item:
     return Node(item.role, (*items, *item.items), line=item.line, column=item.column)
 
 
-# ---- inertials -----------------------------------------------------------------------------------------------------------
-
-
 def _place(block: Block) -> Pose:
     """``translation`` and ``rotation`` of a link: the frame of its geometry and mass, as in the published listings."""
     translation, rotation = block.take("translation"), block.take("rotation")
@@ -118,9 +115,6 @@ def _tensor(item: Field, reader: ValueReader) -> Tensor:
     if len(numbers) != 6:
         raise reader.refuse(item, f"'inertia' takes [xx yy zz] or [xx yy zz xy xz yz], not {len(numbers)} numbers")
     return numbers
-
-
-# ---- shapes --------------------------------------------------------------------------------------------------------------
 
 
 def _read_shape(builder: HymekoBuilder, body: Id, item: Item, place: Pose, scope: Scope) -> None:

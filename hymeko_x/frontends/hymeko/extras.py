@@ -93,9 +93,6 @@ def _read_indent(item: Field, reader: ValueReader) -> Spacing | None:
     return Spacing(" " * int(base), " " * int(step))
 
 
-# ---- as it is ----------------------------------------------------------------------------------------------------------------
-
-
 def read_extras(item: Field, reader: ValueReader) -> list[Extra]:
     """The extras of one field: :func:`read_extra`, or several attributes, ``mjcf ["@condim" "1" "@group" "2"]``."""
     values = cast("tuple[Value, ...]", item.value) if is_list(item.value) else ()

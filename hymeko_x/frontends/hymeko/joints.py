@@ -8,7 +8,18 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.hymeko import AXES, CALIBRATION_WORDS, DOF_WORDS, LIMIT_WORDS, MOVES, ROLE_MOVES, SAFETY_WORDS, TURNING, default_axis
+from hymeko_x.formats.hymeko import (
+    AXES,
+    CALIBRATION_WORDS,
+    DOF_WORDS,
+    LIMIT_WORDS,
+    MOVES,
+    ROLE_MOVES,
+    SAFETY_WORDS,
+    TARGETS,
+    TURNING,
+    default_axis,
+)
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.builder import sign_of
 from hymeko_x.ir import parts
@@ -51,7 +62,9 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
     dofs = _dofs(builder, block, scope, ROLE_MOVES.get(child.role.upper()) or moves, axis_arc)
     builder.edges[key] = joint_edge(parts.Joint(dofs), builder.target(parent.ref, scope, _BODIES, parent), target, pose, child_pose)
     if mimic:
-        leaders = tuple((builder.target(arc.ref, scope, ("joint", "tendon"), arc), _polynomial(builder, arc)) for arc in mimic)
+        targets = [builder.target(arc.ref, scope, TARGETS["coupling"], arc) for arc in mimic]
+        coefficients = [(0.0, 1.0) if arc.weight is None else builder.reader.numbers(arc.weight, "", arc) for arc in mimic]
+        leaders = tuple(zip(targets, coefficients, strict=True))
         builder.edges[builder.reserve("coupling", key.name, element.node)] = coupling_edge(key, leaders)
     block.rest(str(key))
     builder.keep(key, block)
@@ -68,13 +81,6 @@ def _take_all(block: Block, role: str) -> list[ArcItem]:
     found = [arc for arc in block.arcs if arc.role == role]
     block.arcs = [arc for arc in block.arcs if arc.role != role]
     return found
-
-
-def _polynomial(builder: HymekoBuilder, arc: ArcItem) -> tuple[float, ...]:
-    return (0.0, 1.0) if arc.weight is None else builder.reader.numbers(arc.weight, "", arc)
-
-
-# ---- ends ----------------------------------------------------------------------------------------------------------------
 
 
 def _ends(builder: HymekoBuilder, key: Id, block: Block, item: Item) -> tuple[ArcItem, ArcItem]:
@@ -112,9 +118,6 @@ def _poses(reader: ValueReader, parent: ArcItem, child: ArcItem, key: Id) -> tup
     pose = reader.pose(weighted[0].weight, weighted[0]) if weighted else IDENTITY
     child_pose = reader.pose(child.weight, child) if framed and child.weight is not None else IDENTITY
     return pose, child_pose
-
-
-# ---- dofs ----------------------------------------------------------------------------------------------------------------
 
 
 def _dofs(builder: HymekoBuilder, block: Block, scope: Scope, moves: str | None, axis: _Axis | None) -> tuple[parts.Dof, ...]:
@@ -181,9 +184,6 @@ def _nested(block: Block, name: str, kind: type[T], motion: str) -> T | None:
     if name == "safety" and "k_velocity" not in found:
         raise block.reader.refuse(node, f"{title} needs 'k_velocity'")
     return kind(**found)
-
-
-# ---- axes ----------------------------------------------------------------------------------------------------------------
 
 
 def _axis(builder: HymekoBuilder, block: Block, scope: Scope) -> _Axis | None:

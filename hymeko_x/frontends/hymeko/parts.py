@@ -82,9 +82,6 @@ def _nested_parameters(builder: HymekoBuilder, block: Block) -> list[tuple[str, 
     return found
 
 
-# ---- edges in the block of a vertex --------------------------------------------------------------------------------------
-
-
 def has_attached(kind: str, node: Node) -> bool:
     """Whether the block of a vertex, which is no body, holds the arcs of the edge that attaches it."""
     return kind in ATTACHED and any(isinstance(item, ArcItem) or _is_texture(kind, item) for item in node.items)
