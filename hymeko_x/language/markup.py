@@ -60,8 +60,8 @@ def text_of_value(value: Value | None) -> str | None:
         return number_text(value)
     if isinstance(value, Ref):
         return value.path[0] if len(value.path) == 1 and not value.direction else None
-    if value is not None and is_list(value):
-        parts = [number_text(part) if type(part) is float else None for part in value]  # type: ignore[union-attr]
+    if is_list(value):
+        parts = [number_text(part) if type(part) is float else None for part in value]
         return None if None in parts else " ".join(map(str, parts))
     return None
 

@@ -5,7 +5,7 @@ Plain named tuples, because a large robot has many of them. Lines and columns ar
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeGuard
 
 from hymeko_x.diagnostics import Origin
 
@@ -127,7 +127,7 @@ class Document(NamedTuple):
     header: str = ""
 
 
-def is_list(value: Value | None) -> bool:
+def is_list(value: Value | None) -> TypeGuard[tuple[Value, ...]]:
     """Whether the value is a list (and not a reference or a quantity, which are tuples as well)."""
     return type(value) is tuple
 

@@ -91,7 +91,6 @@ def decoded(value: Value | None) -> Any:
         return Id(*map(str, value.path)) if len(value.path) == 2 else _WORDS[value.dotted]
     if not is_list(value):
         return value
-    assert isinstance(value, tuple)
     head = value[0] if value else None
     if isinstance(head, Ref) and head.path[0] == "Written":
         return Written(str(value[1]), tuple(map(_number, _items(value[2]))))
@@ -125,7 +124,7 @@ def decoded_turn(value: Value | None) -> tuple[values.Quat, Written | None]:
 def _items(value: Value | None) -> tuple[Value, ...]:
     if not is_list(value):
         raise ValueError(f"{value!r} is no list")
-    return value  # type: ignore[return-value]
+    return value
 
 
 def _number(value: Value) -> float:

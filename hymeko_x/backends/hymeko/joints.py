@@ -6,18 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.hymeko.parts import limit_items, word_fields
 from hymeko_x.backends.hymeko.values import pose_value
-from hymeko_x.formats.hymeko import (
-    AXES,
-    CALIBRATION_WORDS,
-    DOF_BLOCKS,
-    DOF_TYPES,
-    DOF_WORDS,
-    JOINT_TYPES,
-    SAFETY_WORDS,
-    TARGETS,
-    TURNING,
-    default_axis,
-)
+from hymeko_x.formats import hymeko as words
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import Id, numbers_weight
@@ -31,9 +20,9 @@ if TYPE_CHECKING:
     from hymeko_x.backends.hymeko.values import Angles
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
 
-_BODIES = TARGETS["joint"]
-_SHORT_AXES = {str(direction): (name, "") for name, direction in AXES.items() if len(name) == 1}
-_SHORT_AXES |= {str((-x + 0.0, -y + 0.0, -z + 0.0)): (name, "-") for name, (x, y, z) in AXES.items() if len(name) == 1}
+_BODIES = words.TARGETS["joint"]
+_SHORT_AXES = {str(direction): (name, "") for name, direction in words.AXES.items() if len(name) == 1}
+_SHORT_AXES |= {str((-x + 0.0, -y + 0.0, -z + 0.0)): (name, "-") for name, (x, y, z) in words.AXES.items() if len(name) == 1}
 
 
 def joint_items(sheet: HymekoSheet, key: Id) -> tuple[str, list[Item]]:
@@ -44,7 +33,7 @@ def joint_items(sheet: HymekoSheet, key: Id) -> tuple[str, list[Item]]:
     if framed or view.child != Id("body", key.name):  # a joint without a child leads to the body of its name
         items.append(_end(sheet, view.child, "-", view.child_pose, "at" if framed else ""))
     dofs = view.joint.dofs
-    kind = JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
+    kind = words.JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
     if kind == "compound":
         items.extend(dof_node(dof, sheet.angles) for dof in dofs)
     else:
@@ -61,7 +50,7 @@ def _end(sheet: HymekoSheet, body: Id, direction: str, pose: Pose, role: str) ->
 def _mimic(sheet: HymekoSheet, arc: RobotArc) -> ArcItem:
     coefficients = numbers_weight(arc)
     weight = None if identical(coefficients, (0.0, 1.0)) else coefficients
-    return ArcItem(sheet.ref(arc.target, TARGETS["coupling"], "-"), "mimic", weight)
+    return ArcItem(sheet.ref(arc.target, words.TARGETS["coupling"], "-"), "mimic", weight)
 
 
 def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
@@ -81,27 +70,27 @@ def mimic_arcs(mechanism: Mechanism) -> Mapping[Id, tuple[RobotArc, ...]]:
 
 def dof_node(dof: parts.Dof, angles: Angles) -> Node:
     """The block of one of several dofs: ``roll : hinge { .. }``, and ``dof : hinge { .. }`` for one without a name."""
-    name = "dof" if dof.name is None else QuotedName(dof.name) if dof.name in DOF_BLOCKS else dof.name
+    name = "dof" if dof.name is None else QuotedName(dof.name) if dof.name in words.DOF_BLOCKS else dof.name
     items = [item for item in _dof_items(dof, angles) if not (isinstance(item, Field) and item.name == "dof_name")]
-    return Node(name, tuple(items), (Stereotype(Ref((DOF_TYPES[dof.kind],))),))
+    return Node(name, tuple(items), (Stereotype(Ref((words.DOF_TYPES[dof.kind],))),))
 
 
 def _dof_items(dof: parts.Dof, angles: Angles) -> list[Item]:
     items = _axis(dof)
-    motion = "angle" if dof.kind in TURNING else "length"
+    motion = "angle" if dof.kind in words.TURNING else "length"
     items.extend(limit_items(dof.limits, angles, motion))
-    items.extend(word_fields(dof, DOF_WORDS, angles, motion))
+    items.extend(word_fields(dof, words.DOF_WORDS, angles, motion))
     if dof.safety is not None:
-        items.append(Node("safety", tuple(word_fields(dof.safety, SAFETY_WORDS, angles, motion))))
+        items.append(Node("safety", tuple(word_fields(dof.safety, words.SAFETY_WORDS, angles, motion))))
     if dof.calibration is not None:
-        items.append(Node("calibration", tuple(word_fields(dof.calibration, CALIBRATION_WORDS, angles, motion))))
+        items.append(Node("calibration", tuple(word_fields(dof.calibration, words.CALIBRATION_WORDS, angles, motion))))
     return items
 
 
 def _axis(dof: parts.Dof) -> list[Item]:
     if dof.written is not None and dof.written.kind == "axis":
         return [Field("axis", dof.written.numbers)]
-    if str(dof.axis) == str(default_axis(dof.kind)):  # as texts, because -0 is equal to 0 and still another number
+    if str(dof.axis) == str(words.default_axis(dof.kind)):  # as texts, because -0 is equal to 0 and still another number
         return []
     short = _SHORT_AXES.get(str(dof.axis))
     return [Field("axis", Ref((short[0],), short[1]) if short else dof.axis)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeGuard, cast
+from typing import TYPE_CHECKING, TypeGuard
 
 from hymeko_x import codes
 from hymeko_x.formats.hymeko import CHILD_CLASS, FOREIGN
@@ -10,7 +10,7 @@ from hymeko_x.frontends.hymeko.extras import is_foreign, read_extras, read_forei
 from hymeko_x.frontends.hymeko.values import name_of
 from hymeko_x.ir.mechanism import Extra
 from hymeko_x.language.printer import print_item
-from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, Value, is_list
+from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, is_list
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Container, Iterable
@@ -159,15 +159,15 @@ def is_field(item: Item, names: Container[str]) -> TypeGuard[Field]:
 
 def read_classes(item: Field, reader: ValueReader) -> tuple[str, ...]:
     """``class "a"`` or, of a joint with several dofs, ``class ["a" "" "b"]``."""
-    values = cast("tuple[Value, ...]", item.value) if is_list(item.value) else (item.value,)
+    values = item.value if is_list(item.value) else (item.value,)
     return tuple(reader.text(value, item) for value in values)
 
 
 def read_written(item: Field, reader: ValueReader) -> dict[str, str]:
     """``written ["key" "text" ...]``: how something was written, by key."""
-    if not is_list(item.value) or len(cast("tuple[Value, ...]", item.value)) % 2:
+    if not is_list(item.value) or len(item.value) % 2:
         raise reader.refuse(item, "'written' takes a list of keys and texts")
-    texts = [reader.text(part, item) for part in cast("tuple[Value, ...]", item.value)]
+    texts = [reader.text(part, item) for part in item.value]
     return dict(zip(texts[::2], texts[1::2], strict=True))
 
 

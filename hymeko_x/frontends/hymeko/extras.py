@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, cast
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.ir.mechanism import Extra
@@ -11,7 +11,6 @@ from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, is_list
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.values import ValueReader
-    from hymeko_x.language.syntax import Value
 
 
 class _Home(NamedTuple):
@@ -86,7 +85,7 @@ def read_text(item: Field, reader: ValueReader) -> str:
 def _read_indent(item: Field, reader: ValueReader) -> Spacing | None:
     if isinstance(item.value, Ref) and item.value.path == (ONE_LINE,):
         return None
-    values = cast("tuple[Value, ...]", item.value) if is_list(item.value) else ()
+    values = item.value if is_list(item.value) else ()
     if len(values) == 2 and all(isinstance(value, str) for value in values):
         return Spacing(*map(str, values))
     base, step = reader.numbers(item.value, "", item, 2)
@@ -95,7 +94,7 @@ def _read_indent(item: Field, reader: ValueReader) -> Spacing | None:
 
 def read_extras(item: Field, reader: ValueReader) -> list[Extra]:
     """The extras of one field: :func:`read_extra`, or several attributes, ``mjcf ["@condim" "1" "@group" "2"]``."""
-    values = cast("tuple[Value, ...]", item.value) if is_list(item.value) else ()
+    values = item.value if is_list(item.value) else ()
     if item.name == "extra" or len(values) < 4 or len(values) % 2:
         return [read_extra(item, reader)]
     texts = [reader.text(value, item) for value in values]
@@ -107,7 +106,7 @@ def read_extras(item: Field, reader: ValueReader) -> list[Extra]:
 def read_extra(item: Field, reader: ValueReader) -> Extra:
     """``urdf "<x/>"``, ``urdf ["path" "text"]``, ``urdf ["path" 3 "text"]``, or ``extra ["format" "path" 3 "text"]``."""
     value = item.value
-    parts = list(cast("tuple[Value, ...]", value)) if is_list(value) else [value]
+    parts = list(value) if is_list(value) else [value]
     name = item.name
     if name == "extra" and parts:
         name = reader.text(parts.pop(0), item)

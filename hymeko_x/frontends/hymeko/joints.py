@@ -8,18 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.hymeko import (
-    AXES,
-    CALIBRATION_WORDS,
-    DOF_WORDS,
-    LIMIT_WORDS,
-    MOVES,
-    ROLE_MOVES,
-    SAFETY_WORDS,
-    TARGETS,
-    TURNING,
-    default_axis,
-)
+from hymeko_x.formats import hymeko as words
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.builder import sign_of
 from hymeko_x.ir import parts
@@ -37,7 +26,7 @@ if TYPE_CHECKING:
 _BODIES = ("body", "world")
 _CHILD_ROLES = ("", "child", "at")
 _MOVES_OF = {"revolute": "hinge", "continuous": "hinge", "prismatic": "slide", "spherical": "ball", "floating": "free"}
-_NESTED = {"safety": (SAFETY_WORDS, "a safety controller"), "calibration": (CALIBRATION_WORDS, "a calibration")}
+_NESTED = {"safety": (words.SAFETY_WORDS, "a safety controller"), "calibration": (words.CALIBRATION_WORDS, "a calibration")}
 
 T = TypeVar("T")
 _Axis = tuple[Vec3, Written | None]
@@ -59,10 +48,10 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
     parent, child = _ends(builder, key, block, element.node)
     pose, child_pose = _poses(builder.reader, parent, child, key)
     target = builder.target(child.ref, scope, _BODIES, child)
-    dofs = _dofs(builder, block, scope, ROLE_MOVES.get(child.role.upper()) or moves, axis_arc)
+    dofs = _dofs(builder, block, scope, words.ROLE_MOVES.get(child.role.upper()) or moves, axis_arc)
     builder.edges[key] = joint_edge(parts.Joint(dofs), builder.target(parent.ref, scope, _BODIES, parent), target, pose, child_pose)
     if mimic:
-        targets = [builder.target(arc.ref, scope, TARGETS["coupling"], arc) for arc in mimic]
+        targets = [builder.target(arc.ref, scope, words.TARGETS["coupling"], arc) for arc in mimic]
         coefficients = [(0.0, 1.0) if arc.weight is None else builder.reader.numbers(arc.weight, "", arc) for arc in mimic]
         leaders = tuple(zip(targets, coefficients, strict=True))
         builder.edges[builder.reserve("coupling", key.name, element.node)] = coupling_edge(key, leaders)
@@ -86,7 +75,7 @@ def _take_all(block: Block, role: str) -> list[ArcItem]:
 def _ends(builder: HymekoBuilder, key: Id, block: Block, item: Item) -> tuple[ArcItem, ArcItem]:
     """The arc of the parent and the arc of the child, taken out of the block."""
     parents = [arc for arc in block.arcs if sign_of(arc) > 0 and arc.role in ("", "parent")]
-    children = [arc for arc in block.arcs if sign_of(arc) < 0 and (arc.role in _CHILD_ROLES or arc.role.upper() in ROLE_MOVES)]
+    children = [arc for arc in block.arcs if sign_of(arc) < 0 and (arc.role in _CHILD_ROLES or arc.role.upper() in words.ROLE_MOVES)]
     if len(parents) != 1 or len(children) != 1:
         message = f"{key} has {len(parents)} parents and {len(children)} children; a joint joins one '+ parent' and one '- child'"
         raise refuse(codes.MISSING_PART, message, builder.reader.origin(item), element=str(key), hint=_end_hint(block))
@@ -125,7 +114,7 @@ def _dofs(builder: HymekoBuilder, block: Block, scope: Scope, moves: str | None,
     dofs = read_dofs(builder, block, scope)
     if dofs or moves == "several":
         return dofs
-    return tuple(_dof(builder, block, scope, kind, axis) for kind in MOVES[moves or "hinge"])
+    return tuple(_dof(builder, block, scope, kind, axis) for kind in words.MOVES[moves or "hinge"])
 
 
 def read_dofs(builder: HymekoBuilder, block: Block, scope: Scope) -> tuple[parts.Dof, ...]:
@@ -146,27 +135,27 @@ def _dof_block(builder: HymekoBuilder, node: Node, scope: Scope) -> parts.Dof:
     block.take("kind")
     typed = node.stereotypes[0].ref.dotted if node.stereotypes else "hinge"
     moves = block.take_text("moves") or _MOVES_OF.get(typed, typed)
-    if moves not in MOVES or not MOVES[moves]:
-        raise builder.reader.refuse(node, f"a dof moves as {', '.join(name for name in MOVES if name != 'none')}, not as '{moves}'")
-    dof = _dof(builder, block, scope, MOVES[moves][0], None)
+    if moves not in words.MOVES or not words.MOVES[moves]:
+        raise builder.reader.refuse(node, f"a dof moves as {', '.join(name for name in words.MOVES if name != 'none')}, not as '{moves}'")
+    dof = _dof(builder, block, scope, words.MOVES[moves][0], None)
     block.rest("a dof")
     named = node.name != "dof" or isinstance(node.name, QuotedName)
     return replace(dof, name=str(node.name)) if named else dof
 
 
 def _dof(builder: HymekoBuilder, block: Block, scope: Scope, kind: parts.DofKind, axis: _Axis | None) -> parts.Dof:
-    motion = "angle" if kind in TURNING else "length"
-    direction, written = axis or _axis(builder, block, scope) or (default_axis(kind), None)
+    motion = "angle" if kind in words.TURNING else "length"
+    direction, written = axis or _axis(builder, block, scope) or (words.default_axis(kind), None)
     limits = read_limits(block, motion)
     safety, calibration = _nested(block, "safety", parts.Safety, motion), _nested(block, "calibration", parts.Calibration, motion)
-    words: dict[str, Any] = block.take_words(DOF_WORDS, motion)
-    return parts.Dof(kind, direction, limits, safety=safety, calibration=calibration, written=written, **words)
+    fields: dict[str, Any] = block.take_words(words.DOF_WORDS, motion)
+    return parts.Dof(kind, direction, limits, safety=safety, calibration=calibration, written=written, **fields)
 
 
 def read_limits(block: Block, motion: str) -> parts.Limits:
     """``limit [lower upper]`` and the other bounds; ``motion`` is the dimension of the coordinate."""
     span = block.take("limit", "limits", "range")
-    found: dict[str, Any] = block.take_words(LIMIT_WORDS, motion)
+    found: dict[str, Any] = block.take_words(words.LIMIT_WORDS, motion)
     if span is not None:
         found["lower"], found["upper"] = block.reader.numbers(span.value, motion, span, 2)
     return parts.Limits(**found) if found else parts.UNLIMITED
@@ -177,9 +166,9 @@ def _nested(block: Block, name: str, kind: type[T], motion: str) -> T | None:
     node = block.take_node(name)
     if node is None:
         return None
-    words, title = _NESTED[name]
+    known, title = _NESTED[name]
     inner = Block(node.items, block.reader)
-    found = inner.take_words(words, motion)
+    found = inner.take_words(known, motion)
     inner.rest(title)
     if name == "safety" and "k_velocity" not in found:
         raise block.reader.refuse(node, f"{title} needs 'k_velocity'")
@@ -193,9 +182,9 @@ def _axis(builder: HymekoBuilder, block: Block, scope: Scope) -> _Axis | None:
         return None
     if isinstance(item.value, Ref):
         sign = -1.0 if item.value.direction == "-" else 1.0
-        found = builder.directions.get(scope.resolve(item.value.path) or "") or AXES.get(item.value.path[-1])
+        found = builder.directions.get(scope.resolve(item.value.path) or "") or words.AXES.get(item.value.path[-1])
         if found is None:
-            raise builder.reader.refuse(item, f"'{item.value.dotted}' is not a direction; there are {', '.join(AXES)} and [x y z]")
+            raise builder.reader.refuse(item, f"'{item.value.dotted}' is not a direction; there are {', '.join(words.AXES)} and [x y z]")
         return _signed(found, sign), None
     return unit_axis(builder, item)
 
@@ -245,4 +234,4 @@ def _direction(builder: HymekoBuilder, ref: Ref, scope: Scope) -> Vec3 | None:
         return builder.directions[name]
     if builder.find(ref, scope, _BODIES) is not None:
         return None
-    return AXES.get(ref.path[-1])
+    return words.AXES.get(ref.path[-1])

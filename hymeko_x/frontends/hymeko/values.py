@@ -70,7 +70,7 @@ class ValueReader(Struct):
         """A list of numbers in SI, of the given length if there is one."""
         if not is_list(value):
             raise self.refuse(item, f"{name_of(item)} takes a list of numbers, not {describe(value)}")
-        values = tuple(self.number(part, dimension, item) for part in cast("tuple[Value, ...]", value))
+        values = tuple(self.number(part, dimension, item) for part in value)
         if count is not None and len(values) != count:
             raise self.refuse(item, f"{name_of(item)} takes {count} numbers, not {len(values)}")
         return values
@@ -99,19 +99,18 @@ class ValueReader(Struct):
         """``[x y z]``, ``[[x y z] [roll pitch yaw]]`` or ``[[x y z] [w x y z]]``; the rotation keeps its notation."""
         if not is_list(value):
             raise self.refuse(item, f"a pose is [x y z] or [[x y z] [roll pitch yaw]], not {describe(value)}")
-        values = cast("tuple[Value, ...]", value)
-        if len(values) == 2 and values[0] == "fromto":
-            return self._as_written((0.0, 0.0, 0.0), "fromto", values[1], item)
-        if not values or not is_list(values[0]):
+        if len(value) == 2 and value[0] == "fromto":
+            return self._as_written((0.0, 0.0, 0.0), "fromto", value[1], item)
+        if not value or not is_list(value[0]):
             return Pose(self.vec3(value, "length", item))
-        xyz = self.vec3(values[0], "length", item)
-        if len(values) == 1:
+        xyz = self.vec3(value[0], "length", item)
+        if len(value) == 1:
             return Pose(xyz)
-        if len(values) == 3 and isinstance(values[1], str):
-            return self._as_written(xyz, values[1], values[2], item)
-        if len(values) != 2 or not is_list(values[1]):
-            raise self.refuse(item, f"a pose has a position and a rotation, not {len(values)} parts")
-        return self._rotated(xyz, cast("tuple[Value, ...]", values[1]), item)
+        if len(value) == 3 and isinstance(value[1], str):
+            return self._as_written(xyz, value[1], value[2], item)
+        if len(value) == 2 and is_list(value[1]):
+            return self._rotated(xyz, value[1], item)
+        raise self.refuse(item, f"a pose has a position and a rotation, not {len(value)} parts")
 
     def parameter(self, item: Field) -> float | str | tuple[float, ...]:
         """A free value: a number, a text, or a list of numbers."""
