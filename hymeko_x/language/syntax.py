@@ -5,9 +5,12 @@ Plain named tuples, because a large robot has many of them. Lines and columns ar
 
 from __future__ import annotations
 
-from typing import NamedTuple, TypeGuard
+from typing import TYPE_CHECKING, NamedTuple, TypeGuard
 
 from hymeko_x.diagnostics import Origin
+
+if TYPE_CHECKING:
+    from collections.abc import Container
 
 
 class QuotedName(str):
@@ -130,6 +133,11 @@ class Document(NamedTuple):
 def is_list(value: Value | None) -> TypeGuard[tuple[Value, ...]]:
     """Whether the value is a list (and not a reference or a quantity, which are tuples as well)."""
     return type(value) is tuple
+
+
+def is_field(item: Item, names: Container[str]) -> TypeGuard[Field]:
+    """Whether it is a field of one of these names, unquoted."""
+    return isinstance(item, Field) and item.name in names and not isinstance(item.name, QuotedName)
 
 
 def origin_of(item: Item, file: str) -> Origin:

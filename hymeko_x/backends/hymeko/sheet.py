@@ -14,7 +14,7 @@ from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.markup import value_of_text
-from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value, is_field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -134,9 +134,7 @@ def name_of(name: str) -> str:
 
 def _typed(kind: str, items: list[Item]) -> tuple[tuple[str, ...], list[Item]]:
     """The type that stands for an element's kind and its ``type``, and the fields without that: ``sensor.imu``, ``weld``."""
-    found = next(
-        (item for item in items if isinstance(item, Field) and item.name == "type" and not isinstance(item.name, QuotedName)), None
-    )
+    found = next((item for item in items if is_field(item, ("type",))), None)
     part = PARTS[kind].part if kind in PARTS else None
     value = found.value if found is not None else defaults_of(part).get("kind") if part is not None else None
     word = value.path[0] if isinstance(value, Ref) else value

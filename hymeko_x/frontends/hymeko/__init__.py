@@ -13,7 +13,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.formats.hymeko import AXES, FOREIGN, ROOT_NAME, SETTINGS, attached_key
-from hymeko_x.frontends.hymeko.block import Block, is_field, is_written, read_written, read_written_block
+from hymeko_x.frontends.hymeko.block import Block, is_written, read_written, read_written_block
 from hymeko_x.frontends.hymeko.bodies import is_base_arc, read_body, read_fixed
 from hymeko_x.frontends.hymeko.builder import HymekoBuilder
 from hymeko_x.frontends.hymeko.extras import is_foreign, read_extra, read_foreign
@@ -29,7 +29,7 @@ from hymeko_x.language.expansion import Element, Expanded, expand
 from hymeko_x.language.markup import SECTION_COMMENT
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
-from hymeko_x.language.syntax import Comment, Field, QuotedName
+from hymeko_x.language.syntax import Comment, Field, QuotedName, is_field
 from hymeko_x.language.templates import decode
 from hymeko_x.source import Reading
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeGuard
+from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats.hymeko import CHILD_CLASS, FOREIGN
@@ -13,7 +13,7 @@ from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, is_list
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Container, Iterable
+    from collections.abc import Callable, Iterable
 
     from hymeko_x.formats.hymeko import Word
     from hymeko_x.frontends.hymeko.values import Parameter, ValueReader
@@ -150,11 +150,6 @@ class Block:
             name = item.name if not isinstance(item, ArcItem) else item.role or item.ref.dotted
             self.reader.report.warn(codes.UNKNOWN_TYPE, f"{element} has no '{name}'; it is kept as it is", origin, element=element)
             self.extras.append(Extra("hymeko", "", print_item(item)))
-
-
-def is_field(item: Item, names: Container[str]) -> TypeGuard[Field]:
-    """Whether it is a field of one of these names, unquoted."""
-    return isinstance(item, Field) and item.name in names and not isinstance(item.name, QuotedName)
 
 
 def read_classes(item: Field, reader: ValueReader) -> tuple[str, ...]:

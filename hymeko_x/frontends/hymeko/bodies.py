@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, cast
 from msgspec.structs import replace
 
 from hymeko_x.formats.hymeko import SHAPE_ROLES, SHAPE_WORDS, SOLIDS, attached_edge
-from hymeko_x.frontends.hymeko.block import Block, is_field
+from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.builder import sign_of
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, file_stem, shape_edge
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Tensor, Vec3, rotate_tensor
 from hymeko_x.ir.written import length_of
-from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_list
+from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_field, is_list
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder

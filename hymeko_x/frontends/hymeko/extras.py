@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.ir.mechanism import Extra
 from hymeko_x.language.markup import INDENT, ONE_LINE, PLACE, TEXT, Spacing, markup_of, text_of_value, usual_spacing
-from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, is_list
+from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, is_field, is_list
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.values import ValueReader
@@ -52,9 +52,9 @@ def _read_place(home: _Home, block: Node, place: int, reader: ValueReader) -> li
     for item in block.items:
         if _is_step(item):
             continue
-        if isinstance(item, Field) and item.name == PLACE and not isinstance(item.name, QuotedName):
+        if is_field(item, (PLACE,)):
             place = reader.whole(item.value, item)
-        elif isinstance(item, Field) and item.name == INDENT and not isinstance(item.name, QuotedName):
+        elif is_field(item, (INDENT,)):
             spacing = _read_indent(item, reader)
         elif isinstance(item, Field) and block.parameters is None:
             found.append(Extra(home.format, f"{home.path}/@{item.name}" if home.path else f"@{item.name}", read_text(item, reader)))

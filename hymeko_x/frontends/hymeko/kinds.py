@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir.mechanism import KINDS
-from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName
+from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, is_field
 
 if TYPE_CHECKING:
     from hymeko_x.language.expansion import Element, Expanded
@@ -45,7 +45,7 @@ def is_direction(element: Element) -> bool:
 def _typed(element: Element) -> str:
     """The kind that the element's types preset, or nothing."""
     for item in element.node.items:
-        if isinstance(item, Field) and item.name == "kind" and not isinstance(item.name, QuotedName) and isinstance(item.value, str):
+        if is_field(item, ("kind",)) and isinstance(item.value, str):
             return item.value if item.value in _ALL and element.types else ""
     if element.name == "world" and not element.node.edge and not element.types:
         return "" if isinstance(element.node.name, QuotedName) else "world"

@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import ALIASES, ATTACHED, NAMED_AFTER_ID, PARTS, TARGETS, TEXTURE, attached_edge, attached_key
-from hymeko_x.frontends.hymeko.block import Block, is_field
+from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.joints import read_dofs, read_limits
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.language.syntax import ArcItem, Field, Node, Ref
+from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_field
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
