@@ -10,6 +10,7 @@ from pxr import Vt
 from hymeko_x.backends.usd.sheet import T, apply, dof_of, point, prim_of, put
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import actuators as table
+from hymeko_x.formats.usd import joints
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Drive
 
@@ -45,7 +46,7 @@ def write_drives(sheet: UsdSheet) -> None:
 def _is_drive(sheet: UsdSheet, key: Id, actuator: Actuator) -> bool:
     """Whether a drive represents it: servos, and motors that were drives before."""
     noted = sheet.mechanism.notation(key, words.TYPE)
-    return actuator.kind in SERVOS or (actuator.kind == "motor" and noted in words.DRIVES)
+    return actuator.kind in SERVOS or (actuator.kind == "motor" and noted in joints.DRIVES)
 
 
 def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None:

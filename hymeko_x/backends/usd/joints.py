@@ -10,9 +10,10 @@ from pxr import Gf, Sdf
 
 from hymeko_x.backends.usd.sheet import T, apply, point, put, quatf
 from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd import joints as table
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop
-from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, scaled, unit_quat
+from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, unit_quat
 from hymeko_x.rewrite.roots import stands_for_world
 
 if TYPE_CHECKING:
@@ -20,19 +21,19 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import JointView, RobotArc
     from hymeko_x.ir.values import Quat, Vec3
 
-GENERIC = "PhysicsJoint"
-_TYPES = {DofKind.HINGE: "PhysicsRevoluteJoint", DofKind.SLIDE: "PhysicsPrismaticJoint", DofKind.BALL: "PhysicsSphericalJoint"}
-_TOKENS = {axis: token for token, axis in words.AXES.items()}
+_TYPES = {kind: name for name, kind in table.DOFS.items()}
+_TOKENS = {axis: token for token, axis in table.AXES.items()}
+_LOOPS = {"weld": table.FIXED, "connect": _TYPES[DofKind.BALL], "distance": table.DISTANCE}
 
 
 def write_joints(sheet: UsdSheet) -> None:
     """Every joint of the tree. A base that floats needs no prim: its body is just where it is."""
     for view in sheet.mechanism.joints.values():
         is_held = not view.joint.dofs and sheet.mechanism.notation(view.id, words.HELD) is not None
-        if view.parent == WORLD and (is_held or _floats(view)):
-            _carry_on_body(sheet, view)
-        else:
+        if view.parent != WORLD or not (is_held or _floats(view)):
             write_joint(sheet, view)
+        elif view.child in sheet.paths:
+            sheet.paths[view.id] = sheet.paths[view.child]
     for root in sheet.mechanism.roots:
         if root not in sheet.mechanism.parent_joint and stands_for_world(root, sheet.mechanism):
             _hold(sheet, root)
@@ -41,7 +42,7 @@ def write_joints(sheet: UsdSheet) -> None:
 def _hold(sheet: UsdSheet, root: Id) -> None:
     """Fix a root that represents the world to it: without a joint UsdPhysics lets it fall."""
     path = sheet.free_path(sheet.scope("joints"), f"{root.name}_base")
-    prim = sheet.define(path, "PhysicsFixedJoint")
+    prim = sheet.define(path, table.FIXED)
     point(prim, "physics:body1", sheet.paths[root])
 
 
@@ -49,50 +50,27 @@ def _floats(view: JointView) -> bool:
     return len(view.joint.dofs) == 1 and view.joint.dofs[0].kind is DofKind.FREE
 
 
-def _carry_on_body(sheet: UsdSheet, view: JointView) -> None:
-    home = sheet.paths.get(view.child)
-    if home is not None:
-        sheet.paths[view.id] = home
-
-
 def write_joint(sheet: UsdSheet, view: JointView) -> None:
     """One prim for a joint with at most one dof or with the axes of a generic one, else one for each dof."""
     dofs = view.joint.dofs
     is_turned = sheet.mechanism.notation(view.id, words.REVERSED) is not None
-    ends = (
-        ((view.child, view.child_pose), (view.parent, view.parent_pose))
-        if is_turned
-        else (
-            (view.parent, view.parent_pose),
-            (view.child, view.child_pose),
-        )
-    )
+    ends = (view.parent, view.parent_pose), (view.child, view.child_pose)
+    numbers = list(range(len(dofs)))
     if is_turned:
-        dofs = tuple(opposite(dof) for dof in reversed(dofs))
-    numbers = range(len(dofs) - 1, -1, -1) if is_turned else range(len(dofs))
-    if not dofs or len(dofs) == 1 or sheet.mechanism.notation(view.id, words.TYPE) == GENERIC:
+        ends, dofs, numbers = (ends[1], ends[0]), tuple(table.opposite(dof) for dof in reversed(dofs)), numbers[::-1]
+    if len(dofs) < 2 or sheet.mechanism.notation(view.id, words.TYPE) == table.GENERIC:
         spec = sheet.add_prim(view.id, "joints", _type_of(sheet, view.id, dofs))
         write_frames(sheet, spec, view.id, ends, dofs)
         for number, dof in zip(numbers, dofs, strict=True):
-            sheet.dofs[view.id, number] = (spec.path, axis_name(dof) if spec.kind == GENERIC else "")
+            sheet.dofs[view.id, number] = (spec.path, axis_name(dof) if spec.kind == table.GENERIC else "")
         return
-    _write_parallel(sheet, view, ends, dofs, list(numbers))
-
-
-def opposite(dof: Dof) -> Dof:
-    """The dof as its child sees it."""
-    from msgspec.structs import replace
-
-    if dof.kind in (DofKind.BALL, DofKind.FREE):
-        return dof
-    x, y, z = scaled(dof.axis, -1.0)
-    return replace(dof, axis=(x + 0.0, y + 0.0, z + 0.0))
+    _write_parallel(sheet, view, ends, dofs, numbers)
 
 
 def _type_of(sheet: UsdSheet, key: Id, dofs: tuple[Dof, ...]) -> str:
-    if sheet.mechanism.notation(key, words.TYPE) == GENERIC:
-        return GENERIC
-    return "PhysicsFixedJoint" if not dofs else _TYPES.get(dofs[0].kind, GENERIC)
+    if sheet.mechanism.notation(key, words.TYPE) == table.GENERIC:
+        return table.GENERIC
+    return table.FIXED if not dofs else _TYPES.get(dofs[0].kind, table.GENERIC)
 
 
 def axis_name(dof: Dof) -> str:
@@ -111,7 +89,7 @@ def _write_parallel(sheet: UsdSheet, view: JointView, ends: tuple[End, End], dof
     paths = _parallel_paths(sheet, view.id, names, numbered)
     for place, (number, dof) in enumerate(zip(numbers, dofs, strict=True)):
         path, name = paths[place], names[place]
-        spec = sheet.define(path, _TYPES.get(dof.kind, GENERIC), name)
+        spec = sheet.define(path, _TYPES.get(dof.kind, table.GENERIC), name)
         sheet.element_paths.add(path)
         write_frames(sheet, spec, view.id, ends, (dof,))
         sheet.dofs[view.id, number] = (path, "")
@@ -139,14 +117,14 @@ def _parallel_paths(sheet: UsdSheet, key: Id, names: list[str], numbered: list[s
 
 def write_frames(sheet: UsdSheet, spec: Any, key: Id, ends: tuple[End, End], dofs: tuple[Dof, ...]) -> None:
     """Bodies, local frames, axis and limits. An axis that is none of x, y, z turns both frames so that it is their x."""
-    turn, token = _turn(dofs[0]) if len(dofs) == 1 and spec.kind not in (GENERIC, _TYPES[DofKind.BALL]) else (IDENTITY.quat, "X")
+    turn, token = _turn(dofs[0]) if len(dofs) == 1 and spec.kind not in (table.GENERIC, _TYPES[DofKind.BALL]) else (IDENTITY.quat, "X")
     anchor = dofs[0].anchor if len(dofs) == 1 else (0.0, 0.0, 0.0)
     for side, (body, pose) in enumerate(ends):
         _write_end(sheet, spec, side, body, key)
         frame = compose(pose, Pose(anchor, turn)) if any(anchor) or turn != IDENTITY.quat else pose
         put(spec, f"physics:localPos{side}", T.Point3f, Gf.Vec3f(*sheet.in_prim_space(body, frame.xyz)))
         put(spec, f"physics:localRot{side}", T.Quatf, quatf(frame.quat))
-    if spec.kind == GENERIC:
+    if spec.kind == table.GENERIC:
         _write_generic(spec, dofs)
     elif len(dofs) == 1 and dofs[0].kind in (DofKind.HINGE, DofKind.SLIDE):
         put(spec, "physics:axis", T.Token, token)
@@ -193,13 +171,13 @@ def _write_generic(spec: Any, dofs: tuple[Dof, ...]) -> None:
         return
     authored = {axis_name(dof): dof for dof in dofs if dof.kind is not DofKind.BALL}
     bare = {"rotX", "rotY", "rotZ"} if any(dof.kind is DofKind.BALL for dof in dofs) else set()
-    for name in words.D6_AXES:
+    for name in table.D6_AXES:
         if name in bare:
             continue
         dof = authored.get(name)
         if dof is None or dof.limits.lower is not None or dof.limits.upper is not None:
             apply(spec, f"PhysicsLimitAPI:{name}")
-        low, high = words.LOCKED if dof is None else (dof.limits.lower, dof.limits.upper)
+        low, high = table.LOCKED if dof is None else (dof.limits.lower, dof.limits.upper)
         for end, value in (("low", low), ("high", high)):
             if value is not None:
                 put(spec, f"limit:{name}:physics:{end}", T.Float, value if dof is None else _coordinate(dof, value))
@@ -261,11 +239,9 @@ def write_loops(sheet: UsdSheet) -> None:
 
 def _loop_type(sheet: UsdSheet, key: Id, loop: Loop) -> str:
     noted = sheet.mechanism.notation(key, words.TYPE)
-    if noted is not None:
-        return noted
-    if loop.kind in ("weld", "connect", "distance"):
-        return {"weld": "PhysicsFixedJoint", "connect": "PhysicsSphericalJoint", "distance": "PhysicsDistanceJoint"}[loop.kind]
-    return _type_of(sheet, key, loop.dofs) if len(loop.dofs) < 2 else GENERIC
+    if noted is not None or loop.kind in _LOOPS:
+        return noted or _LOOPS[loop.kind]
+    return _type_of(sheet, key, loop.dofs) if len(loop.dofs) < 2 else table.GENERIC
 
 
 def _frames(sheet: UsdSheet) -> dict[Id, End]:

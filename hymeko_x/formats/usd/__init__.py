@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import struct
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from hymeko_x.ir import parts, values
+from hymeko_x.ir import values
 from hymeko_x.ir.notations import Notation, flag, word, words
 
 if TYPE_CHECKING:
@@ -69,9 +69,6 @@ WITHIN = "xformOp:scale:within"
 
 PREFIX = "hymeko:"
 
-AXES: Mapping[str, values.Vec3] = MappingProxyType({"X": values.X, "Y": values.Y, "Z": values.Z})
-D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
-"""The axes of a generic joint in the order in which they move: the first is nearest to the parent."""
 LIGHTS: Mapping[str, str] = MappingProxyType({"DistantLight": "directional", "SphereLight": "point", "DomeLight": "image"})
 """The lights of UsdLux that the IR can represent; a sphere light with a cone is a spot."""
 CONE = "ShapingAPI"
@@ -79,26 +76,6 @@ SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 """The schemas of a prim that marks a place, MuJoCo's and Newton's."""
 APERTURE = 15.2908
 """The default vertical aperture of a camera, in mm as is its focal length."""
-DRIVES = ("angular", "linear", *D6_AXES)
-"""The instances of a DriveAPI."""
-
-LOCKED = (1.0, -1.0)
-"""The bounds by which the writer locks an axis of a generic joint."""
-
-
-class D6Axis(NamedTuple):
-    """One axis of a generic joint: the kind of its motion, and the axis of it."""
-
-    kind: parts.DofKind
-    axis: values.Vec3
-
-
-def d6_axis(name: str) -> D6Axis:
-    """The meaning of ``transX`` ... ``rotZ``."""
-    kind = parts.DofKind.SLIDE if name.startswith("trans") else parts.DofKind.HINGE
-    return D6Axis(kind, AXES[name[-1]])
-
-
 # ---- single precision ----------------------------------------------------------------------------------------------------
 
 

@@ -15,6 +15,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd.actuators import PRIM as ACTUATOR
+from hymeko_x.formats.usd.joints import TYPES as JOINTS
 from hymeko_x.frontends.usd.actuators import read_actuator, read_drives
 from hymeko_x.frontends.usd.bodies import BODY, ReadShape, read_body, read_mass
 from hymeko_x.frontends.usd.builder import UsdBuilder
@@ -22,7 +23,7 @@ from hymeko_x.frontends.usd.contacts import read_collision_groups, read_filtered
 from hymeko_x.frontends.usd.couplings import read_mimic
 from hymeko_x.frontends.usd.dialects import is_passive_drive, is_world, join_bare_links, read_bare_links, read_named_mimic, with_dialect
 from hymeko_x.frontends.usd.extras import gather_extras
-from hymeko_x.frontends.usd.joints import TYPES, DofRef, ReadJoint, dof_refs, read_joint
+from hymeko_x.frontends.usd.joints import DofRef, ReadJoint, dof_refs, read_joint
 from hymeko_x.frontends.usd.materials import read_material
 from hymeko_x.frontends.usd.mounts import read_camera, read_light, read_site
 from hymeko_x.frontends.usd.shapes import is_shape, read_shape
@@ -115,7 +116,7 @@ def _read_things(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder
 
 def _read_joints(prims: list[Prim], bare: list[Prim], builder: UsdBuilder) -> dict[str, DofRef]:
     """The joints, with drives and mimics; returns the dof that each of their prims is."""
-    joints = [joint for prim in prims if prim.kind in TYPES for joint in [read_joint(prim, builder)] if joint is not None]
+    joints = [joint for prim in prims if prim.kind in JOINTS for joint in [read_joint(prim, builder)] if joint is not None]
     joints = join_bare_links(bare, [with_dialect(joint, builder) for joint in joints], builder)
     joints = build_trees(joints, _articulation_roots(prims, joints, builder), _held(builder), builder)
     ends = {prim.path: end for joint in joints for prim, end in dof_refs(joint)}

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import actuators as table
+from hymeko_x.formats.usd import joints
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.parts import Actuator, DofKind, Drive, Joint
 
@@ -43,8 +44,8 @@ def _driven(instance: str, name: str, joint: Joint) -> int | None:
         if instance in kinds:
             if (dof.name == name if name else len(joint.dofs) == 1) and dof.kind is kinds[instance]:
                 return number
-        elif instance in words.D6_AXES:
-            kind, axis = words.d6_axis(instance)
+        elif instance in joints.D6_AXES:
+            kind, axis = joints.d6_axis(instance)
             if dof.kind is kind and tuple(map(abs, dof.axis)) == axis:
                 return number
     return None

@@ -13,6 +13,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import single
+from hymeko_x.formats.usd.joints import AXES
 from hymeko_x.frontends.usd.transforms import Transforms, numbers_of
 from hymeko_x.ir.builder import Builder
 
@@ -120,7 +121,7 @@ class UsdBuilder(Builder, dict=True):
     def axis(self, prim: Prim, name: str, default: str) -> str:
         """An authored axis: X, Y or Z. Any other word is reported and stays an extra, and the axis is the default."""
         word = str(self.get(prim, name) or default)
-        if word in words.AXES:
+        if word in AXES:
             return word
         self.read_names.get(prim.path, set()).discard(name)
         message = f"{prim.path}: {name} is '{word}'; {default} instead"

@@ -10,8 +10,9 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.formats import usd as words
+from hymeko_x.formats.usd import joints as table
 from hymeko_x.frontends.usd.bodies import body_at
-from hymeko_x.frontends.usd.transforms import rotation_of
+from hymeko_x.frontends.usd.transforms import decomposed, rotation_of
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Dof, DofKind, Limits
 from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, compose, inverse, rotate, rotation_angle, unit
@@ -19,21 +20,12 @@ from hymeko_x.ir.values import NO_ROTATION, ZERO, Pose, Vec3, compose, inverse, 
 if TYPE_CHECKING:
     from hymeko_x.frontends.usd.builder import UsdBuilder
     from hymeko_x.frontends.usd.prims import Prim
+    from hymeko_x.frontends.usd.transforms import Transform
     from hymeko_x.ir.mechanism import Id
 
-GENERIC = "PhysicsJoint"
-DISTANCE = "PhysicsDistanceJoint"
 _MJC = ("armature", "damping", "frictionloss", "stiffness", "ref", "springref")
 _OF_COUPLINGS = ("newton:mimic", "mjc:coef", "mjc:target", "mjc:solimp", "mjc:solref")
 _NEWTON = ("armature", "damping", "friction", "velocityLimit")
-TYPES = (
-    "PhysicsRevoluteJoint",
-    "PhysicsPrismaticJoint",
-    "PhysicsSphericalJoint",
-    "PhysicsFixedJoint",
-    GENERIC,
-    DISTANCE,
-)
 
 
 class End(Struct, frozen=True):
@@ -68,27 +60,26 @@ def read_joint(prim: Prim, builder: UsdBuilder) -> ReadJoint | None:
         builder.report.warn(codes.MISSING_PART, message, builder.origin, element=prim.path)
         return None
     key = builder.new_id(prim, "joint")
-    kind = prim.kind
-    dofs = _dofs(prim, kind, builder)
+    dofs = _dofs(prim, builder)
     builder.mark_read(prim, "@type", *(f"physics:local{what}{side}" for what in ("Pos", "Rot") for side in "01"))
     builder.mark_read(prim, *(name for name in ("physics:body0", "physics:body1") if prim.targets(name)))
-    _take_schemas(prim, builder)
+    _mark_schemas(prim, builder)
     enabled = prim.value("physics:jointEnabled") is not False
     excluded = bool(prim.value("physics:excludeFromArticulation"))
-    if kind == GENERIC:
-        builder.note(key, words.TYPE, kind)
+    if prim.kind == table.GENERIC:
+        builder.note(key, words.TYPE, prim.kind)
     for side, end in enumerate((first, second)):
         _note_ground(prim, side, end, key, builder)
     return ReadJoint(prim, key, dofs, (first, second), enabled, excluded)
 
 
-def _take_schemas(prim: Prim, builder: UsdBuilder) -> None:
+def _mark_schemas(prim: Prim, builder: UsdBuilder) -> None:
     """A schema of which every value is typed needs no extra; one without values does."""
-    taken = builder.read_names.get(prim.path, set())
+    read = builder.read_names.get(prim.path, set())
     own = [name for name in prim.properties if not name.startswith(_OF_COUPLINGS)]
     for prefix, schema in (("mjc:", "MjcJointAPI"), ("newton:", "NewtonJointAPI")):
         authored = [name for name in own if name.startswith(prefix)]
-        if authored and taken.issuperset(authored):
+        if authored and read.issuperset(authored):
             builder.mark_read(prim, f"@{schema}")
 
 
@@ -102,14 +93,14 @@ def _end(prim: Prim, side: int, builder: UsdBuilder) -> End | None:
     local = Pose(position, rotation_of(quat))
     targets = prim.targets(f"physics:body{side}")
     if not targets:
-        return End(WORLD, _in_world(local, builder))
+        return End(WORLD, _in_frame(decomposed(builder.scene.world), local))
     target = builder.scene.prims.get(targets[0])
     if target is None:
         message = f"joint '{prim.path}': body{side} is '{targets[0]}', which does not exist; the joint is kept as written"
         builder.report.error(codes.UNDEFINED_REFERENCE, message, builder.origin, element=prim.path)
         return None
     found = body_at(target, builder)
-    frame = _frame_on(target, local, builder)
+    frame = _in_frame(builder.transforms.of(target), local)
     if found is None:
         return End(WORLD, frame)
     body, key = found
@@ -125,17 +116,9 @@ def _note_ground(prim: Prim, side: int, end: End, key: Id, builder: UsdBuilder) 
         builder.note(key, words.GROUND[side], targets[0])
 
 
-def _in_world(local: Pose, builder: UsdBuilder) -> Pose:
-    from hymeko_x.frontends.usd.transforms import decomposed
-
-    world = decomposed(builder.scene.world)
-    return compose(world.pose, Pose(_stretched(local.xyz, world.scale), local.quat))
-
-
-def _frame_on(target: Prim, local: Pose, builder: UsdBuilder) -> Pose:
-    """A frame given in the scaled space of a prim, seen from the world."""
-    at = builder.transforms.of(target)
-    return compose(at.pose, Pose(_stretched(local.xyz, at.scale), local.quat))
+def _in_frame(frame: Transform, local: Pose) -> Pose:
+    """A pose given in the scaled space of a frame, in the frame's own parent."""
+    return compose(frame.pose, Pose(_stretched(local.xyz, frame.scale), local.quat))
 
 
 def _stretched(vector: Vec3, scale: Vec3) -> Vec3:
@@ -145,22 +128,14 @@ def _stretched(vector: Vec3, scale: Vec3) -> Vec3:
 # ---- dofs --------------------------------------------------------------------------------------------------------------------
 
 
-def _dofs(prim: Prim, kind: str, builder: UsdBuilder) -> tuple[Dof, ...]:
-    match kind:
-        case "PhysicsRevoluteJoint":
-            return (_behaving(prim, Dof(DofKind.HINGE, _axis(prim, builder), _limits(prim, DofKind.HINGE, builder)), builder),)
-        case "PhysicsPrismaticJoint":
-            return (_behaving(prim, Dof(DofKind.SLIDE, _axis(prim, builder), _limits(prim, DofKind.SLIDE, builder)), builder),)
-        case "PhysicsSphericalJoint":
-            return (_behaving(prim, Dof(DofKind.BALL), builder),)
-        case "PhysicsJoint":
-            return _generic_dofs(prim, builder)
-        case _:
-            return ()
-
-
-def _axis(prim: Prim, builder: UsdBuilder) -> Vec3:
-    return words.AXES[builder.axis(prim, "physics:axis", "X")]
+def _dofs(prim: Prim, builder: UsdBuilder) -> tuple[Dof, ...]:
+    kind = table.DOFS.get(prim.kind)
+    if kind is None:
+        return _generic_dofs(prim, builder) if prim.kind == table.GENERIC else ()
+    if kind is DofKind.BALL:
+        return (_behaving(prim, Dof(kind), builder),)
+    axis = table.AXES[builder.axis(prim, "physics:axis", "X")]
+    return (_behaving(prim, Dof(kind, axis, _limits(prim, kind, builder)), builder),)
 
 
 def _limits(prim: Prim, kind: DofKind, builder: UsdBuilder) -> Limits:
@@ -183,14 +158,14 @@ def _generic_dofs(prim: Prim, builder: UsdBuilder) -> tuple[Dof, ...]:
 
     A point that turns freely in all directions is a ball, and one without any limit at all floats.
     """
-    free = [name for name in words.D6_AXES if not _is_locked(prim, name)]
+    free = [name for name in table.D6_AXES if not _is_locked(prim, name)]
     bare = [name for name in free if not prim.has_api(f"PhysicsLimitAPI:{name}")]
-    if len(bare) == len(words.D6_AXES):
+    if len(bare) == len(table.D6_AXES):
         return (Dof(DofKind.FREE),)
-    is_ball = bare[-3:] == list(words.D6_AXES[3:]) and not any(prim.has_api(f"PhysicsDriveAPI:{name}") for name in bare[-3:])
+    is_ball = bare[-3:] == list(table.D6_AXES[3:]) and not any(prim.has_api(f"PhysicsDriveAPI:{name}") for name in bare[-3:])
     dofs = []
     for name in free[:-3] if is_ball else free:
-        kind, axis = words.d6_axis(name)
+        kind, axis = table.d6_axis(name)
         is_limited = prim.has_api(f"PhysicsLimitAPI:{name}")
         low = builder.number(prim, f"limit:{name}:physics:low", -math.inf) if is_limited else -math.inf
         high = builder.number(prim, f"limit:{name}:physics:high", math.inf) if is_limited else math.inf
@@ -200,17 +175,17 @@ def _generic_dofs(prim: Prim, builder: UsdBuilder) -> tuple[Dof, ...]:
         dofs.append(_behaving(prim, Dof(kind, axis, limits), builder))
     if is_ball:
         dofs.append(_behaving(prim, Dof(DofKind.BALL), builder))
-    for name in words.D6_AXES:
+    for name in table.D6_AXES:
         if name not in free:
-            _take_lock(prim, name, builder)
+            _mark_lock(prim, name, builder)
     return tuple(dofs)
 
 
-def _take_lock(prim: Prim, name: str, builder: UsdBuilder) -> None:
+def _mark_lock(prim: Prim, name: str, builder: UsdBuilder) -> None:
     """A locked axis; by how much its bounds are crossed only counts where it is not by as much as the writer's."""
     low, high = f"limit:{name}:physics:low", f"limit:{name}:physics:high"
     authored = prim.value(low), prim.value(high)
-    builder.mark_read(prim, f"@PhysicsLimitAPI:{name}", *((low, high) if authored == words.LOCKED else ()))
+    builder.mark_read(prim, f"@PhysicsLimitAPI:{name}", *((low, high) if authored == table.LOCKED else ()))
 
 
 def _is_locked(prim: Prim, name: str) -> bool:
@@ -278,7 +253,6 @@ def dof_refs(joint: ReadJoint) -> list[tuple[Prim, DofRef]]:
 
 # ---- several joints between the same two bodies ------------------------------------------------------------------------------------
 
-_MERGED = ("PhysicsRevoluteJoint", "PhysicsPrismaticJoint", "PhysicsSphericalJoint")
 _SAME = 1e-5
 """In rad, and in m or of the distance where that is longer: frames of joints have single precision."""
 
@@ -288,7 +262,7 @@ def merge_parallel(joints: list[ReadJoint], builder: UsdBuilder) -> list[ReadJoi
     groups: dict[object, list[ReadJoint]] = {}
     for joint in joints:
         first, second = joint.ends
-        is_simple = joint.prim.kind in _MERGED and joint.is_enabled and not joint.is_excluded
+        is_simple = joint.prim.kind in table.DOFS and joint.is_enabled and not joint.is_excluded
         groups.setdefault((first.body, second.body) if is_simple else joint.id, []).append(joint)
     return [merged for group in groups.values() for merged in _merged(group, builder)]
 

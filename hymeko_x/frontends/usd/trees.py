@@ -10,14 +10,13 @@ import math
 from collections import deque
 from typing import TYPE_CHECKING
 
-from msgspec.structs import replace
-
 from hymeko_x.formats import usd as words
-from hymeko_x.frontends.usd.joints import DISTANCE, merge_parallel
+from hymeko_x.formats.usd.joints import DISTANCE, opposite
+from hymeko_x.frontends.usd.joints import merge_parallel
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.parts import Dof, DofKind, Joint, Loop, World
-from hymeko_x.ir.values import IDENTITY, compose, inverse, rotation_angle, scaled
+from hymeko_x.ir.values import IDENTITY, compose, inverse, rotation_angle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -127,18 +126,9 @@ def _add_joint(joint: ReadJoint, is_turned: bool, builder: UsdBuilder) -> None:
     parent, child = (joint.ends[1], joint.ends[0]) if is_turned else joint.ends
     dofs = joint.dofs
     if is_turned:
-        dofs = tuple(_opposite(dof) for dof in reversed(dofs))
+        dofs = tuple(opposite(dof) for dof in reversed(dofs))
         builder.note(joint.id, words.REVERSED, True)
     builder.edges[joint.id] = joint_edge(Joint(dofs), parent.body, child.body, parent.pose, child.pose)
-
-
-def _opposite(dof: Dof) -> Dof:
-    return dof if dof.kind in (DofKind.BALL, DofKind.FREE) else replace(dof, axis=_negated(dof))
-
-
-def _negated(dof: Dof) -> tuple[float, float, float]:
-    x, y, z = scaled(dof.axis, -1.0)
-    return (x + 0.0, y + 0.0, z + 0.0)
 
 
 def _add_loop(joint: ReadJoint, builder: UsdBuilder) -> None:
