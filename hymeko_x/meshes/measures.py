@@ -13,31 +13,20 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.values import Vec3
 
-_AT_ONCE = 4096
-"""How many triangles are computed at once: so many that all of it stays in the nearest cache."""
-
 
 def face_normals(points: NDArray[np.float32], corners: NDArray[Any]) -> NDArray[np.float32]:
     """The unit normal of each triangle (n x 3, single precision), by the right hand; z where a triangle has none.
 
     ``points`` is (m, 3), ``corners`` the rows of ``points`` of all triangles, flat.
     """
-    normals = np.empty((len(corners) // 3, 3), dtype=np.float32)
-    for start in range(0, len(normals), _AT_ONCE):
-        some = corners[3 * start : 3 * (start + _AT_ONCE)]
-        normals[start : start + _AT_ONCE] = _normals(points.take(some, axis=0).reshape(-1, 3, 3))
-    return normals
-
-
-def _normals(triangles: NDArray[np.float32]) -> NDArray[np.float64]:
+    triangles = points[corners].reshape(-1, 3, 3)
     ax, ay, az = np.subtract(triangles[:, 1], triangles[:, 0], dtype=np.float64).T
     bx, by, bz = np.subtract(triangles[:, 2], triangles[:, 0], dtype=np.float64).T
     normals = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=1)
     lengths = np.sqrt(np.einsum("ij,ij->i", normals, normals))
     flat = ~(lengths > 0.0)
     normals[flat], lengths[flat] = (0.0, 0.0, 1.0), 1.0
-    normals /= lengths[:, None]
-    return normals
+    return np.asarray(normals / lengths[:, None], dtype=np.float32)
 
 
 def volume_of_sheets(part: Submesh) -> float:
@@ -51,17 +40,21 @@ def volume_of_sheets(part: Submesh) -> float:
 
 def extents(part: Submesh) -> Vec3:
     """The lengths in m of the box along the principal axes of the points, ascending."""
+    low, middle, high = sorted(_principal(part)[1].tolist())
+    return (low, middle, high)
+
+
+def _principal(part: Submesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The principal axes of the points (columns), by ascending moments, and the lengths in m of the box along them."""
     centred = part.points - part.points.mean(axis=0)
     _, axes = np.linalg.eigh(centred.T @ centred)
-    low, middle, high = sorted(np.ptp(centred @ axes, axis=0).tolist())
-    return (low, middle, high)
+    return axes, np.ptp(centred @ axes, axis=0)
 
 
 def thickened(part: Submesh, share: float) -> Submesh:
     """A flat part as a thin solid: a second layer lies below the first one, ``share`` of the largest extent away."""
-    centred = part.points - part.points.mean(axis=0)
-    _, axes = np.linalg.eigh(centred.T @ centred)
-    below = part.points - axes[:, 0] * share * np.ptp(centred @ axes, axis=0).max()
+    axes, lengths = _principal(part)
+    below = part.points - axes[:, 0] * share * lengths.max()
     faces = np.concatenate([part.faces, part.faces[:, ::-1] + len(part.points)])
     uv = None if part.uv is None else np.concatenate([part.uv, part.uv])
     corners = None

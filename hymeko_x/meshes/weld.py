@@ -1,7 +1,7 @@
 """Joining points: equal rows of a table become one.
 
-A hash table of rows, in arrays: sorting (np.unique) in its place makes a whole conversion with meshes 4 to 28 % slower, with large
-OBJ files twice as slow (`python -m benchmarks.meshes`).
+A hash table of rows, in arrays: sorting (np.unique) in its place makes a whole conversion with meshes 3 to 130 %
+slower (`python -m benchmarks.meshes`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 _ROUNDS = 8
 """How often rows that share a slot with others appearance for a new one, before all are sorted instead."""
-_AT_ONCE = 16384
 _LEAST_BITS = 12
 """Of the number of a slot: a table that fits into the nearest cache costs nothing."""
 _BITS, _HALF = 64, np.uint64(32)
@@ -63,13 +62,10 @@ def _unequal(rows: NDArray[Any], others: NDArray[Any], first: NDArray[np.intp]) 
 def _first_in_slots(rows: NDArray[Any], turn: int) -> NDArray[np.intp]:
     """For each row the first one in the same slot. There are at least as many slots as rows; each turn shares them out anew."""
     bits = max(len(rows).bit_length(), _LEAST_BITS)
-    slots = np.empty(len(rows), dtype=np.intp)
-    for start in range(0, len(rows), _AT_ONCE):
-        keys = _keys(rows[start : start + _AT_ONCE], np.uint64(_ODD + (turn << 33)))
-        slots[start : start + _AT_ONCE] = keys >> np.uint64(_BITS - bits)
+    slots = (_keys(rows, np.uint64(_ODD + (turn << 33))) >> np.uint64(_BITS - bits)).astype(np.intp)
     table = np.empty(1 << bits, dtype=np.intp)
-    table[np.ascontiguousarray(slots[::-1])] = np.arange(len(rows) - 1, -1, -1)  # where several go, the last one stays
-    return np.asarray(table.take(slots))
+    table[slots[::-1]] = np.arange(len(rows) - 1, -1, -1)  # where several go, the last one stays
+    return np.asarray(table[slots])
 
 
 def _keys(rows: NDArray[Any], odd: np.uint64) -> NDArray[np.uint64]:
@@ -78,11 +74,10 @@ def _keys(rows: NDArray[Any], odd: np.uint64) -> NDArray[np.uint64]:
     Source: multiplicative hashing, D. Knuth, The Art of Computer Programming 3, section 6.4.
     """
     keys = np.zeros(len(rows), dtype=np.uint64)
-    high = np.empty_like(keys)
     for column in rows.T:
         keys += (column + rows.dtype.type(0.0)).view(f"u{rows.itemsize}")
         keys *= odd
-        keys ^= np.right_shift(keys, _HALF, out=high)
+        keys ^= keys >> _HALF
     keys *= odd
     return keys
 

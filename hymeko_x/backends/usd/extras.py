@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from pxr import Sdf, Tf
+from pxr import Sdf
 
 from hymeko_x import codes
-from hymeko_x.backends.usd.sheet import set_schemas
+from hymeko_x.backends.usd.sheet import parsed_layer, set_schemas
 from hymeko_x.formats.usd import FORMAT
 from hymeko_x.ir.mechanism import ROOT, Extra
 
@@ -39,28 +39,20 @@ Parsed = tuple[Any, Any] | None
 def _parsed(blocks: list[tuple[Id, Extra]], report: Report) -> list[Parsed]:
     """The layer and prim of each block; all are parsed at once, and one by one only where one of them is damaged."""
     text = "#usda 1.0\n" + "".join(f'over "e{number}"\n{{\n{extra.text}\n}}\n' for number, (_, extra) in enumerate(blocks))
-    layer = _layer_of(text)
+    layer = parsed_layer(text)
     if layer is not None and all(len(spec.nameChildren) == 1 for spec in layer.rootPrims):
         return [(layer, spec.nameChildren[0]) for spec in layer.rootPrims]
     found: list[Parsed] = []
     for key, extra in blocks:
-        alone = _layer_of(f"#usda 1.0\n{extra.text}\n")
+        alone = parsed_layer(f"#usda 1.0\n{extra.text}\n")
         if alone is None or len(alone.rootPrims) != 1:
             report.warn(codes.NOT_SAID, f"an extra of {key} is no USD text; it is left out", element=str(key))
         found.append((alone, alone.rootPrims[0]) if alone is not None and len(alone.rootPrims) == 1 else None)
     return found
 
 
-def _layer_of(text: str) -> Any | None:
-    layer = Sdf.Layer.CreateAnonymous(".usda")
-    try:
-        return layer if layer.ImportFromString(text) else None
-    except Tf.ErrorException:
-        return None
-
-
 def _restore_stage(sheet: UsdSheet, extra: Extra, report: Report) -> None:
-    header = _layer_of(extra.text)
+    header = parsed_layer(extra.text)
     if header is None:
         report.warn(codes.NOT_SAID, "an extra of the stage is no USD text; it is left out")
         return

@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct, field
-from pxr import Gf, Sdf, Vt
+from pxr import Gf, Sdf, Tf, Vt
 
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import FAMILY
@@ -201,6 +201,15 @@ class UsdSheet(Struct):
             self.define(path, "Scope")
             self.group_paths.add(path)
         return path
+
+
+def parsed_layer(text: str) -> Any | None:
+    """A layer of this text; None where that is not USD."""
+    layer = Sdf.Layer.CreateAnonymous(".usda")
+    try:
+        return layer if layer.ImportFromString(text) else None
+    except Tf.ErrorException:
+        return None
 
 
 def valid_name(name: str) -> str:

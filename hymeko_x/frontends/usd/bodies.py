@@ -142,15 +142,15 @@ def _massless(stated: Inertial) -> Inertial:
 
 
 def _completed(stated: Inertial, solid: Solid) -> Inertial:
-    """The authored values, with the others from the colliders; their tensor is scaled to an authored mass."""
+    """The authored values, with the others from the colliders; their tensor is scaled to an authored mass, and stays where it is."""
     mass = stated.mass if stated.mass is not None else solid.mass
     com = stated.com if any(stated.com) else solid.com
     if stated.tensor is not None:
         return replace(stated, mass=mass, com=com)
-    return Inertial(mass, com, solid.about(com, mass))
+    return Inertial(mass, com, _times(solid.tensor, mass / solid.mass if solid.mass else 1.0))
 
 
-# ---- solids of density 1 ---------------------------------------------------------------------------------------------------------
+# ---- solids of density 1 -------------------------------------------------------------------------------------------------------------
 
 
 class Solid(Struct, frozen=True):
@@ -161,20 +161,15 @@ class Solid(Struct, frozen=True):
     tensor: Tensor
 
     def times(self, factor: float) -> Solid:
-        """The same solid, this much denser."""
+        """The same solid with this multiple of its density."""
         return Solid(self.mass * factor, self.com, _times(self.tensor, factor))
-
-    def about(self, com: Vec3, mass: float) -> Tensor:
-        """The tensor when the mass is ``mass`` and the centre of mass is authored elsewhere."""
-        del com  # UsdPhysics moves no tensor along with a stated centre of mass
-        return _times(self.tensor, mass / self.mass if self.mass else 1.0)
 
 
 def joined(solids: list[Solid]) -> Solid:
     """Several solids as one."""
     mass = sum(solid.mass for solid in solids)
     if mass <= 0.0:
-        return Solid(0.0, (0.0, 0.0, 0.0), (0.0,) * 6)
+        return Solid(0.0, ZERO, (0.0,) * 6)
     x, y, z = (sum(solid.mass * solid.com[i] for solid in solids) / mass for i in range(3))
     total = [0.0] * 6
     for solid in solids:
@@ -183,15 +178,14 @@ def joined(solids: list[Solid]) -> Solid:
     return Solid(mass, (x, y, z), (total[0], total[1], total[2], total[3], total[4], total[5]))
 
 
-def solid_of(geometry: Geometry, pose: Pose, points: NDArray | None) -> Solid | None:  # type: ignore[type-arg]
+def solid_of(geometry: Geometry, pose: Pose, points: NDArray[Any] | None) -> Solid | None:
     """A geometry of density 1 at its pose in the body; a mesh (its points, n x 3) counts as its convex hull. None: no volume."""
     if isinstance(geometry, MeshShape):
-        return _moved(_hull(points), pose) if points is not None else None
-    moments = _moments(geometry)
-    if moments is None:
-        return None
-    volume, xx, yy, zz = moments
-    return _moved(Solid(volume, (0.0, 0.0, 0.0), (xx, yy, zz, 0.0, 0.0, 0.0)), pose)
+        solid = _hull(points) if points is not None else None
+    else:
+        moments = _moments(geometry)
+        solid = None if moments is None else Solid(moments[0], ZERO, (*moments[1:], 0.0, 0.0, 0.0))
+    return None if solid is None else Solid(solid.mass, apply(pose, solid.com), rotate_tensor(pose.quat, solid.tensor))
 
 
 def _moments(geometry: Geometry) -> tuple[float, float, float, float] | None:
@@ -218,13 +212,7 @@ def _moments(geometry: Geometry) -> tuple[float, float, float, float] | None:
             return None
 
 
-def _moved(solid: Solid | None, pose: Pose) -> Solid | None:
-    if solid is None:
-        return None
-    return Solid(solid.mass, apply(pose, solid.com), rotate_tensor(pose.quat, solid.tensor))
-
-
-def _hull(points: NDArray) -> Solid | None:  # type: ignore[type-arg]
+def _hull(points: NDArray[Any]) -> Solid | None:
     """The convex hull of points as a sum of tetrahedra from its middle. None where it is flat."""
     import numpy as np
     from scipy.spatial import ConvexHull, QhullError
