@@ -113,8 +113,8 @@ class _File:
         for path in ("{*}sampler2D/{*}source", "{*}surface/{*}init_from"):
             found = parameters[name].find(path) if name in parameters else None
             name = name if found is None else (found.text or "").strip()
-        said = self.images[name][0].find("{*}init_from") if name in self.images else None
-        return "" if said is None else unquote((said.text or "").strip().removeprefix("file://"))
+        values = self.images[name][0].find("{*}init_from") if name in self.images else None
+        return "" if values is None else unquote((values.text or "").strip().removeprefix("file://"))
 
     def _metres(self) -> float:
         unit = self.root.find("{*}asset/{*}unit")
@@ -183,23 +183,23 @@ def _moved(node: Element, matrix: NDArray[np.float64]) -> tuple[NDArray[np.float
     return matrix @ own, below
 
 
-def _matrix(said: NDArray[Any]) -> NDArray[Any]:
-    return said.reshape(4, 4)
+def _matrix(values: NDArray[Any]) -> NDArray[Any]:
+    return values.reshape(4, 4)
 
 
-def _translation(said: NDArray[Any]) -> NDArray[Any]:
+def _translation(values: NDArray[Any]) -> NDArray[Any]:
     matrix = np.eye(4, dtype=_SINGLE)
-    matrix[:3, 3] = said.reshape(3)
+    matrix[:3, 3] = values.reshape(3)
     return matrix
 
 
-def _scaling(said: NDArray[Any]) -> NDArray[Any]:
-    return np.diag([*said.reshape(3), 1.0]).astype(_SINGLE)
+def _scaling(values: NDArray[Any]) -> NDArray[Any]:
+    return np.diag([*values.reshape(3), 1.0]).astype(_SINGLE)
 
 
-def _rotation(said: NDArray[Any]) -> NDArray[Any]:
+def _rotation(values: NDArray[Any]) -> NDArray[Any]:
     """A turn by an angle in degrees about an axis, a unit vector."""
-    x, y, z, angle = said.reshape(4).astype(np.float64).tolist()
+    x, y, z, angle = values.reshape(4).astype(np.float64).tolist()
     if abs(math.hypot(x, y, z) - 1.0) > _NEAR_ONE:
         raise NotPlain
     matrix = np.eye(4, dtype=_SINGLE)
@@ -313,10 +313,10 @@ def _numbers(element: Element, kind: Any) -> NDArray[Any]:
     return numbers_in(element.text or "", kind)
 
 
-def _rgba(said: list[float]) -> Rgba | None:
-    if len(said) not in (3, 4) or not all(0.0 <= value <= 1.0 for value in said):
+def _rgba(values: list[float]) -> Rgba | None:
+    if len(values) not in (3, 4) or not all(0.0 <= value <= 1.0 for value in values):
         return None
-    r, g, b, a = (*said, 1.0)[:4]
+    r, g, b, a = (*values, 1.0)[:4]
     return (r, g, b, a)
 
 

@@ -10,7 +10,7 @@ _JPEG = b"\xff\xd8\xff"
 
 
 class UnreadableImage(Exception):
-    """The bytes are no image; the text says why."""
+    """The bytes are no image; the text is the reason."""
 
 
 def png_bytes(data: bytes) -> bytes:

@@ -208,28 +208,28 @@ def material_entries(library: bytes) -> dict[str, MaterialEntry]:
     name = ""
     for line in library.decode("utf-8", "replace").splitlines():
         word, _, rest = line.strip().partition(" ")
-        said = rest.strip()
+        text = rest.strip()
         if word == "newmtl":
-            name = said
-        elif word == "Kd" and (rgb := _rgb(said)) is not None:
+            name = text
+        elif word == "Kd" and (rgb := _rgb(text)) is not None:
             found[name] = found.get(name, MaterialEntry())._replace(rgba=(*rgb, 1.0))
-        elif word == "map_Kd" and said:
-            found[name] = found.get(name, MaterialEntry())._replace(image=said.split()[-1] if said.startswith("-") else said)
+        elif word == "map_Kd" and text:
+            found[name] = found.get(name, MaterialEntry())._replace(image=text.split()[-1] if text.startswith("-") else text)
         elif word in ("d", "Tr"):
-            shares.setdefault(name, {})[word] = said.split()
+            shares.setdefault(name, {})[word] = text.split()
     return {name: _seen_through(entry, shares.get(name, {})) for name, entry in found.items()}
 
 
-def _seen_through(entry: MaterialEntry, said: dict[str, list[str]]) -> MaterialEntry:
+def _seen_through(entry: MaterialEntry, text: dict[str, list[str]]) -> MaterialEntry:
     if entry.rgba is None:
         return entry
-    return entry._replace(rgba=(*entry.rgba[:3], opacity(said.get("d", ()), said.get("Tr", ()))))
+    return entry._replace(rgba=(*entry.rgba[:3], opacity(text.get("d", ()), text.get("Tr", ()))))
 
 
 def opacity(dissolve: Sequence[str], transparency: Sequence[str]) -> float:
     """How much a material hides of what is behind it, 0..1: what ``d`` says, else what ``Tr`` leaves of 1, by the words behind them.
 
-    What nobody would see is opaque: files say `Tr 1` (MeshLab) or `d 0` (Blender) of robots that are there to be seen.
+    An invisible material is read as opaque: files have `Tr 1` (MeshLab) or `d 0` (Blender) for robots that are meant to be visible.
     """
     through = _share(transparency)
     found = _share(dissolve) or (None if through is None else round(1.0 - through, _DECIMALS))
@@ -245,9 +245,9 @@ def _share(words: Sequence[str]) -> float | None:
     return value if 0.0 <= value <= 1.0 else None
 
 
-def _rgb(said: str) -> tuple[float, float, float] | None:
+def _rgb(text: str) -> tuple[float, float, float] | None:
     try:
-        values = [float(word) for word in said.split()]
+        values = [float(word) for word in text.split()]
     except ValueError:
         return None
     if len(values) != _SOLID or not all(0.0 <= value <= 1.0 for value in values):

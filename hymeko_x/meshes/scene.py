@@ -41,8 +41,8 @@ def _collada_parts(data: bytes, fetch: Callable[[str], bytes], *, with_appearanc
 
     loaded = load_collada(io.BytesIO(data), resolver=_resolver(fetch))  # type: ignore[no-untyped-call]
     meshes = {
-        name: trimesh.Trimesh(**{**said, "vertex_normals": None}, process=False, validate=False)
-        for name, said in loaded["geometry"].items()
+        name: trimesh.Trimesh(**{**arguments, "vertex_normals": None}, process=False, validate=False)
+        for name, arguments in loaded["geometry"].items()
     }
     return [
         part for node in loaded["graph"] for part in _placed_part(meshes[node["geometry"]], node["matrix"], with_appearance=with_appearance)

@@ -43,7 +43,7 @@ def stl_faces(data: bytes) -> int:
 
 
 def _is_text_stl(data: bytes) -> bool:
-    """Text begins with ``solid``, but so do some binary files: those have the length that their header says."""
+    """Text begins with ``solid``, but so do some binary files: those have the length that follows from their header."""
     return data[:80].lstrip().lower().startswith(b"solid") and not stl_is_exact(data) and b"facet" in data[:4096].lower()
 
 

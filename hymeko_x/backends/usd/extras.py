@@ -93,12 +93,12 @@ def _merge(sheet: UsdSheet, spec: Any, path: Any) -> None:
         if name not in ("specifier", "typeName", "apiSchemas"):
             there.SetInfo(name, spec.GetInfo(name))
     for item in spec.properties:
-        if item.name in there.properties and _says_nothing(item):
+        if item.name in there.properties and _is_default(item):
             continue
         Sdf.CopySpec(spec.layer, item.path, sheet.layer, path.AppendProperty(item.name))
 
 
-def _says_nothing(item: Any) -> bool:
+def _is_default(item: Any) -> bool:
     """Whether a number is only a default, so that a typed value beside it counts."""
     value = getattr(item, "default", None)
     return isinstance(value, float) and (value == 0.0 or math.isinf(value))

@@ -41,9 +41,9 @@ def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id
         _carry_mesh(sheet, spec, view.mesh)
         if surface is not None:
             write_triangles(spec, surface)
-            if _says(sheet.mechanism, view.id, words.NORMALS):
+            if _has_own(sheet.mechanism, view.id, words.NORMALS):
                 _write_normals(spec, surface)
-            if _says(sheet.mechanism, view.id, words.TEXCOORDS):
+            if _has_own(sheet.mechanism, view.id, words.TEXCOORDS):
                 _write_places(spec, mesh)
     else:
         if view.mesh not in shared:
@@ -54,7 +54,7 @@ def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id
     return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
 
 
-def _says(mechanism: Mechanism, shape: Id, notation: Notation[bool]) -> bool:
+def _has_own(mechanism: Mechanism, shape: Id, notation: Notation[bool]) -> bool:
     """Whether the prim of a mesh gets such an attribute: new prims do, those from a stage where they had it."""
     return mechanism.notation(shape, words.PATH) is None or mechanism.notation(shape, notation) is not None
 

@@ -20,25 +20,25 @@ _SITE_SIZE = 0.005
 
 
 def write_mounts(sheet: UsdSheet) -> None:
-    """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras and lights; each carries where it is mounted.
+    """Frames as Xforms with the site schemas of MuJoCo and Newton, cameras and lights; each prim also represents the mount.
 
-    A site of a cable is a small ball that nobody sees, as MuJoCo's converter writes sites: Newton leads cables through shapes alone.
+    A site of a cable is a small ball with purpose ``guide``, as MuJoCo's converter writes sites: Newton leads cables through shapes alone.
     """
     knots = {arc.target for _, _, arcs in sheet.mechanism.edges(Tendon) for arc in arcs if arc.target.kind == "frame"}
     for key, _, arcs in sheet.mechanism.edges(Mount):
         body = next((arc for arc in arcs if arc.sign > 0), None)
-        thing = next((arc for arc in arcs if arc.sign < 0), None)
-        part = sheet.mechanism.graph.vertices.get(thing.target) if thing else None
-        if body is None or thing is None or not isinstance(part, Frame | Camera | Light) or thing.target in sheet.paths:
+        mounted = next((arc for arc in arcs if arc.sign < 0), None)
+        part = sheet.mechanism.graph.vertices.get(mounted.target) if mounted else None
+        if body is None or mounted is None or not isinstance(part, Frame | Camera | Light) or mounted.target in sheet.paths:
             continue
         home = sheet.root if body.target == WORLD else sheet.paths.get(body.target)
         if home is None:
             continue
-        spec = sheet.add_prim(thing.target, home, _type_of(part), below=body.target != WORLD)
+        spec = sheet.add_prim(mounted.target, home, _type_of(part), below=body.target != WORLD)
         sheet.paths[key] = spec.path
         sheet.set_pose(spec, pose_weight(body), on=body.target)
-        _write_thing(spec, part)
-        if isinstance(part, Frame) and thing.target in knots and sheet.mechanism.notation(thing.target, words.PATH) is None:
+        _write_mounted(spec, part)
+        if isinstance(part, Frame) and mounted.target in knots and sheet.mechanism.notation(mounted.target, words.PATH) is None:
             _write_ball(spec, part.size[0] if part.size and part.size[0] > 0.0 else _SITE_SIZE)
 
 
@@ -60,7 +60,7 @@ def _type_of(part: Frame | Camera | Light) -> str:
             return next((name for name, meant in words.LIGHTS.items() if meant == kind), "SphereLight")
 
 
-def _write_thing(spec: Any, part: Frame | Camera | Light) -> None:
+def _write_mounted(spec: Any, part: Frame | Camera | Light) -> None:
     """The schemas and attributes of a frame, a camera or a light beside its pose."""
     if isinstance(part, Frame):
         apply(spec, *words.SITES)

@@ -63,7 +63,7 @@ def read(source: Source, report: Report) -> Reading:
             if prim.kind == "Material" and not prim.is_generated:
                 read_material(prim, builder)
         _read_shapes(prims, builder)
-        _read_things(prims, _read_joints(prims, bare, builder), builder)
+        _read_mounted(prims, _read_joints(prims, bare, builder), builder)
         note_poses(builder)
         gather_extras(builder)
         return Reading(_finished(scene, builder), residue)
@@ -95,7 +95,7 @@ def _read_shapes(prims: list[Prim], builder: UsdBuilder) -> None:
         read_mass(builder.prim_at(path), body, on.get(body, []), builder)
 
 
-def _read_things(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder) -> None:
+def _read_mounted(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder) -> None:
     """Mounts, tendons, actuators and contacts."""
     for prim in prims:
         kind = prim.kind
@@ -143,10 +143,10 @@ def _articulation_roots(prims: list[Prim], joints: list[ReadJoint], builder: Usd
 def _held(builder: UsdBuilder) -> list[Id]:
     """The bodies that are fixed unless a joint moves them: simulation switched off, kinematic, or another converter's world."""
     prims = {body: builder.prim_at(path) for path, body in builder.bodies.items()}
-    return [body for body, prim in prims.items() if is_world(prim, builder) or _stands_still(prim)]
+    return [body for body, prim in prims.items() if is_world(prim, builder) or _is_fixed(prim)]
 
 
-def _stands_still(prim: Prim) -> bool:
+def _is_fixed(prim: Prim) -> bool:
     return prim.value("physics:rigidBodyEnabled") is False or prim.value("physics:kinematicEnabled") is True
 
 

@@ -116,10 +116,10 @@ def _pairs(groups: list[Prim], builder: UsdBuilder) -> list[tuple[Id, Id]]:
     found: list[tuple[tuple[int, Id], tuple[int, Id]]] = []
     partly = None
     for (one, here), (other, there) in [*combinations(kinds.items(), 2), *((item, item) for item in kinds.items())]:
-        apart = [rules.are_apart(a, b) for a, b in product(one, other)]
-        if any(apart) and not all(apart):
+        filtered = [rules.are_filtered(a, b) for a, b in product(one, other)]
+        if any(filtered) and not all(filtered):
             partly = partly or (here[0][1], there[-1][1])
-        if not all(apart):
+        if not all(filtered):
             continue
         count = len(here) * (len(here) - 1) // 2 if here is there else len(here) * len(there)
         if len(found) + count > MOST_PAIRS:
@@ -172,7 +172,7 @@ class _Rules(NamedTuple):
     apart: Mapping[str, Memberships]
     inverted: Memberships
 
-    def are_apart(self, one: Memberships, other: Memberships) -> bool:
+    def are_filtered(self, one: Memberships, other: Memberships) -> bool:
         """Whether a collider in these groups does not touch one in those. Without a group one touches all but the picky."""
         if one and other:
             return any(not self.apart[group].isdisjoint(other) for group in one)

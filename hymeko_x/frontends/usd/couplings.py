@@ -60,10 +60,10 @@ def _polynomial(prim: Prim, dof: Dof, builder: UsdBuilder) -> tuple[float, ...]:
     higher = [builder.number(prim, f"mjc:coef{power}", 0.0) for power in (2, 3, 4)] if EQUALITY in prim.schemas else []
     while higher and higher[-1] == 0.0:
         higher.pop()
-    if (higher or "newton:mimicCoef1" not in prim.types) and not _says_more(prim):
+    if (higher or "newton:mimicCoef1" not in prim.types) and not _has_solver_parameters(prim):
         builder.mark_read(prim, f"@{EQUALITY}")
     return (constant, factor, *higher)
 
 
-def _says_more(prim: Prim) -> bool:
+def _has_solver_parameters(prim: Prim) -> bool:
     return any(prim.has_value(f"mjc:{name}") for name in ("solimp", "solref"))

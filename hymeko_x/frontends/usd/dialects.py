@@ -134,7 +134,7 @@ def read_bare_links(prims: list[Prim], builder: UsdBuilder) -> list[Prim]:
 def _is_bare_link(prim: Prim, above: str) -> bool:
     """Whether an Xform is a link: bodies are not bare, a mesh of several parts, which is referred to, is none.
 
-    A root called ``world`` is the world, to which the converter joins what hangs there.
+    A root called ``world`` is the world, to which the converter joins its children.
     """
     is_world = prim.path == f"{above}world"
     return prim.kind == "Xform" and not is_world and not prim.has_api(BODY) and not prim.composed.HasAuthoredReferences()

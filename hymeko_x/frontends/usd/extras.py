@@ -62,7 +62,7 @@ class _Unread(Struct, frozen=True):
     moved: Any | None
 
     @property
-    def is_something(self) -> bool:
+    def is_any(self) -> bool:
         """Whether anything but a type is left."""
         is_moved = self.moved is not None and self.moved != Gf.Matrix4d(1)
         return bool(self.schemas or self.metadata or self.properties) or is_moved
@@ -74,7 +74,7 @@ def _gather_prim(prim: Prim, owner: tuple[Id, str], folded: set[str], scratch: A
     is_typed = prim.path in builder.elements
     unread = _unread_of(prim, owner[0] if is_typed else None, None if is_typed else _new_place(prim, folded, builder), builder)
     has_own_type = unread.has_type and (is_typed or prim.kind != "Xform" or prim.path not in folded)
-    if unread.is_something or has_own_type or not (is_typed or prim.kind):
+    if unread.is_any or has_own_type or not (is_typed or prim.kind):
         relative = str(Sdf.Path(prim.path).MakeRelativePath(Sdf.Path(owner[1]))) if prim.path != owner[1] else ""
         is_over = is_typed or "@type" in builder.read_names.get(prim.path, ())
         text = _text_of(prim, unread, scratch, is_over=is_over).replace(builder.scene.folder + "/", "")
@@ -153,7 +153,7 @@ def _new_place(prim: Prim, folded: set[str], builder: UsdBuilder) -> Any | None:
     """The matrix of a prim in the frame in which it will be written, or None where its own one stays true.
 
     Groups above typed prims are in the frame of their body or the world; an untyped child of such a group gets its
-    own matrix there; what hangs deeper keeps its own.
+    own matrix there; descendants of that keep their own.
     """
     if prim.path in folded:
         return Gf.Matrix4d(1)

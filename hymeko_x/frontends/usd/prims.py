@@ -56,8 +56,8 @@ _TYPES_OF = MappingProxyType(
 class Prim(Struct, eq=False):
     """A prim: its path, name, type and API schemas (also those without a plugin), and its properties and metadata.
 
-    ``properties`` are the names of all that it says, ``types`` the types of those that are attributes; ``said`` is what the prim
-    itself has metadata for. ``is_real`` unless it is inactive, abstract or only an opinion about a prim that nobody defines. ``is_bound``
+    ``properties`` are the names of its properties, ``types`` the types of those that are attributes; ``metadata`` are the names of
+    its metadata. ``is_real`` unless it is inactive, abstract or only an opinion about a prim without a definition. ``is_bound``
     when it or one above is bound to a material. ``stage`` is what it is composed in, for what only USD can compute.
     """
 

@@ -32,7 +32,7 @@ MOST_NESTED_INSTANCES = 32
 class Scene(Struct, frozen=True):
     """An open stage in its own units; ``world`` turns its world into metres with z up; ``folder`` is where its layers lie.
 
-    ``layer`` says all of it by itself, and ``prims`` is what it says, by path.
+    ``layer`` is self-contained, and ``prims`` are its prims by path.
     """
 
     stage: Any
@@ -75,7 +75,7 @@ def _opened(source: Source, report: Report) -> Iterator[Scene]:
             _expand_instances(stage, source)
             flat = stage.Flatten(False)
             found = _read_layer(flat, source)
-        _say_composition_errors(stage, base, source, report)
+        _report_composition_errors(stage, base, source, report)
         found.stage = stage
         metres = _unit("metersPerUnit", UsdGeom.GetStageMetersPerUnit(stage), 0.01, source, report)
         kilograms = _unit("kilogramsPerUnit", UsdPhysics.GetStageKilogramsPerUnit(stage), 1.0, source, report)
@@ -182,7 +182,7 @@ def _expand_instances(stage: Any, source: Source) -> None:
 _OURS = re.compile(r",?@anon:0x[0-9a-f]+:[^@]*@")
 
 
-def _say_composition_errors(stage: Any, base: str, source: Source, report: Report) -> None:
+def _report_composition_errors(stage: Any, base: str, source: Source, report: Report) -> None:
     for error in stage.GetCompositionErrors()[:20]:
         authored = _OURS.sub("", str(error).replace(base + "/", ""))
         report.error(codes.UNDEFINED_REFERENCE, f"composition: {' '.join(authored.split())[:300]}", Origin(source.name))

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Rgba
 
 _STEPS = ("frame", "shape")
-_NOBODY = Id("tendon", "")
+_NO_TENDON = Id("tendon", "")
 _OF_KIND = MappingProxyType(
     {True: (table.COEFFICIENTS,), False: (table.SEGMENTS, table.DIVISORS, table.SIDES, table.SIDE_INDICES)},
 )
@@ -112,7 +112,7 @@ def _pulley(divisors: list[float], segment: int) -> list[RobotArc]:
     """The pulley before a segment; its tendon has no id yet."""
     if segment >= len(divisors):
         raise _BadPath(f"has no divisor for segment {segment}")
-    return [Arc(_NOBODY, 0, (divisors[segment],), PULLEY)]
+    return [Arc(_NO_TENDON, 0, (divisors[segment],), PULLEY)]
 
 
 def _site(sides: list[str], index: int, builder: UsdBuilder) -> Id:

@@ -14,9 +14,10 @@ from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd.joints import DISTANCE, opposite
 from hymeko_x.frontends.usd.joints import merge_parallel
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
+from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.parts import Dof, DofKind, Joint, Loop, World
-from hymeko_x.ir.values import IDENTITY, compose, inverse, rotation_angle
+from hymeko_x.ir.values import rotation_angle
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -52,19 +53,11 @@ def build_trees(joints: list[ReadJoint], roots: Iterable[Id], held: Iterable[Id]
 
 def note_poses(builder: UsdBuilder) -> None:
     """Note the pose of a body's prim where that is not the one that its joints give: only their frames count for the robot."""
-    mechanism = Mechanism("", Hypergraph(builder.vertices, builder.edges))
-    prims = {key: builder.prim_at(path) for path, key in builder.bodies.items()}
-    poses = {WORLD: IDENTITY}
-    for body in mechanism.depth_first():
-        stands = builder.transforms.of(prims[body]).pose
-        view = mechanism.parent_joint.get(body)
-        if view is None:
-            poses[body] = stands
-            continue
-        poses[body] = compose(poses.get(view.parent, IDENTITY), compose(view.parent_pose, inverse(view.child_pose)))
-        is_near = math.dist(poses[body].xyz, stands.xyz) < _NEAR and rotation_angle(poses[body].quat, stands.quat) < _NEAR
-        if not is_near:
-            builder.note(body, words.POSE, stands)
+    poses = reference_poses(Mechanism("", Hypergraph(builder.vertices, builder.edges)))
+    for path, body in builder.bodies.items():
+        pose, given = builder.transforms.of(builder.prim_at(path)).pose, poses[body]
+        if not (math.dist(given.xyz, pose.xyz) < _NEAR and rotation_angle(given.quat, pose.quat) < _NEAR):
+            builder.note(body, words.POSE, pose)
 
 
 def _split(joints: list[ReadJoint]) -> tuple[list[ReadJoint], set[Id]]:
@@ -162,10 +155,10 @@ def _loop_kind(joint: ReadJoint, builder: UsdBuilder) -> tuple[str, tuple[Dof, .
     return "joint", joint.dofs, ()
 
 
-def _join_free_bodies(hung: set[Id], held: set[Id], builder: UsdBuilder) -> None:
+def _join_free_bodies(children: set[Id], held: set[Id], builder: UsdBuilder) -> None:
     """In UsdPhysics a body without a parent joint falls: it gets a free joint at its pose."""
     for path, body in builder.bodies.items():
-        if body in hung:
+        if body in children:
             continue
         prim = builder.prim_at(path)
         key = builder.new_id(prim, "joint", body.name + FREE_SUFFIX)
