@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 VERSION = "4.0"
 """The version of MuJoCo whose MJCF is read; a mechanism that came from MJCF has it as its notation ``mjcf``."""
 
-ASIDE = (
+KEPT_SECTIONS = (
     "compiler",
     "option",
     "size",
@@ -32,7 +32,7 @@ ASIDE = (
     "deformable",
     "keyframe",
 )
-"""The sections that go along as they are."""
+"""The sections that are kept verbatim."""
 
 SECTIONS = (
     "compiler",
@@ -75,7 +75,7 @@ KINDS: Mapping[str, str] = MappingProxyType(
 """The kind of id that the name of an element is, for elements whose ids are their names."""
 
 
-DELEGATED = frozenset(("replicate", "attach", "flexcomp"))
+EXPANDED_BY_MUJOCO = frozenset(("replicate", "attach", "flexcomp"))
 """Elements that only MuJoCo can expand."""
 
 

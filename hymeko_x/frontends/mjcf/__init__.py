@@ -12,18 +12,16 @@ from hymeko_x import codes, formats
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf import RESIDUE
 from hymeko_x.formats.mjcf.classes import Classes
-from hymeko_x.formats.mjcf.tree import parse
-from hymeko_x.formats.mjcf.words import DELEGATED
+from hymeko_x.formats.mjcf.tree import COMMENT, parse
+from hymeko_x.formats.mjcf.words import EXPANDED_BY_MUJOCO, KEPT_SECTIONS, settings_of
 from hymeko_x.frontends.mjcf.actuators import read_actuators
 from hymeko_x.frontends.mjcf.assets import read_assets
 from hymeko_x.frontends.mjcf.bodies import read_worldbody, reserve_names
-from hymeko_x.frontends.mjcf.check import check_words
+from hymeko_x.frontends.mjcf.builder import MjcfBuilder
+from hymeko_x.frontends.mjcf.check import check_references, check_words
 from hymeko_x.frontends.mjcf.contacts import read_contacts
-from hymeko_x.frontends.mjcf.draft import Draft
 from hymeko_x.frontends.mjcf.equalities import read_equalities
-from hymeko_x.frontends.mjcf.include import expand_includes
-from hymeko_x.frontends.mjcf.references import check_references
-from hymeko_x.frontends.mjcf.sections import keep_sections, read_settings
+from hymeko_x.frontends.mjcf.expand import expand_by_mujoco, expand_includes
 from hymeko_x.frontends.mjcf.sensors import read_sensors
 from hymeko_x.frontends.mjcf.tendons import read_tendons
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -35,6 +33,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hymeko_x.diagnostics import Report
+    from hymeko_x.formats.mjcf.codec import Settings
     from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.source import Source
 
@@ -49,28 +48,43 @@ def read(source: Source, report: Report) -> Reading:
     carried = "".join(_take_carried(root))
     root = expand_includes(root, source, report)
     words = check_words(root)
-    if words.tags & DELEGATED:
-        from hymeko_x.frontends.mjcf.delegate import expand_by_mujoco
-
+    if words.tags & EXPANDED_BY_MUJOCO:
         root = expand_by_mujoco(root, source, report)
         words = check_words(root)
     _warn_of_ignored(root, report)
-    draft = Draft(report, read_settings(root), Classes(root_sections(root, "default")), source.name, source.files)
-    draft.vertices[WORLD] = World()
-    name = _read_name(root, source, draft)
-    draft.named |= {name: Id(*name) for name in words.names if name[0] in ("hfield", "flex")}
-    keep_sections(root, draft)
-    reserve_names(root, draft)
-    read_assets(root.detach("asset"), draft)
-    read_worldbody(root.detach("worldbody"), draft)
-    read_contacts(root.detach("contact"), draft)
-    read_tendons(root.detach("tendon"), draft)
-    read_equalities(root.detach("equality"), draft)
-    read_actuators(root.detach("actuator"), draft)
-    read_sensors(root.detach("sensor"), draft)
-    check_references(words.references, draft)
-    draft.keep_rest(root)
-    return Reading(draft.finish(name), carried)
+    builder = MjcfBuilder(report, _settings(root), Classes(root_sections(root, "default")), source.name, source.files)
+    builder.vertices[WORLD] = World()
+    name = _read_name(root, source, builder)
+    builder.named |= {name: Id(*name) for name in words.names if name[0] in ("hfield", "flex")}
+    _keep_sections(root, builder)
+    reserve_names(root, builder)
+    read_assets(root.detach("asset"), builder)
+    read_worldbody(root.detach("worldbody"), builder)
+    read_contacts(root.detach("contact"), builder)
+    read_tendons(root.detach("tendon"), builder)
+    read_equalities(root.detach("equality"), builder)
+    read_actuators(root.detach("actuator"), builder)
+    read_sensors(root.detach("sensor"), builder)
+    check_references(words.references, builder)
+    builder.keep_rest(root)
+    return Reading(builder.finish(name), carried)
+
+
+def _settings(root: Element) -> Settings:
+    """What all <compiler> elements say together; a later one wins."""
+    compilers = [child for child in root.children if child.tag == "compiler"]
+    for compiler in compilers:
+        if compiler.attributes.get("coordinate") == "global":
+            message = '<compiler coordinate="global"> was removed in MuJoCo 2.3.4'
+            hint = "load and save the file once with MuJoCo 2.3.3, which rewrites it in local coordinates"
+            raise refuse(codes.UNKNOWN_WORD, message, compiler.origin, hint=hint)
+    return settings_of([compiler.attributes for compiler in compilers])
+
+
+def _keep_sections(root: Element, builder: MjcfBuilder) -> None:
+    """Everything at top level that has no word in the IR and that others refer to, and comments, in order."""
+    for child in root.detach(COMMENT, *KEPT_SECTIONS):
+        builder.keep_at_root(child)
 
 
 def _take_carried(root: Element) -> Iterator[str]:
@@ -103,9 +117,9 @@ def _warn_of_ignored(root: Element, report: Report) -> None:
         report.warn(codes.UNKNOWN_WORD, said, child.origin)
 
 
-def _read_name(root: Element, source: Source, draft: Draft) -> str:
+def _read_name(root: Element, source: Source, builder: MjcfBuilder) -> str:
     name = root.take("model")
     if name:
         return name
-    draft.note(ROOT, UNNAMED, True)
+    builder.note(ROOT, UNNAMED, True)
     return PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"

@@ -14,48 +14,48 @@ from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import RobotArc
 
 _KINDS = {"jointinparent": "joint", "cranksite": "site", "slidersite": "site", "refsite": "site"}
 _ROLES = {"cranksite": "crank", "slidersite": "slider", "refsite": "reference"}
 
 
-def read_actuators(sections: list[Element], draft: Draft) -> None:
+def read_actuators(sections: list[Element], builder: MjcfBuilder) -> None:
     """Actuators in order, each with the edge to what it acts on."""
     for section in sections:
         for element in section.children:
             if element.tag.startswith("#"):
-                draft.keep_at_root(element, "actuator")
+                builder.keep_at_root(element, "actuator")
             else:
-                _read_actuator(element, draft)
+                _read_actuator(element, builder)
 
 
-def _read_actuator(element: Element, draft: Draft) -> None:
+def _read_actuator(element: Element, builder: MjcfBuilder) -> None:
     target = next((element.attributes[word] for word in TRANSMISSIONS if word in element.attributes), "")
-    key = draft.own(element, "actuator", f"{target}_{element.tag}")
+    key = builder.own(element, "actuator", f"{target}_{element.tag}")
     tag = element.tag if element.tag != "plugin" else "general"
-    base = draft.base(element, key, tag=tag)
+    base = builder.base(element, key, tag=tag)
     gear = element.take("gear")
     arcs: list[RobotArc] = [Arc(key, 1)]
     words = [word for word in TRANSMISSIONS if word in element.attributes]
-    _check(element, {**base, **element.attributes}, words, draft)
+    _check(element, {**base, **element.attributes}, words, builder)
     weight = read_numbers(gear or base.get("gear", "")) or None
     for word in words:
-        arcs.append(_arc(element, word, weight if word == words[0] else None, draft))
+        arcs.append(_arc(element, word, weight if word == words[0] else None, builder))
     if not words and gear is not None:
         element.attributes["gear"] = gear
     kind = "jointinparent" if "jointinparent" in words else ""
-    draft.vertices[key] = Actuator(element.tag, take_parameters(element, base, RESOLVED, LAW))
-    draft.keep(element, key)
-    draft.show(key)
+    builder.vertices[key] = Actuator(element.tag, take_parameters(element, base, RESOLVED, LAW))
+    builder.keep(element, key)
+    builder.show(key)
     if words:
-        drive = draft.names.take("drive", key.name)
-        draft.edges[drive] = Edge(Drive(kind), tuple(arcs))
-        draft.show(drive)
+        drive = builder.names.take("drive", key.name)
+        builder.edges[drive] = Edge(Drive(kind), tuple(arcs))
+        builder.show(drive)
 
 
-def _check(element: Element, said: dict[str, str], words: list[str], draft: Draft) -> None:
+def _check(element: Element, said: dict[str, str], words: list[str], builder: MjcfBuilder) -> None:
     """What MuJoCo refuses."""
     if not words:
         raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag}> acts on nothing: it needs {', '.join(TRANSMISSIONS[:6])}", element.origin)
@@ -64,7 +64,7 @@ def _check(element: Element, said: dict[str, str], words: list[str], draft: Draf
     for word in ("ctrl", "force"):
         flag, numbers = said.get(f"{word}limited", "auto"), read_numbers(said.get(f"{word}range", "")) or (0.0, 0.0)
         forced = word == "ctrl" and element.tag in ("adhesion", "damper")
-        if flag == "auto" and any(numbers) and not (draft.settings.autolimits or forced):
+        if flag == "auto" and any(numbers) and not (builder.settings.autolimits or forced):
             raise refuse(
                 codes.BAD_NUMBER,
                 f"<{element.tag}> has {word}range but not {word}limited, and <compiler autolimits> is false",
@@ -78,8 +78,8 @@ def _check(element: Element, said: dict[str, str], words: list[str], draft: Draf
             )
 
 
-def _arc(element: Element, word: str, gear: tuple[float, ...] | None, draft: Draft) -> RobotArc:
+def _arc(element: Element, word: str, gear: tuple[float, ...] | None, builder: MjcfBuilder) -> RobotArc:
     name = element.take(word) or ""
-    target = draft.find(element, _KINDS.get(word, word), name)
-    role = _ROLES.get(word) or (draft.roles.get(target, {}).get(name, "") if target.kind == "joint" else "")
+    target = builder.find(element, _KINDS.get(word, word), name)
+    role = _ROLES.get(word) or (builder.roles.get(target, {}).get(name, "") if target.kind == "joint" else "")
     return Arc(target, -1, gear, role)

@@ -16,61 +16,61 @@ from hymeko_x.ir.parts import Material, Mesh, Texture
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder
 
 
-def read_assets(sections: list[Element], draft: Draft) -> None:
+def read_assets(sections: list[Element], builder: MjcfBuilder) -> None:
     """Textures first, since materials refer to them."""
     for section in sections:
         for element in section.detach("texture"):
-            read_texture(element, draft)
-    meshes = len(draft.vertices)
+            read_texture(element, builder)
+    meshes = len(builder.vertices)
     for section in sections:
         for element in section.detach("mesh"):
-            read_mesh(element, draft)
-    _note_order([key.name for key in list(draft.vertices)[meshes:]], draft)
+            read_mesh(element, builder)
+    _note_order([key.name for key in list(builder.vertices)[meshes:]], builder)
     for section in sections:
         for element in section.detach("material"):
-            read_material(element, draft)
+            read_material(element, builder)
         for element in section.children:
-            draft.keep_at_root(element, "asset")
+            builder.keep_at_root(element, "asset")
 
 
-def _note_order(names: list[str], draft: Draft) -> None:
+def _note_order(names: list[str], builder: MjcfBuilder) -> None:
     """Meshes are defined where they are used first, elsewhere; their order in the file is a list of places among the sorted names."""
     places = {name: place for place, name in enumerate(sorted(names))}
     if names != sorted(names):
-        draft.note(ROOT, MESHES, tuple(places[name] for name in names))
+        builder.note(ROOT, MESHES, tuple(places[name] for name in names))
 
 
-def _uri(element: Element, file: str, folder: str, draft: Draft) -> str:
+def _uri(element: Element, file: str, folder: str, builder: MjcfBuilder) -> str:
     """The path of a file from the main file: in the folder of <compiler>, else beside the main file, else beside the included one."""
-    uri = joined(folder, file, draft.settings)
+    uri = joined(folder, file, builder.settings)
     beside = posixpath.join(posixpath.dirname(element.file), uri)
-    if folder or element.file == draft.file or draft.files.find(uri) is not None or draft.files.find(beside) is None:
+    if folder or element.file == builder.file or builder.files.find(uri) is not None or builder.files.find(beside) is None:
         return uri
     return beside
 
 
-def read_mesh(element: Element, draft: Draft) -> None:
+def read_mesh(element: Element, builder: MjcfBuilder) -> None:
     """A mesh: a file below <compiler meshdir>, or inline data."""
     file = element.take("file")
-    uri = None if file is None else _uri(element, file, draft.settings.mesh_folder, draft)
+    uri = None if file is None else _uri(element, file, builder.settings.mesh_folder, builder)
     name = element.take("name") or None
     stem = file_stem(uri or "")
     if not (name or stem):
         raise refuse(codes.BAD_NAME, "<mesh> needs a name or a file", element.origin)
-    key = draft.names.take("mesh", name or stem)
-    draft.origins[key] = element.origin
-    draft.register(element, "mesh", name or stem, key)
-    base = draft.base(element, key)
-    found = draft.values(element, MESH, base, key)
+    key = builder.names.take("mesh", name or stem)
+    builder.origins[key] = element.origin
+    builder.register(element, "mesh", name or stem, key)
+    base = builder.base(element, key)
+    found = builder.values(element, MESH, base, key)
     faces = tuple(map(int, found["face"]))
     _check_mesh(element, uri, len(found["vertex"]), faces)
-    draft.vertices[key] = Mesh(uri, found["scale"], None if name in (stem, key.name) else name, found["vertex"], faces)
-    draft.keep(element, key)
-    if key in draft.extras or key in draft.notations or key in draft.stereotypes:
-        draft.show(key)
+    builder.vertices[key] = Mesh(uri, found["scale"], None if name in (stem, key.name) else name, found["vertex"], faces)
+    builder.keep(element, key)
+    if key in builder.extras or key in builder.notations or key in builder.stereotypes:
+        builder.show(key)
 
 
 def _check_mesh(element: Element, uri: str | None, count: int, faces: tuple[int, ...]) -> None:
@@ -87,23 +87,23 @@ def _check_mesh(element: Element, uri: str | None, count: int, faces: tuple[int,
         raise refuse(codes.BAD_NUMBER, f"<mesh face> refers to a point that is not there; there are {count // 3}", element.origin)
 
 
-def read_texture(element: Element, draft: Draft) -> None:
+def read_texture(element: Element, builder: MjcfBuilder) -> None:
     """An image, or a pattern whose description stays with it."""
     file = element.take("file")
-    uri = None if file is None else _uri(element, file, draft.settings.texture_folder, draft)
+    uri = None if file is None else _uri(element, file, builder.settings.texture_folder, builder)
     name = element.take("name") or None
     stem = file_stem(uri or "")
     if not (name or stem) and element.attributes.get("type") != "skybox":
         raise refuse(codes.BAD_NAME, "<texture> needs a name or a file, unless it is a skybox", element.origin)
-    key = draft.names.take("texture", name or stem or "texture")
-    draft.origins[key] = element.origin
-    draft.register(element, "texture", name or stem or _skybox(element), key)
-    draft.base(element, key)
-    draft.vertices[key] = Texture(uri, None if name == key.name else name)
+    key = builder.names.take("texture", name or stem or "texture")
+    builder.origins[key] = element.origin
+    builder.register(element, "texture", name or stem or _skybox(element), key)
+    builder.base(element, key)
+    builder.vertices[key] = Texture(uri, None if name == key.name else name)
     if not (name or stem):
-        draft.note(key, UNNAMED, True)
-    draft.keep(element, key)
-    draft.show(key)
+        builder.note(key, UNNAMED, True)
+    builder.keep(element, key)
+    builder.show(key)
 
 
 def _skybox(element: Element) -> str:
@@ -111,25 +111,25 @@ def _skybox(element: Element) -> str:
     return f"\0{element.file}:{element.line}:{id(element)}"
 
 
-def read_material(element: Element, draft: Draft) -> None:
+def read_material(element: Element, builder: MjcfBuilder) -> None:
     """A material with the textures on it."""
-    key = draft.own(element, "material", "material")
-    base = draft.base(element, key)
-    found = draft.values(element, MATERIAL, base, key)
+    key = builder.own(element, "material", "material")
+    base = builder.base(element, key)
+    found = builder.values(element, MATERIAL, base, key)
     texture = found.pop("texture")
     rgba = found.pop("rgba") or None
-    draft.vertices[key] = Material(None if draft.noted(key, UNNAMED) else key.name, rgba, **found)
-    draft.show(key)
+    builder.vertices[key] = Material(None if builder.noted(key, UNNAMED) else key.name, rgba, **found)
+    builder.show(key)
     if texture:
-        _put(element, texture, key, "rgb", draft)
+        _put(element, texture, key, "rgb", builder)
     elif len([child for child in element.children if child.tag == "layer"]) == 1:
-        draft.note(key, LAYERS, True)
+        builder.note(key, LAYERS, True)
     for layer in element.detach("layer"):
-        _put(layer, layer.attributes.get("texture", ""), key, layer.attributes.get("role", "rgb"), draft)
-    draft.keep(element, key)
+        _put(layer, layer.attributes.get("texture", ""), key, layer.attributes.get("role", "rgb"), builder)
+    builder.keep(element, key)
 
 
-def _put(element: Element, texture: str, material: Id, use: str, draft: Draft) -> None:
-    edge = draft.names.take("layer", material.name)
-    draft.edges[edge] = layer_edge(draft.find(element, "texture", texture), material, use)
-    draft.show(edge)
+def _put(element: Element, texture: str, material: Id, use: str, builder: MjcfBuilder) -> None:
+    edge = builder.names.take("layer", material.name)
+    builder.edges[edge] = layer_edge(builder.find(element, "texture", texture), material, use)
+    builder.show(edge)

@@ -15,18 +15,18 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.mjcf.classes import ANY_TURN
 from hymeko_x.formats.mjcf.schema import EXCLUSIVE, REMOVED, attributes_of, children, kinds_of, schema
 from hymeko_x.formats.mjcf.tree import COMMENT
-from hymeko_x.frontends.mjcf.references import Reference, references_at, references_of
 from hymeko_x.frontends.mjcf.rules import complaint, rules_of
 from hymeko_x.ir.mechanism import file_stem
 from hymeko_x.ir.values import number_text
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from hymeko_x.diagnostics import Refusal
     from hymeko_x.formats.mjcf.schema import Kind
     from hymeko_x.formats.mjcf.tree import Element
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.frontends.mjcf.rules import Rule
 
 _NUMBER = re.compile(r"[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|0x[\da-f.]+(?:p[+-]?\d+)?|inf(?:inity)?|nan)", re.ASCII | re.IGNORECASE)
@@ -52,6 +52,32 @@ _NAMED_APART: Mapping[str, str] = MappingProxyType(
     }
 )
 """Elements of which the IR has no part, and those that share their names with such: what their names must not be twice among."""
+_REFERENCES: Mapping[str, tuple[tuple[str, str], ...]] = MappingProxyType(
+    {
+        "body/geom": (("hfield", "hfield"),),
+        "body/site": (("material", "material"), ("mesh", "mesh")),
+        "body/camera": (("target", "body"),),
+        "body/light": (("target", "body"), ("texture", "texture")),
+        "asset/skin": (("material", "material"),),
+        "asset/skin/bone": (("body", "body"),),
+        "deformable/skin": (("material", "material"),),
+        "deformable/skin/bone": (("body", "body"),),
+        "tendon/spatial": (("material", "material"),),
+        "equality/joint": (("joint1", "joint"),),
+        "equality/tendon": (("tendon1", "tendon"), ("tendon2", "tendon")),
+        "equality/flex": (("flex", "flex"),),
+        "equality/flexstrain": (("flex", "flex"),),
+    }
+)
+"""The attributes that refer without an arc in the IR, by the element's place, each with the kind that it refers to."""
+
+
+class Reference(Struct, frozen=True):
+    """An element that names another one."""
+
+    element: Element
+    kind: str
+    name: str
 
 
 class Words(Struct, frozen=True):
@@ -87,7 +113,7 @@ def _place_of(path: str) -> _Place:
         schema().required.get(path, ()),
         EXCLUSIVE.get(path, ()),
         rules_of(path),
-        references_at(path),
+        _REFERENCES.get(path, ()),
         _NAMED_APART.get(path),
     )
 
@@ -117,7 +143,7 @@ def check_words(root: Element) -> Words:
         if place.rules and (broken := complaint(element, place.rules)) is not None:
             raise refuse(codes.BAD_NUMBER, broken, element.origin)
         if place.references:
-            references += references_of(element, place.references)
+            references += _references_of(element, place.references)
         if place.named is not None:
             _check_name(element, place.named, names)
         if element.children:
@@ -247,3 +273,19 @@ def _unknown(element: Element, message: str, word: str, known: list[str], change
     near = get_close_matches(word, known, n=2)
     hint = changed or (f"did you mean {' or '.join(near)}?" if near else "")
     return refuse(codes.UNKNOWN_WORD, message, element.origin, hint=hint)
+
+
+# ---- references that have no arc -------------------------------------------------------------------------------------------------
+
+
+def _references_of(element: Element, attributes: tuple[tuple[str, str], ...]) -> list[Reference]:
+    """What the element refers to by these attributes."""
+    said = [(kind, element.attributes.get(attribute)) for attribute, kind in attributes]
+    return [Reference(element, kind, name) for kind, name in said if name]
+
+
+def check_references(found: Iterable[Reference], builder: MjcfBuilder) -> None:
+    """Raises: Refusal (HX040) at the first one that leads nowhere."""
+    for reference in found:
+        if reference.kind != "body" or reference.name != "world":
+            builder.find(reference.element, reference.kind, reference.name)

@@ -11,35 +11,35 @@ from hymeko_x.ir.parts import Contact
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
 
 _ENDS = {"pair": ("geom", "geom1", "geom2"), "exclude": ("body", "body1", "body2")}
 
 
-def read_contacts(sections: list[Element], draft: Draft) -> None:
+def read_contacts(sections: list[Element], builder: MjcfBuilder) -> None:
     """Pairs and exclusions in order."""
     for section in sections:
         for element in section.children:
             if element.tag in _ENDS:
-                _read_contact(element, draft)
+                _read_contact(element, builder)
             else:
-                draft.keep_at_root(element, "contact")
+                builder.keep_at_root(element, "contact")
 
 
-def _read_contact(element: Element, draft: Draft) -> None:
+def _read_contact(element: Element, builder: MjcfBuilder) -> None:
     kind, *ends = _ENDS[element.tag]
-    key = draft.own(element, "contact", element.tag)
-    base = draft.base(element, key)
-    arcs: tuple[RobotArc, ...] = tuple(Arc(find_end(element, kind, name, draft)) for name in ends)
-    draft.edges[key] = Edge(Contact(element.tag, take_parameters(element, base)), arcs)
-    draft.keep(element, key)
-    draft.show(key)
+    key = builder.own(element, "contact", element.tag)
+    base = builder.base(element, key)
+    arcs: tuple[RobotArc, ...] = tuple(Arc(find_end(element, kind, name, builder)) for name in ends)
+    builder.edges[key] = Edge(Contact(element.tag, take_parameters(element, base)), arcs)
+    builder.keep(element, key)
+    builder.show(key)
 
 
-def find_end(element: Element, kind: str, attribute: str, draft: Draft) -> Id:
+def find_end(element: Element, kind: str, attribute: str, builder: MjcfBuilder) -> Id:
     """What an attribute refers to; the world may be called a body."""
     name = element.take(attribute) or ""
-    if kind == "body" and name == "world" and ("body", "world") not in draft.named:
+    if kind == "body" and name == "world" and ("body", "world") not in builder.named:
         return WORLD
-    return draft.find(element, kind, name)
+    return builder.find(element, kind, name)

@@ -19,78 +19,78 @@ from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, pose
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
 
 
-def read_equalities(sections: list[Element], draft: Draft) -> None:
+def read_equalities(sections: list[Element], builder: MjcfBuilder) -> None:
     """Closures and couplings in order; those of tendons and flexes go along as they are."""
     placed: dict[Id, Pose] = {}
     for section in sections:
         for element in section.children:
             if element.tag in ("connect", "weld"):
-                _read_loop(element, draft, placed)
+                _read_loop(element, builder, placed)
             elif element.tag == "joint" and "joint2" in element.attributes:
-                _read_coupling(element, draft)
+                _read_coupling(element, builder)
             else:
-                _check_held(element, draft)
-                draft.keep_at_root(element, "equality")
+                _check_held(element, builder)
+                builder.keep_at_root(element, "equality")
 
 
-def _check_held(element: Element, draft: Draft) -> None:
+def _check_held(element: Element, builder: MjcfBuilder) -> None:
     """A joint that an equality holds in place moves along one coordinate."""
     name = element.attributes.get("joint1")
     if name is None:
         return
-    joint = draft.find(element, "joint", name)
-    if not moves_along_one(Arc(joint, 0, None, draft.roles.get(joint, {}).get(name, "")), draft.edges):
+    joint = builder.find(element, "joint", name)
+    if not moves_along_one(Arc(joint, 0, None, builder.roles.get(joint, {}).get(name, "")), builder.edges):
         raise refuse(codes.UNKNOWN_WORD, f"<joint> holds '{name}', expected a hinge or a slide", element.origin)
 
 
 # ---- couplings -----------------------------------------------------------------------------------------------------------------
 
 
-def _read_coupling(element: Element, draft: Draft) -> None:
+def _read_coupling(element: Element, builder: MjcfBuilder) -> None:
     """Source: MuJoCo, equality/joint: q1 - ref1 = c0 + c1 (q2 - ref2) + ..."""
-    follower, follower_role, follower_ref = _dof(element, "joint1", draft)
-    leader, leader_role, leader_ref = _dof(element, "joint2", draft)
+    follower, follower_role, follower_ref = _dof(element, "joint1", builder)
+    leader, leader_role, leader_ref = _dof(element, "joint2", builder)
     for joint, role in ((follower, follower_role), (leader, leader_role)):
-        if not moves_along_one(Arc(joint, 0, None, role), draft.edges):
+        if not moves_along_one(Arc(joint, 0, None, role), builder.edges):
             raise refuse(codes.UNKNOWN_WORD, f"<joint> couples '{role or joint.name}', expected hinges and slides", element.origin)
     if (follower, follower_role) == (leader, leader_role):
         raise refuse(codes.REPEATED, f"<joint> couples '{follower_role or follower.name}' to itself", element.origin)
-    key = draft.own(element, "coupling", follower.name)
-    draft.base(element, key, tag="joint@equality")
+    key = builder.own(element, "coupling", follower.name)
+    builder.base(element, key, tag="joint@equality")
     try:
         found = numbers_of(element.attributes, "polycoef", 1, 5)
         said = (0.0, 1.0) if found is None else found if len(found) > 1 else (found[0], 1.0)
         coefficients = shifted(said, -leader_ref)
     except BadAttribute as error:
-        raise draft.bad(element, error) from error
+        raise builder.bad(element, error) from error
     except OverflowError as error:
-        raise draft.bad(element, BadAttribute("polycoef", "numbers that stay finite at the reference")) from error
+        raise builder.bad(element, BadAttribute("polycoef", "numbers that stay finite at the reference")) from error
     text = element.take("polycoef")
     coefficients[0] += follower_ref
     while len(coefficients) > 2 and coefficients[-1] == 0.0:
         coefficients.pop()
     if text is not None and (follower_ref or leader_ref):
-        draft.note(key, attribute("polycoef"), text)
+        builder.note(key, attribute("polycoef"), text)
     active = element.take("active") != "false"
     arcs: tuple[RobotArc, ...] = (
         Arc(follower, 1, (1.0,), follower_role),
         Arc(leader, -1, tuple(coefficients), leader_role),
     )
-    draft.edges[key] = Edge(Coupling(active), arcs)
-    draft.keep(element, key)
-    draft.show(key)
+    builder.edges[key] = Edge(Coupling(active), arcs)
+    builder.keep(element, key)
+    builder.show(key)
 
 
-def _dof(element: Element, attribute: str, draft: Draft) -> tuple[Id, str, float]:
+def _dof(element: Element, attribute: str, builder: MjcfBuilder) -> tuple[Id, str, float]:
     """The joint, the role that names the dof in it, and the dof's reference coordinate."""
     name = element.take(attribute) or ""
-    joint = draft.find(element, "joint", name)
-    role = draft.roles.get(joint, {}).get(name, "")
-    data = draft.edges[joint].data
+    joint = builder.find(element, "joint", name)
+    role = builder.roles.get(joint, {}).get(name, "")
+    data = builder.edges[joint].data
     assert isinstance(data, Joint)
     dof = next((dof for dof in data.dofs if role and dof.name == role), data.dofs[0])
     return joint, role, dof.ref
@@ -99,35 +99,35 @@ def _dof(element: Element, attribute: str, draft: Draft) -> tuple[Id, str, float
 # ---- closures ------------------------------------------------------------------------------------------------------------------
 
 
-def _read_loop(element: Element, draft: Draft, placed: dict[Id, Pose]) -> None:
-    key = draft.own(element, "loop", element.tag)
-    base = draft.base(element, key)
+def _read_loop(element: Element, builder: MjcfBuilder, placed: dict[Id, Pose]) -> None:
+    key = builder.own(element, "loop", element.tag)
+    base = builder.base(element, key)
     active = element.take("active") != "false"
     if "site1" in element.attributes:
-        arcs: tuple[RobotArc, ...] = tuple(Arc(find_end(element, "site", name, draft)) for name in ("site1", "site2"))
+        arcs: tuple[RobotArc, ...] = tuple(Arc(find_end(element, "site", name, builder)) for name in ("site1", "site2"))
     else:
-        arcs = _body_arcs(element, key, draft, placed)
-    draft.edges[key] = Edge(Loop(element.tag, (), active, take_parameters(element, base)), arcs)
-    draft.keep(element, key)
-    draft.show(key)
+        arcs = _body_arcs(element, key, builder, placed)
+    builder.edges[key] = Edge(Loop(element.tag, (), active, take_parameters(element, base)), arcs)
+    builder.keep(element, key)
+    builder.show(key)
 
 
-def _body_arcs(element: Element, key: Id, draft: Draft, placed: dict[Id, Pose]) -> tuple[RobotArc, ...]:
+def _body_arcs(element: Element, key: Id, builder: MjcfBuilder, placed: dict[Id, Pose]) -> tuple[RobotArc, ...]:
     """Both bodies with the closure's frame in each, where the bodies are at the reference configuration unless it says where."""
-    first = find_end(element, "body", "body1", draft)
-    second = find_end(element, "body", "body2", draft) if "body2" in element.attributes else WORLD
+    first = find_end(element, "body", "body1", builder)
+    second = find_end(element, "body", "body2", builder) if "body2" in element.attributes else WORLD
     if first == second:
         raise refuse(codes.REPEATED, f"<{element.tag}> joins '{first.name}' to itself", element.origin)
     said = {name: text for name in ("anchor", "relpose") if (text := element.take(name)) is not None}
     for name, text in said.items():
-        draft.note(key, attribute(name), text)
+        builder.note(key, attribute(name), text)
     try:
         anchor = numbers_of(said, "anchor", 3, 3) or (0.0, 0.0, 0.0)
         relative = numbers_of(said, "relpose", 7, 7)
     except BadAttribute as error:
-        raise draft.bad(element, error) from error
+        raise builder.bad(element, error) from error
     at = Pose((anchor[0], anchor[1], anchor[2]))
-    between = compose(inverse(_in_world(first, draft, placed)), _in_world(second, draft, placed))
+    between = compose(inverse(_in_world(first, builder, placed)), _in_world(second, builder, placed))
     if element.tag == "connect":
         return Arc(first, 0, at), Arc(second, 0, compose(inverse(between), at))
     if relative is not None and any(relative[3:]):  # its position is where the anchor goes, as MuJoCo computes it
@@ -135,11 +135,11 @@ def _body_arcs(element: Element, key: Id, draft: Draft, placed: dict[Id, Pose]) 
     return Arc(first, 0, compose(between, at)), Arc(second, 0, at)
 
 
-def _in_world(body: Id, draft: Draft, placed: dict[Id, Pose]) -> Pose:
+def _in_world(body: Id, builder: MjcfBuilder, placed: dict[Id, Pose]) -> Pose:
     """Where a body is at the reference configuration; filled in for all bodies at first use."""
     if not placed:
         placed[WORLD] = IDENTITY
-        for edge in draft.edges.values():
+        for edge in builder.edges.values():
             if isinstance(edge.data, Joint):
                 parent, child = edge.arcs
                 at = parent.weight if isinstance(parent.weight, Pose) else IDENTITY

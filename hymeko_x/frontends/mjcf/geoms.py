@@ -8,7 +8,7 @@ from hymeko_x.formats.mjcf import notations
 from hymeko_x.formats.mjcf.notations import frame_of
 from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, Place
 from hymeko_x.formats.mjcf.words import PLACES
-from hymeko_x.frontends.mjcf.spot import Spot, placed
+from hymeko_x.frontends.mjcf.builder import Scope, placed
 from hymeko_x.ir.mechanism import shape_edge
 from hymeko_x.ir.parts import Role, Shape
 
@@ -16,35 +16,35 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder
 
 _SHOWN = 3
 """Geoms of this group and those above are not shown unless somebody asks for them."""
 
 
-def read_geom(element: Element, spot: Spot, draft: Draft) -> None:
+def read_geom(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
     """A shape on a body; what only MuJoCo knows of it stays with it as it is."""
     own_class = element.attributes.get("class")
-    said = {**draft.classes.of("geom", own_class or spot.childclass), **element.attributes}
+    said = {**builder.classes.of("geom", own_class or scope.childclass), **element.attributes}
     role = role_of(said)
-    key = draft.names.take("shape", f"{spot.body.name}/{PLACES[role]}")
-    draft.origins[key] = element.origin
-    base = draft.base(element, key, spot.childclass)
+    key = builder.names.take("shape", f"{scope.body.name}/{PLACES[role]}")
+    builder.origins[key] = element.origin
+    base = builder.base(element, key, scope.childclass)
     name = element.take("name") or None
     if name is not None:
-        draft.register(element, "geom", name, key)
-    if spot.frame:
-        draft.note(key, frame_of(), spot.frame)
+        builder.register(element, "geom", name, key)
+    if scope.frame:
+        builder.note(key, frame_of(), scope.frame)
     fitted = "mesh" in said and said.get("type") != "mesh"
-    found = draft.values(element, FITTED_GEOM if fitted else GEOM, base, key, always=bool(spot.frame))
+    found = builder.values(element, FITTED_GEOM if fitted else GEOM, base, key, always=bool(scope.frame))
     place: Place = found["place"]
     shape = Shape(place.geometry, role, name, found["rgba"] or None, found["mass"], found["density"], found["friction"])
-    mesh = draft.find(element, "mesh", found["mesh"]) if found.get("mesh") else None
-    material = draft.find(element, "material", found["material"]) if found["material"] else None
-    draft.edges[key] = shape_edge(shape, spot.body, placed(place.pose, spot), mesh, material)
+    mesh = builder.find(element, "mesh", found["mesh"]) if found.get("mesh") else None
+    material = builder.find(element, "material", found["material"]) if found["material"] else None
+    builder.edges[key] = shape_edge(shape, scope.body, placed(place.pose, scope), mesh, material)
     if place.grid is not None and place.grid != GRID:
-        draft.note(key, notations.GRID, place.grid)
-    draft.keep(element, key)
+        builder.note(key, notations.GRID, place.grid)
+    builder.keep(element, key)
 
 
 def role_of(said: Mapping[str, str]) -> Role:

@@ -15,49 +15,48 @@ from hymeko_x.ir.values import Z, apply, rotate
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.draft import Draft, Values
-    from hymeko_x.frontends.mjcf.spot import Spot
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder, Scope, Values
     from hymeko_x.ir.values import Pose
 
 _VELOCITIES = {DofKind.HINGE: 1, DofKind.SLIDE: 1, DofKind.BALL: 3, DofKind.FREE: 6}
 
 
-def read_joints(found: list[tuple[Element, Spot]], body: Id, parent: Id, pose: Pose, draft: Draft) -> None:
+def read_joints(found: list[tuple[Element, Scope]], body: Id, parent: Id, pose: Pose, builder: MjcfBuilder) -> None:
     """The edge from the parent to the body; without joints it is a fixed one."""
-    key = _joint_id(found, body, draft)
+    key = _joint_id(found, body, builder)
     dofs = []
     stereotypes = []
-    for number, (element, spot) in enumerate(found, 1):
+    for number, (element, scope) in enumerate(found, 1):
         prefix = "" if len(found) == 1 else str(number)
-        dofs.append(_read_dof(element, spot, key, prefix, draft))
-        stereotypes.append(draft.stereotypes.pop(key, ("",))[0])
-        draft.origins.setdefault(key, element.origin)
+        dofs.append(_read_dof(element, scope, key, prefix, builder))
+        stereotypes.append(builder.stereotypes.pop(key, ("",))[0])
+        builder.origins.setdefault(key, element.origin)
     if any(stereotypes):
-        draft.stereotypes[key] = tuple(stereotypes)
+        builder.stereotypes[key] = tuple(stereotypes)
     _check_dofs(dofs, found, parent)
-    draft.edges[key] = joint_edge(Joint(tuple(dofs)), parent, body, pose)
-    draft.origins.setdefault(key, draft.origins[body])
-    draft.show(key)
+    builder.edges[key] = joint_edge(Joint(tuple(dofs)), parent, body, pose)
+    builder.origins.setdefault(key, builder.origins[body])
+    builder.show(key)
 
 
-def _joint_id(found: list[tuple[Element, Spot]], body: Id, draft: Draft) -> Id:
+def _joint_id(found: list[tuple[Element, Scope]], body: Id, builder: MjcfBuilder) -> Id:
     if len(found) == 1 and (name := found[0][0].attributes.get("name")):
         return Id("joint", name)
-    key = draft.names.take("joint", body.name)
+    key = builder.names.take("joint", body.name)
     if len(found) == 1:
-        draft.note(key, UNNAMED, True)
+        builder.note(key, UNNAMED, True)
     return key
 
 
-def _read_dof(element: Element, spot: Spot, key: Id, prefix: str, draft: Draft) -> Dof:
+def _read_dof(element: Element, scope: Scope, key: Id, prefix: str, builder: MjcfBuilder) -> Dof:
     name = element.take("name") or None
     if name:
-        draft.register(element, "joint", name, key)
-        draft.roles.setdefault(key, {})[name] = name if prefix else ""
-    if spot.frame:
-        draft.note(key, frame_of(prefix), spot.frame)
-    dof = _free(element, key, prefix, draft) if element.tag == "freejoint" else _typed(element, spot, key, prefix, draft)
-    draft.keep(element, key, f"joint[{prefix}]" if prefix else "")
+        builder.register(element, "joint", name, key)
+        builder.roles.setdefault(key, {})[name] = name if prefix else ""
+    if scope.frame:
+        builder.note(key, frame_of(prefix), scope.frame)
+    dof = _free(element, key, prefix, builder) if element.tag == "freejoint" else _typed(element, scope, key, prefix, builder)
+    builder.keep(element, key, f"joint[{prefix}]" if prefix else "")
     return dof if not prefix or name is None else _named(dof, name)
 
 
@@ -67,18 +66,18 @@ def _named(dof: Dof, name: str) -> Dof:
     return replace(dof, name=name)
 
 
-def _free(element: Element, key: Id, prefix: str, draft: Draft) -> Dof:
+def _free(element: Element, key: Id, prefix: str, builder: MjcfBuilder) -> Dof:
     return Dof(DofKind.FREE, Z)
 
 
-def _typed(element: Element, spot: Spot, key: Id, prefix: str, draft: Draft) -> Dof:
-    base = draft.base(element, key, spot.childclass)
-    found = draft.values(element, JOINT, base, key, prefix, always=bool(spot.frame))
+def _typed(element: Element, scope: Scope, key: Id, prefix: str, builder: MjcfBuilder) -> Dof:
+    base = builder.base(element, key, scope.childclass)
+    found = builder.values(element, JOINT, base, key, prefix, always=bool(scope.frame))
     if found["type"] is DofKind.FREE:
-        draft.note(key, is_joint(prefix), "joint")
+        builder.note(key, is_joint(prefix), "joint")
     axis, written = found["axis"]
-    if spot.frame:
-        axis, written = rotate(spot.pose.quat, axis), None
+    if scope.frame:
+        axis, written = rotate(scope.pose.quat, axis), None
     return Dof(
         found["type"],
         axis,
@@ -89,7 +88,7 @@ def _typed(element: Element, spot: Spot, key: Id, prefix: str, draft: Draft) -> 
         spring_ref=found["springref"][0],
         armature=found["armature"],
         ref=found["ref"][0],
-        anchor=apply(spot.pose, found["pos"]) if spot.frame else found["pos"],
+        anchor=apply(scope.pose, found["pos"]) if scope.frame else found["pos"],
         written=written,
     )
 
@@ -104,7 +103,7 @@ def _limits(found: Values) -> Limits:
     return Limits(low, high, effort=effort)
 
 
-def _check_dofs(dofs: list[Dof], found: list[tuple[Element, Spot]], parent: Id) -> None:
+def _check_dofs(dofs: list[Dof], found: list[tuple[Element, Scope]], parent: Id) -> None:
     """What MuJoCo refuses, which takes several dofs or a free one."""
     if not dofs or (len(dofs) == 1 and dofs[0].kind is not DofKind.FREE):
         return

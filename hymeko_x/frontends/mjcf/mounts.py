@@ -8,7 +8,7 @@ from hymeko_x.formats.mjcf.codec import parameter_value
 from hymeko_x.formats.mjcf.notations import frame_of
 from hymeko_x.formats.mjcf.places import CAMERA, LIGHT, SITE
 from hymeko_x.formats.mjcf.words import PLAIN_ATTRIBUTES
-from hymeko_x.frontends.mjcf.spot import Spot, placed
+from hymeko_x.frontends.mjcf.builder import Scope, placed
 from hymeko_x.ir.mechanism import mount_edge
 from hymeko_x.ir.parts import Camera, Frame, Light
 
@@ -17,35 +17,35 @@ if TYPE_CHECKING:
 
     from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.draft import Draft, Values
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder, Values
     from hymeko_x.ir.mechanism import Id
     from hymeko_x.ir.parts import Parameters
 
     Names = tuple[str, ...]
 
 
-def read_site(element: Element, spot: Spot, draft: Draft) -> None:
+def read_site(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
     """A named pose on a body."""
-    key, found, _ = _read(element, spot, "frame", SITE, draft)
-    draft.vertices[key] = Frame(found["size"])
-    draft.keep(element, key)
+    key, found, _ = _read(element, scope, "frame", SITE, builder)
+    builder.vertices[key] = Frame(found["size"])
+    builder.keep(element, key)
 
 
-def read_camera(element: Element, spot: Spot, draft: Draft) -> None:
+def read_camera(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
     """A camera; whom it follows and how is among its parameters."""
-    key, found, base = _read(element, spot, "camera", CAMERA, draft)
+    key, found, base = _read(element, scope, "camera", CAMERA, builder)
     width, height = found["resolution"] or (0.0, 0.0)
     resolution = (int(width), int(height)) if found["resolution"] else None
-    draft.vertices[key] = Camera(found["fovy"], resolution, take_parameters(element, base))
-    draft.keep(element, key)
+    builder.vertices[key] = Camera(found["fovy"], resolution, take_parameters(element, base))
+    builder.keep(element, key)
 
 
-def read_light(element: Element, spot: Spot, draft: Draft) -> None:
+def read_light(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
     """A light."""
-    key, found, base = _read(element, spot, "light", LIGHT, draft)
+    key, found, base = _read(element, scope, "light", LIGHT, builder)
     x, y, z = found["diffuse"] or (0.0, 0.0, 0.0)
-    draft.vertices[key] = Light(found["kind"], (x, y, z) if found["diffuse"] else None, take_parameters(element, base))
-    draft.keep(element, key)
+    builder.vertices[key] = Light(found["kind"], (x, y, z) if found["diffuse"] else None, take_parameters(element, base))
+    builder.keep(element, key)
 
 
 def take_parameters(element: Element, base: Mapping[str, str], resolved: Names = (), law: Names = ()) -> Parameters:
@@ -65,14 +65,16 @@ def take_parameters(element: Element, base: Mapping[str, str], resolved: Names =
     return tuple(found)
 
 
-def _read(element: Element, spot: Spot, kind: str, groups: tuple[Group, ...], draft: Draft) -> tuple[Id, Values, Mapping[str, str]]:
-    key = draft.own(element, kind, f"{spot.body.name}/{element.tag}")
-    base = draft.base(element, key, spot.childclass)
-    if spot.frame:
-        draft.note(key, frame_of(), spot.frame)
-    found = draft.values(element, groups, base, key, always=bool(spot.frame))
-    draft.show(key)
-    mount = draft.names.take("mount", key.name)
-    draft.edges[mount] = mount_edge(spot.body, key, placed(found["pose"], spot))
-    draft.show(mount)
+def _read(
+    element: Element, scope: Scope, kind: str, groups: tuple[Group, ...], builder: MjcfBuilder
+) -> tuple[Id, Values, Mapping[str, str]]:
+    key = builder.own(element, kind, f"{scope.body.name}/{element.tag}")
+    base = builder.base(element, key, scope.childclass)
+    if scope.frame:
+        builder.note(key, frame_of(), scope.frame)
+    found = builder.values(element, groups, base, key, always=bool(scope.frame))
+    builder.show(key)
+    mount = builder.names.take("mount", key.name)
+    builder.edges[mount] = mount_edge(scope.body, key, placed(found["pose"], scope))
+    builder.show(mount)
     return key, found, base

@@ -15,52 +15,52 @@ from hymeko_x.ir.tendons import moves_along_one
 
 if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
 
 
-def read_sensors(sections: list[Element], draft: Draft) -> None:
+def read_sensors(sections: list[Element], builder: MjcfBuilder) -> None:
     """Sensors in order, each with the edge to what it measures."""
     for section in sections:
         for element in section.children:
             if element.tag.startswith("#"):
-                draft.keep_at_root(element, "sensor")
+                builder.keep_at_root(element, "sensor")
             else:
-                _read_sensor(element, draft)
+                _read_sensor(element, builder)
 
 
-def _read_sensor(element: Element, draft: Draft) -> None:
-    key = draft.own(element, "sensor", element.tag)
+def _read_sensor(element: Element, builder: MjcfBuilder) -> None:
+    key = builder.own(element, "sensor", element.tag)
     arcs: list[RobotArc] = []
     for word in ("objname", "refname"):
         kind = SENSED_TYPES.get(element.attributes.get("objtype" if word == "objname" else "reftype", ""))
         if word in element.attributes and kind is not None:
-            arcs.append(_arc(element, kind, word, "" if word == "objname" else "reference", draft))
+            arcs.append(_arc(element, kind, word, "" if word == "objname" else "reference", builder))
     for word, kind in SENSED.items():
         if word in element.attributes:
-            arcs.append(_arc(element, kind, word, "" if word in ALONE and not arcs else word, draft))
-    _check_target(element, arcs, draft)
-    draft.vertices[key] = Sensor(element.tag, None, take_parameters(element, {}))
-    draft.keep(element, key)
-    draft.show(key)
+            arcs.append(_arc(element, kind, word, "" if word in ALONE and not arcs else word, builder))
+    _check_target(element, arcs, builder)
+    builder.vertices[key] = Sensor(element.tag, None, take_parameters(element, {}))
+    builder.keep(element, key)
+    builder.show(key)
     if arcs:
-        sense = draft.names.take("sense", key.name)
-        draft.edges[sense] = Edge(Sense(), (*arcs, Arc(key, -1)))
-        draft.show(sense)
+        sense = builder.names.take("sense", key.name)
+        builder.edges[sense] = Edge(Sense(), (*arcs, Arc(key, -1)))
+        builder.show(sense)
 
 
 _SINGLE = ("jointpos", "jointvel", "jointactuatorfrc", "jointlimitpos", "jointlimitvel", "jointlimitfrc")
 
 
-def _check_target(element: Element, arcs: list[RobotArc], draft: Draft) -> None:
+def _check_target(element: Element, arcs: list[RobotArc], builder: MjcfBuilder) -> None:
     """Some sensors need a joint that moves along one coordinate, others a ball, others a camera with an image."""
     for arc in arcs:
-        camera = draft.vertices.get(arc.target)
+        camera = builder.vertices.get(arc.target)
         if element.tag in ("camprojection", "rangefinder") and isinstance(camera, Camera) and 0 in (camera.resolution or (1, 1)):
             raise refuse(codes.BAD_NUMBER, f"<{element.tag}> measures in '{arc.target.name}', which has no resolution", element.origin)
     if "joint" not in element.attributes and not any(arc.target.kind == "joint" for arc in arcs):
         return
-    single = moves_along_one(arcs[0], draft.edges)
+    single = moves_along_one(arcs[0], builder.edges)
     if (element.tag in _SINGLE and not single) or (element.tag.startswith("ball") and single):
         kind = "a ball joint" if single else "a hinge or a slide"
         raise refuse(
@@ -68,9 +68,9 @@ def _check_target(element: Element, arcs: list[RobotArc], draft: Draft) -> None:
         )
 
 
-def _arc(element: Element, kind: str, word: str, role: str, draft: Draft) -> RobotArc:
+def _arc(element: Element, kind: str, word: str, role: str, builder: MjcfBuilder) -> RobotArc:
     name = element.attributes[word]
-    target: Id = find_end(element, kind, word, draft)
+    target: Id = find_end(element, kind, word, builder)
     if target.kind == "joint":
-        role = draft.roles.get(target, {}).get(name, "") or role
+        role = builder.roles.get(target, {}).get(name, "") or role
     return Arc(target, 1, None, role)

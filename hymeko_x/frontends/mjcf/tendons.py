@@ -19,25 +19,25 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from hymeko_x.formats.mjcf.tree import Element
-    from hymeko_x.frontends.mjcf.draft import Draft
+    from hymeko_x.frontends.mjcf.builder import MjcfBuilder
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Parameters
 
 
-def read_tendons(sections: list[Element], draft: Draft) -> None:
+def read_tendons(sections: list[Element], builder: MjcfBuilder) -> None:
     """Spatial and fixed tendons in order."""
     for section in sections:
         for element in section.children:
             if element.tag in (SPATIAL, FIXED):
-                _read_tendon(element, draft)
+                _read_tendon(element, builder)
             else:
-                draft.keep_at_root(element, "tendon")
+                builder.keep_at_root(element, "tendon")
 
 
-def _read_tendon(element: Element, draft: Draft) -> None:
-    key = draft.own(element, "tendon", "tendon")
-    base = draft.base(element, key)
-    found = draft.values(element, TENDON, base, key)
+def _read_tendon(element: Element, builder: MjcfBuilder) -> None:
+    key = builder.own(element, "tendon", "tendon")
+    base = builder.base(element, key)
+    found = builder.values(element, TENDON, base, key)
     span = found["range"][0]
     red, green, blue, alpha = found["rgba"] or (0.0,) * 4
     tendon = Tendon(
@@ -53,12 +53,12 @@ def _read_tendon(element: Element, draft: Draft) -> None:
     )
     arcs: list[RobotArc] = []
     for step in element.detach("joint", "site", "geom", PULLEY):
-        arcs += _path(step, key, draft)
-    _check_path(element, tendon, arcs, draft)
-    draft.edges[key] = Edge(tendon, tuple(arcs))
+        arcs += _path(step, key, builder)
+    _check_path(element, tendon, arcs, builder)
+    builder.edges[key] = Edge(tendon, tuple(arcs))
     element.children = [child for child in element.children if child.tag != COMMENT]
-    draft.keep(element, key)
-    draft.show(key)
+    builder.keep(element, key)
+    builder.show(key)
 
 
 def _take_parameters(element: Element, base: Mapping[str, str]) -> Parameters:
@@ -70,36 +70,36 @@ def _take_parameters(element: Element, base: Mapping[str, str]) -> Parameters:
     return found
 
 
-def _check_path(element: Element, tendon: Tendon, arcs: list[RobotArc], draft: Draft) -> None:
+def _check_path(element: Element, tendon: Tendon, arcs: list[RobotArc], builder: MjcfBuilder) -> None:
     """Raises: Refusal for a path that MuJoCo refuses."""
-    wrong = wrong_path(tendon, arcs, draft.edges)
+    wrong = wrong_path(tendon, arcs, builder.edges)
     if wrong is not None:
         raise refuse(codes.BAD_NUMBER, f"the path of <{element.tag}> {wrong}", element.origin)
 
 
-def _path(step: Element, tendon: Id, draft: Draft) -> list[RobotArc]:
+def _path(step: Element, tendon: Id, builder: MjcfBuilder) -> list[RobotArc]:
     """One step of the path: one arc, and one more for the side of a wrapping shape."""
     if step.tag == PULLEY:
-        divisor = _number(step, "divisor", draft)
+        divisor = _number(step, "divisor", builder)
         if divisor <= 0.0:
             raise refuse(codes.BAD_NUMBER, f"<pulley divisor> is {divisor}, expected a positive number", step.origin)
         return [Arc(tendon, 0, (divisor,), PULLEY)]
     if step.tag == "joint":
-        joint = draft.find(step, "joint", step.attributes.get("joint", ""))
-        role = draft.roles.get(joint, {}).get(step.attributes["joint"], "")
-        return [Arc(joint, 1, (_number(step, "coef", draft),), role)]
+        joint = builder.find(step, "joint", step.attributes.get("joint", ""))
+        role = builder.roles.get(joint, {}).get(step.attributes["joint"], "")
+        return [Arc(joint, 1, (_number(step, "coef", builder),), role)]
     if step.tag == "site":
-        return [Arc(draft.find(step, "site", step.attributes.get("site", "")))]
-    arcs: list[RobotArc] = [Arc(draft.find(step, "geom", step.attributes.get("geom", "")), 0, None, WRAP)]
+        return [Arc(builder.find(step, "site", step.attributes.get("site", "")))]
+    arcs: list[RobotArc] = [Arc(builder.find(step, "geom", step.attributes.get("geom", "")), 0, None, WRAP)]
     side = step.attributes.get("sidesite")
-    return arcs if side is None else [*arcs, Arc(draft.find(step, "site", side), 0, None, SIDE)]
+    return arcs if side is None else [*arcs, Arc(builder.find(step, "site", side), 0, None, SIDE)]
 
 
-def _number(step: Element, name: str, draft: Draft) -> float:
+def _number(step: Element, name: str, builder: MjcfBuilder) -> float:
     try:
         found = numbers_of(step.attributes, name, 1, 1)
     except BadAttribute as error:
-        raise draft.bad(step, error) from error
+        raise builder.bad(step, error) from error
     if found is None:
         raise refuse(codes.MISSING_ATTRIBUTE, f"<{step.tag}> needs {name}", step.origin)
     return found[0]

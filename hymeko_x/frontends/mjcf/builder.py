@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from msgspec import field
+from msgspec import Struct, field
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
@@ -16,6 +16,7 @@ from hymeko_x.formats.mjcf.tree import verbatim
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import ROOT, Id, Provenance
 from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.values import IDENTITY, Pose, compose
 from hymeko_x.xml.tree import read_numbers
 from hymeko_x.xml.unread import extra_of, unread_extras
 
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 Values = dict[str, Any]
 
 
-class Draft(Builder):
+class MjcfBuilder(Builder):
     """An MJCF model so far. ``named``: elements by MJCF's own kinds and names."""
 
     report: Report
@@ -194,3 +195,21 @@ def _say_the_same(a: str | None, b: str | None) -> bool:
         return True
     numbers = None if a is None or b is None else read_numbers(a)
     return bool(numbers) and b is not None and numbers == read_numbers(b)
+
+
+class Scope(Struct, frozen=True):
+    """Where an element of a body is: the body, the <frame> in it (its number, empty for none) with its pose there, and the childclass.
+
+    ``stem``: the nearest name further out, after which nameless bodies are called; so their names do not grow with depth.
+    """
+
+    body: Id
+    stem: str
+    frame: str = ""
+    pose: Pose = IDENTITY
+    childclass: str | None = None
+
+
+def placed(pose: Pose, scope: Scope) -> Pose:
+    """A pose, given in the frame around the element, seen from the body."""
+    return compose(scope.pose, pose) if scope.frame else pose

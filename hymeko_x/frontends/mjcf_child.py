@@ -1,7 +1,8 @@
 """`python -m hymeko_x.frontends.mjcf_child SECONDS BYTES`: a model from standard input, expanded, to standard output.
 
+Models that copy or attach themselves end this process, and nothing else.
 In: one line of JSON with the sizes of the model's text, its sub-models and its files, then all of them in that order.
-Out: the expanded text, and exit code 0; or MuJoCo's words, and exit code 3.
+Out: the expanded text, and exit code 0; or MuJoCo's message, and exit code 3.
 """
 
 from __future__ import annotations
@@ -21,16 +22,16 @@ def main() -> int:
     models, assets = ({name: sys.stdin.buffer.read(size) for name, size in job[kind].items()} for kind in ("models", "assets"))
     answer = os.dup(1)
     os.dup2(2, 1)  # MuJoCo prints its warnings
-    code, said = _expanded(text, models, assets, job["compile"])
+    code, output = _expanded(text, models, assets, job["compile"])
     with open(answer, "wb") as out:
-        out.write(said.encode("utf-8", "replace"))
+        out.write(output.encode("utf-8", "replace"))
     return code
 
 
 def _expanded(text: str, models: dict[str, bytes], assets: dict[str, bytes], compiled: bool) -> tuple[int, str]:
     """The model as MuJoCo writes it, with every value as its author wrote it.
 
-    What MuJoCo warns of is not about the expansion; whoever compiles the result hears it.
+    MuJoCo's warnings are not about the expansion; they come again when the result is compiled.
     """
     warnings.simplefilter("ignore")
     import mujoco

@@ -1,1 +1,0 @@
-"""The process in which MuJoCo expands a model: models that copy or attach themselves end it, and nothing else."""
