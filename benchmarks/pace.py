@@ -15,12 +15,12 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from benchmarks.cluster import cluster
 from hymeko_x.corpus import batch, cache, catalog
 from hymeko_x.corpus.cases import from_catalogue
 from hymeko_x.corpus.engines import Local, OnRay
 from hymeko_x.corpus.plan import Plan, pairs_of
 from hymeko_x.corpus.store import Store
-from hymeko_x.testing.cluster import cluster
 
 if TYPE_CHECKING:
     from hymeko_x.corpus.cases import Case

@@ -1,7 +1,7 @@
 """Other people's programs that the tests and benchmarks compare with, each in an environment of its own.
 
 They cannot share ours: some bring their own build of USD, others pin an older MuJoCo. ``python -m peers`` makes the
-environments below ``.peers/``; without them the tests that need one are skipped and say so.
+environments below ``.peers/``; without them the tests that need one are skipped with that reason.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _DRIVERS = Path(__file__).parent / "drivers"
 
 
 class Peer(Struct, frozen=True):
-    """A program: what the package index calls it and needs beside it, and the driver that runs in its environment.
+    """A program: its name in the package index, further requirements, and the driver that runs in its environment.
 
     One without requirements runs in our environment, which has it.
     """
@@ -54,15 +54,15 @@ class Peer(Struct, frozen=True):
         (ROOT / self.name / ".installed").touch()
 
     def run(self, jobs: Iterable[Mapping[str, Any]], timeout: float = 600.0) -> list[dict[str, Any]]:
-        """What the driver answers to each job, in one process so that imports are paid once.
+        """The answers of the driver to all jobs, in one process so that imports are paid once.
 
         A job that fails has ``error``. When the process dies, so have all jobs that it did not answer.
         """
         asked = [json.dumps(job) for job in jobs]
         done = subprocess.run(self.command(), input="\n".join(asked), capture_output=True, text=True, timeout=timeout, check=False)
         answers = [json.loads(line[2:]) for line in done.stdout.splitlines() if line.startswith("> ")]
-        said = done.stderr.strip().splitlines()[-1:] or [f"exit {done.returncode}"]
-        return answers + [{"error": f"the process died: {said[0]}"}] * (len(asked) - len(answers))
+        reason = done.stderr.strip().splitlines()[-1:] or [f"exit {done.returncode}"]
+        return answers + [{"error": f"the process died: {reason[0]}"}] * (len(asked) - len(answers))
 
 
 URDF_USD_CONVERTER = Peer("urdf-usd-converter", ("urdf-usd-converter==0.3.4",), "urdf_usd.py")

@@ -51,8 +51,8 @@ class Session:
             answer = None
         if answer is None:
             return {"error": self._died()}
-        said: dict[str, Any] = json.loads(answer)
-        return said
+        decoded: dict[str, Any] = json.loads(answer)
+        return decoded
 
     def _start(self) -> None:
         pipe = subprocess.PIPE
@@ -77,9 +77,9 @@ class Session:
         ended = self._process.wait()
         self._stop()
         self._stderr.seek(0)
-        said = self._stderr.read().strip().splitlines()[-1:] or ["it said nothing"]
+        reason = self._stderr.read().strip().splitlines()[-1:] or ["without a message"]
         how = f"signal {-ended}" if ended < 0 else f"exit {ended}"
-        return f"the process died ({how}): {said[0][:200]}"
+        return f"the process died ({how}): {reason[0][:200]}"
 
 
 def _listen(process: subprocess.Popen[str], answers: queue.SimpleQueue[str | None]) -> None:

@@ -153,12 +153,6 @@ ROOMS = re.compile(r"(formats|frontends|backends|verify/readers)/(?!__init__\.py
 
 STILL_NAMED = frozenset(
     {
-        "verify/checks/inertia.py",
-        "verify/checks/shapes.py",
-        "verify/checks/tendons.py",
-        "verify/matching/__init__.py",
-        "verify/matching/bodies.py",
-        "verify/readers/__init__.py",
         "xml/unread.py",  # the prefix of a namespace, which is called as the format is
     }
 )

@@ -31,8 +31,7 @@ if TYPE_CHECKING:
 _PRELOADED = (
     "hymeko_x.meshes.reader",
     "hymeko_x.corpus.work",
-    "hymeko_x.verify.compare",
-    "hymeko_x.verify.readers.mechanism",
+    "hymeko_x.verify.checks",
     "networkx",
     "scipy.sparse",
     "scipy.spatial",

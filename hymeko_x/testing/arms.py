@@ -1,4 +1,4 @@
-"""A strategy for whole robots that every format can say: what a verdict can be asked about in all of them."""
+"""A strategy for whole robots that every format can represent, so that the verifier can compare them in all formats."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ _GEOMETRIES = st.one_of(
 def arms(draw: st.DrawFn) -> Mechanism:
     """A robot on the world: one tree of bodies with mass, hinges, slides and fixed joints with limits, a follower, shapes.
 
-    All of it is physical (MuJoCo takes no other), and no two moments or sides of a box are equal, so that each turn of
-    what has them is another robot.
+    All of it is physical (MuJoCo refuses anything else), and no two moments or sides of a box are equal, so that each rotation
+    of them is another robot.
     """
     bodies = [Id("body", name) for name in _NAMES[: draw(st.integers(2, 5))]]
     edges: dict[Id, RobotEdge] = {Id("joint", "mount"): joint_edge(parts.Joint(), WORLD, bodies[0], Pose())}

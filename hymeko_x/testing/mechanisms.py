@@ -33,13 +33,13 @@ from hymeko_x.testing.parts import (
     LUMPED,
     MATERIALS,
     MESHES,
+    MOUNTED,
     POSE_SETS,
     RELATIONS,
     SHAPES,
     SUBSETS,
     TENDONS,
     TEXTURES,
-    THINGS,
     dofs,
     inertials,
 )
@@ -52,10 +52,10 @@ if TYPE_CHECKING:
 
 
 class Knobs(Struct, frozen=True):
-    """What mechanisms may have. Each knob takes something away; as they stand, everything that the IR can say is in.
+    """The features of drawn mechanisms. By default they have everything that the IR can represent; each knob excludes something.
 
-    ``dof_kinds`` and ``most_dofs`` are of one joint; ``loose`` allows bodies without a joint above them beside the
-    first; ``names`` gives the names of everything.
+    ``dof_kinds`` and ``most_dofs`` are of one joint; ``loose`` allows further bodies without a parent joint beside the
+    first; ``names`` draws the names of all elements.
     """
 
     most_bodies: int = 4
@@ -97,8 +97,8 @@ TREES = Knobs(
 """Bodies, joints and shapes, all of it one tree."""
 
 
-class _Draft:
-    """A mechanism in the making: each element gets a name of its own among its kind."""
+class _Builder:
+    """A mechanism that is being drawn: each element gets a name that is unique among its kind."""
 
     def __init__(self, draw: st.DrawFn, knobs: Knobs) -> None:
         self.draw = draw
@@ -133,7 +133,7 @@ class _Draft:
         return self.draw(st.sampled_from(self.of(*kinds)))
 
     def chance(self, *kinds: str) -> bool:
-        """Whether to add something that needs these kinds of elements."""
+        """Whether to add an element that needs these kinds of elements."""
         return all(self.of(kind) for kind in kinds) and self.draw(st.booleans())
 
     def arcs(self, sign: int, kinds: tuple[str, ...], weight: st.SearchStrategy[parts.Weight]) -> tuple[RobotArc, ...]:
@@ -148,32 +148,32 @@ class _Draft:
 def mechanisms(draw: st.DrawFn, knobs: Knobs = EVERYTHING) -> Mechanism:
     """A mechanism with any of the parts that the IR has, names in any script, extras, notations and a layout.
 
-    ``knobs`` take things away. Extras of the mechanism as a whole come as readers give them: those with a path first,
-    then the others by place. It shrinks to an empty mechanism.
+    ``knobs`` exclude features. Extras of the mechanism as a whole are in the order of readers: those with a path first,
+    then the others by index. It shrinks to an empty mechanism.
     """
-    draft = _Draft(draw, knobs)
+    builder = _Builder(draw, knobs)
     if knobs.world and draw(st.booleans()):
-        draft.vertices[WORLD] = parts.World()
-    draft.several(st.builds(parts.Body, maybe(inertials())), knobs.most_bodies)
+        builder.vertices[WORLD] = parts.World()
+    builder.several(st.builds(parts.Body, maybe(inertials())), knobs.most_bodies)
     for part, most, wanted in _vertices(knobs):
         if wanted:
-            draft.several(part, most)
-    _add_joints(draft)
+            builder.several(part, most)
+    _add_joints(builder)
     if knobs.shapes:
-        _add_shapes(draft)
+        _add_shapes(builder)
     adders = [add for add, is_wanted in _ADDERS if is_wanted(knobs)]
     for add in draw(st.lists(st.sampled_from(adders), unique=True)) if adders else ():
-        add(draft)
-    return _finished(draft)
+        add(builder)
+    return _finished(builder)
 
 
 def _vertices(knobs: Knobs) -> tuple[tuple[st.SearchStrategy[parts.VertexPart], int, bool], ...]:
-    """What stands beside the bodies: how many at most, and whether it is wanted."""
+    """The vertices beside the bodies: how many at most, and whether they are wanted."""
     return (
         (MATERIALS, 2, knobs.materials),
         (MESHES, 2, knobs.meshes),
         (TEXTURES, 1, knobs.materials),
-        (THINGS, 2, knobs.sensors),
+        (MOUNTED, 2, knobs.sensors),
         (LUMPED, 2, knobs.lumped),
         (ACTUATORS, 1, knobs.actuators),
         (POSE_SETS, 1, knobs.poses),
@@ -181,62 +181,64 @@ def _vertices(knobs: Knobs) -> tuple[tuple[st.SearchStrategy[parts.VertexPart], 
     )
 
 
-def _add_joints(draft: _Draft) -> None:
-    knobs = draft.knobs
-    bodies = draft.of("body")
+def _add_joints(builder: _Builder) -> None:
+    knobs = builder.knobs
+    bodies = builder.of("body")
     for number, child in enumerate(bodies):
-        above = [*draft.of("world"), *bodies[:number]]
-        parent = draft.draw(st.sampled_from([None, *above] if knobs.loose or not above else above))
+        above = [*builder.of("world"), *bodies[:number]]
+        parent = builder.draw(st.sampled_from([None, *above] if knobs.loose or not above else above))
         if parent is not None:
-            joint = parts.Joint(tuple(draft.draw(st.lists(dofs(knobs.dof_kinds), max_size=knobs.most_dofs))))
-            child_pose = draft.draw(st.just(Pose()) | POSES) if knobs.child_poses else Pose()
-            draft.edge("joint", joint_edge(joint, parent, child, draft.draw(POSES), child_pose))
+            joint = parts.Joint(tuple(builder.draw(st.lists(dofs(knobs.dof_kinds), max_size=knobs.most_dofs))))
+            child_pose = builder.draw(st.just(Pose()) | POSES) if knobs.child_poses else Pose()
+            builder.edge("joint", joint_edge(joint, parent, child, builder.draw(POSES), child_pose))
 
 
-def _add_shapes(draft: _Draft) -> None:
-    for body in draft.of("body", "world"):
-        for shape in draft.draw(st.lists(SHAPES, max_size=2)):
-            mesh = draft.one("mesh") if draft.chance("mesh") else None
+def _add_shapes(builder: _Builder) -> None:
+    for body in builder.of("body", "world"):
+        for shape in builder.draw(st.lists(SHAPES, max_size=2)):
+            mesh = builder.one("mesh") if builder.chance("mesh") else None
             if mesh is not None:
                 shape = parts.Shape(parts.MeshShape(), shape.role, shape.name, shape.rgba)
-            material = draft.one("material") if draft.chance("material") else None
+            material = builder.one("material") if builder.chance("material") else None
             word = {"visual": "visual", "collision": "collision", "both": "shape"}[shape.role.value]
-            name = draft.draw(st.just(f"{body.name}/{word}") | draft.knobs.names)
-            key = draft.edge("shape", shape_edge(shape, body, draft.draw(POSES), mesh, material), name)
-            if material is None and draft.draw(st.booleans()):
-                _colour(draft, key, shape, body, mesh)
+            name = builder.draw(st.just(f"{body.name}/{word}") | builder.knobs.names)
+            key = builder.edge("shape", shape_edge(shape, body, builder.draw(POSES), mesh, material), name)
+            if material is None and builder.draw(st.booleans()):
+                _colour(builder, key, shape, body, mesh)
 
 
-def _colour(draft: _Draft, key: Id, shape: parts.Shape, body: Id, mesh: Id | None) -> None:
-    """Give the shape a nameless colour of its own."""
-    material = draft.id("material", f"{key.name}/material")
-    draft.vertices[material] = parts.Material(None, draft.draw(COLOURS))
-    draft.edges[key] = shape_edge(shape, body, draft.draw(POSES), mesh, material)
+def _colour(builder: _Builder, key: Id, shape: parts.Shape, body: Id, mesh: Id | None) -> None:
+    """Give the shape a nameless material of its own."""
+    material = builder.id("material", f"{key.name}/material")
+    builder.vertices[material] = parts.Material(None, builder.draw(COLOURS))
+    builder.edges[key] = shape_edge(shape, body, builder.draw(POSES), mesh, material)
 
 
-def _add_couplings(draft: _Draft) -> None:
-    if not draft.of("joint"):
+def _add_couplings(builder: _Builder) -> None:
+    if not builder.of("joint"):
         return
-    follower = draft.one("joint")
+    follower = builder.one("joint")
     weights = st.lists(NUMBERS, min_size=1, max_size=3).map(tuple) | st.just((0.0, 1.0))
-    leaders = tuple((draft.one("joint"), draft.draw(weights)) for _ in range(draft.draw(st.integers(1, 2))))
-    name = draft.draw(st.sampled_from([follower.name, "gear"]))
-    draft.edge("coupling", coupling_edge(follower, leaders, active=draft.draw(st.booleans())), name)
+    leaders = tuple((builder.one("joint"), builder.draw(weights)) for _ in range(builder.draw(st.integers(1, 2))))
+    name = builder.draw(st.sampled_from([follower.name, "gear"]))
+    builder.edge("coupling", coupling_edge(follower, leaders, active=builder.draw(st.booleans())), name)
 
 
-def _add_mounts(draft: _Draft) -> None:
-    if draft.of("body", "world") and draft.of("frame", "camera", "light", "sensor"):
-        draft.edge("mount", mount_edge(draft.one("body", "world"), draft.one("frame", "camera", "light", "sensor"), draft.draw(POSES)))
+def _add_mounts(builder: _Builder) -> None:
+    if builder.of("body", "world") and builder.of("frame", "camera", "light", "sensor"):
+        builder.edge(
+            "mount", mount_edge(builder.one("body", "world"), builder.one("frame", "camera", "light", "sensor"), builder.draw(POSES))
+        )
 
 
-def _add_layers(draft: _Draft) -> None:
-    if draft.of("texture") and draft.of("material"):
-        draft.edge("layer", layer_edge(draft.one("texture"), draft.one("material"), draft.draw(TEXTS)))
+def _add_layers(builder: _Builder) -> None:
+    if builder.of("texture") and builder.of("material"):
+        builder.edge("layer", layer_edge(builder.one("texture"), builder.one("material"), builder.draw(TEXTS)))
 
 
-def _add_subsets(draft: _Draft) -> None:
-    if draft.of("shape") and draft.of("material"):
-        draft.edge("subset", subset_edge(draft.draw(SUBSETS).faces, draft.one("shape"), draft.one("material")))
+def _add_subsets(builder: _Builder) -> None:
+    if builder.of("shape") and builder.of("material"):
+        builder.edge("subset", subset_edge(builder.draw(SUBSETS).faces, builder.one("shape"), builder.one("material")))
 
 
 def _add_any(
@@ -245,18 +247,18 @@ def _add_any(
     sign: int,
     targets: tuple[str, ...],
     weight: st.SearchStrategy[parts.Weight],
-) -> Callable[[_Draft], None]:
+) -> Callable[[_Builder], None]:
     """An adder of one edge of this kind with arcs to any of its targets."""
 
-    def add(draft: _Draft) -> None:
-        draft.edge(kind, Edge(draft.draw(part), draft.arcs(sign, targets, weight)))
+    def add(builder: _Builder) -> None:
+        builder.edge(kind, Edge(builder.draw(part), builder.arcs(sign, targets, weight)))
 
     return add
 
 
 _LISTS = st.lists(NUMBERS, max_size=3).map(tuple)
 _PLACED = POSES.filter(lambda p: p != Pose() or p.written is not None)
-_ADDERS: tuple[tuple[Callable[[_Draft], None], Callable[[Knobs], bool]], ...] = (
+_ADDERS: tuple[tuple[Callable[[_Builder], None], Callable[[Knobs], bool]], ...] = (
     (_add_couplings, lambda knobs: knobs.couplings),
     (_add_mounts, lambda knobs: knobs.sensors),
     (_add_layers, lambda knobs: knobs.materials),
@@ -282,15 +284,15 @@ _EXTRAS = st.builds(
 )
 
 
-def _finished(draft: _Draft) -> Mechanism:
-    draw, knobs = draft.draw, draft.knobs
-    keys = [*draft.vertices, *draft.edges]
+def _finished(builder: _Builder) -> Mechanism:
+    draw, knobs = builder.draw, builder.knobs
+    keys = [*builder.vertices, *builder.edges]
     extras = _extras(draw, keys) if knobs.extras else {}
     noted = draw(st.lists(st.sampled_from([ROOT, *keys]), max_size=2, unique=True)) if knobs.notations else []
     notations = {key: draw(st.dictionaries(TEXTS, TEXTS, min_size=1, max_size=2)) for key in noted}
     alone = [key for key in keys if key.kind != "shape"]
     layout = draw(st.just([]) | st.lists(st.sampled_from(alone), unique=True)) if alone else []
-    graph = Hypergraph(draft.vertices, draft.edges)
+    graph = Hypergraph(builder.vertices, builder.edges)
     return Mechanism(draw(knobs.names), graph, extras, {}, notations, {}, tuple(layout))
 
 

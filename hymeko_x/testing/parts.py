@@ -1,4 +1,4 @@
-"""Strategies for the parts of mechanisms: everything that a vertex or an edge may be."""
+"""Strategies for the parts of mechanisms, one for each kind of vertex and edge."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ TENSORS = st.tuples(*[SMALL] * 6)
 
 
 def _is_no_segment(pose: Pose) -> bool:
-    """Whether a pose is not given by two points, which say more than a rotation."""
+    """Whether a pose is not given by two points, which hold a length beside a rotation."""
     return pose.written is None or pose.written.kind != "fromto"
 
 
@@ -83,7 +83,7 @@ MESHES = st.builds(parts.Mesh, maybe(URIS), st.sampled_from([(1.0, 1.0, 1.0), (0
 )
 SUBSETS = st.builds(parts.Subset, st.lists(st.integers(0, 9), unique=True, max_size=3).map(lambda faces: tuple(sorted(faces))))
 TEXTURES = st.builds(parts.Texture, maybe(URIS), maybe(TEXTS))
-THINGS = st.one_of(
+MOUNTED = st.one_of(
     st.builds(parts.Frame, st.lists(LENGTHS, max_size=3).map(tuple)),
     st.builds(parts.Sensor, TEXTS, maybe(NUMBERS), PARAMETERS),
     st.builds(parts.Camera, maybe(NUMBERS), maybe(st.tuples(st.integers(0, 4096), st.integers(0, 4096))), PARAMETERS),

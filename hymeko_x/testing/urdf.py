@@ -1,4 +1,4 @@
-"""Strategies for what URDF has a word for, under the ids that reading it gives."""
+"""Strategies for mechanisms that URDF can represent, under the ids that its reader gives."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _joint(draw: st.DrawFn) -> parts.Joint:
 
 @st.composite
 def urdf_mechanisms(draw: st.DrawFn) -> Mechanism:
-    """A mechanism with everything that URDF has a word for, under the ids that reading it gives."""
+    """A mechanism with everything that URDF can represent, under the ids that its reader gives."""
     names = Names()
     vertices: dict[Id, parts.VertexPart] = {}
     edges: dict[Id, RobotEdge] = {}
@@ -85,8 +85,8 @@ def urdf_mechanisms(draw: st.DrawFn) -> Mechanism:
         for role in (parts.Role.VISUAL, parts.Role.COLLISION):
             for geometry in draw(st.lists(_GEOMETRIES, max_size=2)):
                 key = names.take("shape", f"{body.name}/{role.value}")
-                look = draw(st.none() | _COLOURS | st.sampled_from(materials)) if materials else draw(st.none() | _COLOURS)
-                rgba, material = (None, look) if isinstance(look, Id) else (look, None)
+                appearance = draw(st.none() | _COLOURS | st.sampled_from(materials)) if materials else draw(st.none() | _COLOURS)
+                rgba, material = (None, appearance) if isinstance(appearance, Id) else (appearance, None)
                 mesh = _mesh(draw(_MESHES), meshes, vertices, names) if geometry == parts.MeshShape() else None
                 edges[key] = shape_edge(parts.Shape(geometry, role, draw(st.none() | _NAMES), rgba), body, draw(_POSES), mesh, material)
     found = _tree(draw, bodies, edges)

@@ -1,4 +1,4 @@
-"""Strategies for texts, names, numbers, poses and whatever else has no place of its own."""
+"""Strategies for texts, names, numbers, poses, colours and parameters."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _NOTATIONS = {"euler:xyz": 3, "euler:ZYX": 3, "axisangle": 4, "xyaxes": 6, "zaxi
 
 @st.composite
 def _written_poses(draw: st.DrawFn) -> Pose:
-    """A pose whose rotation was written in one of the other notations."""
+    """A pose whose rotation has one of the other notations."""
     kind, count = draw(st.sampled_from(sorted(_NOTATIONS.items())))
     numbers = draw(st.tuples(*[SMALL] * count))
     try:

@@ -1,7 +1,7 @@
 """The verifier: do two files describe the same robot, as the formats' own engines see them?
 
 No engine of this project takes part where a reference reader exists (URDF, xacro, MJCF, USD, SDF). HyMeKo text and mechanisms
-in memory have no other reader; verdicts about them say so.
+in memory have no other reader; verdicts about them note that.
 """
 
 from __future__ import annotations
@@ -43,15 +43,15 @@ def verify(
     """Whether two robots (files, mechanisms or models) are the same one.
 
     They are compared at the zero pose, at their limits and at ``samples`` random configurations drawn with ``seed``. Bodies
-    are matched by name, or with ``structure`` by the shape of the tree. Without ``meshes`` no mesh file is read, which is what
-    takes most of the time; one reader of meshes in several verdicts reads each file once. ``packages`` says where
-    ``package://NAME`` is, ``search_path`` in which folders packages stand, ``arguments`` the values of a xacro file's
-    arguments, ``variants`` which variant of a variant set of USD is meant, in every file that has the set.
+    are matched by name, or with ``structure`` by the shape of the tree. Without ``meshes`` no mesh file is read, which takes
+    most of the time; one reader of meshes in several verdicts reads each file once. ``packages`` are the folders of
+    ``package://NAME``, ``search_path`` those with further packages, ``arguments`` the values of a file's macro arguments,
+    ``variants`` the variant to select of each variant set, in every file that has the set.
 
     Raises: Refusal HX001, HX003 or HX301 when a file is not there, its format unknown or its engine not installed, HX040
     when a variant set has no such variant. A file that its engine refuses makes the verdict "not comparable".
     """
-    from hymeko_x.verify.compare import compare
+    from hymeko_x.verify.checks import compare
     from hymeko_x.verify.verdict import Verdict
 
     models: list[KinematicModel] = []
@@ -86,13 +86,13 @@ def model_of(
     if isinstance(robot, KinematicModel):
         return robot
     if isinstance(robot, Mechanism):
-        from hymeko_x.verify.readers.mechanism import from_mechanism
+        from hymeko_x.verify.readers.hymeko import from_mechanism
 
         return from_mechanism(robot)
-    from hymeko_x.verify.readers import Places, read
+    from hymeko_x.verify.readers import Lookup, read
 
     folders = {name: Path(folder) for name, folder in (packages or {}).items()}
-    return read(Path(robot), Places(folders, search_path, arguments or {}, variants or {}))
+    return read(Path(robot), Lookup(folders, search_path, arguments or {}, variants or {}))
 
 
 class _Callable(ModuleType):

@@ -1,4 +1,4 @@
-"""Forward kinematics of many configurations at once: level by level over the tree, never one body and sample at a time."""
+"""Forward kinematics of many configurations at once, level by level over the tree, and the configurations to compare at."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ import numpy as np
 from msgspec import Struct
 
 from hymeko_x.verify.model import Array, Coupling, Dof, Index, Kind, KinematicModel
-from hymeko_x.verify.spatial import random_quats, rigid, rotation_about, rotation_from_quat
+from hymeko_x.verify.spatial import angle_between, random_quats, rigid, rotation_about, rotation_from_quat
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
-_POSES_AT_ONCE = 20_000  # bounds the memory of one batch to a few MB, however many samples are asked for
+_POSES_AT_ONCE = 20_000  # keeps the memory of one batch at a few MB, whatever the number of samples
 
 
 class _Slot(Struct, frozen=True, eq=False):
@@ -52,19 +52,19 @@ class Kinematics(Struct, frozen=True, eq=False):
             yield rows, self.poses(q[rows])
 
 
-def prepare(model: KinematicModel, *, floor: frozenset[int] = frozenset()) -> Kinematics:
+def prepare(model: KinematicModel, *, pinned: frozenset[int] = frozenset()) -> Kinematics:
     """The constants of a model's forward kinematics.
 
-    The bodies in ``floor`` are put onto the world's frame whatever their joint says: bases that must not count.
+    The bodies in ``pinned`` are on the world's frame whatever their joint: bases whose pose is not compared.
     """
-    placements = np.stack([np.eye(4) if i in floor else body.joint.placement for i, body in enumerate(model.bodies)])
-    return Kinematics(placements, _slots(model, floor), _levels(model))
+    placements = np.stack([np.eye(4) if i in pinned else body.joint.placement for i, body in enumerate(model.bodies)])
+    return Kinematics(placements, _slots(model, pinned), _levels(model))
 
 
-def _slots(model: KinematicModel, floor: frozenset[int]) -> tuple[_Slot, ...]:
+def _slots(model: KinematicModel, pinned: frozenset[int]) -> tuple[_Slot, ...]:
     members: dict[tuple[int, str], list[tuple[int, int]]] = {}
     for body, first in enumerate(model.first_dof):
-        if body in floor:
+        if body in pinned:
             continue
         for place, dof in enumerate(model.bodies[body].joint.dofs):
             members.setdefault((place, dof.kind.value), []).append((body, first + place))
@@ -100,8 +100,8 @@ def _motion(slot: _Slot, q: Array) -> Array:
     """Tr(a) M(q - ref) Tr(-a) of every dof of the slot, (n, dofs, 4, 4)."""
     match slot.kind:
         case Kind.FREE:
-            place = q[:, slot.columns[:, None] + np.arange(7)]
-            return rigid(rotation_from_quat(place[..., 3:]), place[..., :3])
+            pose = q[:, slot.columns[:, None] + np.arange(7)]
+            return rigid(rotation_from_quat(pose[..., 3:]), pose[..., :3])
         case Kind.BALL:
             turn = rotation_from_quat(q[:, slot.columns[:, None] + np.arange(4)])
             return _about(turn, slot.anchors, np.zeros(3))
@@ -119,10 +119,32 @@ def _about(turn: Array, anchors: Array, shift: Array) -> Array:
     return rigid(turn, anchors - (turn @ anchors[..., None])[..., 0] + shift)
 
 
+_AGREEMENT = 1e-9
+"""In m, of larger robots the part of their reach, and in rad: two readers of one file compute in doubles."""
+
+
+def disagreement(model: KinematicModel, engine: Callable[[Array], Array], count: int = 3) -> str:
+    """Where the world poses that an engine computes differ from the model's; "" when nowhere.
+
+    ``engine`` takes configurations (n, width) of the model and returns the poses (n, bodies, 4, 4) of its bodies.
+    """
+    q = draw(model, count, np.random.default_rng(0))
+    ours, theirs = prepare(model).poses(q), engine(q)
+    distance = np.linalg.norm(ours[..., :3, 3] - theirs[..., :3, 3], axis=-1).max(axis=0)
+    angle = angle_between(ours[..., :3, :3], theirs[..., :3, :3]).max(axis=0)
+    worst = int(np.argmax(np.maximum(distance, angle)))
+    if max(distance[worst], angle[worst]) <= _AGREEMENT * (1 + float(np.abs(ours[..., :3, 3]).max())):
+        return ""
+    return f"{model.body_label(worst)} is {distance[worst]:.3g} m and {angle[worst]:.3g} rad apart"
+
+
 # ---- configurations to compare at ------------------------------------------------------------------------------------
 
 _REACH = {Kind.HINGE: 2 * np.pi, Kind.SCREW: 2 * np.pi, Kind.SLIDE: 10.0}
+"""In rad or m from the reference: where wider limits are cut, because rounding errors grow with the coordinate."""
+
 _UNLIMITED = {Kind.HINGE: np.pi, Kind.SCREW: np.pi, Kind.SLIDE: 1.0}
+"""In rad or m from the reference, in both directions: the range of a coordinate without limits."""
 
 
 def draw(model: KinematicModel, count: int, rng: np.random.Generator) -> Array:
@@ -176,24 +198,16 @@ def follow(model: KinematicModel, q: Array) -> None:
 def ordered(model: KinematicModel) -> Sequence[Coupling]:
     """The couplings, every leader's own coupling before the couplings that it leads."""
     by_follower = {coupling.follower: coupling for coupling in model.couplings}
-    order: list[Coupling] = []
-    state: dict[int, int] = {}
-    for start in by_follower:
-        stack = [start]
-        while stack:
-            dof = stack[-1]
-            coupling = by_follower.get(dof)
-            waiting = (
-                []
-                if coupling is None or state.get(dof)
-                else [lead for lead, _ in coupling.leaders if lead in by_follower and lead not in state]
-            )
-            state.setdefault(dof, 1)
-            if waiting:
-                stack.extend(waiting)
-                continue
-            stack.pop()
-            if coupling is not None and state[dof] == 1:
-                state[dof] = 2
-                order.append(coupling)
-    return order
+    order: dict[int, Coupling] = {}
+    visited: set[int] = set()
+    stack = list(by_follower)[::-1]
+    while stack:
+        dof = stack[-1]
+        leaders = [] if dof in visited else [leader for leader, _ in by_follower[dof].leaders if leader in by_follower]
+        visited.add(dof)
+        waiting = [leader for leader in leaders if leader not in visited]
+        if waiting:
+            stack += waiting
+        else:
+            order.setdefault(stack.pop(), by_follower[dof])
+    return list(order.values())

@@ -1,8 +1,9 @@
-"""Meshes by what can be measured on them: their triangles, bounding box, area and volume."""
+"""Mesh files as triangles, and how far the meshes of two bodies differ: by bounding box, area, volume and points."""
 
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 from typing import TYPE_CHECKING, Any
 
@@ -12,12 +13,26 @@ from msgspec.structs import replace
 from hymeko_x.verify.model import MeshFile, Surface
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
-    from hymeko_x.verify.model import Array, Index
+    from hymeko_x.verify.model import Array, Index, Shape
 
+ALLOWED = 3e-6
+"""Of the mesh's extent: engines keep vertices as floats."""
 
-EMPTY = "holds no triangles"
+_POLYGONS = 0.05
+"""By this part area and volume may differ where readers split larger faces into other triangles."""
+
+_SURFACE = 0.1
+"""The weight of the relative differences of area and volume beside those of lengths."""
+
+_THIN = 1e-3
+"""Of the squared extent: areas below it are compared as if they were that large."""
+
+_MOST_POINTS = 4000  # of each side are searched among all points of the other: a tenth of a second
+
+_EMPTY = "holds no triangles"
 _REFERRING = (".gltf",)
 _POLYGON = re.compile(rb"^f(?:[ \t]+[\d/-]+){4}", re.MULTILINE)
 
@@ -34,9 +49,9 @@ class Meshes:
     def surface(self, mesh: Surface | MeshFile | None) -> Surface | str:
         """The triangles of a mesh in its own frame, scaled; or the reason why there are none. The same mesh gives the same object."""
         if not self._wanted:
-            return "meshes were not to be compared"
+            return "meshes were not compared, as asked"
         if isinstance(mesh, Surface):
-            return mesh if len(mesh.faces) else f"a mesh in the file {EMPTY}"
+            return mesh if len(mesh.faces) else f"a mesh in the file {_EMPTY}"
         if mesh is None or mesh.path is None:
             return f"the mesh '{mesh.uri if mesh else ''}' was not found"
         if mesh.path not in self._files:
@@ -47,6 +62,28 @@ class Meshes:
         if mesh not in self._scaled:
             self._scaled[mesh] = replace(found, vertices=found.vertices * np.asarray(mesh.scale))
         return self._scaled[mesh]
+
+    def why_none(self, shapes: Sequence[Shape]) -> str:
+        """Why none of these meshes can be read; "" when one can: an engine that needs the files leaves such meshes out."""
+        surfaces = [self.surface(shape.mesh) for shape in shapes]
+        reasons = [surface for surface in surfaces if isinstance(surface, str)]
+        return reasons[0] if len(reasons) == len(surfaces) else ""
+
+    def together(self, shapes: Sequence[Shape]) -> Surface | str:
+        """All triangles of several mesh shapes in the body's frame; or the reason why there are none."""
+        vertices: list[Array] = []
+        faces: list[Index] = []
+        count = 0
+        polygons = False
+        for shape in shapes:
+            surface = self.surface(shape.mesh)
+            if isinstance(surface, str):
+                return surface
+            vertices.append(surface.vertices @ shape.pose[:3, :3].T + shape.pose[:3, 3])
+            faces.append(surface.faces + count)
+            count += len(surface.vertices)
+            polygons = polygons or surface.polygons
+        return Surface(np.concatenate(vertices), np.concatenate(faces), polygons)
 
     def _read(self, path: Path) -> Surface | str:
         """The triangles of a file, which several names may have: a copy beside the result is the file that was copied."""
@@ -60,7 +97,7 @@ class Meshes:
 
 
 def _digest(path: Path) -> bytes:
-    """What tells the triangles of files apart: content and kind; for a kind that refers to other files also its place."""
+    """Equal for files of the same triangles: of content and kind; of a kind that refers to other files also of its path."""
     kind = path.suffix.lower()
     place = str(path) if kind in _REFERRING else ""
     digest = hashlib.sha256(path.read_bytes())
@@ -77,14 +114,14 @@ def _load(path: Path) -> Surface | str:
     except (ValueError, KeyError, IndexError, TypeError, AttributeError, OSError, ImportError, NotImplementedError) as error:
         return f"the mesh '{path.name}' cannot be read: {error}"
     if len(whole.faces) == 0:
-        return f"the mesh '{path.name}' {EMPTY}"
+        return f"the mesh '{path.name}' {_EMPTY}"
     polygons = path.suffix.lower() == ".obj" and _POLYGON.search(path.read_bytes()) is not None
     points = np.asarray(whole.vertices, dtype=float) * (_metres(loaded) if path.suffix.lower() == ".dae" else 1.0)
     return Surface(points, np.asarray(whole.faces, dtype=np.intp), polygons)
 
 
 def _metres(scene: Any) -> float:
-    """The length in m of the unit of a COLLADA file, which says it once for all of its geometry."""
+    """The length in m of the unit of a COLLADA file, which holds for all of its geometry."""
     import trimesh
 
     units = next((mesh.units for mesh in scene.geometry.values() if mesh.units), None)
@@ -106,3 +143,46 @@ def measures(vertices: Array, faces: Index) -> tuple[Array, float, float]:
     points = used(vertices, faces)
     volume = float(np.einsum("ij,ij->i", corners[:, 0], cross).sum() / 6.0)
     return np.stack([points.min(axis=0), points.max(axis=0)]), float(np.linalg.norm(cross, axis=1).sum() / 2.0), volume
+
+
+def mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes) -> tuple[float, str, str]:
+    """The worst difference of two bodies' meshes relative to their extent, the measure that differs, or why they cannot be compared."""
+    ours, theirs = meshes.together(left), meshes.together(right)
+    if isinstance(ours, str):
+        return 0.0, "", ours
+    if isinstance(theirs, str):
+        return (math.inf, "nothing is left", "") if theirs.endswith(_EMPTY) else (0.0, "", theirs)
+    points_a, points_b = used(ours.vertices, ours.faces), used(theirs.vertices, theirs.faces)
+    extent = float(np.ptp(points_a, axis=0).max()) or 1.0
+    if len(ours.vertices) == len(theirs.vertices) and np.array_equal(ours.faces, theirs.faces):
+        in_order = float(np.linalg.norm(ours.vertices - theirs.vertices, axis=1).max()) / extent
+        if in_order <= ALLOWED:  # the same triangles: box, area and volume cannot differ by more
+            return in_order, "the points of the meshes", ""
+    box_a, area_a, volume_a = measures(ours.vertices, ours.faces)
+    box_b, area_b, volume_b = measures(theirs.vertices, theirs.faces)
+    split = _POLYGONS if ours.polygons or theirs.polygons else 0.0
+    area = abs(area_a - area_b) / max(area_a, extent * extent * _THIN)
+    volume = abs(abs(volume_a) - abs(volume_b)) / extent**3
+    candidates = [
+        (float(np.abs(box_a - box_b).max()) / extent, "the bounding box"),
+        (_SURFACE * area if area > split else 0.0, "the area"),
+        (_SURFACE * volume if volume > split else 0.0, "the volume"),
+        (_points_distance(points_a, points_b) / extent, "the points"),
+    ]
+    difference, where = max(candidates)
+    return difference, f"{where} of the meshes", ""
+
+
+def _points_distance(a: Array, b: Array) -> float:
+    """The largest distance from a point of one side to the nearest point of the other, both ways; of large meshes every n-th point."""
+    if a.shape == b.shape:
+        in_order = float(np.linalg.norm(a - b, axis=1).max())
+        if in_order <= ALLOWED * float(np.abs(a).max()):
+            return in_order
+    from scipy.spatial import cKDTree
+
+    def one_way(points: Array, others: Array) -> float:
+        few = points[:: max(1, len(points) // _MOST_POINTS)]
+        return float(cKDTree(others).query(few)[0].max())
+
+    return max(one_way(a, b), one_way(b, a))

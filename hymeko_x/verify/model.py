@@ -1,11 +1,11 @@
-"""The engine-neutral robot that every reference reader fills and every check compares.
+"""The engine-neutral robot that every reference reader returns and every check compares.
 
 A forest of bodies under the world, each with the joint above it, in SI units and radians. Matrices are 4x4 homogeneous.
 The pose of a body in its parent is
 
     T(q) = P * prod_i( Tr(a_i) M_i(q_i - ref_i) Tr(-a_i) )
 
-with P the joint's ``placement`` and a_i the ``anchor`` of dof i; axes and anchors are in the frame of the body below, as it
+with P the joint's ``placement`` and a_i the ``anchor`` of dof i; axes and anchors are in the frame of the child body, as it
 is when all dofs are at their refs. A coordinate vector q holds one number per hinge, slide and screw, a quaternion
 (w, x, y, z) per ball, a position and a quaternion per free dof (both counted from the placement).
 """
@@ -14,17 +14,20 @@ from __future__ import annotations
 
 from enum import Enum
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 from msgspec import Struct, field
 from msgspec.structs import replace
 from numpy.typing import NDArray
 
+from hymeko_x.formats import FORMATS, Format
+
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
+K = TypeVar("K")
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
@@ -35,7 +38,7 @@ INF = float("inf")
 
 
 class Kind(Enum):
-    """How one degree of freedom moves, and how many coordinates say where it is."""
+    """How one degree of freedom moves."""
 
     HINGE = "hinge"
     SLIDE = "slide"
@@ -50,20 +53,15 @@ class Kind(Enum):
 
     @property
     def scalar(self) -> bool:
-        """Whether one number says where it is."""
+        """Whether its coordinate is one number."""
         return self.width == 1
-
-    @property
-    def unit(self) -> str:
-        """The unit of its coordinate."""
-        return "m" if self is Kind.SLIDE else "rad"
 
 
 _WIDTHS = {Kind.HINGE: 1, Kind.SLIDE: 1, Kind.SCREW: 1, Kind.BALL: 4, Kind.FREE: 7}
 
 
 class Feature(Enum):
-    """What only some formats can say. A check is made only when both readers can tell; else it is in ``not_compared``."""
+    """What only some formats represent. It is checked only where both formats and readers do; else the verdict has a note."""
 
     VELOCITY_LIMITS = "velocity limits"
     EFFORT_LIMITS = "effort limits"
@@ -108,7 +106,7 @@ class Dof(Struct, frozen=True, eq=False):
 
 
 class Joint(Struct, frozen=True, eq=False):
-    """The joint above a body. No dofs = fixed; ``open`` marks a root that its format leaves unattached (URDF's)."""
+    """The joint between a body and its parent. No dofs = fixed; ``open`` marks a root without a joint to the world (URDF's)."""
 
     name: str | None = None
     placement: Array = field(default_factory=lambda: np.eye(4))
@@ -116,20 +114,20 @@ class Joint(Struct, frozen=True, eq=False):
     open: bool = False
 
 
-def between_frames(name: str | None, above: Array, dofs: tuple[Dof, ...], below: Array) -> Joint:
-    """The joint T = ``above`` * motion * ``below``^-1, with dofs given in the joint's own frame, in the terms of the body's frame.
+def between_frames(name: str | None, parent_pose: Array, dofs: tuple[Dof, ...], child_pose: Array) -> Joint:
+    """The joint T = ``parent_pose`` * motion * ``child_pose``^-1, whose dofs are given in the joint's own frame.
 
     C M C^-1 turns about, or slides along, C's image of the axis, through C's image of the anchor.
     """
-    turn, shift = below[:3, :3], below[:3, 3]
+    turn, shift = child_pose[:3, :3], child_pose[:3, 3]
     moved = tuple(replace(dof, axis=turn @ dof.axis, anchor=turn @ dof.anchor + shift) for dof in dofs)
     back = np.eye(4)
     back[:3, :3], back[:3, 3] = turn.T, -(turn.T @ shift)
-    return Joint(name, above @ back, moved)
+    return Joint(name, parent_pose @ back, moved)
 
 
 class Role(Enum):
-    """What a shape is for. ``BOTH`` collides and is drawn."""
+    """The purpose of a shape. ``BOTH`` collides and is drawn."""
 
     VISUAL = "visual"
     COLLISION = "collision"
@@ -139,7 +137,7 @@ class Role(Enum):
 class Surface(Struct, frozen=True, eq=False):
     """The triangles of a mesh in its own frame after scaling: ``vertices`` (n, 3) in m and ``faces`` (m, 3).
 
-    ``polygons``: whether its file has larger faces, which every reader splits in its own way.
+    ``polygons``: whether its file has larger faces, which each reader splits in its own way.
     """
 
     vertices: Array
@@ -148,7 +146,7 @@ class Surface(Struct, frozen=True, eq=False):
 
 
 class MeshFile(Struct, frozen=True):
-    """A mesh that is read only when it is compared: ``path`` is None when the file was not found."""
+    """A mesh file that is read only when it is compared: ``path`` is None when it was not found."""
 
     uri: str
     path: Path | None
@@ -173,9 +171,8 @@ class Shape(Struct, frozen=True, eq=False):
 class Body(Struct, frozen=True, eq=False):
     """A rigid body: mass in kg, centre of mass in m and tensor about it in kg m^2, both in body axes.
 
-    ``parent`` is the index of the body at the other end of ``joint``. ``weighed`` is False where
-    nothing was said about inertia and each engine would compute another one; ``shaped`` is False
-    where a mass was said, but no tensor.
+    ``parent`` is the index of the body at the other end of ``joint``. ``inertia_is_known`` is False where the file has no
+    inertia and each engine computes another one; ``tensor_is_known`` is False where it has a mass and no tensor.
     """
 
     name: str | None
@@ -185,8 +182,8 @@ class Body(Struct, frozen=True, eq=False):
     com: Array = field(default_factory=lambda: np.zeros(3))
     tensor: Array = field(default_factory=lambda: np.zeros((3, 3)))
     shapes: tuple[Shape, ...] = ()
-    weighed: bool = True
-    shaped: bool = True
+    inertia_is_known: bool = True
+    tensor_is_known: bool = True
 
 
 class Coupling(Struct, frozen=True):
@@ -210,7 +207,7 @@ class Loop(Struct, frozen=True, eq=False):
     """A closure: frame ``pose_a`` on body a meets ``pose_b`` on body b.
 
     ``kind``: ``connect`` (origins coincide), ``weld`` (frames coincide), ``hinge`` (origins and z axes), ``slide``
-    (frames up to a motion along z), ``cylinder`` (z lines), ``other`` (as weld, with ``words`` saying what stays free).
+    (frames up to a motion along z), ``cylinder`` (z lines), ``other`` (as weld; ``words`` name the free motions).
     """
 
     kind: str
@@ -225,7 +222,7 @@ class Loop(Struct, frozen=True, eq=False):
 Point = tuple[float, float, float]
 
 JOINT, SITE, SIDE, SPHERE, CYLINDER, PULLEY = "joint", "site", "side", "sphere", "cylinder", "pulley"
-"""The kinds of steps. A side is a point beside the shape before it, which says on which side of it a cable passes."""
+"""The kinds of steps. A side is a point beside the shape before it; the cable passes the shape on that side."""
 
 
 def point_of(numbers: Array) -> Point:
@@ -249,9 +246,9 @@ class Step(Struct, frozen=True):
 
 
 class Spring(Struct, frozen=True):
-    """The lengths between which a tendon pulls and pushes nothing.
+    """The lengths ``between`` which a tendon exerts no force; None: an engine computes them from the pose at rest.
 
-    ``between`` is None where an engine has yet to compute them from the pose at rest; ``at_rest``: whether they are the length there.
+    ``at_rest``: whether they are the length in that pose.
     """
 
     between: tuple[float, float] | None = None
@@ -265,8 +262,8 @@ class Tendon(Struct, frozen=True):
     """A cable through points and around shapes, or a weighted sum of joint coordinates.
 
     ``mechanics``: stiffness, damping, friction, armature. ``limits`` are its least and greatest length, ``force`` the least and
-    greatest that all actuators on it may apply; None = without. ``spring`` counts where it is stiff. ``curves`` holds the higher
-    coefficients of stiffness and damping, nothing where all are zero, None where a format or its reader cannot say.
+    greatest force of all actuators on it; None = unlimited. ``spring`` matters where it is stiff. ``curves`` holds the higher
+    coefficients of stiffness and damping: empty where all are zero, None where the format or its reader does not represent them.
     """
 
     name: str | None
@@ -278,8 +275,8 @@ class Tendon(Struct, frozen=True):
     curves: tuple[float, ...] | None = None
 
 
-class Part(Struct, frozen=True):
-    """Something that is compared word by word and number by number: an actuator or a coupling of tendons, and what it acts on."""
+class Record(Struct, frozen=True):
+    """Words and numbers that are compared one by one: an actuator with its target, or a coupling of tendons."""
 
     name: str | None
     words: tuple[str, ...]
@@ -289,9 +286,9 @@ class Part(Struct, frozen=True):
 class KinematicModel(Struct, frozen=True, eq=False, dict=True):
     """One robot as one engine sees it. ``bodies[0]`` is the world; a parent always comes before its children.
 
-    ``precision`` is the relative accuracy of its numbers (double or float32); ``trusted`` is False when the reader is
-    this project's own; ``notes`` are findings of the reader that the verdict repeats. ``mute`` holds what a format that can
-    say something of its dofs cannot say of those of one kind.
+    ``precision`` is the relative accuracy of its numbers (double or float32); ``is_independent`` is False when the reader is
+    this project's own; ``notes`` are findings of the reader that the verdict repeats. ``features`` are those that format and
+    reader represent, except those in ``unrepresented`` for dofs of one kind.
     """
 
     name: str
@@ -300,18 +297,23 @@ class KinematicModel(Struct, frozen=True, eq=False, dict=True):
     bodies: tuple[Body, ...]
     couplings: tuple[Coupling, ...] = ()
     loops: tuple[Loop, ...] = ()
-    actuators: tuple[Part, ...] = ()
+    actuators: tuple[Record, ...] = ()
     tendons: tuple[Tendon, ...] = ()
-    tied_tendons: tuple[Part, ...] = ()
-    says: frozenset[Feature] = frozenset(Feature)
-    mute: frozenset[tuple[Feature, Kind]] = frozenset()
+    tied_tendons: tuple[Record, ...] = ()
+    features: frozenset[Feature] = frozenset(Feature)
+    unrepresented: frozenset[tuple[Feature, Kind]] = frozenset()
     precision: float = 1e-15
-    trusted: bool = True
+    is_independent: bool = True
     notes: tuple[str, ...] = ()
 
-    def can_say(self, feature: Feature, kind: Kind) -> bool:
-        """Whether the format and its reader can say this of a dof of this kind."""
-        return feature in self.says and (feature, kind) not in self.mute
+    def represents(self, feature: Feature, kind: Kind) -> bool:
+        """Whether the format and its reader represent this of a dof of this kind."""
+        return feature in self.features and (feature, kind) not in self.unrepresented
+
+    @cached_property
+    def row(self) -> Format:
+        """Its format's row in the table; for a mechanism in memory a row without particulars."""
+        return next((row for row in FORMATS if row.name == self.format), Format(self.format, "", (), None, None))
 
     @cached_property
     def dofs(self) -> tuple[Dof, ...]:
@@ -326,7 +328,7 @@ class KinematicModel(Struct, frozen=True, eq=False, dict=True):
 
     @cached_property
     def body_of_dof(self) -> tuple[int, ...]:
-        """For each dof the body below it."""
+        """For each dof the child body of its joint."""
         return tuple(index for index, body in enumerate(self.bodies) for _ in body.joint.dofs)
 
     @cached_property
@@ -342,11 +344,11 @@ class KinematicModel(Struct, frozen=True, eq=False, dict=True):
 
     @cached_property
     def children(self) -> tuple[tuple[int, ...], ...]:
-        """For each body the bodies right below it, in order."""
-        below: list[list[int]] = [[] for _ in self.bodies]
+        """For each body its children, in order."""
+        children: list[list[int]] = [[] for _ in self.bodies]
         for index, body in enumerate(self.bodies[1:], start=1):
-            below[body.parent].append(index)
-        return tuple(tuple(indices) for indices in below)
+            children[body.parent].append(index)
+        return tuple(tuple(indices) for indices in children)
 
     @cached_property
     def index(self) -> Mapping[str, int]:
@@ -358,17 +360,28 @@ class KinematicModel(Struct, frozen=True, eq=False, dict=True):
         return found
 
     def body_label(self, index: int) -> str:
-        """``body 'forearm'``, or the place of a body without a name."""
+        """``body 'forearm'``, or the number of a body without a name."""
         name = self.bodies[index].name
         return f"body '{name}'" if name is not None else f"the unnamed body {index}"
 
     def dof_label(self, index: int) -> str:
-        """``joint 'elbow'``, or the body below a joint without a name."""
+        """``joint 'elbow'``, or the child body of a joint without a name."""
         body = self.body_of_dof[index]
         name = self.dofs[index].name or self.bodies[body].joint.name
         return f"joint '{name}'" if name is not None else f"the joint above {self.body_label(body)}"
 
 
-def grounded(name: str = "world", shapes: tuple[Shape, ...] = ()) -> Body:
-    """The world as a body, to begin a model's bodies with."""
+def world_body(name: str = "world", shapes: tuple[Shape, ...] = ()) -> Body:
+    """The world as a body, the first of a model's bodies."""
     return Body(name, -1, Joint(), shapes=shapes)
+
+
+def parents_first(roots: Iterable[K], children: Mapping[K, Sequence[K]]) -> list[K]:
+    """The nodes of a forest in depth-first order, children in their own order."""
+    order: list[K] = []
+    stack = list(roots)[::-1]
+    while stack:
+        node = stack.pop()
+        order.append(node)
+        stack.extend(reversed(children.get(node, ())))
+    return order

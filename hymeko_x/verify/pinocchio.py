@@ -19,14 +19,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
 GRAVITY = (0.0, 0.0, -9.81)
+"""In m/s^2, in the world."""
 
-_VELOCITIES = {Kind.HINGE: 1, Kind.SLIDE: 1, Kind.SCREW: 1, Kind.BALL: 3, Kind.FREE: 6}
+VELOCITIES = {Kind.HINGE: 1, Kind.SLIDE: 1, Kind.SCREW: 1, Kind.BALL: 3, Kind.FREE: 6}
+"""The number of velocity coordinates of each kind of dof."""
 
 
-class PinModel(Struct, frozen=True, eq=False):
+class PinocchioModel(Struct, frozen=True, eq=False):
     """One tree of a model in Pinocchio.
 
-    ``frames`` holds the frame of each body and ``joints`` the joint of each dof; bodies on the floor have no joints.
+    ``frames`` holds the frame of each body and ``joints`` the joint of each dof; pinned bodies have no joints.
     """
 
     model: Any
@@ -70,7 +72,7 @@ class PinModel(Struct, frozen=True, eq=False):
 
     def columns(self, dofs: Sequence[int]) -> Index:
         """The velocity columns of these dofs, in their order."""
-        starts = [(self.model.joints[self.joints[dof]].idx_v, _VELOCITIES[self.source.dofs[dof].kind]) for dof in dofs]
+        starts = [(self.model.joints[self.joints[dof]].idx_v, VELOCITIES[self.source.dofs[dof].kind]) for dof in dofs]
         return np.array([start + k for start, count in starts for k in range(count)], dtype=np.intp)
 
 
@@ -79,10 +81,12 @@ def _xyzw(quat: Array) -> Array:
     return turned
 
 
-def build(model: KinematicModel, root: int, *, floor: frozenset[int] = frozenset(), weightless: frozenset[int] = frozenset()) -> PinModel:
-    """The tree below and with ``root`` in Pinocchio.
+def build(
+    model: KinematicModel, root: int, *, pinned: frozenset[int] = frozenset(), massless: frozenset[int] = frozenset()
+) -> PinocchioModel:
+    """The tree of ``root`` in Pinocchio.
 
-    Bodies in ``floor`` sit on the world's frame without dofs, those in ``weightless`` have no mass.
+    Bodies in ``pinned`` are on the world's frame without dofs, those in ``massless`` have no mass.
     """
     native = pin.Model()
     native.gravity = pin.Motion(np.array([*GRAVITY, 0.0, 0.0, 0.0]))
@@ -93,18 +97,18 @@ def build(model: KinematicModel, root: int, *, floor: frozenset[int] = frozenset
     while stack:
         index = stack.pop()
         number, place = at[model.bodies[index].parent]
-        if index not in floor:
+        if index not in pinned:
             number, place = _add_body_joint(native, model, index, (number, place), joints)
         at[index] = (number, place)
         frames[index] = native.addFrame(pin.Frame(str(index), number, 0, _se3(place), pin.FrameType.OP_FRAME))
-        if index not in weightless:
+        if index not in massless:
             _append_inertia(native, model.bodies[index], number, place)
         stack.extend(reversed(model.children[index]))
-    return PinModel(native, native.createData(), model, frames, joints)
+    return PinocchioModel(native, native.createData(), model, frames, joints)
 
 
 def _add_body_joint(native: Any, model: KinematicModel, index: int, at: tuple[int, Array], joints: dict[int, int]) -> tuple[int, Array]:
-    """The joint above a body, below a place in a joint of Pinocchio's: the same for the body."""
+    """The joint of a body, whose parent is at this place in a joint of Pinocchio's: the same for the body."""
     number, place = at
     joint = model.bodies[index].joint
     place = place @ joint.placement
@@ -115,17 +119,17 @@ def _add_body_joint(native: Any, model: KinematicModel, index: int, at: tuple[in
 
 
 def _append_inertia(native: Any, body: Body, number: int, place: Array) -> None:
-    """By its parts: Pinocchio's constructor refuses tensors that are not positive, which real files contain."""
+    """Field by field: Pinocchio's constructor refuses tensors that are not positive, which real files contain."""
     if body.mass == 0.0 and not body.tensor.any():
         return
     inertia = pin.Inertia.Zero()
-    tensor = (body.tensor + body.tensor.T) / 2.0  # a turned diagonal is symmetric up to rounding, which it does not take
+    tensor = (body.tensor + body.tensor.T) / 2.0  # Pinocchio refuses asymmetry, and a rotated diagonal is symmetric up to rounding
     inertia.mass, inertia.lever, inertia.inertia = body.mass, body.com, tensor
     native.appendBodyToJoint(number, inertia, _se3(place))
 
 
 def _add_joint(native: Any, parent: int, place: Array, dof: Dof, name: str) -> tuple[int, Array]:
-    """One dof below ``place`` (in the parent joint): the new joint, and where the body's frame is in it."""
+    """One dof at ``place`` (in the parent joint): the new joint, and the pose of the body's frame in it."""
     anchored = place.copy()
     anchored[:3, 3] += place[:3, :3] @ dof.anchor
     number = native.addJoint(parent, _joint_model(dof), _se3(anchored), name)

@@ -36,37 +36,11 @@ def rotation_from_quat(quats: Array) -> Array:
 
 
 def quat_from_rotation(rotation: Array) -> Array:
-    """The unit quaternion (w, x, y, z), w >= 0, of each rotation (..., 3, 3), by the largest of the four components."""
-    r = rotation
-    trace = r[..., 0, 0] + r[..., 1, 1] + r[..., 2, 2]
-    candidates = np.stack(
-        [
-            np.stack([1 + trace, r[..., 2, 1] - r[..., 1, 2], r[..., 0, 2] - r[..., 2, 0], r[..., 1, 0] - r[..., 0, 1]], -1),
-            np.stack(
-                [r[..., 2, 1] - r[..., 1, 2], 1 + 2 * r[..., 0, 0] - trace, r[..., 0, 1] + r[..., 1, 0], r[..., 0, 2] + r[..., 2, 0]], -1
-            ),
-            np.stack(
-                [r[..., 0, 2] - r[..., 2, 0], r[..., 0, 1] + r[..., 1, 0], 1 + 2 * r[..., 1, 1] - trace, r[..., 1, 2] + r[..., 2, 1]], -1
-            ),
-            np.stack(
-                [r[..., 1, 0] - r[..., 0, 1], r[..., 0, 2] + r[..., 2, 0], r[..., 1, 2] + r[..., 2, 1], 1 + 2 * r[..., 2, 2] - trace], -1
-            ),
-        ],
-        -2,
-    )
-    diagonal = np.diagonal(candidates, axis1=-2, axis2=-1)
-    best = np.argmax(diagonal, axis=-1)
-    quats = np.take_along_axis(candidates, best[..., None, None], -2)[..., 0, :]
-    quats = quats / np.linalg.norm(quats, axis=-1, keepdims=True)
-    turned: Array = np.where(quats[..., :1] < 0, -quats, quats)
-    return turned
+    """The unit quaternion (w, x, y, z), w >= 0, of each rotation (3, 3) or (n, 3, 3)."""
+    from scipy.spatial.transform import Rotation
 
-
-def rotation_from_rpy(rpy: Array) -> Array:
-    """Rz(yaw) Ry(pitch) Rx(roll) of fixed-axis angles (3,) in rad."""
-    roll, pitch, yaw = (rotation_about(axis, np.asarray(angle)) for axis, angle in zip(np.eye(3), rpy, strict=True))
-    turned: Array = yaw @ pitch @ roll
-    return turned
+    quats: Array = Rotation.from_matrix(rotation).as_quat(canonical=True)[..., [3, 0, 1, 2]]
+    return quats
 
 
 def rigid(rotation: Array, position: Array) -> Array:
@@ -112,9 +86,15 @@ def random_quats(rng: np.random.Generator, count: int) -> Array:
 
 
 def frame_with_z(axis: Array, origin: Array | None = None) -> Array:
-    """A frame whose z axis points along ``axis``: the smallest turn that does it."""
+    """A frame whose z axis points along ``axis``."""
     z = axis / np.linalg.norm(axis)
     helper = np.eye(3)[int(np.argmin(np.abs(z)))]
     x = np.cross(helper, z)
     x /= np.linalg.norm(x)
     return rigid(np.stack([x, np.cross(z, x), z], axis=1), np.zeros(3) if origin is None else origin)
+
+
+def shifted_tensor(mass: float, com: Array, tensor: Array) -> Array:
+    """The inertia tensor (3, 3) about the frame's origin of a body with this tensor about its centre of mass (parallel axes)."""
+    shifted: Array = tensor + mass * (com @ com * np.eye(3) - np.outer(com, com))
+    return shifted

@@ -1,4 +1,4 @@
-"""What the verifier answers: the checks that were made, their worst differences, and what could not be compared."""
+"""The result of a verification: the checks that were made, their worst differences, and what was not compared."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Check(Struct, frozen=True):
 
     @property
     def passed(self) -> bool:
-        """Whether the worst difference is allowed; what is not a number never is."""
-        return bool(self.worst <= self.allowed)  # numbers of numpy make a truth of numpy, which is none in JSON
+        """Whether the worst difference is allowed; not-a-number never is."""
+        return bool(self.worst <= self.allowed)  # a bool of numpy cannot be written as JSON
 
     def as_json(self) -> dict[str, str | float | bool | None]:
         """The keys of the ``--json`` contract. Infinity has no spelling in JSON and becomes null."""
@@ -38,7 +38,7 @@ class Check(Struct, frozen=True):
 
 
 class Verdict(Struct, frozen=True):
-    """The answer. ``engines`` are the two readers; ``reason`` says why robots are not comparable."""
+    """The result. ``engines`` are the two reference readers; ``reason`` is why robots are not comparable."""
 
     engines: tuple[str, str]
     checks: tuple[Check, ...] = ()

@@ -9,7 +9,7 @@ from loop import answer_all
 
 
 def convert(job: dict[str, Any]) -> None:
-    """Convert once. Raises: ValueError when iDynTree says that it failed; it prints why to stderr."""
+    """Convert once. Raises: ValueError when iDynTree reports a failure; it prints the reason to stderr."""
     loader = idyntree.ModelLoader()
     if not loader.loadModelFromFile(job["source"]):
         raise ValueError("iDynTree does not load it")

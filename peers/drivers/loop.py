@@ -29,13 +29,13 @@ def answer_all(work: Callable[[dict[str, Any]], dict[str, Any] | None]) -> None:
 
 def _answer(work: Callable[[dict[str, Any]], dict[str, Any] | None], job: dict[str, Any]) -> dict[str, Any]:
     best = float("inf")
-    said: dict[str, Any] = {}
+    answer: dict[str, Any] = {}
     for _ in range(job.get("repeat", 1)):
         gc.collect()
         start = time.process_time()
         try:
-            said = work(job) or {}
-        except Exception as error:  # noqa: BLE001 - somebody else's program may fail in any way
+            answer = work(job) or {}
+        except Exception as error:  # noqa: BLE001 - a foreign program may fail in any way
             return {"error": f"{type(error).__name__}: {str(error)[:300]}"}
         best = min(best, time.process_time() - start)
-    return {**said, "seconds": best}
+    return {**answer, "seconds": best}

@@ -39,13 +39,15 @@ def describe(job: dict[str, Any]) -> dict[str, Any]:
 
 def _tendons(builder: Any) -> list[dict[str, list[float]]]:
     """The steps of each spatial tendon (0 site, 1 shape, 2 pulley) with the divisors of its pulleys, and coefficients of the fixed ones."""
-    said = {name.rpartition("tendon_")[2]: list(item.values or ()) for name, item in builder.custom_attributes.items() if "tendon_" in name}
+    attributes = {
+        name.rpartition("tendon_")[2]: list(item.values or ()) for name, item in builder.custom_attributes.items() if "tendon_" in name
+    }
     found = []
-    for first, count, kind in zip(said["wrap_adr"], said["wrap_num"], said["type"], strict=True):
-        steps = [float(step) for step in said["wrap_type"][first : first + count]] if kind else []
-        divisors = [float(said["wrap_prm"][first + place]) for place, step in enumerate(steps) if step == _PULLEY]
+    for first, count, kind in zip(attributes["wrap_adr"], attributes["wrap_num"], attributes["type"], strict=True):
+        steps = [float(step) for step in attributes["wrap_type"][first : first + count]] if kind else []
+        divisors = [float(attributes["wrap_prm"][first + place]) for place, step in enumerate(steps) if step == _PULLEY]
         found.append({"steps": steps, "divisors": divisors})
-    return [*sorted(found, key=str), {"coefficients": _list(said["coef"])}]
+    return [*sorted(found, key=str), {"coefficients": _list(attributes["coef"])}]
 
 
 def _bodies(builder: Any) -> list[dict[str, Any]]:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from hymeko_x.testing.cluster import cluster, end
+from benchmarks.cluster import cluster, end
 from tests.corpus.folder import fill
 
 pytest.importorskip("ray")

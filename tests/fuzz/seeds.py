@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 import hymeko_x as hx
-from hymeko_x.testing import texts
+from tests.fuzz import texts
 
 FOLDER = Path(__file__).parents[2] / "corpus"
 SMALL = Path(__file__).parent / "small"

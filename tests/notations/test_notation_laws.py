@@ -21,7 +21,7 @@ from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from hymeko_x.testing import arms
 from hymeko_x.verify import model_of
-from hymeko_x.verify.compare import compare
+from hymeko_x.verify.checks import compare
 from tests.notations import mjcf, urdf, usd
 from tests.verify.usd_writer import usd_of
 

@@ -11,7 +11,7 @@ from hymeko_x.verify import dh
 from hymeko_x.verify.checks.chains import signature
 from hymeko_x.verify.dh import Convention
 from hymeko_x.verify.dh.lines import Frame, Line, Link
-from hymeko_x.verify.model import Array, Body, Dof, Joint, Kind, KinematicModel, grounded
+from hymeko_x.verify.model import Array, Body, Dof, Joint, Kind, KinematicModel, world_body
 from hymeko_x.verify.pinocchio import build
 from hymeko_x.verify.spatial import random_quats, rigid, rotation_about, rotation_from_quat
 
@@ -61,7 +61,7 @@ def random_lines(rng: np.random.Generator, count: int) -> list[tuple[Kind, Array
 
 def model_of(lines: list[tuple[Kind, Array, Array]], tip: Array, rng: np.random.Generator) -> KinematicModel:
     """A chain whose axes at rest are these lines; the bodies' own frames are anywhere."""
-    bodies = [grounded(), Body("base", 0, Joint(open=True))]
+    bodies = [world_body(), Body("base", 0, Joint(open=True))]
     before = np.eye(4)
     for k, (kind, point, axis) in enumerate(lines):
         frame = tip if k == len(lines) - 1 else random_pose(rng)
@@ -150,7 +150,7 @@ def test_a_scara_has_the_table_of_the_textbook() -> None:
         "test",
         "test",
         (
-            grounded(),
+            world_body(),
             Body("base_link", 0, Joint(open=True)),
             Body("shoulder_link", 1, Joint("joint_1", turned, (Dof(Kind.HINGE, axis, name="joint_1"),))),
             Body("wrist_link", 2, Joint("joint_2", shifted, (Dof(Kind.HINGE, axis, name="joint_2"),))),

@@ -42,6 +42,14 @@ def test_verify_prints_a_table_and_ends_with_0(arm: str, written: Write, capsys:
     assert "\x1b" not in "".join(lines)
 
 
+def test_a_quantity_of_which_nothing_was_compared_has_no_row(written: Write) -> None:
+    path = written("urdf", '<robot name="r"><link name="a"/></robot>')
+    compared = {"forward kinematics, position", "forward kinematics, rotation", "mass", "inertia tensor"}
+    assert {check.quantity for check in hx.verify(path, path, samples=2).checks} == {"bodies", "joints", "base"} | compared
+    nothing = written("mjcf", "<mujoco/>")
+    assert {check.quantity for check in hx.verify(nothing, nothing, samples=2).checks} == {"bodies", "joints", "base"}
+
+
 def test_verify_ends_with_4_when_the_robots_differ(arm: str, longer_arm: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", arm, longer_arm, "--samples", "5"]) == exits.DIFFERENT
     out = capsys.readouterr().out
@@ -166,7 +174,7 @@ def test_convert_ends_with_4_when_the_result_is_another_robot(
     """A rewriting rule that forgets the couplings, as a bug of ours might."""
     from hymeko_x.backends.mjcf import rules as rules_mjcf
 
-    def forget(mechanism: hx.Mechanism, options: object, report: object) -> hx.Mechanism:
+    def forget(mechanism: hx.Mechanism, context: object) -> hx.Mechanism:
         gone = [key for key in mechanism.graph.edges if key.kind == "coupling"]
         return mechanism.with_graph(mechanism.graph.replace(without=gone))
 

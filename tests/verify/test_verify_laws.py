@@ -18,8 +18,8 @@ from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles
 from hymeko_x.testing import arms
 from hymeko_x.verify import model_of
-from hymeko_x.verify.compare import compare
-from hymeko_x.verify.matching.bodies import plain
+from hymeko_x.verify.checks import compare
+from hymeko_x.verify.matching.bodies import identifier
 from hymeko_x.verify.model import Feature, KinematicModel
 from hymeko_x.verify.verdict import Verdict
 from tests.verify.one_change import PLANTERS, Change
@@ -105,7 +105,7 @@ def assert_found(robot: Mechanism, change: Change, pairs: list[tuple[str, str]],
     """In each pair of formats that can say what was changed."""
     before, after = seen(robot, {a for a, _ in pairs}, folder), seen(change.robot, {b for _, b in pairs}, folder)
     for a, b in pairs:
-        if change.feature is None or change.feature in before[a].says & after[b].says:
+        if change.feature is None or change.feature in before[a].features & after[b].features:
             assert finds(compare(before[a], after[b], samples=SAMPLES), change), (a, b)
 
 
@@ -117,4 +117,4 @@ def finds(verdict: Verdict, change: Change) -> bool:
 
 
 def _spelled(words: str) -> str:
-    return _QUOTED.sub(lambda name: f"'{plain(name[1])}'", words)
+    return _QUOTED.sub(lambda name: f"'{identifier(name[1])}'", words)

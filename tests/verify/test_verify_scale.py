@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hymeko_x.verify.compare import compare
-from hymeko_x.verify.model import Body, Dof, Joint, Kind, KinematicModel, grounded
+from hymeko_x.verify.checks import compare
+from hymeko_x.verify.model import Body, Dof, Joint, Kind, KinematicModel, world_body
 from hymeko_x.verify.spatial import random_quats, rigid, rotation_from_quat
 from tests.pace import assert_at_most, seconds
 
@@ -20,7 +20,7 @@ def robot(limbs: int, length: int, seed: int = 0) -> KinematicModel:
     """A floating torso with limbs of hinges at random poses."""
     rng = np.random.default_rng(seed)
     free = Dof(Kind.FREE, np.array([0.0, 0.0, 1.0]))
-    bodies = [grounded(), Body("torso", 0, Joint("root", np.eye(4), (free,)), 10.0, np.zeros(3), np.eye(3))]
+    bodies = [world_body(), Body("torso", 0, Joint("root", np.eye(4), (free,)), 10.0, np.zeros(3), np.eye(3))]
     turns = rotation_from_quat(random_quats(rng, limbs * length))
     for limb in range(limbs):
         parent = 1

@@ -1,4 +1,12 @@
-"""Denavit-Hartenberg parameters: the canonical numbers of every chain from the base to a tip."""
+"""Denavit-Hartenberg parameters: the canonical numbers of every chain from the base to a tip.
+
+Compared: a and d in m; alpha, theta and beta in rad. Allowed: 1e-7, because the common normals of axes 3 degrees apart amplify
+errors some hundreds of times.
+
+The numbers are the same for two robots whenever they move equally, however their frames were chosen: rigid motions of the base and points
+sliding along their axes change nothing. What geometry leaves free is fixed in one way: the first frame by the first common
+normal, lines of slides by the hinges around them, and x by a fixed sense of each normal.
+"""
 
 from __future__ import annotations
 
@@ -6,40 +14,43 @@ import itertools
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from hymeko_x.verify.checks.pair import Pair, worst
+from hymeko_x.ir.values import add, cross, scaled
+from hymeko_x.verify.checks.pair import Differences, Pair
 from hymeko_x.verify.dh import chain, chains, lines_of
-from hymeko_x.verify.dh.lines import NEARLY_PARALLEL, Frame, Line, Link, Vec, cross, dot, feet, length, link_between, minus, plus, times
+from hymeko_x.verify.dh.lines import NEARLY_PARALLEL, Frame, Line, Link, dot, feet, length, link_between, minus
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
+    from hymeko_x.ir.values import Vec3
     from hymeko_x.verify.verdict import Check
 
-_MOST_ROWS = 3000  # of all chains together; forward kinematics covers what is left out
-_TOUCHING = 1e-6  # m; robots are compared with a tolerance, so that closer lines are one
-_ALLOWED = 1e-7  # m and rad: common normals of axes 3 degrees apart amplify errors by some hundreds
+_MOST_ROWS = 3000  # of all chains together, a second's work; forward kinematics covers the other chains
+_TOUCHING = 1e-6  # m; far above the errors of single precision, so that two files agree on which lines meet
+_ALLOWED = 1e-7  # m and rad
+_AMPLIFIED = 50.0  # the scale of the rounding errors
 
 
 def check_chains(pair: Pair) -> Iterator[Check]:
     """Lengths (a and d) and angles (theta, alpha, beta) of the chains that both robots have."""
-    lengths: list[float] = []
-    angles: list[float] = []
-    labels: list[str] = []
+    lengths, angles = Differences("DH parameters, lengths", "m"), Differences("DH parameters, angles", "rad")
+    allowed = pair.allowed(_ALLOWED, _AMPLIFIED)
     for i, j, dofs_a, dofs_b in _chains(pair):
         ours, theirs = _signature(pair, i, dofs_a, first=True), _signature(pair, j, dofs_b, first=False)
         for dof, x, y in zip(dofs_a, ours, theirs, strict=True):
-            lengths.append(max(abs(x.d - y.d), abs(x.a - y.a)))
-            angles.append(max(_apart(x.theta, y.theta), _apart(x.alpha, y.alpha), _apart(x.beta, y.beta)))
-            labels.append(f"{pair.a.dof_label(dof)} in the chain to {pair.a.body_label(i)}")
-    if labels:
-        yield worst("DH parameters, lengths", "m", np.array(lengths), pair.allowed(_ALLOWED, 50.0), lambda k: labels[k])
-        yield worst("DH parameters, angles", "rad", np.array(angles), pair.allowed(_ALLOWED, 50.0), lambda k: labels[k])
+            at = f"{pair.a.dof_label(dof)} in the chain to {pair.a.body_label(i)}"
+            lengths.add(max(abs(x.d - y.d), abs(x.a - y.a)), allowed, at)
+            angles.add(max(_angle(x.theta - y.theta), _angle(x.alpha - y.alpha), _angle(x.beta - y.beta)), allowed, at)
+    yield from (*lengths.checks(), *angles.checks())
+
+
+def _angle(difference: float) -> float:
+    """The distance of two angles on the circle."""
+    return abs(math.remainder(difference, 2.0 * math.pi))
 
 
 def _chains(pair: Pair) -> Iterator[tuple[int, int, list[int], list[int]]]:
-    """The tips of the first robot that have a counterpart below the same dofs, as long as there are not too many."""
+    """The tips of the first robot that have a counterpart at the end of the same dofs, up to a number of rows."""
     partner, bodies = dict(pair.match.dofs), dict(pair.match.bodies)
     rows = 0
     for i in chains(pair.a):
@@ -62,11 +73,6 @@ def _signature(pair: Pair, body: int, dofs: list[int], *, first: bool) -> tuple[
     return signature(lines, frames[1])
 
 
-def _apart(a: float, b: float) -> float:
-    """The distance of two angles on the circle."""
-    return abs(math.remainder(a - b, 2.0 * math.pi))
-
-
 # ---- the canonical numbers of a chain --------------------------------------------------------------------------------
 
 
@@ -81,8 +87,8 @@ def signature(lines: Sequence[Line], tip: Frame) -> tuple[Link, ...]:
     return (*found, Link(0.0, 0.0, 0.0, 0.0))
 
 
-def _placed(lines: Sequence[Line], i: int, tip: Vec) -> Line:
-    """A slide's line, which may be anywhere, through a point that only the hinges around it and the tip decide."""
+def _placed(lines: Sequence[Line], i: int, tip: Vec3) -> Line:
+    """A slide's line, which may be anywhere, through a point that only the hinges around it and the tip determine."""
     line = lines[i]
     if not line.sliding:
         return line
@@ -93,21 +99,21 @@ def _placed(lines: Sequence[Line], i: int, tip: Vec) -> Line:
     own, others = (after[0], [*before[:1], *after[1:]]) if after else (before[0], before[1:])
     hinge = lines[own]
     skew = next((lines[k] for k in others if _sine(hinge, lines[k]) >= NEARLY_PARALLEL), None)
-    point = _projected(tip, hinge) if skew is None else feet(hinge, skew, cross(hinge.axis, skew.axis))[0]
+    point = _projected(tip, hinge) if skew is None else feet(hinge, skew)[0]
     return Line(point, line.axis, sliding=True)
 
 
 def _first_frame(lines: Sequence[Line], tip: Frame) -> Frame:
     """On the first axis, at the height and in the direction of the first common normal that is determined."""
     first = lines[0]
-    pairs = itertools.pairwise(lines)
-    decisive = next(((a, b) for a, b in pairs if _sine(a, b) >= NEARLY_PARALLEL), None)
-    height = tip.o if decisive is None else feet(decisive[0], decisive[1], cross(decisive[0].axis, decisive[1].axis))[0]
-    origin = _projected(height, first)
-    return _with_x(origin, first.axis, _direction(lines, origin, tip))
+    decisive = next(((a, b) for a, b in itertools.pairwise(lines) if _sine(a, b) >= NEARLY_PARALLEL), None)
+    origin = _projected(tip.o if decisive is None else feet(*decisive)[0], first)
+    x = _across(_direction(lines, origin, tip), first.axis)
+    x = scaled(x, 1.0 / length(x))
+    return Frame(origin, x, cross(first.axis, x), first.axis)
 
 
-def _direction(lines: Sequence[Line], origin: Vec, tip: Frame) -> Vec:
+def _direction(lines: Sequence[Line], origin: Vec3, tip: Frame) -> Vec3:
     """Where x points: along the first link whose direction is determined, else to the tip, else along the tip's own axes."""
     axis = lines[0].axis
     for a, b in itertools.pairwise(lines):
@@ -122,20 +128,14 @@ def _direction(lines: Sequence[Line], origin: Vec, tip: Frame) -> Vec:
     return max((_across(tip.x, axis), _across(tip.y, axis)), key=length)
 
 
-def _with_x(origin: Vec, z: Vec, towards: Vec) -> Frame:
-    x = _across(towards, z)
-    x = times(1.0 / length(x), x)
-    return Frame(origin, x, cross(z, x), z)
-
-
-def _across(vector: Vec, axis: Vec) -> Vec:
+def _across(vector: Vec3, axis: Vec3) -> Vec3:
     """The part of a vector that is perpendicular to a unit axis."""
-    return minus(vector, times(dot(vector, axis), axis))
+    return minus(vector, scaled(axis, dot(vector, axis)))
 
 
-def _projected(point: Vec, line: Line) -> Vec:
+def _projected(point: Vec3, line: Line) -> Vec3:
     """The foot of a point on a line."""
-    return plus(line.point, times(dot(minus(point, line.point), line.axis), line.axis))
+    return add(line.point, scaled(line.axis, dot(minus(point, line.point), line.axis)))
 
 
 def _sine(a: Line, b: Line) -> float:

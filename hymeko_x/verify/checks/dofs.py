@@ -1,4 +1,8 @@
-"""The numbers of each coordinate: limits, mechanics, references, and who follows whom."""
+"""The numbers of each coordinate: limits, mechanics, springs, references, and couplings.
+
+Compared: position limits and references in rad or m; velocity and effort limits, damping, friction, armature and stiffness in SI units;
+the coordinates of followers at every configuration. Allowed: 1e-9 of the value, 2e-9 rad or m for positions.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hymeko_x.verify.checks.pair import Pair, counted, worst
-from hymeko_x.verify.model import INF, Array, Dof, Feature, Kind
+from hymeko_x.verify.checks.pair import RELATIVE, Differences, Pair, counted, same_numbers
+from hymeko_x.verify.model import INF, Dof, Feature, Kind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -20,7 +24,12 @@ FAR = 1e9
 LIMIT = 2e-9
 """In rad or m: a locked coordinate is given 1e-9 of play where an engine knows no interval of width zero."""
 
-_MECHANICS = {
+TINY = 1e-12
+"""In SI units: mechanics below it are zero."""
+
+_MOST_LISTED = 5  # coordinates named in a note
+
+_MECHANICS: dict[Feature, tuple[str, str, Callable[[Dof], float]]] = {
     Feature.DAMPING: ("damping", "N m s/rad", lambda dof: dof.damping),
     Feature.FRICTION: ("friction", "N m", lambda dof: dof.friction),
     Feature.ARMATURE: ("armature", "kg m^2", lambda dof: dof.armature),
@@ -30,8 +39,10 @@ _MECHANICS = {
 def check_dofs(pair: Pair) -> Iterator[Check]:
     """Every check of single coordinates."""
     yield from _check_limits(pair)
+    yield from _check_bounds(pair, Feature.VELOCITY_LIMITS, "velocity limits", "rad/s or m/s", _velocity)
+    yield from _check_bounds(pair, Feature.EFFORT_LIMITS, "effort limits", "N m or N", _effort)
     for feature, (name, unit, value) in _MECHANICS.items():
-        yield from _check_numbers(pair, feature, name, unit, value)
+        yield from _check_mechanics(pair, feature, name, unit, value)
     yield from _check_springs(pair)
     yield from _check_references(pair)
     yield from _check_couplings(pair)
@@ -41,25 +52,20 @@ def check_dofs(pair: Pair) -> Iterator[Check]:
 
 
 def _check_limits(pair: Pair) -> Iterator[Check]:
-    scalar = [k for k, (d, _) in enumerate(pair.match.dofs) if pair.a.dofs[d].kind is not Kind.FREE]
-    lower = _differences(pair, scalar, lambda dof, shift: _bound(dof.lower, shift))
-    upper = _differences(pair, scalar, lambda dof, shift: _bound(dof.upper, shift))
-    sizes = np.array([_size(pair.a.dofs[pair.match.dofs[k][0]]) for k in scalar])
-    empty = _contradictory(pair, scalar)
-    yield worst(
-        "position limits", "rad or m", np.where(empty, 0.0, np.maximum(lower, upper)), _allowed(pair, LIMIT, sizes), _label(pair, scalar)
-    )
-    yield from _check_bounds(pair, scalar, Feature.VELOCITY_LIMITS, "velocity limits", "rad/s or m/s", _velocity)
-    yield from _check_bounds(pair, scalar, Feature.EFFORT_LIMITS, "effort limits", "N m or N", _effort)
+    found = Differences("position limits", "rad or m")
+    for (d, e), shift in zip(pair.match.dofs, pair.shifts, strict=True):
+        ours, theirs = pair.a.dofs[d], pair.b.dofs[e]
+        if ours.kind is Kind.FREE:
+            continue
+        lower = _distance(_bound(ours.lower), _bound(theirs.lower, shift))
+        upper = _distance(_bound(ours.upper), _bound(theirs.upper, shift))
+        difference = 0.0 if _is_contradictory(pair, d, e) else max(lower, upper)
+        found.add(difference, pair.relative(LIMIT, *(x for x in (ours.lower, ours.upper) if abs(x) < FAR)), pair.a.dof_label(d))
+    yield from found.checks()
 
 
-def _bound(value: float, shift: float) -> float:
+def _bound(value: float, shift: float = 0.0) -> float:
     return value - shift if abs(value) < FAR else float(np.copysign(INF, value))
-
-
-def _size(dof: Dof) -> float:
-    finite = [abs(x) for x in (dof.lower, dof.upper) if abs(x) < FAR]
-    return max(finite, default=0.0)
 
 
 def _velocity(dof: Dof) -> tuple[float, float]:
@@ -67,7 +73,7 @@ def _velocity(dof: Dof) -> tuple[float, float]:
 
 
 def _effort(dof: Dof) -> tuple[float, float]:
-    """A file that says 0 or a negative number does not mean that the motor is dead; engines read 0 as no limit."""
+    """0 or a negative number in a file does not mean that the motor is dead; engines read 0 as no limit."""
     low, high = dof.effort
     if low == -high:
         return -_or_none(abs(high)), _or_none(abs(high))
@@ -78,33 +84,28 @@ def _or_none(value: float) -> float:
     return INF if value == 0.0 or value >= FAR else value
 
 
-def _check_bounds(
-    pair: Pair, scalar: list[int], feature: Feature, name: str, unit: str, bounds: Callable[[Dof], tuple[float, float]]
-) -> Iterator[Check]:
-    _note_unsaid(pair, feature, lambda dof: bounds(dof) != (-INF, INF))
-    if not pair.both_say(feature):
-        return
-    scalar = [k for k in scalar if _both_say(pair, feature, *pair.match.dofs[k])]
-    low = _differences(pair, scalar, lambda dof, _: bounds(dof)[0])
-    high = _differences(pair, scalar, lambda dof, _: bounds(dof)[1])
-    sizes = np.array([max((abs(x) for x in bounds(pair.a.dofs[pair.match.dofs[k][0]]) if abs(x) < INF), default=0.0) for k in scalar])
-    yield worst(name, unit, np.maximum(low, high), _allowed(pair, 1e-9, sizes), _label(pair, scalar))
+def _check_bounds(pair: Pair, feature: Feature, name: str, unit: str, bounds: Callable[[Dof], tuple[float, float]]) -> Iterator[Check]:
+    _note_unrepresented(pair, feature, lambda dof: bounds(dof) != (-INF, INF))
+    found = Differences(name, unit)
+    for d, e in pair.match.dofs:
+        if pair.a.dofs[d].kind is not Kind.FREE and _both_represent(pair, feature, d, e):
+            ours, theirs = bounds(pair.a.dofs[d]), bounds(pair.b.dofs[e])
+            difference = max(map(_distance, ours, theirs))
+            found.add(difference, pair.relative(RELATIVE, *(x for x in ours if abs(x) < INF)), pair.a.dof_label(d))
+    yield from found.checks()
 
 
-def _contradictory(pair: Pair, scalar: list[int]) -> Array:
-    """Where one robot has limits that engines disagree about and the other has none.
+def _is_contradictory(pair: Pair, d: int, e: int) -> bool:
+    """Whether one robot has limits that engines disagree about and the other has none; a note names them.
 
-    A lower limit above the upper one; and [0, 0], with which urdfdom locks the joint while MuJoCo's reader of URDF takes none.
+    A lower limit above the upper one; and [0, 0], with which urdfdom locks the joint while MuJoCo's reader of URDF takes no limits.
     """
-    empty = np.zeros(len(scalar), dtype=bool)
-    for place, k in enumerate(scalar):
-        d, e = pair.match.dofs[k]
-        ours, theirs = pair.a.dofs[d], pair.b.dofs[e]
-        open_one, other = (theirs, ours) if _is_unlimited(theirs) else (ours, theirs)
-        empty[place] = _is_unlimited(open_one) and (other.lower > other.upper or other.lower == other.upper == 0.0)
-        if empty[place]:
-            pair.notes.append(f"position limits: [{other.lower:.6g}, {other.upper:.6g}] of {pair.a.dof_label(d)} is none for some engines")
-    return empty
+    ours, theirs = pair.a.dofs[d], pair.b.dofs[e]
+    unlimited, other = (theirs, ours) if _is_unlimited(theirs) else (ours, theirs)
+    if not _is_unlimited(unlimited) or not (other.lower > other.upper or other.lower == other.upper == 0.0):
+        return False
+    pair.notes.append(f"position limits: [{other.lower:.6g}, {other.upper:.6g}] of {pair.a.dof_label(d)} is none for some engines")
+    return True
 
 
 def _is_unlimited(dof: Dof) -> bool:
@@ -114,129 +115,98 @@ def _is_unlimited(dof: Dof) -> bool:
 # ---- mechanics -------------------------------------------------------------------------------------------------------
 
 
-def _check_numbers(pair: Pair, feature: Feature, name: str, unit: str, value: Callable[[Dof], float]) -> Iterator[Check]:
-    _note_unsaid(pair, feature, lambda dof: value(dof) != 0.0)
-    if not pair.both_say(feature):
-        return
-    known = [(d, e) for d, e in (*pair.match.dofs, *_turned(pair)) if _both_say(pair, feature, d, e)]
-    sizes = np.array([abs(value(pair.a.dofs[d])) for d, _ in known])
-    apart = np.array([abs(value(pair.b.dofs[e]) - value(pair.a.dofs[d])) for d, e in known])
-    yield worst(name, unit, apart, _allowed(pair, 1e-12, sizes), lambda place: pair.a.dof_label(known[place][0]))
-
-
-def _turned(pair: Pair) -> Iterator[tuple[int, int]]:
-    """A ball and each of the hinges that stand for it: what acts on the ball acts on each of them."""
-    for turned in pair.match.turned:
-        yield from ((d, e) for d in turned.dofs_a for e in turned.dofs_b)
+def _check_mechanics(pair: Pair, feature: Feature, name: str, unit: str, value: Callable[[Dof], float]) -> Iterator[Check]:
+    """One number of every dof. Of a ball that is three hinges in the other robot, it is that of each of them."""
+    _note_unrepresented(pair, feature, lambda dof: value(dof) != 0.0)
+    found = Differences(name, unit)
+    hinges = ((d, e) for item in pair.match.balls for d in item.dofs_a for e in item.dofs_b)
+    for d, e in (*pair.match.dofs, *hinges):
+        if _both_represent(pair, feature, d, e):
+            ours, theirs = value(pair.a.dofs[d]), value(pair.b.dofs[e])
+            found.add(abs(theirs - ours), pair.relative(TINY, ours), pair.a.dof_label(d))
+    yield from found.checks()
 
 
 def _check_springs(pair: Pair) -> Iterator[Check]:
-    _note_unsaid(pair, Feature.SPRINGS, lambda dof: dof.stiffness != 0.0 or bool(dof.nonlinear))
-    if not pair.both_say(Feature.SPRINGS):
+    _note_unrepresented(pair, Feature.SPRINGS, lambda dof: dof.stiffness != 0.0 or bool(dof.nonlinear))
+    if not pair.both_represent(Feature.SPRINGS):
         return
-    known = list(range(len(pair.match.dofs)))
-    label = _label(pair, known)
-    stiffness = np.array([abs(pair.a.dofs[d].stiffness) for d, _ in pair.match.dofs])
-    yield worst("stiffness", "N m/rad", _differences(pair, known, lambda dof, _: dof.stiffness), _allowed(pair, 1e-12, stiffness), label)
-    yield worst(
-        "spring reference",
-        "rad or m",
-        _differences(pair, known, lambda dof, shift: dof.spring_ref - shift * bool(dof.stiffness)),
-        _allowed(pair, LIMIT, 0.0 * stiffness + 1.0),
-        label,
-    )
-    curved = [
-        f"{pair.a.dof_label(d)} has other curves"
-        for d, e in pair.match.dofs
-        if not _alike(pair.a.dofs[d].nonlinear, pair.b.dofs[e].nonlinear)
-    ]
-    if any(pair.a.dofs[d].nonlinear or pair.b.dofs[e].nonlinear for d, e in pair.match.dofs):
+    stiffness, reference = Differences("stiffness", "N m/rad"), Differences("spring reference", "rad or m")
+    curved: list[str] = []
+    dofs = [(d, pair.a.dofs[d], pair.b.dofs[e], shift) for (d, e), shift in zip(pair.match.dofs, pair.shifts, strict=True)]
+    for d, ours, theirs, shift in dofs:
+        label = pair.a.dof_label(d)
+        stiffness.add(_distance(ours.stiffness, theirs.stiffness), pair.relative(TINY, ours.stiffness), label)
+        rest = theirs.spring_ref - shift * bool(theirs.stiffness)
+        reference.add(_distance(ours.spring_ref, rest), pair.relative(LIMIT, 1.0), label)
+        if not same_numbers(ours.nonlinear, theirs.nonlinear):
+            curved.append(f"{label} has other curves")
+    yield from (*stiffness.checks(), *reference.checks())
+    if any(ours.nonlinear or theirs.nonlinear for _, ours, theirs, _ in dofs):
         yield counted("nonlinear damping and stiffness", curved)
 
 
-def _alike(a: tuple[float, ...], b: tuple[float, ...]) -> bool:
-    width = max(len(a), len(b))
-    return bool(np.allclose(np.resize([*a, *[0.0] * (width - len(a))], width), [*b, *[0.0] * (width - len(b))], rtol=1e-9, atol=0.0))
-
-
 def _check_references(pair: Pair) -> Iterator[Check]:
-    """A shifted coordinate is a difference where both formats can say what it counts from."""
-    shifts = np.abs(np.array(pair.shifts))
-    if pair.both_say(Feature.REFS):
-        if shifts.any():
-            yield worst("coordinate references", "rad or m", shifts, LIMIT, lambda k: pair.a.dof_label(pair.match.dofs[k][0]))
-        return
-    moved = [f"{pair.a.dof_label(pair.match.dofs[k][0])} by {pair.shifts[k]:.6g}" for k in np.flatnonzero(shifts)]
-    if moved:
-        pair.notes.append(f"coordinates count from another zero: {', '.join(moved[:5])}{' and more' if len(moved) > 5 else ''}")
+    """A shifted coordinate is a difference where both formats represent its reference, else a note."""
+    shifted = [(pair.a.dof_label(d), shift) for (d, _), shift in zip(pair.match.dofs, pair.shifts, strict=True) if shift]
+    if pair.both_represent(Feature.REFS):
+        found = Differences("coordinate references", "rad or m")
+        for label, shift in shifted:
+            found.add(abs(shift), LIMIT, label)
+        yield from found.checks()
+    elif shifted:
+        moved = ", ".join(f"{label} by {shift:.6g}" for label, shift in shifted[:_MOST_LISTED])
+        pair.notes.append(f"coordinates count from another zero: {moved}{' and more' if len(shifted) > _MOST_LISTED else ''}")
 
 
 # ---- couplings -------------------------------------------------------------------------------------------------------
 
 
 def _check_couplings(pair: Pair) -> Iterator[Check]:
-    """The same dofs follow, and are at the same place at every configuration."""
-    ours, theirs = set(_sayable_followers(pair)), {coupling.follower for coupling in pair.b.couplings}
+    """The same dofs follow, and their coordinates are equal at every configuration."""
+    ours, theirs = set(_representable_followers(pair)), {coupling.follower for coupling in pair.b.couplings}
     if not ours and not theirs:
         return
     partner = dict(pair.match.dofs)
-    paired = set(partner.values())
-    missing = [f"{pair.a.dof_label(d)} follows nothing in the other" for d in sorted(ours) if d not in partner or partner[d] not in theirs]
-    led = {partner[d] for d in ours if d in partner}
-    new = [f"{pair.b.dof_label(e)} follows only in the other" for e in sorted(theirs & paired - led)]
-    yield counted("couplings", missing + new)
-    both = [k for k, (d, e) in enumerate(pair.match.dofs) if d in ours and e in theirs]
-    apart = np.array([_follower_distance(pair, k) for k in both])
-    size = np.array([float(np.abs(pair.q_a[:, pair.a.columns[pair.match.dofs[k][0]]]).max()) for k in both])
-    yield worst("coupled coordinates", "rad or m", apart, _allowed(pair, 1e-9, size), _label(pair, both))
+    missing = [f"{pair.a.dof_label(d)} follows nothing in the other" for d in sorted(ours) if partner.get(d) not in theirs]
+    new = theirs & set(partner.values()) - {partner[d] for d in ours if d in partner}
+    yield counted("couplings", missing + [f"{pair.b.dof_label(e)} follows only in the other" for e in sorted(new)])
+    found = Differences("coupled coordinates", "rad or m")
+    for (d, e), shift in zip(pair.match.dofs, pair.shifts, strict=True):
+        if d in ours and e in theirs:
+            q_a, q_b = pair.q_a[:, pair.a.columns[d]], pair.q_b[:, pair.b.columns[e]]
+            allowed = pair.relative(RELATIVE, float(np.abs(q_a).max()))
+            found.add(float(np.abs(q_b - shift - q_a).max()), allowed, pair.a.dof_label(d))
+    yield from found.checks()
 
 
-def _sayable_followers(pair: Pair) -> Iterator[int]:
-    """The first robot's dofs that follow in a way that the second's format can say; a note for the others."""
-    curved = [] if Feature.CURVES in pair.b.says else [coupling for coupling in pair.a.couplings if not coupling.straight]
+def _representable_followers(pair: Pair) -> Iterator[int]:
+    """The first robot's dofs that follow in a way that the second's format represents; a note for the others."""
+    curved = [] if Feature.CURVES in pair.b.features else [coupling for coupling in pair.a.couplings if not coupling.straight]
     yield from (coupling.follower for coupling in pair.a.couplings if coupling not in curved)
     if curved:
-        said = ", ".join(pair.a.dof_label(coupling.follower) for coupling in curved[:3])
-        pair.notes.append(f"{Feature.CURVES.value}: {pair.b.format} has none; {len(curved)} in {pair.a.format}: {said}")
-
-
-def _follower_distance(pair: Pair, k: int) -> float:
-    d, e = pair.match.dofs[k]
-    return float(np.abs(pair.q_b[:, pair.b.columns[e]] - pair.shifts[k] - pair.q_a[:, pair.a.columns[d]]).max())
+        labels = ", ".join(pair.a.dof_label(coupling.follower) for coupling in curved[:3])
+        pair.notes.append(f"{Feature.CURVES.value}: {pair.b.format} has none; {len(curved)} in {pair.a.format}: {labels}")
 
 
 # ---- shared ----------------------------------------------------------------------------------------------------------
 
 
-def _differences(pair: Pair, which: list[int], value: Callable[[Dof, float], float]) -> Array:
-    """|value of b - value of a| of these dof pairs; two equal infinities do not differ."""
-    out = np.zeros(len(which))
-    for place, k in enumerate(which):
-        d, e = pair.match.dofs[k]
-        x, y = value(pair.a.dofs[d], 0.0), value(pair.b.dofs[e], pair.shifts[k])
-        out[place] = 0.0 if x == y else abs(y - x)
-    return out
+def _distance(ours: float, theirs: float) -> float:
+    """Of two numbers; two equal infinities do not differ."""
+    return 0.0 if ours == theirs else abs(theirs - ours)
 
 
-def _allowed(pair: Pair, least: float, sizes: Array) -> Array:
-    allowed: Array = np.maximum(least, np.maximum(1e-9, 8.0 * pair.precision) * sizes)
-    return allowed
-
-
-def _label(pair: Pair, which: list[int]) -> Callable[[int], str]:
-    return lambda place: pair.a.dof_label(pair.match.dofs[which[place]][0])
-
-
-def _note_unsaid(pair: Pair, feature: Feature, said: Callable[[Dof], bool]) -> None:
-    """A note where one side says something that the other's format or reader cannot."""
+def _note_unrepresented(pair: Pair, feature: Feature, has_it: Callable[[Dof], bool]) -> None:
+    """A note where dofs of one side have a number that the other's format or reader does not represent."""
     for model, other in ((pair.a, pair.b), (pair.b, pair.a)):
-        unsaid = [dof for dof in model.dofs if said(dof) and not other.can_say(feature, dof.kind)]
-        if not unsaid:
+        found = [dof for dof in model.dofs if has_it(dof) and not other.represents(feature, dof.kind)]
+        if not found:
             continue
-        kinds = sorted({dof.kind.value for dof in unsaid})
-        where = "" if feature not in other.says else f" for {' and '.join(kinds)} joints"
-        pair.notes.append(f"{feature.value}: {other.format} has none{where}; {len(unsaid)} in {model.format}")
+        kinds = sorted({dof.kind.value for dof in found})
+        where = "" if feature not in other.features else f" for {' and '.join(kinds)} joints"
+        pair.notes.append(f"{feature.value}: {other.format} has none{where}; {len(found)} in {model.format}")
 
 
-def _both_say(pair: Pair, feature: Feature, d: int, e: int) -> bool:
-    return pair.a.can_say(feature, pair.a.dofs[d].kind) and pair.b.can_say(feature, pair.b.dofs[e].kind)
+def _both_represent(pair: Pair, feature: Feature, d: int, e: int) -> bool:
+    return pair.a.represents(feature, pair.a.dofs[d].kind) and pair.b.represents(feature, pair.b.dofs[e].kind)

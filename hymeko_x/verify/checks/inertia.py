@@ -1,4 +1,8 @@
-"""Mass, centre and tensor of each body, or of what is rigidly joined where one robot merged bodies."""
+"""Mass, centre and inertia tensor of each body, or of a rigid group where one robot merged bodies.
+
+Compared: mass in kg, centre in m, tensor in kg m^2 (not eigenframes: axes of equal moments are arbitrary). Allowed: 1e-9 of the value,
+1e-9 m, and the least inertia that MuJoCo needs where the second robot was made for it.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hymeko_x.verify.checks.pair import Pair, worst
+from hymeko_x.verify.checks.pair import RELATIVE, Differences, Pair
 from hymeko_x.verify.model import WORLD, Array, Body, KinematicModel
+from hymeko_x.verify.spatial import shifted_tensor
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -17,130 +22,136 @@ if TYPE_CHECKING:
 Inertia = tuple[float, Array, Array]
 """Mass in kg, centre in m, tensor about the centre in kg m^2, all in one frame."""
 
+CENTRE = 1e-9
+"""In m."""
+
+_LEAST = 2e-10
+"""In kg and kg m^2: the inertia that a massless moving body gets for an engine that refuses it."""
+
 _MARGIN = 2e-11
-_LEAST = 2e-10  # what an engine that refuses massless moving bodies gets instead, in kg and kg m^2
+"""In kg and kg m^2: MuJoCo's solver needs some 1e-12 where a tensor is at the edge of those that a body can have."""
+
+_DUST = 1e-13
+"""In kg and kg m^2: the rounding of what is left when an engine's sum over rigidly joined bodies is taken apart."""
+
+_ZERO_MOMENT = 1e-15
+"""In kg m^2: what engines take for zero."""
+
+_EDGE = 1e-11
+"""In kg m^2: by so much a moment may exceed the sum of the others, because it was rounded."""
+
+_SPREAD = 1e-12
+"""Of mass times squared distance of the centre: the same rounding, of tensors about the frame's origin."""
 
 
 def check_inertia(pair: Pair) -> Iterator[Check]:
-    """Worst mass, centre and tensor. Tensors are compared, not eigenframes: axes of equal moments are arbitrary."""
-    labels, ours, theirs = _units(pair)
-    mass = np.array([abs(x[0] - y[0]) for x, y in zip(ours, theirs, strict=True)])
-    weighty = [k for k, (x, y) in enumerate(zip(ours, theirs, strict=True)) if min(abs(x[0]), abs(y[0])) > _LEAST]
-    centre = np.array([float(np.linalg.norm(ours[k][1] - theirs[k][1])) for k in weighty])
-    tensor = np.array([float(np.abs(x[2] - y[2]).max()) for x, y in zip(ours, theirs, strict=True)])
-    relative = max(1e-9, 8.0 * pair.precision)
-    masses = np.array([abs(x[0]) for x in ours])
-    sizes = np.array([float(np.abs(ours[k][1]).max()) for k in weighty])
-    moments = np.array([float(np.abs(x[2]).max()) for x in ours])
-    spread = masses * np.array([float(x[1] @ x[1]) for x in ours])
-    floors = np.array([_floor(pair, x) for x in ours])
-    yield worst("mass", "kg", mass, np.maximum(relative * masses, np.maximum(floors, 1e-13)), lambda k: labels[k])
-    yield worst("centre of mass", "m", centre, np.maximum(1e-9, relative * sizes), lambda k: labels[weighty[k]])
-    yield worst(
-        "inertia tensor", "kg m^2", tensor, np.maximum(relative * moments, np.maximum(floors, 1e-13 + 1e-12 * spread)), lambda k: labels[k]
-    )
+    """Worst mass, centre and tensor."""
+    masses, centres, tensors = Differences("mass", "kg"), Differences("centre of mass", "m"), Differences("inertia tensor", "kg m^2")
+    relative = pair.allowed(RELATIVE)
+    for label, (mass, centre, tensor), (other_mass, other_centre, other_tensor) in _units(pair):
+        floor = _floor(pair, (mass, centre, tensor))
+        masses.add(abs(mass - other_mass), max(relative * abs(mass), floor, _DUST), label)
+        if min(abs(mass), abs(other_mass)) > _LEAST:
+            distance = float(np.linalg.norm(centre - other_centre))
+            centres.add(distance, max(CENTRE, relative * float(np.abs(centre).max())), label)
+        rounding = _DUST + _SPREAD * abs(mass) * float(centre @ centre)
+        allowed = max(relative * float(np.abs(tensor).max()), floor, rounding)
+        tensors.add(float(np.abs(tensor - other_tensor).max()), allowed, label)
+    yield from (*masses.checks(), *centres.checks(), *tensors.checks())
 
 
 def _floor(pair: Pair, inertia: Inertia) -> float:
-    """What may appear out of nothing where MuJoCo needs mass on everything that moves and the first robot has none.
-
-    Where a tensor is at the edge of what a body can have, MuJoCo's solver needs a margin of some 1e-12 kg m^2.
-    """
-    if not made_for_mujoco(pair):
+    """The inertia that may appear where the second robot's engine needs some on everything that moves and the first robot has none."""
+    if not _gets_least_mass(pair):
         return 0.0
     return _LEAST if inertia[0] <= _LEAST or np.linalg.eigvalsh(inertia[2])[0] <= _LEAST else _MARGIN
 
 
-def made_for_mujoco(pair: Pair) -> bool:
-    """Whether the second robot is one for MuJoCo, which refuses inertias that the first robot's format allows."""
-    return pair.b.format == "mjcf" and pair.a.format != "mjcf"
+def _gets_least_mass(pair: Pair) -> bool:
+    """Whether the second robot's engine refuses inertias that the first robot's format allows."""
+    return pair.b.row.requires_mass and not pair.a.row.requires_mass
 
 
 def repaired_bodies(pair: Pair) -> list[tuple[int, int]]:
-    """Pairs of bodies whose inertia was accepted although it differs: what differs there says nothing about dynamics."""
-    bodies = [(i, j, pair.a.bodies[i], pair.b.bodies[j]) for i, j in pair.match.bodies[1:]]
-    found = [(i, j) for i, j, ours, theirs in bodies if not (_comparable(ours, theirs) and ours.shaped)]
-    if not made_for_mujoco(pair):
-        return found
-    for i, j, ours, theirs in bodies:
-        if not ours.shaped:
-            continue
-        x, y = of_body(ours), of_body(theirs)
-        apart = max(abs(x[0] - y[0]), float(np.abs(x[2] - y[2]).max()))
-        unphysical = not is_physical(x[2]) and is_physical(y[2])
-        if unphysical or 1e-9 * float(np.abs(x[2]).max()) < apart <= _floor(pair, x):
+    """Pairs of bodies whose inertia was accepted although it differs: they are left out of the dynamics."""
+    found: list[tuple[int, int]] = []
+    for i, j in pair.match.bodies[1:]:
+        ours, theirs = pair.a.bodies[i], pair.b.bodies[j]
+        if not (_comparable(ours, theirs) and ours.tensor_is_known):
             found.append((i, j))
+        elif _gets_least_mass(pair):
+            x, y = of_body(ours), of_body(theirs)
+            difference = max(abs(x[0] - y[0]), float(np.abs(x[2] - y[2]).max()))
+            unphysical = not is_physical(x[2]) and is_physical(y[2])
+            if unphysical or RELATIVE * float(np.abs(x[2]).max()) < difference <= _floor(pair, x):
+                found.append((i, j))
     return found
 
 
-# ---- what is compared with what --------------------------------------------------------------------------------------
+# ---- bodies and rigid groups -----------------------------------------------------------------------------------------
 
 
-def _units(pair: Pair) -> tuple[list[str], list[Inertia], list[Inertia]]:
-    """Body by body; group by group where a body of a fixed group has no partner."""
-    labels: list[str] = []
-    ours: list[Inertia] = []
-    theirs: list[Inertia] = []
+def _units(pair: Pair) -> Iterator[tuple[str, Inertia, Inertia]]:
+    """Body by body, with its label; group by group where a body of a rigid group has no partner."""
     group_a, group_b = fixed_groups(pair.a), fixed_groups(pair.b)
-    merged_a = {group_a[i] for i in pair.match.lone_a if pair.a.bodies[i].mass}
-    merged_b = {group_b[j] for j in pair.match.lone_b if pair.b.bodies[j].mass}
+    merged_a = {group_a[i] for i in pair.match.unmatched_a if pair.a.bodies[i].mass}
+    merged_b = {group_b[j] for j in pair.match.unmatched_b if pair.b.bodies[j].mass}
     members_a, members_b = _members(group_a), _members(group_b)
     seen: set[tuple[int, int]] = set()
-    unweighed: list[str] = []
+    unknown: list[str] = []
     for i, j in pair.match.bodies[1:]:
         groups = group_a[i], group_b[j]
         if not _comparable(pair.a.bodies[i], pair.b.bodies[j]):
-            unweighed.append(pair.a.body_label(i))
+            unknown.append(pair.a.body_label(i))
             continue
         whole = groups[0] in merged_a or groups[1] in merged_b
         if whole and (groups in seen or WORLD in groups):
             continue
         seen.add(groups)
-        labels.append(f"what is fixed to {pair.a.body_label(i)}" if whole else pair.a.body_label(i))
-        ours.append(_sum_in(pair.a, members_a[groups[0]], i) if whole else of_body(pair.a.bodies[i]))
-        theirs.append(_sum_in(pair.b, members_b[groups[1]], j) if whole else of_body(pair.b.bodies[j]))
-    if unweighed:
+        label = f"what is fixed to {pair.a.body_label(i)}" if whole else pair.a.body_label(i)
+        ours = _sum_in(pair.a, members_a[groups[0]], i) if whole else of_body(pair.a.bodies[i])
+        theirs = _sum_in(pair.b, members_b[groups[1]], j) if whole else of_body(pair.b.bodies[j])
+        yield label, *_without_unknown(pair, label, ours, theirs)
+    if unknown:
         pair.notes.append(
-            f"inertia of {len(unweighed)} bodies: not said in one of the files, so every engine computes another ({unweighed[0]})"
+            f"inertia of {len(unknown)} bodies: not given in one of the files, so that each engine computes another ({unknown[0]})"
         )
-    return _without_unsaid(pair, labels, ours, theirs)
 
 
 def _comparable(ours: Body, theirs: Body) -> bool:
-    """Whether both files say something. A mass that the first says and the second does not is a difference."""
-    return ours.weighed and (theirs.weighed or ours.mass > 0.0)
+    """Whether both files give an inertia. A mass in the first and none in the second is a difference."""
+    return ours.inertia_is_known and (theirs.inertia_is_known or ours.mass > 0.0)
 
 
-def _without_unsaid(
-    pair: Pair, labels: list[str], ours: list[Inertia], theirs: list[Inertia]
-) -> tuple[list[str], list[Inertia], list[Inertia]]:
-    """Tensors that the first file does not say, and those that no body can have, which MuJoCo refuses: only masses are compared.
+def _without_unknown(pair: Pair, label: str, ours: Inertia, theirs: Inertia) -> tuple[Inertia, Inertia]:
+    """Without tensors that the first file does not give, and those that no body can have and MuJoCo refuses: only masses are compared.
 
-    A tensor that only the second file does not say is a difference.
+    A tensor that only the second file does not give is a difference.
     """
-    theirs = [(mass, centre, np.nan_to_num(tensor)) for mass, centre, tensor in theirs]
-    kept = []
-    for label, x, y in zip(labels, ours, theirs, strict=True):
-        unsaid = bool(np.isnan(x[2]).any())
-        repaired = not unsaid and made_for_mujoco(pair) and not is_physical(x[2]) and is_physical(y[2])
-        if unsaid:
-            pair.notes.append(f"inertia tensor: {pair.a.format} does not say that of {label}")
-        if repaired:
-            pair.notes.append(f"inertia tensor: that of {label} is not physical in {pair.a.format}, and MuJoCo takes no such tensor")
-        kept.append((x[0], x[1], y[2]) if unsaid or repaired else x)
-    return labels, kept, theirs
-
-
-def is_physical(tensor: Array) -> bool:
-    """Whether a mass distribution can have this tensor: principal moments not negative, none above the sum of the others."""
-    low, middle, high = np.linalg.eigvalsh(tensor)
-    slack = 1e-11 + 1e-9 * abs(high)
-    return bool(low >= -1e-15 and low + middle >= high - slack) and bool(low > 1e-15 or high < 1e-15 or low + middle > high + 1e-15)
+    theirs = theirs[0], theirs[1], np.nan_to_num(theirs[2])
+    unknown = bool(np.isnan(ours[2]).any())
+    repaired = not unknown and _gets_least_mass(pair) and not is_physical(ours[2]) and is_physical(theirs[2])
+    if unknown:
+        pair.notes.append(f"inertia tensor: {pair.a.format} does not give that of {label}")
+    if repaired:
+        pair.notes.append(f"inertia tensor: that of {label} is not physical in {pair.a.format}, and {pair.b.engine} refuses it")
+    return ((ours[0], ours[1], theirs[2]) if unknown or repaired else ours), theirs
 
 
 def of_body(body: Body) -> Inertia:
-    """The inertia of one body in its own frame; a tensor that its file does not say is not a number."""
-    return body.mass, body.com, body.tensor if body.shaped else np.full((3, 3), np.nan)
+    """The inertia of one body in its own frame; a tensor that its file does not give is not a number."""
+    return body.mass, body.com, body.tensor if body.tensor_is_known else np.full((3, 3), np.nan)
+
+
+def is_physical(tensor: Array) -> bool:
+    """Whether a body with an extent in all directions can have this tensor, or it is zero.
+
+    Its principal moments are positive, and none is larger than the sum of the others.
+    """
+    low, middle, high = np.linalg.eigvalsh(tensor)
+    if low < -_ZERO_MOMENT or low + middle < high - (_EDGE + RELATIVE * abs(high)):
+        return False
+    return bool(low > _ZERO_MOMENT or high < _ZERO_MOMENT or low + middle > high + _ZERO_MOMENT)
 
 
 def fixed_groups(model: KinematicModel) -> list[int]:
@@ -183,6 +194,5 @@ def combined(parts: list[Inertia]) -> Inertia:
     centre = sum((part[0] * part[1] for part in parts), np.zeros(3)) / mass
     tensor = np.zeros((3, 3))
     for part in parts:
-        arm = part[1] - centre
-        tensor += part[2] + part[0] * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        tensor += shifted_tensor(part[0], part[1] - centre, part[2])
     return mass, centre, tensor

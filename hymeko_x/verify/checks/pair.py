@@ -1,4 +1,4 @@
-"""Two matched robots at the same configurations: what every check takes."""
+"""Two matched robots at the same configurations, which every check takes, and the ways to report differences."""
 
 from __future__ import annotations
 
@@ -17,19 +17,28 @@ from hymeko_x.verify.verdict import Check
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from hymeko_x.verify.matching import Match, Turned
+    from hymeko_x.verify.kinematics import Kinematics
+    from hymeko_x.verify.matching import BallMatch, Match
     from hymeko_x.verify.model import Array, Feature, KinematicModel
 
-POSITION, ROTATION = 1e-9, 1e-9
-MASS_MATRIX = 1e-8
+RELATIVE = 1e-9
+"""Of a value: text keeps 15 digits or more, engines compute in doubles, and the error grows by conversion of units and frames."""
+
+ROUNDINGS = 8.0
+"""So many roundings a value may have behind it on its way through a format: its allowance is that many times the precision."""
+
+_SAME_PLACEMENT = 1e-6
+"""In m and as a matrix entry: below it two joints place their child bodies equally, so that only the coordinate was shifted."""
+
+MOST_NAMED = 5
+"""So many findings a check names; it counts the rest."""
 
 
 class Pair(Struct, frozen=True, eq=False, dict=True):
     """Two robots, their match, the same configurations (n, width) in the coordinates of each, and notes for the verdict.
 
-    ``meshes`` reads the mesh files that are compared, each once; ``mesh_distances`` is what was found of meshes already.
-
-    ``shifts`` holds for each pair of dofs by how much the second's coordinate is larger for the same pose.
+    ``shifts`` holds for each pair of dofs by how much the second's coordinate is larger for the same pose. ``meshes`` reads the mesh
+    files that are compared, each once; ``mesh_distances`` holds the results of mesh comparisons.
     """
 
     a: KinematicModel
@@ -60,26 +69,46 @@ class Pair(Struct, frozen=True, eq=False, dict=True):
         """World poses of the second robot in the same pose."""
         return zero_poses(self.b, self.rest_b)
 
+    @cached_property
+    def forward_a(self) -> Kinematics:
+        """The forward kinematics of the first robot, with bases that do not count pinned to the world."""
+        return prepare(self.a, pinned=frozenset(self.match.pinned_a))
+
+    @cached_property
+    def forward_b(self) -> Kinematics:
+        """The same of the second robot."""
+        return prepare(self.b, pinned=frozenset(self.match.pinned_b))
+
     @property
     def precision(self) -> float:
         """The relative accuracy of the less accurate side."""
         return max(self.a.precision, self.b.precision)
 
     def allowed(self, least: float, scale: float = 1.0) -> float:
-        """``least``, or what the accuracy of the numbers makes of a value of this scale."""
-        return max(least, 8.0 * self.precision * scale)
+        """``least``, or the error that the accuracy of the numbers leaves in a value of this scale."""
+        return max(least, ROUNDINGS * self.precision * scale)
 
-    def both_say(self, feature: Feature) -> bool:
-        """Whether both readers can tell."""
-        return feature in self.a.says and feature in self.b.says
+    def relative(self, least: float, *values: float) -> float:
+        """``least``, or the relative allowance of the largest of these values."""
+        return max(least, self.allowed(RELATIVE) * max(map(abs, values), default=0.0))
+
+    def both_represent(self, feature: Feature) -> bool:
+        """Whether both formats and their readers represent it."""
+        return feature in self.a.features and feature in self.b.features
+
+    def note_unrepresented(self, feature: Feature, count: Callable[[KinematicModel], int]) -> None:
+        """A note for each side that has something of which the other's format or reader has none."""
+        for model, other in ((self.a, self.b), (self.b, self.a)):
+            if feature not in other.features and count(model):
+                self.notes.append(f"{feature.value}: {other.format} has none; {count(model)} in {model.format}")
 
     def row_label(self, row: int) -> str:
-        """What a configuration is, for the reader of a verdict."""
+        """The name of a configuration in a verdict."""
         return ("in the zero pose", "at all lower limits", "at all upper limits")[row] if row < 3 else f"at sample {row - 2}"
 
 
 def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, seed: int, *, meshes: Meshes | None = None) -> Pair:
-    """Configurations drawn in the first robot's limits and said in the coordinates of both."""
+    """Configurations drawn in the first robot's limits, in the coordinates of both."""
     rng = np.random.default_rng(seed)
     q_a = draw(a, samples, rng)
     shifts = _shifts(a, b, matched)
@@ -88,24 +117,40 @@ def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, 
         width = a.dofs[d].kind.width
         q_b[:, b.columns[e] : b.columns[e] + width] = q_a[:, a.columns[d] : a.columns[d] + width] + shift
     follow(b, q_b)
-    _turn_alike(a, b, matched.turned, q_a, q_b, rng)
+    _align_balls(a, b, matched.balls, q_a, q_b, rng)
     return Pair(a, b, matched, q_a, q_b, shifts, Meshes() if meshes is None else meshes, list(matched.notes))
 
 
-def worst(quantity: str, unit: str, differences: Array, allowed: Array | float, label: Callable[[int], str]) -> Check:
-    """The check of many differences: the one that exceeds what is allowed for it the most; not-a-number counts as infinite."""
-    if differences.size == 0:
-        return Check(quantity, unit, 0.0, "", float(np.max(allowed, initial=0.0)))
-    flat = np.where(np.isnan(differences), np.inf, differences).ravel()
-    limits = np.broadcast_to(allowed, differences.shape).ravel()
-    index = int(np.argmax(flat / np.maximum(limits, 1e-300)))
-    return Check(quantity, unit, float(flat[index]), label(index) if flat[index] > 0 else "", float(limits[index]))
+class Differences:
+    """The differences of one quantity in its unit, each with its allowance and its place."""
+
+    def __init__(self, quantity: str, unit: str) -> None:
+        self.quantity, self.unit = quantity, unit
+        self._rows: list[tuple[float, float, str]] = []
+
+    def add(self, difference: float, allowed: float, at: str) -> None:
+        """One more difference; not-a-number counts as infinite."""
+        self._rows.append((np.inf if np.isnan(difference) else float(difference), float(allowed), at))
+
+    def checks(self) -> list[Check]:
+        """The check of the difference that exceeds its allowance the most; none where nothing was compared."""
+        if not self._rows:
+            return []
+        difference, allowed, at = max(self._rows, key=lambda row: row[0] / max(row[1], 1e-300))
+        return [Check(self.quantity, self.unit, difference, at if difference > 0 else "", allowed)]
 
 
-def counted(quantity: str, findings: Sequence[str], most: int = 5) -> Check:
+def counted(quantity: str, findings: Sequence[str]) -> Check:
     """The check of things that must have a counterpart: how many have none, and which."""
-    rest = f"; and {len(findings) - most} more" if len(findings) > most else ""
-    return Check(quantity, "", float(len(findings)), "; ".join(findings[:most]) + rest, 0.0)
+    rest = f"; and {len(findings) - MOST_NAMED} more" if len(findings) > MOST_NAMED else ""
+    return Check(quantity, "", float(len(findings)), "; ".join(findings[:MOST_NAMED]) + rest, 0.0)
+
+
+def same_numbers(ours: Sequence[float], theirs: Sequence[float]) -> bool:
+    """Whether two lists of coefficients are equal; missing ones are zeros."""
+    width = max(len(ours), len(theirs))
+    first, second = ([*numbers, *[0.0] * (width - len(numbers))] for numbers in (ours, theirs))
+    return bool(np.allclose(first, second, rtol=RELATIVE, atol=0.0))
 
 
 # ---- coordinates -----------------------------------------------------------------------------------------------------
@@ -125,53 +170,55 @@ def _shifts(a: KinematicModel, b: KinematicModel, matched: Match) -> tuple[float
     """By how much coordinates differ for one pose, where one robot counts from another reference than the other.
 
     A format without references either turns the zero pose (coordinates stay, shift 0) or shifts the coordinates: it did
-    the latter where both robots have the same pose below the joint when each is at its reference.
+    the latter where both robots have the same pose of the child body when each is at its reference.
     """
-    place = dict(matched.bodies)
+    partner = dict(matched.bodies)
     shifts = []
     for d, e in matched.dofs:
-        away = b.dofs[e].ref - a.dofs[d].ref
-        body = a.body_of_dof[d]
-        same_body = place.get(body) == b.body_of_dof[e]
-        shifted = away != 0.0 and same_body and _same_placement(a, b, body, b.body_of_dof[e])
-        shifts.append(away if shifted else 0.0)
+        shift = b.dofs[e].ref - a.dofs[d].ref
+        i, j = a.body_of_dof[d], b.body_of_dof[e]
+        is_shifted = shift != 0.0 and partner.get(i) == j and _same_placement(a, b, i, j)
+        shifts.append(shift if is_shifted else 0.0)
     return tuple(shifts)
 
 
 def _same_placement(a: KinematicModel, b: KinematicModel, i: int, j: int) -> bool:
-    return bool(np.abs(a.bodies[i].joint.placement - b.bodies[j].joint.placement).max() < 1e-6)
+    return bool(np.abs(a.bodies[i].joint.placement - b.bodies[j].joint.placement).max() < _SAME_PLACEMENT)
 
 
-def _turn_alike(a: KinematicModel, b: KinematicModel, turned: Sequence[Turned], q_a: Array, q_b: Array, rng: np.random.Generator) -> None:
+def _align_balls(
+    a: KinematicModel, b: KinematicModel, matches: Sequence[BallMatch], q_a: Array, q_b: Array, rng: np.random.Generator
+) -> None:
     """Gives each ball of one robot the orientation that the hinges of the other have, in place."""
-    if not turned:
+    if not matches:
         return
-    sides = [_Side(b, q_b, item.dofs_b, item.top_b, item.body_b) for item in turned]
-    others = [_Side(a, q_a, item.dofs_a, item.top_a, item.body_a) for item in turned]
-    balls = [side if len(side.dofs) == 1 else other for side, other in zip(sides, others, strict=True)]
-    hinges = [other if len(side.dofs) == 1 else side for side, other in zip(sides, others, strict=True)]
-    for ball, three in zip(balls, hinges, strict=True):
-        ball.q[:, ball.column : ball.column + 4] = (1.0, 0.0, 0.0, 0.0)
+    pairs = []
+    for item in matches:
+        first, second = _Side(a, q_a, item.dofs_a, item.top_a, item.body_a), _Side(b, q_b, item.dofs_b, item.top_b, item.body_b)
+        pairs.append((second, first) if len(second.dofs) == 1 else (first, second))
+    for ball, hinges in pairs:
+        ball.set((1.0, 0.0, 0.0, 0.0))
         if ball.model is a:
-            three.draw(rng)
+            hinges.draw(rng)
     poses = {id(model): prepare(model).poses(q) for model, q in ((a, q_a), (b, q_b))}
-    for ball, three in zip(balls, hinges, strict=True):
-        at_rest, wanted = (side.turn(poses[id(side.model)]) for side in (ball, three))
-        ball.q[:, ball.column : ball.column + 4] = quat_from_rotation(np.swapaxes(at_rest, 1, 2) @ wanted)
+    for ball, hinges in pairs:
+        at_rest, wanted = (side.turn(poses[id(side.model)]) for side in (ball, hinges))
+        ball.set(quat_from_rotation(np.swapaxes(at_rest, 1, 2) @ wanted))
 
 
 class _Side(Struct, frozen=True, eq=False):
-    """One robot's dofs of a joint that turns every way: from the body ``top`` to the body ``below``."""
+    """One robot's dofs of a joint that turns every way: from the body ``top`` to the body ``bottom``."""
 
     model: KinematicModel
     q: Array
     dofs: tuple[int, ...]
     top: int
-    below: int
+    bottom: int
 
-    @property
-    def column(self) -> int:
-        return self.model.columns[self.dofs[0]]
+    def set(self, quats: Array | tuple[float, ...]) -> None:
+        """The orientation of a ball in all configurations."""
+        column = self.model.columns[self.dofs[0]]
+        self.q[:, column : column + 4] = quats
 
     def draw(self, rng: np.random.Generator) -> None:
         """Random angles within the limits in all but the first three rows."""
@@ -180,6 +227,6 @@ class _Side(Struct, frozen=True, eq=False):
             self.q[3:, self.model.columns[dof]] = rng.uniform(lower, upper, len(self.q) - 3)
 
     def turn(self, poses: Array) -> Array:
-        """The rotation of the body below, seen from the one on top, (n, 3, 3)."""
-        turn: Array = np.swapaxes(poses[:, self.top, :3, :3], 1, 2) @ poses[:, self.below, :3, :3]
+        """The rotation of the bottom body in the frame of the top one, (n, 3, 3)."""
+        turn: Array = np.swapaxes(poses[:, self.top, :3, :3], 1, 2) @ poses[:, self.bottom, :3, :3]
         return turn

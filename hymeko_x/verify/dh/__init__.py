@@ -7,7 +7,7 @@ a hinge or to d_i of a slide. Standard rows are (J_i, L_i), Craig's are (L_i-1, 
 Between axes that are parallel to within a few degrees the common normal may be anywhere, and a and d grow without bound.
 There a link is Hayati and Roberts's Tx(a) Rx(alpha) Ry(beta), which is smooth through exact parallelism; in their own
 convention such a link has no d either, because it starts where the last one ended.
-Every table is exact: J_0 and J_n+1 take up whatever the rows cannot say.
+Every table is exact: J_0 and J_n+1 take up whatever the rows cannot represent.
 
 Source: Denavit and Hartenberg 1955; Craig, Introduction to Robotics, 3.4; Hayati and Mirmirani 1985; Roberts 1988.
 """
@@ -85,8 +85,8 @@ class Table(Struct, frozen=True, eq=False):
 def table(model: KinematicModel, tip: str | int | None = None, convention: Convention = Convention.STANDARD) -> Table:
     """The table of the chain from the base to a body by name or index (to the end of the longest chain by default).
 
-    Where a ball or a free joint stands above the tip, the chain starts at the body below the last one of them.
-    Raises: Refusal HX303 when there is no such body or nothing above it moves.
+    Where a ball or a free joint is on the way to the tip, the chain starts at the child of the last one of them.
+    Raises: Refusal HX303 when there is no such body or no joint on the way to it moves.
     """
     body = _tip(model, tip)
     start, dofs = chain(model, body)
@@ -98,7 +98,7 @@ def table(model: KinematicModel, tip: str | int | None = None, convention: Conve
 
 
 def chains(model: KinematicModel) -> tuple[int, ...]:
-    """The tips: bodies without a moving body below them, of those that something moves; the deepest of a fixed group."""
+    """The tips: moving bodies without a moving descendant; the deepest of a fixed group."""
     moving = [bool(body.joint.dofs) for body in model.bodies]
     below = [False] * len(model.bodies)
     for i in range(len(model.bodies) - 1, 0, -1):
@@ -200,7 +200,7 @@ def _grouped(
     links: Sequence[Link],
     last: tuple[float, float],
 ) -> Table:
-    """The same numbers grouped as the convention wants them."""
+    """The same numbers grouped by the convention."""
     base = _joint_matrix(links[0].theta, links[0].d)
     tool = _joint_matrix(*last)
     if convention is Convention.MODIFIED:

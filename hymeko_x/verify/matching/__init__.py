@@ -1,7 +1,7 @@
-"""Which body and which coordinate of one robot is which of the other, and where they have no counterpart.
+"""The counterparts of one robot's bodies and coordinates in the other, and what has none.
 
 Bodies are matched by name; unnamed and renamed ones by their place in the tree; with ``structure`` all of them by the shape
-of the tree and by where they are. Bodies in between that only carry dofs (no mass, no shape) may exist on one side only:
+of the tree and by their poses. Bodies in between that only carry dofs (no mass, no shape) may exist on one side only:
 a ball is three hinges elsewhere, and three hinges on one body are a chain elsewhere.
 """
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
-from hymeko_x.verify.matching.bodies import only_carries, pair_by_name, pair_by_structure, plain
+from hymeko_x.verify.matching.bodies import only_carries, pair_by_name, pair_by_structure, speller
 from hymeko_x.verify.model import WORLD, Kind, KinematicModel
 
 if TYPE_CHECKING:
@@ -21,6 +21,7 @@ BODIES, JOINTS, BASE = "bodies", "joints", "base"
 
 _TURNING = (Kind.HINGE, Kind.BALL, Kind.SCREW, Kind.FREE)
 _SAME_MOTION = {Kind.SCREW: Kind.HINGE}  # a screw's angle is the coordinate of the hinge that stands for it
+_MOST_LISTED = 3  # bodies named in a note
 
 
 class Finding(Struct, frozen=True):
@@ -30,10 +31,10 @@ class Finding(Struct, frozen=True):
     words: str
 
 
-class Turned(Struct, frozen=True):
+class BallMatch(Struct, frozen=True):
     """A body whose rotation is one quaternion on one side and three hinges on the other.
 
-    ``top_a`` and ``top_b`` are the matched bodies above; the dofs are the last ones in between that turn.
+    ``top_a`` and ``top_b`` are the nearest matched ancestors; the dofs are the last ones in between that turn.
     """
 
     body_a: int
@@ -47,27 +48,26 @@ class Turned(Struct, frozen=True):
 class Match(Struct):
     """Pairs of bodies (the world first) and of dofs, and what has no partner.
 
-    ``floor_a`` and ``floor_b`` are bases that must not count; ``lone_a`` and ``lone_b`` bodies without a partner;
-    ``carriers`` of them are those that only carry dofs.
+    ``pinned_a`` and ``pinned_b`` are bases whose poses are not compared; ``unmatched_a`` and ``unmatched_b`` bodies without a partner.
     """
 
     bodies: list[tuple[int, int]] = field(default_factory=lambda: [(WORLD, WORLD)])
     dofs: list[tuple[int, int]] = field(default_factory=list)
-    turned: list[Turned] = field(default_factory=list)
+    balls: list[BallMatch] = field(default_factory=list)
     findings: list[Finding] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
-    floor_a: set[int] = field(default_factory=set)
-    floor_b: set[int] = field(default_factory=set)
-    lone_a: list[int] = field(default_factory=list)
-    lone_b: list[int] = field(default_factory=list)
+    pinned_a: set[int] = field(default_factory=set)
+    pinned_b: set[int] = field(default_factory=set)
+    unmatched_a: list[int] = field(default_factory=list)
+    unmatched_b: list[int] = field(default_factory=list)
 
     def find(self, quantity: str, words: str) -> None:
         """Record something without a counterpart."""
         self.findings.append(Finding(quantity, words))
 
 
-class Path(Struct, frozen=True):
-    """From a matched body up to the nearest matched ancestor: the bodies in between and at the end, and their dofs, from the top."""
+class JointPath(Struct, frozen=True):
+    """From the nearest matched ancestor ``top`` to a matched body: the bodies in between and at the end, and their dofs, in order."""
 
     top: int
     bodies: tuple[int, ...]
@@ -80,66 +80,64 @@ def match(a: KinematicModel, b: KinematicModel, *, structure: bool = False) -> M
     found = Match()
     found.bodies = [(i, pairs[i]) for i in range(len(a.bodies)) if i in pairs]
     back = {j: i for i, j in found.bodies}
-    _compare_names(found, a, b, structure=structure)
-    _find_lone(found, a, b, pairs, back)
+    if not structure:
+        _compare_names(found, a, b)
+    _find_unmatched(found, a, b, pairs, back)
     paths_a, paths_b = _paths(a, pairs.keys()), _paths(b, back.keys())
     for i, j in found.bodies[1:]:
-        _match_joint(
-            found, a, b, (i, paths_a[i]), (j, paths_b[j]), parent_matches=pairs[paths_a[i].top] == paths_b[j].top, names=not structure
-        )
-    _find_lone_dofs(found, a, b)
+        path_a, path_b = paths_a[i], paths_b[j]
+        if pairs[path_a.top] != path_b.top:
+            parents = a.body_label(path_a.top), b.body_label(path_b.top)
+            found.find(JOINTS, f"{a.body_label(i)} is below {parents[0]}, and below {parents[1]} in the other")
+        _match_joint(found, a, b, (i, path_a), (j, path_b), names=not structure)
+    _find_unmatched_dofs(found, a, b)
     return found
 
 
-# ---- what has no partner ---------------------------------------------------------------------------------------------
+# ---- bodies ----------------------------------------------------------------------------------------------------------
 
 
-def _compare_names(found: Match, a: KinematicModel, b: KinematicModel, *, structure: bool) -> None:
+def _compare_names(found: Match, a: KinematicModel, b: KinematicModel) -> None:
     """Pairs that were made by place although both have names, or although the first lost its name."""
-    if structure:
-        return
-    spelled = "usd" in (a.format, b.format)
+    spell = speller(a, b)
     for i, j in found.bodies[1:]:
         ours, theirs = a.bodies[i].name, b.bodies[j].name
-        if ours is None or ours == theirs or ours == "world" or (spelled and theirs is not None and plain(ours) == plain(theirs)):
-            continue
-        found.find(BODIES, f"{a.body_label(i)} is called '{theirs}'" if theirs is not None else f"{a.body_label(i)} lost its name")
+        if ours is not None and ours != "world" and (theirs is None or spell(ours) != spell(theirs)):
+            found.find(BODIES, f"{a.body_label(i)} {_renamed(theirs)}")
 
 
-def _find_lone(found: Match, a: KinematicModel, b: KinematicModel, pairs: dict[int, int], back: dict[int, int]) -> None:
-    found.lone_a = [i for i in range(1, len(a.bodies)) if i not in pairs]
-    found.lone_b = [j for j in range(1, len(b.bodies)) if j not in back]
-    for model, lone, words in ((a, found.lone_a, "is missing"), (b, found.lone_b, "is new")):
-        carriers = [i for i in lone if only_carries(model, i)]
+def _renamed(name: str | None) -> str:
+    return "lost its name" if name is None else f"is called '{name}'"
+
+
+def _find_unmatched(found: Match, a: KinematicModel, b: KinematicModel, pairs: dict[int, int], back: dict[int, int]) -> None:
+    found.unmatched_a = [i for i in range(1, len(a.bodies)) if i not in pairs]
+    found.unmatched_b = [j for j in range(1, len(b.bodies)) if j not in back]
+    for model, unmatched, words in ((a, found.unmatched_a, "is missing"), (b, found.unmatched_b, "is new")):
+        carriers = [i for i in unmatched if only_carries(model, i)]
         if carriers:
-            found.notes.append(f"bodies that only carry dofs: {_listed([model.body_label(i) for i in carriers])} ({words})")
-        for i in set(lone) - set(carriers):
-            found.find(BODIES, f"{model.body_label(i)} {words}{_whereabouts(model, i)}")
-
-
-def _whereabouts(model: KinematicModel, i: int) -> str:
-    body = model.bodies[i]
-    return f" (mass {body.mass:.6g} kg, {len(body.shapes)} shapes)" if body.mass or body.shapes else ""
-
-
-def _listed(words: Sequence[str], most: int = 3) -> str:
-    rest = f" and {len(words) - most} more" if len(words) > most else ""
-    return ", ".join(words[:most]) + rest
+            rest = f" and {len(carriers) - _MOST_LISTED} more" if len(carriers) > _MOST_LISTED else ""
+            labels = ", ".join(model.body_label(i) for i in carriers[:_MOST_LISTED])
+            found.notes.append(f"bodies that only carry dofs: {labels}{rest} ({words})")
+        for i in set(unmatched) - set(carriers):
+            body = model.bodies[i]
+            details = f" (mass {body.mass:.6g} kg, {len(body.shapes)} shapes)" if body.mass or body.shapes else ""
+            found.find(BODIES, f"{model.body_label(i)} {words}{details}")
 
 
 # ---- joints ----------------------------------------------------------------------------------------------------------
 
 
-def _paths(model: KinematicModel, matched: Iterable[int]) -> dict[int, Path]:
+def _paths(model: KinematicModel, matched: Iterable[int]) -> dict[int, JointPath]:
     """For each matched body its path up; linear in the bodies, because unmatched ones hand theirs down."""
     known = set(matched)
-    through: dict[int, Path] = {WORLD: Path(WORLD, (), ())}
-    found: dict[int, Path] = {}
+    through: dict[int, JointPath] = {WORLD: JointPath(WORLD, (), ())}
+    found: dict[int, JointPath] = {}
     for i, body in enumerate(model.bodies[1:], start=1):
         first = model.first_dof[i]
         own = tuple(range(first, first + len(body.joint.dofs)))
-        above = Path(body.parent, (), ()) if body.parent in known else through[body.parent]
-        path = Path(above.top, (*above.bodies, i), (*above.dofs, *own))
+        above = JointPath(body.parent, (), ()) if body.parent in known else through[body.parent]
+        path = JointPath(above.top, (*above.bodies, i), (*above.dofs, *own))
         if i in known:
             found[i] = path
         else:
@@ -148,40 +146,32 @@ def _paths(model: KinematicModel, matched: Iterable[int]) -> dict[int, Path]:
 
 
 def _match_joint(
-    found: Match,
-    a: KinematicModel,
-    b: KinematicModel,
-    ours: tuple[int, Path],
-    theirs: tuple[int, Path],
-    *,
-    parent_matches: bool,
-    names: bool,
+    found: Match, a: KinematicModel, b: KinematicModel, ours: tuple[int, JointPath], theirs: tuple[int, JointPath], *, names: bool
 ) -> None:
-    """Pairs the dofs above a pair of bodies, and says what differs between the joints."""
+    """Pairs the dofs between a pair of bodies and their ancestors, and finds where the joints differ."""
     (i, path_a), (j, path_b) = ours, theirs
-    if not parent_matches:
-        found.find(JOINTS, f"{a.body_label(i)} hangs on {a.body_label(path_a.top)}, and on {b.body_label(path_b.top)} in the other")
     base = _base_kind(a, path_a), _base_kind(b, path_b)
     if base[0] and base[1] and (base[0] != base[1] or base == ("open", "open")):
         _match_base(found, a, b, path_a, path_b, (base[0], base[1]))
         return
     aligned = _aligned(*([model.dofs[d].kind for d in path.dofs] for model, path in ((a, path_a), (b, path_b))))
-    if aligned is None or (any(len(left) != len(right) for left, right in aligned) and "urdf" not in (a.format, b.format)):
+    splits_balls = a.row.has_single_dof_joints or b.row.has_single_dof_joints
+    if aligned is None or (any(len(left) != len(right) for left, right in aligned) and not splits_balls):
         pairs = _pairs_by_dof_name(a, b, path_a.dofs, path_b.dofs)
     else:
         runs = [([path_a.dofs[k] for k in left], [path_b.dofs[k] for k in right]) for left, right in aligned]
         pairs = [(left[0], right[0]) for left, right in runs if len(left) == len(right)]
-        turned = [(left, right) for left, right in runs if len(left) != len(right)]
-        found.turned += (Turned(i, j, path_a.top, path_b.top, tuple(left), tuple(right)) for left, right in turned)
+        balls = [(left, right) for left, right in runs if len(left) != len(right)]
+        found.balls += (BallMatch(i, j, path_a.top, path_b.top, tuple(left), tuple(right)) for left, right in balls)
     found.dofs += pairs
     if names and aligned is not None:
         _compare_joint_names(found, a, b, path_a, path_b, pairs)
 
 
 def _aligned(ours: Sequence[Kind], theirs: Sequence[Kind]) -> list[tuple[range, range]] | None:
-    """Which dofs are which: runs of one and one of the same kind, or of a ball and three hinges, which then are the last to turn.
+    """Runs of dofs that correspond: one and one of the same kind, or a ball and three hinges, which then are the last to turn.
 
-    None where the dofs do not move alike.
+    None where the dofs do not move in the same way.
     """
     runs: list[tuple[range, range]] = []
     i = j = 0
@@ -198,8 +188,8 @@ def _aligned(ours: Sequence[Kind], theirs: Sequence[Kind]) -> list[tuple[range, 
     return runs if i == len(ours) and j == len(theirs) else None
 
 
-def _base_kind(model: KinematicModel, path: Path) -> str | None:
-    """How a root is attached: open, fixed or free; None for a body that is no root or moves in another way."""
+def _base_kind(model: KinematicModel, path: JointPath) -> str | None:
+    """How a root is joined to the world: open, fixed or free; None for a body that is no root or moves in another way."""
     if path.top != WORLD:
         return None
     kinds = [model.dofs[d].kind for d in path.dofs]
@@ -210,10 +200,10 @@ def _base_kind(model: KinematicModel, path: Path) -> str | None:
     return "open" if any(model.bodies[i].joint.open for i in path.bodies) else "fixed"
 
 
-def _match_base(found: Match, a: KinematicModel, b: KinematicModel, path_a: Path, path_b: Path, kinds: tuple[str, str]) -> None:
-    """Bases of different kinds, or open ones, do not count: the robots are compared relative to them."""
-    found.floor_a.update(path_a.bodies)
-    found.floor_b.update(path_b.bodies)
+def _match_base(found: Match, a: KinematicModel, b: KinematicModel, path_a: JointPath, path_b: JointPath, kinds: tuple[str, str]) -> None:
+    """The poses of bases of different kinds, or open ones, are not compared: the robots are compared relative to them."""
+    found.pinned_a.update(path_a.bodies)
+    found.pinned_b.update(path_b.bodies)
     if "open" not in kinds:
         found.find(BASE, f"{a.body_label(path_a.bodies[-1])} is {kinds[0]}, and {kinds[1]} in the other")
     elif kinds != ("open", "open"):
@@ -233,24 +223,20 @@ def _motion(kind: Kind) -> Kind:
 
 
 def _compare_joint_names(
-    found: Match, a: KinematicModel, b: KinematicModel, path_a: Path, path_b: Path, pairs: Sequence[tuple[int, int]]
+    found: Match, a: KinematicModel, b: KinematicModel, path_a: JointPath, path_b: JointPath, pairs: Sequence[tuple[int, int]]
 ) -> None:
-    spelled = "usd" in (a.format, b.format)
+    spell = speller(a, b)
     if not path_a.dofs and not path_b.dofs and len(path_a.bodies) == len(path_b.bodies) == 1:
         ours, theirs = a.bodies[path_a.bodies[0]].joint.name, b.bodies[path_b.bodies[0]].joint.name
-        if ours is not None and theirs is not None and not _same_name(ours, theirs, spelled=spelled):
+        if ours is not None and theirs is not None and spell(ours) != spell(theirs):
             found.find(JOINTS, f"joint '{ours}' is called '{theirs}'")
         return
     for d, e in pairs:
         ours, theirs = a.dofs[d].name, b.dofs[e].name
         if ours is None or a.dofs[d].kind is Kind.FREE or (theirs is None and _named_as_one(b, e)):
             continue
-        if theirs is None or not _same_name(ours, theirs, spelled=spelled):
-            found.find(JOINTS, f"joint '{ours}' is called '{theirs}'" if theirs is not None else f"joint '{ours}' lost its name")
-
-
-def _same_name(a: str, b: str, *, spelled: bool) -> bool:
-    return a == b or (spelled and plain(a) == plain(b))
+        if theirs is None or spell(ours) != spell(theirs):
+            found.find(JOINTS, f"joint '{ours}' {_renamed(theirs)}")
 
 
 def _named_as_one(model: KinematicModel, dof: int) -> bool:
@@ -259,12 +245,12 @@ def _named_as_one(model: KinematicModel, dof: int) -> bool:
     return len(joint.dofs) > 1 and joint.name is not None
 
 
-def _find_lone_dofs(found: Match, a: KinematicModel, b: KinematicModel) -> None:
-    """Dofs without a partner, except followers (a coupling says where they are) and bases that do not count."""
-    ours = {d for d, _ in found.dofs} | {d for turned in found.turned for d in turned.dofs_a}
-    theirs = {e for _, e in found.dofs} | {e for turned in found.turned for e in turned.dofs_b}
-    for model, known, floor, words in ((a, ours, found.floor_a, "has no counterpart"), (b, theirs, found.floor_b, "is new")):
+def _find_unmatched_dofs(found: Match, a: KinematicModel, b: KinematicModel) -> None:
+    """Dofs without a partner, except followers (a coupling determines them) and those of bases that are not compared."""
+    ours = {d for d, _ in found.dofs} | {d for ball in found.balls for d in ball.dofs_a}
+    theirs = {e for _, e in found.dofs} | {e for ball in found.balls for e in ball.dofs_b}
+    for model, known, pinned, words in ((a, ours, found.pinned_a, "has no counterpart"), (b, theirs, found.pinned_b, "is new")):
         followers = {coupling.follower for coupling in model.couplings}
         for dof, body in enumerate(model.body_of_dof):
-            if dof not in known and dof not in followers and body not in floor:
+            if dof not in known and dof not in followers and body not in pinned:
                 found.find(JOINTS, f"{model.dof_label(dof)} ({model.dofs[dof].kind.value}) {words}")

@@ -1,4 +1,4 @@
-"""Which body of one robot is which of the other: by name, by place in the tree, or by the shape of the tree."""
+"""The counterpart of each body: by name, by its place in the tree, or by the shape of the tree."""
 
 from __future__ import annotations
 
@@ -12,68 +12,70 @@ from msgspec import Struct
 from hymeko_x.verify.model import WORLD, Array, Body, Kind, KinematicModel
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Iterator, Sequence
+    from collections.abc import Callable, Container, Iterable, Iterator, Sequence
 
-_MOST_CARRIERS = 8  # between two bodies: no joint has more than six dofs, and a ball below three slides is all that takes more
-_SAME_PLACE = 1e-5  # of a body that must have been renamed, because it is where the other was and weighs as much
+_MOST_CARRIERS = 8
+"""Between two bodies: no joint has more than six dofs, and a ball below three slides is all that needs more."""
+
+_SAME_PLACE = 1e-5
+"""In m, kg and as matrix entries, summed up: a body of another name that is where the other was, with its mass, has been renamed."""
 
 
 # ---- bodies by name --------------------------------------------------------------------------------------------------
 
 
-def plain(name: str) -> str:
-    """A name as USD would have to spell it."""
+def identifier(name: str) -> str:
+    """A name as an identifier: letters, digits and underscores, no digit first."""
     spelled = re.sub(r"\W", "_", name)
     return f"_{spelled}" if spelled[:1].isdigit() else spelled
 
 
+def speller(a: KinematicModel, b: KinematicModel) -> Callable[[str], str]:
+    """The spelling in which names of two robots are compared: as identifiers where one of the formats has no other names."""
+    return identifier if a.row.names_are_identifiers or b.row.names_are_identifiers else str
+
+
 def pair_by_name(a: KinematicModel, b: KinematicModel) -> dict[int, int]:
-    """For each matched body of the first robot the second's; what has no name or another one is matched by its place."""
+    """For each matched body of the first robot the second's; bodies with no name or another one are matched by their place."""
     pairs = {WORLD: WORLD}
     taken = {WORLD}
     for i, body in enumerate(a.bodies[1:], start=1):
         j = b.index.get(body.name) if body.name is not None else None
-        if j is not None and j not in taken:  # the world is taken: a link may only be called so
+        if j is not None and j not in taken:  # the world is taken: a link may have its name
             pairs[i] = j
             taken.add(j)
-    if "usd" in (a.format, b.format):
-        _pair_spelled(a, b, pairs, taken)
+    if speller(a, b) is identifier:
+        ours, theirs = _spelled(a, pairs), _spelled(b, taken)
+        for spelling in ours.keys() & theirs.keys():
+            pairs[ours[spelling]] = theirs[spelling]
+            taken.add(theirs[spelling])
     _pair_by_place(a, b, pairs, taken)
     return pairs
 
 
-def _pair_spelled(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], taken: set[int]) -> None:
-    """Names that USD cannot spell, compared as it spells them, where that leaves no doubt."""
-    ours = _spelled(a, pairs.keys())
-    theirs = _spelled(b, taken)
-    for spelling in ours.keys() & theirs.keys():
-        pairs[ours[spelling]] = theirs[spelling]
-        taken.add(theirs[spelling])
-
-
-def _spelled(model: KinematicModel, taken: Iterable[int]) -> dict[str, int]:
-    used = set(taken)
-    names = [(plain(body.name), i) for i, body in enumerate(model.bodies) if body.name is not None and i not in used]
+def _spelled(model: KinematicModel, taken: Container[int]) -> dict[str, int]:
+    """The free bodies by their names as identifiers, where only one has it."""
+    names = [(identifier(body.name), i) for i, body in enumerate(model.bodies) if body.name is not None and i not in taken]
     counts = Counter(name for name, _ in names)
     return {name: i for name, i in names if counts[name] == 1}
 
 
 class _Limb(Struct, frozen=True, eq=False):
-    """An unmatched body below a matched one, maybe behind bodies that only carry dofs.
+    """An unmatched descendant of a matched body, with nothing but carriers of dofs in between.
 
-    ``names`` and ``kinds`` are those of all dofs up to the matched body, a ball being three hinges; ``place`` is its pose there.
+    ``names`` and ``kinds`` are those of all dofs up to the matched body, a ball being three hinges; ``pose`` is its pose there.
     """
 
     body: int
     names: tuple[str, ...]
     kinds: tuple[Kind, ...]
-    place: Array
+    pose: Array
     mass: float
-    direct: bool
+    is_child: bool
 
 
 def _pair_by_place(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], taken: set[int]) -> None:
-    """Unmatched bodies below matched ones, by the names of their joints, else as the only ones of their kind there."""
+    """Unmatched children of matched bodies, by the names of their joints, else as the only ones of their kind there."""
     for parent in range(len(a.bodies)):
         if parent not in pairs:
             continue
@@ -83,7 +85,7 @@ def _pair_by_place(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], 
         free = _Free([limb for j in b.children[pairs[parent]] for limb in _limbs(b, j, taken)])
         crowded = len(rivals) != free.count
         for limbs in [list(_limbs(a, k, pairs)) for k in rivals]:
-            for limb in limbs:  # the first of a chain of bodies that has a counterpart gets it
+            for limb in limbs:  # the first of a chain that has a counterpart
                 other = _counterpart((a, b), limb, free, crowded=crowded)
                 if other is not None:
                     pairs[limb.body] = other.body
@@ -93,59 +95,59 @@ def _pair_by_place(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], 
 
 
 def _limbs(model: KinematicModel, body: int, matched: Container[int]) -> Iterator[_Limb]:
-    """A body, and as long as it only carries dofs the one below it."""
+    """A body, and as long as it only carries dofs its child."""
     names: tuple[str, ...] = ()
     kinds: tuple[Kind, ...] = ()
-    place = np.eye(4)
+    pose = np.eye(4)
     for depth in range(_MOST_CARRIERS + 1):
         if body in matched:
             return
         part = model.bodies[body]
-        names, kinds, place = names + _joint_names(part), kinds + _hinged(part), place @ part.joint.placement
-        yield _Limb(body, names, kinds, place, part.mass, depth == 0)
+        names, kinds, pose = names + _joint_names(part), kinds + _hinged(part), pose @ part.joint.placement
+        yield _Limb(body, names, kinds, pose, part.mass, depth == 0)
         if not only_carries(model, body):
             return
         (body,) = model.children[body]
 
 
 class _Free:
-    """Limbs that wait for a counterpart, by the names of their joints and by how they move."""
+    """Limbs without a counterpart yet, by the names of their joints and by the kinds of their dofs."""
 
     def __init__(self, limbs: Sequence[_Limb]) -> None:
-        self.count = sum(limb.direct for limb in limbs)
-        self._named: dict[str, list[_Limb]] = {}
-        self._moving: dict[tuple[Kind, ...], list[_Limb]] = {}
+        self.count = sum(limb.is_child for limb in limbs)
+        self._by_name: dict[str, list[_Limb]] = {}
+        self._by_kinds: dict[tuple[Kind, ...], list[_Limb]] = {}
         for limb in limbs:
-            self._moving.setdefault(limb.kinds, []).append(limb)
+            self._by_kinds.setdefault(limb.kinds, []).append(limb)
             for name in set(limb.names):
-                self._named.setdefault(name, []).append(limb)
+                self._by_name.setdefault(name, []).append(limb)
 
     def remove(self, limb: _Limb) -> None:
-        """One that has its counterpart now."""
-        self._moving[limb.kinds].remove(limb)
+        """Take out a limb that has its counterpart."""
+        self._by_kinds[limb.kinds].remove(limb)
         for name in set(limb.names):
-            self._named[name].remove(limb)
+            self._by_name[name].remove(limb)
 
     def named(self, limb: _Limb) -> list[_Limb]:
         """Those with the same joints; dofs may be nameless on one side."""
         names = set(limb.names)
-        near = {other.body: other for name in names for other in self._named.get(name, ())}
+        near = {other.body: other for name in names for other in self._by_name.get(name, ())}
         return [other for other in near.values() if names <= set(other.names) or names >= set(other.names)]
 
-    def alike(self, limb: _Limb) -> Iterator[_Limb]:
-        """Those that move in the same way."""
-        yield from self._moving.get(limb.kinds, ())
+    def of_kinds(self, limb: _Limb) -> Iterator[_Limb]:
+        """Those whose dofs are of the same kinds."""
+        yield from self._by_kinds.get(limb.kinds, ())
 
 
 def _counterpart(models: tuple[KinematicModel, KinematicModel], limb: _Limb, free: _Free, *, crowded: bool) -> _Limb | None:
-    """The one that the limb must be: of the same joints, else alike; where both have names, at the same place as well."""
+    """The limb with the same joints, else with the same kinds of dofs; where both have names, at the same place as well."""
     named = free.named(limb)
     if named:
         return min(named, key=lambda other: (limb.kinds != other.kinds, limb.names != other.names, _distance(limb, other)))
     nearest: tuple[float, _Limb] | None = None
-    for other in free.alike(limb):
+    for other in free.of_kinds(limb):
         distance = _distance(limb, other)
-        renamed = not crowded and limb.direct and other.direct and distance < _SAME_PLACE
+        renamed = not crowded and limb.is_child and other.is_child and distance < _SAME_PLACE
         if not renamed and not _one_is_unnamed(models, limb, other):
             continue
         if nearest is None or distance < nearest[0]:
@@ -168,17 +170,17 @@ def _kinds(body: Body) -> tuple[Kind, ...]:
 
 
 def _hinged(body: Body) -> tuple[Kind, ...]:
-    """The kinds of the dofs above a body, each ball as three hinges."""
+    """The kinds of the dofs of a body's joint, each ball as three hinges."""
     return tuple(kind for whole in _kinds(body) for kind in ((Kind.HINGE,) * 3 if whole is Kind.BALL else (whole,)))
 
 
 def _distance(a: _Limb, b: _Limb) -> float:
-    """How far apart two bodies' places and masses are; only its order matters."""
-    return float(np.abs(a.place - b.place).sum()) + abs(a.mass - b.mass)
+    """The difference of two bodies' places and masses; only its order matters."""
+    return float(np.abs(a.pose - b.pose).sum()) + abs(a.mass - b.mass)
 
 
 def only_carries(model: KinematicModel, i: int) -> bool:
-    """A body between two joints that has neither mass nor shape, and moves."""
+    """Whether a body between two joints has neither mass nor shape, and moves: it stands for a joint of several dofs."""
     body = model.bodies[i]
     return body.mass == 0.0 and not body.shapes and bool(body.joint.dofs) and len(model.children[i]) == 1
 
@@ -204,8 +206,8 @@ def _colours(model: KinematicModel, known: dict[tuple[object, ...], int]) -> lis
     """A number per body that is equal exactly for subtrees of the same joints and branches, from the leaves up."""
     colours = [0] * len(model.bodies)
     for i in range(len(model.bodies) - 1, -1, -1):
-        below = tuple(sorted(colours[k] for k in model.children[i]))
-        key = (tuple(kind.value for kind in _kinds(model.bodies[i])), below)
+        branches = tuple(sorted(colours[k] for k in model.children[i]))
+        key = (tuple(kind.value for kind in _kinds(model.bodies[i])), branches)
         colours[i] = known.setdefault(key, len(known))
     return colours
 
@@ -221,10 +223,10 @@ def _pair_children(
     for j in theirs:
         groups.setdefault(colour_b[j], ([], []))[1].append(j)
     for left, right in groups.values():
-        cost = np.array([[_apart(a.bodies[i], b.bodies[j]) for j in right] for i in left]).reshape(len(left), len(right))
+        cost = np.array([[_difference(a.bodies[i], b.bodies[j]) for j in right] for i in left]).reshape(len(left), len(right))
         rows, columns = linear_sum_assignment(cost)
         yield from ((left[r], right[c]) for r, c in zip(rows, columns, strict=True))
 
 
-def _apart(a: Body, b: Body) -> float:
+def _difference(a: Body, b: Body) -> float:
     return float(np.abs(a.joint.placement - b.joint.placement).sum()) + abs(a.mass - b.mass)

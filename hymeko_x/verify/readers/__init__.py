@@ -1,17 +1,19 @@
-"""The reference readers: each format through the library that defines it, never through this project's own frontends."""
+"""The reference readers: each format through the library that defines it, never through this project's own frontends.
+
+The table of formats names the module of each; it has ``read(path, lookup) -> KinematicModel``.
+"""
 
 from __future__ import annotations
 
 import contextlib
-import importlib
 import os
 import sys
 import tempfile
-from typing import TYPE_CHECKING, Protocol, cast
+from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
-from hymeko_x import codes
+from hymeko_x import codes, formats
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Origin, refuse
 
@@ -22,53 +24,15 @@ if TYPE_CHECKING:
     from hymeko_x.source import Files
     from hymeko_x.verify.model import KinematicModel
 
-READERS: Mapping[str, str] = {
-    "urdf": "hymeko_x.verify.readers.urdf",
-    "xacro": "hymeko_x.verify.readers.xacro",
-    "mjcf": "hymeko_x.verify.readers.mjcf",
-    "usd": "hymeko_x.verify.readers.usd",
-    "sdf": "hymeko_x.verify.readers.sdf",
-    "hymeko": "hymeko_x.verify.readers.hymeko",
-}
-"""The module that reads each format; each has ``read(path, places) -> KinematicModel``."""
-
-EXTRAS: Mapping[str, str] = {
-    "pinocchio": "pin",
-    "mujoco": "mujoco",
-    "pxr": "usd-core",
-    "yourdfpy": "yourdfpy",
-    "pydrake": "drake",
-    "xacro": "xacro",
-}
-"""The package that installs each engine's module."""
-
-_SUFFIXES: Mapping[str, str] = {
-    ".urdf": "urdf",
-    ".xacro": "xacro",
-    ".mjcf": "mjcf",
-    ".usd": "usd",
-    ".usda": "usd",
-    ".usdc": "usd",
-    ".usdz": "usd",
-    ".sdf": "sdf",
-    ".world": "sdf",
-    ".hymeko": "hymeko",
-    ".himeko": "hymeko",
-}
-_ROOTS: Mapping[str, str] = {"mujoco": "mjcf", "mujocoinclude": "mjcf", "robot": "urdf", "sdf": "sdf"}
+_HEAD = 65536  # bytes of a file in which its root element is searched
 
 
-class Reader(Protocol):
-    """What every module in :data:`READERS` offers."""
+class Lookup(Struct, frozen=True):
+    """Where a robot's files are, and which of its choices are meant.
 
-    def read(self, path: Path, places: Places) -> KinematicModel:
-        """The robot that the format's own engine sees."""
-        ...
-
-
-class Places(Struct, frozen=True):
-    """Where the files are that a robot refers to: the user's own NAME=DIR, the folders in which packages
-    stand, the arguments of a xacro file, and the variants of a USD file."""
+    ``packages`` are the user's own NAME=DIR, ``search_path`` the folders of further packages, ``arguments`` those of a file with macros,
+    ``variants`` the selected variant of each variant set.
+    """
 
     packages: Mapping[str, Path] = field(default_factory=dict)
     search_path: tuple[Path, ...] = ()
@@ -80,68 +44,34 @@ class Places(Struct, frozen=True):
         return DiskFiles(folder, self.packages, self.search_path)
 
 
-NOWHERE = Places()
-
-
-def read(path: Path, places: Places = NOWHERE, *, format: str | None = None) -> KinematicModel:
+def read(path: Path, lookup: Lookup) -> KinematicModel:
     """The robot in a file, as the format's reference engine sees it.
 
     Raises: Refusal HX001 (no such file), HX003 (no such format), HX301 (no engine), HX302 (the engine refuses the file).
     """
     if not path.is_file():
         raise refuse(codes.CANNOT_READ, f"there is no file '{path}'", Origin(str(path)))
-    kind = format or format_of(path)
+    with path.open("rb") as file:
+        format = formats.of_input(str(path), file.read(_HEAD))
+    if format.reference is None:
+        raise refuse(codes.ENGINE_MISSING, f"{format.name} has no reference reader", Origin(str(path)))
     try:
-        module = cast("Reader", importlib.import_module(READERS[kind]))
-        return module.read(path, places)
+        found: KinematicModel = formats.loaded(format.reference).read(path, lookup)
     except ModuleNotFoundError as error:
         engine = (error.name or "").partition(".")[0]
-        package = EXTRAS.get(engine)
+        package = format.engines.get(engine)
         if package is None:
             raise
-        raise refuse(
-            codes.ENGINE_MISSING,
-            f"{kind} is verified with {engine}, which is not installed",
-            Origin(str(path)),
-            hint=f"pip install {package}",
-        ) from error
-
-
-def format_of(path: Path) -> str:
-    """The format of a file, by its suffix, and for .xml by its root element.
-
-    Raises: Refusal HX003.
-    """
-    known = _SUFFIXES.get(path.suffix.lower())
-    if known is not None:
-        return known
-    kind = _ROOTS.get(_root_element(path))
-    if kind is not None:
-        return kind
-    raise refuse(
-        codes.UNKNOWN_FORMAT, f"the format of '{path}' is not known; known suffixes: {', '.join(sorted(_SUFFIXES))}", Origin(str(path))
-    )
-
-
-def _root_element(path: Path) -> str:
-    """The name of the first element in an XML file, by a look at its beginning; "" when there is none."""
-    with path.open("rb") as file:
-        text = file.read(65536).decode("utf-8", "replace")
-    while True:
-        _, found, text = text.partition("<")
-        if not found:
-            return ""
-        if text.startswith("!--"):
-            text = text.partition("-->")[2]
-        elif not text.startswith(("?", "!")):
-            return text.replace(">", " ").replace("/", " ").split()[0] if text.split() else ""
+        message = f"{format.name} is verified with {engine}, which is not installed"
+        raise refuse(codes.ENGINE_MISSING, message, Origin(str(path)), hint=f"pip install {package}") from error
+    return found
 
 
 @contextlib.contextmanager
-def overheard() -> Iterator[Callable[[], str]]:
-    """Catches what native code writes to standard output and standard error; yields a function that tells what was said.
+def native_output() -> Iterator[Callable[[], str]]:
+    """Captures what native code writes to standard output and error, where libraries put the reason that their exceptions leave out.
 
-    Python's own streams are flushed before and after, so that nothing else is lost.
+    Yields a function that returns the text. Python's own streams are flushed before and after, so that nothing else is lost.
     """
     with tempfile.TemporaryFile() as file, contextlib.ExitStack() as stack:
         sys.stdout.flush()
@@ -152,8 +82,8 @@ def overheard() -> Iterator[Callable[[], str]]:
             stack.callback(os.dup2, kept, descriptor)
             os.dup2(file.fileno(), descriptor)
 
-        def said() -> str:
+        def text() -> str:
             file.seek(0)
             return " ".join(file.read().decode("utf-8", "replace").split())
 
-        yield said
+        yield text

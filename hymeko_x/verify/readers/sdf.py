@@ -1,6 +1,6 @@
-"""SDF as libsdformat sees it, through Drake's MultibodyPlant.
+"""SDF as libsdformat reads it, through Drake's MultibodyPlant.
 
-Drake tells bodies, joints, limits, damping and inertia; shapes and mimic joints it does not, and verdicts say so.
+Drake has bodies, joints, limits, damping and inertia; it does not hand out shapes and mimic joints, which verdicts note.
 Source: pydrake.multibody.plant.
 """
 
@@ -15,79 +15,83 @@ from pydrake.multibody.plant import MultibodyPlant
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.verify.model import WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Loop, between_frames, grounded
-from hymeko_x.verify.readers import overheard
+from hymeko_x.verify.model import (
+    WORLD,
+    Array,
+    Body,
+    Dof,
+    Feature,
+    Joint,
+    Kind,
+    KinematicModel,
+    Loop,
+    between_frames,
+    parents_first,
+    world_body,
+)
+from hymeko_x.verify.readers import native_output
+from hymeko_x.verify.spatial import shifted_tensor
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from hymeko_x.verify.readers import Places
+    from hymeko_x.verify.readers import Lookup
 
-SAYS = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
+FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
 _TURNS = {"ball_rpy": Kind.BALL, "quaternion_floating": Kind.FREE, "rpy_floating": Kind.FREE}
 
 
-def read(path: Path, places: Places) -> KinematicModel:
+def read(path: Path, lookup: Lookup) -> KinematicModel:
     """The robot that libsdformat reads. Raises: Refusal HX302 in its words."""
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
-    for name, folder in places.packages.items():
+    for name, folder in lookup.packages.items():
         parser.package_map().Add(name, str(folder))
-    with overheard() as said:
+    with native_output() as output:
         try:
             parser.AddModelsFromString(path.read_text("utf-8"), "sdf") if path.suffix != ".sdf" else parser.AddModels(str(path))
         except (RuntimeError, SystemExit, MemoryError) as error:
-            words = " ".join(str(error).split()) or said()
-            raise refuse(codes.ENGINE_REFUSED, f"libsdformat refuses the file: {words}", Origin(str(path))) from error
+            reason = " ".join(str(error).split()) or output()
+            raise refuse(codes.ENGINE_REFUSED, f"libsdformat refuses the file: {reason}", Origin(str(path))) from error
     return _model(plant, path.stem)
 
 
 def _model(plant: Any, name: str) -> KinematicModel:
-    joints = [plant.get_joint(index) for index in plant.GetJointIndices()]
-    above: dict[int, Any] = {}
+    joints: dict[int, Any] = {}
     closing: list[Any] = []
-    for joint in joints:
+    for joint in (plant.get_joint(index) for index in plant.GetJointIndices()):
         child = int(joint.child_body().index())
-        closing.append(joint) if child in above or child == WORLD else above.setdefault(child, joint)
-    order = _parents_first(plant, above)
-    places = {WORLD: WORLD} | {index: place for place, index in enumerate(order, start=1)}
-    bodies = [grounded(), *(_body(plant, index, above.get(index), places) for index in order)]
+        closing.append(joint) if child in joints or child == WORLD else joints.setdefault(child, joint)
+    children: dict[int, list[int]] = {}
+    for index in range(1, plant.num_bodies()):
+        children.setdefault(_parent(joints[index]) if index in joints else WORLD, []).append(index)
+    order = parents_first(children.get(WORLD, ()), children)
+    numbers = {WORLD: WORLD} | {index: number for number, index in enumerate(order, start=1)}
     return KinematicModel(
         name=name,
         format="sdf",
         engine="libsdformat in Drake",
-        bodies=tuple(bodies),
-        loops=tuple(_loop(joint, places) for joint in closing),
-        says=SAYS,
+        bodies=(world_body(), *(_body(plant, index, joints.get(index), numbers) for index in order)),
+        loops=tuple(_loop(joint, numbers) for joint in closing),
+        features=FEATURES,
     )
 
 
-def _parents_first(plant: Any, above: Mapping[int, Any]) -> list[int]:
-    below: dict[int, list[int]] = {}
-    for index in range(1, plant.num_bodies()):
-        parent = int(above[index].parent_body().index()) if index in above else WORLD
-        below.setdefault(parent, []).append(index)
-    order: list[int] = []
-    stack = list(reversed(below.get(WORLD, [])))
-    while stack:
-        index = stack.pop()
-        order.append(index)
-        stack.extend(reversed(below.get(index, [])))
-    return order
+def _parent(joint: Any) -> int:
+    return int(joint.parent_body().index())
 
 
-def _body(plant: Any, index: int, joint: Any | None, places: Mapping[int, int]) -> Body:
+def _body(plant: Any, index: int, joint: Any | None, numbers: Mapping[int, int]) -> Body:
     from pydrake.multibody.tree import BodyIndex
 
     body = plant.get_body(BodyIndex(index))
     inertia = body.default_spatial_inertia()
     mass, com = float(inertia.get_mass()), np.array(inertia.get_com())
-    about_origin = np.array(inertia.CalcRotationalInertia().CopyToFullMatrix3())
-    tensor = about_origin - mass * (com @ com * np.eye(3) - np.outer(com, com))
+    tensor = shifted_tensor(-mass, com, np.array(inertia.CalcRotationalInertia().CopyToFullMatrix3()))
     if joint is None:
         return Body(body.name(), WORLD, Joint(open=True), mass, com, tensor)
-    return Body(body.name(), places[int(joint.parent_body().index())], _joint(joint), mass, com, tensor)
+    return Body(body.name(), numbers[_parent(joint)], _joint(joint), mass, com, tensor)
 
 
 def _joint(joint: Any) -> Joint:
@@ -122,21 +126,21 @@ def _dofs(joint: Any) -> Iterator[Dof]:
             yield Dof(_TURNS.get(kind, Kind.FREE), z, name=name)
 
 
-def _scalar(joint: Any, kind: Kind, axis: Array, place: int, name: str | None, pitch: float = 0.0) -> Dof:
+def _scalar(joint: Any, kind: Kind, axis: Array, index: int, name: str | None, pitch: float = 0.0) -> Dof:
     return Dof(
         kind,
         axis / np.linalg.norm(axis),
         name=name,
-        lower=float(joint.position_lower_limits()[place]),
-        upper=float(joint.position_upper_limits()[place]),
-        velocity=float(joint.velocity_upper_limits()[place]),
-        damping=float(joint.default_damping_vector()[place]),
+        lower=float(joint.position_lower_limits()[index]),
+        upper=float(joint.position_upper_limits()[index]),
+        velocity=float(joint.velocity_upper_limits()[index]),
+        damping=float(joint.default_damping_vector()[index]),
         pitch=pitch,
     )
 
 
-def _loop(joint: Any, places: Mapping[int, int]) -> Loop:
-    ends = places[int(joint.parent_body().index())], places[int(joint.child_body().index())]
+def _loop(joint: Any, numbers: Mapping[int, int]) -> Loop:
+    ends = numbers[_parent(joint)], numbers[int(joint.child_body().index())]
     frames = _fixed_pose(joint.frame_on_parent()), _fixed_pose(joint.frame_on_child())
     kind = {"weld": "weld", "ball_rpy": "connect"}.get(joint.type_name(), "other")
     return Loop(kind, ends[0], frames[0], ends[1], frames[1], joint.name(), joint.type_name() if kind == "other" else "")

@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from hymeko_x.verify.model import KinematicModel
-    from hymeko_x.verify.readers import Places
+    from hymeko_x.verify.readers import Lookup
 
 
-def read(path: Path, places: Places) -> KinematicModel:
+def read(path: Path, lookup: Lookup) -> KinematicModel:
     """The robot that urdfdom sees in the expansion. Raises: Refusal HX302 in the words of xacro or urdfdom."""
-    source = Source(str(path), path.read_bytes(), places.files(path.parent), places.arguments)
+    source = Source(str(path), path.read_bytes(), lookup.files(path.parent), lookup.arguments)
     try:
         expansion = expand(source, Report())
     except Refusal as refusal:
         raise refuse(codes.ENGINE_REFUSED, f"xacro refuses the file: {refusal.diagnostic.message}", Origin(str(path))) from refusal
-    found = urdf.read_text(expansion.text, path, places)
+    found = urdf.read_text(expansion.text, path, lookup)
     return replace(found, engine=f"xacro, {found.engine}")

@@ -1,4 +1,4 @@
-"""MJCF as MuJoCo compiles it: everything comes from the arrays of the mjModel.
+"""MJCF as MuJoCo compiles it: everything is read from the arrays of the mjModel.
 
 MuJoCo's own ``mj_kinematics`` must agree with the model that is read here, or the file is not comparable.
 Source: MuJoCo's mjmodel.h.
@@ -15,20 +15,20 @@ import numpy as np
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.verify.kinematics import draw, prepare
-from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Role, Shape, Surface, grounded
-from hymeko_x.verify.readers import overheard
+from hymeko_x.verify.kinematics import disagreement
+from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Role, Shape, Surface, world_body
+from hymeko_x.verify.readers import native_output
 from hymeko_x.verify.readers.mjcf.constraints import read_actuators, read_couplings, read_loops, read_tied_tendons
 from hymeko_x.verify.readers.mjcf.tendons import read_tendons
-from hymeko_x.verify.spatial import angle_between, pose, quat_from_rotation, rigid, rotation_from_quat
+from hymeko_x.verify.spatial import pose, quat_from_rotation, rigid, rotation_from_quat
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from hymeko_x.verify.readers import Places
+    from hymeko_x.verify.readers import Lookup
 
-SAYS = frozenset(Feature) - {Feature.VELOCITY_LIMITS, Feature.FIXED_JOINT_NAMES}
+FEATURES = frozenset(Feature) - {Feature.VELOCITY_LIMITS, Feature.FIXED_JOINT_NAMES}
 
 _KINDS = {
     int(mujoco.mjtJoint.mjJNT_FREE): Kind.FREE,
@@ -36,29 +36,28 @@ _KINDS = {
     int(mujoco.mjtJoint.mjJNT_SLIDE): Kind.SLIDE,
     int(mujoco.mjtJoint.mjJNT_HINGE): Kind.HINGE,
 }
-_SLACK = 1e-9
-_HIDDEN_FROM = 3  # geom groups that the viewer does not draw unless asked to
+_HIDDEN_FROM = 3  # geom groups that the viewer does not draw by default
 
 
-def read(path: Path, places: Places) -> KinematicModel:
+def read(path: Path, lookup: Lookup) -> KinematicModel:
     """The robot that MuJoCo compiles. Raises: Refusal HX302 in MuJoCo's words."""
-    with overheard() as said, _without_log_file():
+    with native_output() as output, _without_log_file():
         try:
             compiled = _compiled(path)
         except (ValueError, mujoco.FatalError) as error:
-            words = " ".join(str(error).split()) or said()
-            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses the file: {words}", Origin(str(path))) from error
+            reason = " ".join(str(error).split()) or output()
+            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses the file: {reason}", Origin(str(path))) from error
     found = from_compiled(compiled)
-    difference = disagreement(found, compiled)
+    difference = disagreement(found, lambda q: np.stack([_engine_poses(compiled, row) for row in engine_coordinates(found, q)]))
     if difference:
         raise refuse(codes.ENGINE_REFUSED, f"MuJoCo's own kinematics disagree with its compiled model: {difference}", Origin(str(path)))
     return found
 
 
 def _compiled(path: Path) -> Any:
-    """The mjModel of everything that the file says: bodies without joints are not fused with their parents, visuals stay."""
+    """The mjModel of the whole file: bodies without joints are not fused with their parents, visual geoms are kept."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # of words that MuJoCo is about to drop: they still mean what they mean
+        warnings.simplefilter("ignore")  # of attributes that MuJoCo is about to drop, which still work
         spec = _spec(path)
         spec.compiler.fusestatic = False
         spec.compiler.discardvisual = False
@@ -66,7 +65,7 @@ def _compiled(path: Path) -> Any:
 
 
 def _spec(path: Path) -> Any:
-    """The model in the file, with what it includes. MuJoCo takes no suffix but `.xml`; under another one it gets the text by hand."""
+    """The model in the file, with what it includes. MuJoCo reads no suffix but `.xml`; a file with another one is passed as text."""
     if path.suffix.lower() == ".xml":
         return mujoco.MjSpec.from_file(str(path))
     name = f"{path}.xml"
@@ -75,9 +74,9 @@ def _spec(path: Path) -> Any:
 
 @contextlib.contextmanager
 def _without_log_file() -> Iterator[None]:
-    """MuJoCo appends its warnings to MUJOCO_LOG.TXT in the current folder unless somebody listens to them."""
+    """MuJoCo appends its warnings to MUJOCO_LOG.TXT in the current folder unless a handler is set."""
     before = mujoco.get_mju_user_warning()
-    mujoco.set_mju_user_warning(lambda words: None)
+    mujoco.set_mju_user_warning(lambda text: None)
     try:
         yield
     finally:
@@ -87,7 +86,7 @@ def _without_log_file() -> Iterator[None]:
 def from_compiled(compiled: Any) -> KinematicModel:
     """The robot in an mjModel."""
     joint_dofs: dict[int, int] = {}
-    bodies = [grounded(shapes=tuple(_shapes(compiled, WORLD)))]
+    bodies = [world_body(shapes=tuple(_shapes(compiled, WORLD)))]
     for index in range(1, compiled.nbody):
         bodies.append(_body(compiled, index, joint_dofs))
     return KinematicModel(
@@ -100,7 +99,7 @@ def from_compiled(compiled: Any) -> KinematicModel:
         actuators=tuple(read_actuators(compiled)),
         tendons=tuple(read_tendons(compiled, joint_dofs)) if compiled.ntendon else (),
         tied_tendons=tuple(read_tied_tendons(compiled)),
-        says=SAYS,
+        features=FEATURES,
     )
 
 
@@ -125,7 +124,7 @@ def _body(compiled: Any, index: int, joint_dofs: dict[int, int]) -> Body:
 
 
 def _floats(dofs: list[Dof]) -> bool:
-    """Whether a body moves freely below another one, for which MJCF has three slides and a ball: the same seven coordinates."""
+    """Whether a child of a body moves freely, which MJCF represents by three slides and a ball: the same seven coordinates."""
     if [dof.kind for dof in dofs] != [Kind.SLIDE, Kind.SLIDE, Kind.SLIDE, Kind.BALL]:
         return False
     plain = (Dof(dof.kind, axis, name=dof.name) for dof, axis in zip(dofs, (*np.eye(3), dofs[3].axis), strict=True))
@@ -180,7 +179,7 @@ def _shapes(compiled: Any, body: int) -> Iterator[Shape]:
 
 
 def _role(compiled: Any, geom: int) -> Role:
-    """A geom without contact bits is for the eye only (by convention); one in a hidden group only collides."""
+    """A geom without contact bits is only drawn (by convention); one in a hidden group only collides."""
     if not compiled.geom_contype[geom] and not compiled.geom_conaffinity[geom]:
         return Role.VISUAL
     return Role.COLLISION if compiled.geom_group[geom] >= _HIDDEN_FROM else Role.BOTH
@@ -217,19 +216,6 @@ def _surface(compiled: Any, mesh: int) -> Surface:
 
 
 # ---- the engine's own kinematics -------------------------------------------------------------------------------------
-
-
-def disagreement(found: KinematicModel, compiled: Any, count: int = 3) -> str:
-    """Where ``mj_kinematics`` puts a body elsewhere than the model; "" when nowhere."""
-    q = draw(found, count, np.random.default_rng(0))
-    ours = prepare(found).poses(q)
-    theirs = np.stack([_engine_poses(compiled, row) for row in engine_coordinates(found, q)])
-    distance = np.linalg.norm(ours[..., :3, 3] - theirs[..., :3, 3], axis=-1).max(axis=0)
-    angle = angle_between(ours[..., :3, :3], theirs[..., :3, :3]).max(axis=0)
-    worst = int(np.argmax(np.maximum(distance, angle)))
-    if max(distance[worst], angle[worst]) <= _SLACK * (1 + float(np.abs(ours[..., :3, 3]).max())):
-        return ""
-    return f"{found.body_label(worst)} is {distance[worst]:.3g} m and {angle[worst]:.3g} rad apart"
 
 
 def engine_coordinates(found: KinematicModel, q: Array) -> Array:

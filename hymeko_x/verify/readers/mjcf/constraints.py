@@ -1,4 +1,4 @@
-"""What ties an mjModel's bodies and joints together beside the tree: equalities, tendons and actuators."""
+"""Equality constraints and actuators of an mjModel."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from hymeko_x.verify.model import Coupling, Loop, Part
+from hymeko_x.verify.model import Coupling, Loop, Record
 from hymeko_x.verify.spatial import pose
 
 if TYPE_CHECKING:
@@ -80,8 +80,8 @@ def _site(compiled: Any, site: int) -> tuple[int, Array]:
 def _anchors(data: Array, *, connect: bool) -> tuple[Array, Array]:
     """The closure's frame in both bodies.
 
-    A connect holds its point in body 1 and in body 2; a weld its anchor in body 2, which meets the place in body 1 that
-    stands with the rotation of body 2 in body 1. Source: MuJoCo engine_core_constraint.c.
+    A connect has its point in body 1 and in body 2; a weld its anchor in body 2, and the pose in body 1 that it meets.
+    Source: MuJoCo engine_core_constraint.c.
     """
     straight = np.array([1.0, 0.0, 0.0, 0.0])
     if connect:
@@ -92,15 +92,15 @@ def _anchors(data: Array, *, connect: bool) -> tuple[Array, Array]:
 # ---- tendons and actuators -------------------------------------------------------------------------------------------
 
 
-def read_tied_tendons(compiled: Any) -> Iterator[Part]:
+def read_tied_tendons(compiled: Any) -> Iterator[Record]:
     """The equalities between tendons."""
     for i in _equalities(compiled, _EQ.mjEQ_TENDON):
         ends = [compiled.tendon(int(t)).name if t >= 0 else "" for t in (compiled.eq_obj1id[i], compiled.eq_obj2id[i])]
-        yield Part(compiled.equality(i).name or None, ("equality", *ends), tuple(float(x) for x in compiled.eq_data[i][:5]))
+        yield Record(compiled.equality(i).name or None, ("equality", *ends), tuple(float(x) for x in compiled.eq_data[i][:5]))
 
 
-def read_actuators(compiled: Any) -> Iterator[Part]:
-    """What each actuator acts on, by which law, and its numbers; ranges that do not bind count as zero."""
+def read_actuators(compiled: Any) -> Iterator[Record]:
+    """The target, law and numbers of each actuator; ranges that do not limit count as zero."""
     for i in range(compiled.nu):
         words = (
             _TRN(int(compiled.actuator_trntype[i])).name.removeprefix("mjTRN_").lower(),
@@ -109,7 +109,7 @@ def read_actuators(compiled: Any) -> Iterator[Part]:
             mujoco.mjtBias(int(compiled.actuator_biastype[i])).name.removeprefix("mjBIAS_").lower(),
             mujoco.mjtDyn(int(compiled.actuator_dyntype[i])).name.removeprefix("mjDYN_").lower(),
         )
-        yield Part(compiled.actuator(i).name or None, words, _actuator_numbers(compiled, i))
+        yield Record(compiled.actuator(i).name or None, words, _actuator_numbers(compiled, i))
 
 
 def _target(compiled: Any, actuator: int) -> str:

@@ -16,13 +16,13 @@ if TYPE_CHECKING:
     from hymeko_x.verify.model import Array
 
 _WRAP = mujoco.mjtWrap
-_SAME_LENGTH = 1e-9  # relative; what a spring's length is computed to
+_SAME_LENGTH = 1e-9  # relative: the accuracy of computed lengths
 _MECHANICS = ("stiffness", "damping", "frictionloss", "armature")
 _CURVES = ("stiffnesspoly", "dampingpoly", "springyield")
 
 
 def read_tendons(compiled: Any, dofs: Mapping[int, int]) -> Iterator[Tendon]:
-    """Every tendon's path, mechanics and bounds. ``dofs`` says which dof of the model each joint is."""
+    """Every tendon's path, mechanics and bounds. ``dofs`` are the dofs of the model by joint."""
     rest = _lengths_at_rest(compiled)
     for tendon in range(compiled.ntendon):
         first, count = int(compiled.tendon_adr[tendon]), int(compiled.tendon_num[tendon])
@@ -44,7 +44,7 @@ def _range(bounds: Array) -> tuple[float, float]:
 
 
 def _lengths_at_rest(compiled: Any) -> Array:
-    """The lengths where all springs of joints are at rest, which are those of tendons that say no other."""
+    """The lengths where all springs of joints are at rest, which are those of tendons without their own."""
     data = mujoco.MjData(compiled)
     data.qpos[:] = compiled.qpos_spring
     mujoco.mj_kinematics(compiled, data)
@@ -69,7 +69,7 @@ def _steps(compiled: Any, wrap: int, dofs: Mapping[int, int]) -> Iterator[Step]:
     elif kind == int(_WRAP.mjWRAP_PULLEY):
         yield Step(PULLEY, number=number)
     else:
-        yield _shape(compiled, target, round_all_over=kind == int(_WRAP.mjWRAP_SPHERE))
+        yield _shape(compiled, target, is_sphere=kind == int(_WRAP.mjWRAP_SPHERE))
         if number >= 0:
             yield _site(compiled, int(number), SIDE)
 
@@ -78,7 +78,7 @@ def _site(compiled: Any, site: int, kind: str) -> Step:
     return Step(kind, int(compiled.site_bodyid[site]), point=point_of(compiled.site_pos[site]))
 
 
-def _shape(compiled: Any, geom: int, *, round_all_over: bool) -> Step:
-    axis = None if round_all_over else point_of(rotation_from_quat(compiled.geom_quat[geom])[:, 2])
+def _shape(compiled: Any, geom: int, *, is_sphere: bool) -> Step:
+    axis = None if is_sphere else point_of(rotation_from_quat(compiled.geom_quat[geom])[:, 2])
     radius, centre = float(compiled.geom_size[geom][0]), point_of(compiled.geom_pos[geom])
-    return Step(SPHERE if round_all_over else CYLINDER, int(compiled.geom_bodyid[geom]), radius, centre, axis)
+    return Step(SPHERE if is_sphere else CYLINDER, int(compiled.geom_bodyid[geom]), radius, centre, axis)

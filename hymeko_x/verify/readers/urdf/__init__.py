@@ -1,7 +1,7 @@
-"""URDF as urdfdom sees it through Pinocchio, with yourdfpy as a second, independent reader.
+"""URDF as urdfdom reads it through Pinocchio, with yourdfpy as a second, independent reader.
 
 Bodies, joints, limits and inertia come from Pinocchio. What it leaves out (shapes), and mimic joints where it cannot
-build them, come from yourdfpy. Both must see the same kinematics, or the file is not comparable.
+build them, come from yourdfpy. Both must compute the same kinematics, or the file is not comparable.
 Source: pinocchio ``buildModelFromXML``; yourdfpy ``URDF.load``.
 """
 
@@ -16,18 +16,33 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.verify.model import INF, WORLD, Array, Body, Coupling, Dof, Feature, Joint, Kind, KinematicModel, grounded
-from hymeko_x.verify.readers import overheard
+from hymeko_x.verify.model import (
+    INF,
+    WORLD,
+    Array,
+    Body,
+    Coupling,
+    Dof,
+    Feature,
+    Joint,
+    Kind,
+    KinematicModel,
+    parents_first,
+    world_body,
+)
+from hymeko_x.verify.readers import native_output
 from hymeko_x.verify.readers.urdf.yourdfpy import Mimic, Second, disagreement, load
-from hymeko_x.verify.spatial import inverse
+from hymeko_x.verify.spatial import inverse, shifted_tensor
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from hymeko_x.verify.readers import Places
+    from hymeko_x.verify.readers import Lookup
 
-SAYS = frozenset(Feature) - {
+    Inertia = tuple[float, Array, Array]
+
+FEATURES = frozenset(Feature) - {
     Feature.ARMATURE,
     Feature.SPRINGS,
     Feature.REFS,
@@ -37,134 +52,128 @@ SAYS = frozenset(Feature) - {
     Feature.LOOPS,
     Feature.CURVES,
 }
-MUTE = frozenset((feature, Kind.FREE) for feature in (Feature.DAMPING, Feature.FRICTION, Feature.VELOCITY_LIMITS, Feature.EFFORT_LIMITS))
+UNREPRESENTED = frozenset(
+    (feature, Kind.FREE) for feature in (Feature.DAMPING, Feature.FRICTION, Feature.VELOCITY_LIMITS, Feature.EFFORT_LIMITS)
+)
 """urdfdom's <dynamics> and <limit> are those of one coordinate; a floating joint has six, and Pinocchio gives them none."""
 
-
-def read(path: Path, places: Places) -> KinematicModel:
-    """The robot that urdfdom sees. Raises: Refusal HX302 in urdfdom's words, or where yourdfpy sees another robot."""
-    return read_text(path.read_bytes(), path, places)
+_DUST = 1e-13
+"""Of the whole: what is left of a mass or a tensor after subtracting its parts is zero below it, by the rounding of doubles."""
 
 
-def read_text(data: bytes, path: Path, places: Places) -> KinematicModel:
-    """The same for a text that stands for the file at ``path``. Raises: Refusal HX302."""
+def read(path: Path, lookup: Lookup) -> KinematicModel:
+    """The robot that urdfdom reads. Raises: Refusal HX302 in urdfdom's words, or where yourdfpy reads another robot."""
+    return read_text(path.read_bytes(), path, lookup)
+
+
+def read_text(data: bytes, path: Path, lookup: Lookup) -> KinematicModel:
+    """The same for the text of the file at ``path``. Raises: Refusal HX302."""
     text = data.decode("utf-8", "replace").replace("\x00", "")
-    model = _build(text, str(path), mimic=False)
-    second = load(text.encode(), path, places)
-    if second.still:
-        words = f"joint '{second.still}' has an axis of zero, about which nothing can move"
-        raise refuse(codes.ENGINE_REFUSED, words, Origin(str(path)))
+    model = _build(text, str(path))
+    second = load(text.encode(), path, lookup)
+    if second.axisless:
+        message = f"joint '{second.axisless}' has an axis of zero, about which nothing can move"
+        raise refuse(codes.ENGINE_REFUSED, message, Origin(str(path)))
     found = KinematicModel(
         name=model.name,
         format="urdf",
         engine=f"urdfdom in Pinocchio {pin.__version__}, yourdfpy",
         bodies=_bodies(model, second),
-        says=SAYS if second.shapes is not None else SAYS - {Feature.VISUALS, Feature.COLLISIONS},
-        mute=MUTE,
+        features=FEATURES if second.shapes is not None else FEATURES - {Feature.VISUALS, Feature.COLLISIONS},
+        unrepresented=UNREPRESENTED,
         notes=second.notes,
     )
-    couplings, said = _couplings(text, str(path), found, second)
-    found = replace(found, couplings=couplings, notes=(*found.notes, *said))
+    couplings, notes = _couplings(text, found, second)
+    found = replace(found, couplings=couplings, notes=(*found.notes, *notes))
     difference = disagreement(found, second)
     if difference:
         raise refuse(codes.ENGINE_REFUSED, f"urdfdom and yourdfpy see different robots: {difference}", Origin(str(path)))
     return found
 
 
-def _build(text: str, file: str, *, mimic: bool) -> Any:
+def _build(text: str, file: str) -> Any:
     """Pinocchio's model. Raises: Refusal HX302."""
-    with overheard() as said:
+    with native_output() as output:
         try:
-            return pin.buildModelFromXML(text, mimic)
+            return pin.buildModelFromXML(text, False)
         except (ValueError, RuntimeError, IndexError) as error:
-            words = said() or " ".join(str(error).split())
-            raise refuse(codes.ENGINE_REFUSED, f"urdfdom refuses the file: {words}", Origin(file)) from error
+            reason = output() or " ".join(str(error).split())
+            raise refuse(codes.ENGINE_REFUSED, f"urdfdom refuses the file: {reason}", Origin(file)) from error
 
 
 # ---- bodies and joints -----------------------------------------------------------------------------------------------
 
 
 class _Link(Struct, frozen=True, eq=False):
-    """A BODY frame of Pinocchio with the frame of the joint above it and the index of its parent's BODY frame."""
+    """A BODY frame of Pinocchio with the frame of its joint and the index of its parent's BODY frame."""
 
     frame: Any
-    above: Any | None
+    joint: Any | None
     parent: int
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether its joint has no dofs."""
+        return self.joint is not None and bool(self.joint.type == pin.FrameType.FIXED_JOINT)
 
 
 def _links(model: Any) -> dict[int, _Link]:
-    """By the index of their BODY frame, parents first."""
-    body_type = pin.FrameType.BODY
+    """By the index of their BODY frame."""
     found: dict[int, _Link] = {}
-    waiting = [(i, frame) for i, frame in enumerate(model.frames) if frame.type == body_type]
-    for index, frame in waiting:
-        above = model.frames[frame.parentFrame]
-        rooted = frame.parentFrame == 0
-        found[index] = _Link(frame, None if rooted else above, -1 if rooted else above.parentFrame)
+    for index, frame in enumerate(model.frames):
+        if frame.type == pin.FrameType.BODY:
+            joint = model.frames[frame.parentFrame] if frame.parentFrame else None
+            found[index] = _Link(frame, joint, -1 if joint is None else joint.parentFrame)
     return found
-
-
-def _parents_first(links: dict[int, _Link]) -> list[int]:
-    below: dict[int, list[int]] = {}
-    for index, link in links.items():
-        below.setdefault(link.parent, []).append(index)
-    order: list[int] = []
-    stack = list(reversed(below.get(-1, [])))
-    while stack:
-        index = stack.pop()
-        order.append(index)
-        stack.extend(reversed(below.get(index, [])))
-    return order
 
 
 def _bodies(model: Any, second: Second) -> tuple[Body, ...]:
     """The links as bodies under the world. A massless root link called ``world`` is the world itself."""
     links = _links(model)
     moving = _moving_inertias(model, links)
-    places: dict[int, int] = {}
-    bodies: list[Body] = [grounded()]
-    for index in _parents_first(links):
+    children: dict[int, list[int]] = {}
+    for index, link in links.items():
+        children.setdefault(link.parent, []).append(index)
+    numbers: dict[int, int] = {}
+    bodies: list[Body] = [world_body()]
+    for index in parents_first(children.get(-1, ()), children):
         link = links[index]
         name = str(link.frame.name)
-        mass, com, tensor = moving.get(index) or _split(link.above.inertia if link.above is not None else link.frame.inertia)
+        mass, com, tensor = moving.get(index) or _split(link.joint.inertia if link.joint is not None else link.frame.inertia)
         shapes = (second.shapes or {}).get(name, ())
-        if link.above is None and name == "world" and mass == 0.0:
-            places[index] = WORLD
-            bodies[WORLD] = grounded(shapes=shapes)
+        if link.joint is None and name == "world" and mass == 0.0:
+            numbers[index] = WORLD
+            bodies[WORLD] = world_body(shapes=shapes)
             continue
-        joint = Joint(open=True) if link.above is None else _joint(model, link, links)
-        places[index] = len(bodies)
-        bodies.append(Body(name, places.get(link.parent, WORLD), joint, mass, com, tensor, shapes))
+        joint = Joint(open=True) if link.joint is None else _joint(model, link.joint, links[link.parent].frame)
+        numbers[index] = len(bodies)
+        bodies.append(Body(name, numbers.get(link.parent, WORLD), joint, mass, com, tensor, shapes))
     return tuple(bodies)
 
 
-def _joint(model: Any, link: _Link, links: dict[int, _Link]) -> Joint:
-    parent = links[link.parent].frame
-    above = link.above
-    assert above is not None
-    if above.type == pin.FrameType.FIXED_JOINT:
-        return Joint(str(above.name), inverse(parent.placement.homogeneous) @ above.placement.homogeneous)
-    number = above.parentJoint
-    placement = inverse(parent.placement.homogeneous) @ model.jointPlacements[number].homogeneous
-    return Joint(str(above.name), placement, _dofs(model, number))
+def _joint(model: Any, joint: Any, parent: Any) -> Joint:
+    """A joint by its frame and the BODY frame of the parent."""
+    back = inverse(parent.placement.homogeneous)
+    if joint.type == pin.FrameType.FIXED_JOINT:
+        return Joint(str(joint.name), back @ joint.placement.homogeneous)
+    return Joint(str(joint.name), back @ model.jointPlacements[joint.parentJoint].homogeneous, _dofs(model, joint.parentJoint))
 
 
 def _dofs(model: Any, number: int) -> tuple[Dof, ...]:
     """The dofs of one of Pinocchio's joints; unbounded ones are coordinates on a circle there."""
     joint = model.joints[number]
     kind = joint.shortname().removeprefix("JointModel")
+    x, y, z = np.eye(3)
     if kind == "FreeFlyer":
-        return (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),)
+        return (Dof(Kind.FREE, z),)
     if kind == "Planar":
-        x, y, z = np.eye(3)
         return (Dof(Kind.SLIDE, x), Dof(Kind.SLIDE, y), Dof(Kind.HINGE, z))
-    axis = _axis(model, joint)
     q, v = joint.idx_q, joint.idx_v
     bounded = joint.nq == 1
     return (
         Dof(
             Kind.SLIDE if kind.startswith("P") else Kind.HINGE,
-            axis,
+            _axis(model, joint),
             name=str(model.names[number]),
             lower=float(model.lowerPositionLimit[q]) if bounded else -INF,
             upper=float(model.upperPositionLimit[q]) if bounded else INF,
@@ -177,7 +186,7 @@ def _dofs(model: Any, number: int) -> tuple[Dof, ...]:
 
 
 def _axis(model: Any, joint: Any) -> Array:
-    """The unit axis of a joint with one dof, from its motion subspace: not every type tells its axis by name."""
+    """The unit axis of a joint with one dof, from its motion subspace: not every joint type has an axis by name."""
     data = joint.createData()
     joint.calc(data, pin.neutral(model))
     motion = np.array(data.S, dtype=float).reshape(6)
@@ -190,72 +199,54 @@ def _axis(model: Any, joint: Any) -> Array:
 # ---- inertia ---------------------------------------------------------------------------------------------------------
 
 
-def _split(inertia: Any) -> tuple[float, Array, Array]:
+def _split(inertia: Any) -> Inertia:
     return float(inertia.mass), np.array(inertia.lever, dtype=float), np.array(inertia.inertia, dtype=float)
 
 
-def _weighs(inertia: Any) -> bool:
-    """A link may have a tensor and no mass, which Pinocchio adds up all the same."""
-    return bool(inertia.mass != 0.0 or inertia.inertia.any())
-
-
-def _moving_inertias(model: Any, links: dict[int, _Link]) -> dict[int, tuple[float, Array, Array]]:
-    """The inertia of each link below a moving joint: Pinocchio's sum for the joint without the links fixed to it."""
-    fixed: dict[int, list[Any]] = {}
+def _moving_inertias(model: Any, links: dict[int, _Link]) -> dict[int, Inertia]:
+    """The inertia of each link with a moving joint: Pinocchio's sum for the joint without the links fixed to it."""
+    fixed: dict[int, list[Inertia]] = {}
     for link in links.values():
-        if link.above is not None and link.above.type == pin.FrameType.FIXED_JOINT and _weighs(link.above.inertia):
-            fixed.setdefault(link.above.parentJoint, []).append(link.above.placement.act(link.above.inertia))
-    found: dict[int, tuple[float, Array, Array]] = {}
-    for index, link in links.items():
-        if link.above is None or link.above.type != pin.FrameType.JOINT:
-            continue
-        number = link.above.parentJoint
-        found[index] = _without(_split(model.inertias[number]), [_split(part) for part in fixed.get(number, [])])
-    return found
+        if link.is_fixed and link.joint is not None:
+            inertia = link.joint.inertia
+            if inertia.mass != 0.0 or inertia.inertia.any():  # Pinocchio adds a tensor without a mass all the same
+                fixed.setdefault(link.joint.parentJoint, []).append(_split(link.joint.placement.act(inertia)))
+    moving = {i: link.joint.parentJoint for i, link in links.items() if link.joint is not None and link.joint.type == pin.FrameType.JOINT}
+    return {index: _without(_split(model.inertias[number]), fixed.get(number, [])) for index, number in moving.items()}
 
 
-def _without(total: tuple[float, Array, Array], parts: list[tuple[float, Array, Array]]) -> tuple[float, Array, Array]:
+def _without(total: Inertia, parts: list[Inertia]) -> Inertia:
     """What is left of a rigid body's mass, centre and tensor without its parts; rounding dust counts as nothing."""
     if not parts:
         return total
     mass = total[0] - sum(part[0] for part in parts)
-    about_origin = _about_origin(*total) - sum((_about_origin(*part) for part in parts), np.zeros((3, 3)))
-    if abs(mass) <= 1e-13 * total[0]:
-        dust = 1e-13 * np.abs(_about_origin(*total)).max(initial=0.0)
+    about_origin = shifted_tensor(*total) - sum((shifted_tensor(*part) for part in parts), np.zeros((3, 3)))
+    if abs(mass) <= _DUST * total[0]:
+        dust = _DUST * np.abs(shifted_tensor(*total)).max(initial=0.0)
         return 0.0, np.zeros(3), np.where(np.abs(about_origin) <= dust, 0.0, about_origin)
     com = (total[0] * total[1] - sum((part[0] * part[1] for part in parts), np.zeros(3))) / mass
-    return mass, com, about_origin - _point(mass, com)
-
-
-def _about_origin(mass: float, com: Array, tensor: Array) -> Array:
-    return tensor + _point(mass, com)
-
-
-def _point(mass: float, com: Array) -> Array:
-    """The tensor of a point mass about the origin."""
-    tensor: Array = mass * (np.dot(com, com) * np.eye(3) - np.outer(com, com))
-    return tensor
+    return mass, com, shifted_tensor(-mass, com, about_origin)
 
 
 # ---- mimic -----------------------------------------------------------------------------------------------------------
 
 
-def _couplings(text: str, file: str, found: KinematicModel, second: Second) -> tuple[tuple[Coupling, ...], list[str]]:
-    """The mimic joints by urdfdom; by yourdfpy where Pinocchio cannot build them (a leader below or behind its follower)."""
+def _couplings(text: str, found: KinematicModel, second: Second) -> tuple[tuple[Coupling, ...], list[str]]:
+    """The mimic joints by urdfdom; by yourdfpy where Pinocchio cannot build them (the leader is its follower's descendant, or later)."""
     if not second.mimics and "<mimic" not in text:
         return (), []
     dofs = {dof.name: index for index, dof in enumerate(found.dofs) if dof.name is not None}
     try:
         model = pin.buildModelFromXML(text, True)
     except (ValueError, RuntimeError, IndexError) as error:
-        words = " ".join(str(error).split())
+        reason = " ".join(str(error).split())
         known = [coupling for mimic in second.mimics if (coupling := _second_coupling(mimic, found, dofs)) is not None]
-        return tuple(known), [f"mimic joints are read by yourdfpy alone: Pinocchio says '{words}'"]
+        return tuple(known), [f"mimic joints are read by yourdfpy alone: Pinocchio refuses them with '{reason}'"]
     return tuple(_coupling(model, pair, dofs) for pair in zip(model.mimicking_joints, model.mimicked_joints, strict=True)), []
 
 
 def _second_coupling(mimic: Mimic, found: KinematicModel, dofs: Mapping[str, int]) -> Coupling | None:
-    """By yourdfpy's word. The coordinate of a fixed leader is 0; a follower that is fixed follows nothing."""
+    """As yourdfpy reads it. The coordinate of a fixed leader is 0; a follower that is fixed follows nothing."""
     follower = dofs.get(mimic.follower)
     if follower is None:
         return None

@@ -1,4 +1,4 @@
-"""URDF through yourdfpy: the second opinion on kinematics, and the shapes, which urdfdom does not hand to Python."""
+"""URDF through yourdfpy: a second reading of the kinematics, and the shapes, which Pinocchio does not hand to Python."""
 
 from __future__ import annotations
 
@@ -11,18 +11,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from msgspec import Struct
 
-from hymeko_x.verify.kinematics import draw, prepare
-from hymeko_x.verify.model import WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, MeshFile, Role, Shape, grounded
-from hymeko_x.verify.spatial import angle_between
+from hymeko_x.verify import kinematics
+from hymeko_x.verify.model import WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, MeshFile, Role, Shape, parents_first, world_body
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from hymeko_x.source import Files
-    from hymeko_x.verify.readers import Places
+    from hymeko_x.verify.readers import Lookup
 
 _MOVING = ("revolute", "continuous", "prismatic")
-_SLACK = 1e-9  # m and rad; both readers work in doubles
 
 
 class Mimic(Struct, frozen=True):
@@ -35,56 +33,57 @@ class Mimic(Struct, frozen=True):
 
 
 class Second(Struct, frozen=True, eq=False):
-    """What yourdfpy read; ``robot`` and ``shapes`` are None when it refused the file, and ``notes`` say so.
+    """The robot by yourdfpy; ``robot`` and ``shapes`` are None when it refused the file, with the reason in ``notes``.
 
-    ``still`` is a joint whose axis is zero, which urdfdom takes for a default.
+    ``axisless`` is a joint whose axis is zero, which urdfdom replaces by its default.
     """
 
     robot: Any | None
     shapes: Mapping[str, tuple[Shape, ...]] | None
     mimics: tuple[Mimic, ...]
-    still: str = ""
+    axisless: str = ""
     notes: tuple[str, ...] = ()
 
 
-def load(data: bytes, path: Path, places: Places) -> Second:
-    """The file through yourdfpy; its refusal is a note, not an error, because urdfdom decides."""
+def load(data: bytes, path: Path, lookup: Lookup) -> Second:
+    """The file through yourdfpy; its refusal is a note, not an error, because urdfdom is authoritative."""
     import yourdfpy
     from lxml import etree
 
     try:
-        with _hushed("yourdfpy.urdf"):
+        with _silent("yourdfpy.urdf"):
             robot = yourdfpy.URDF.load(_well_formed(data), build_scene_graph=False, load_meshes=False).robot
     except (yourdfpy.urdf.URDFError, etree.LxmlError, ValueError, TypeError, KeyError, AttributeError) as error:
-        words = " ".join(str(error).split()) or type(error).__name__
-        said = f"yourdfpy refuses the file ({words}): shapes are not compared, and there is no second opinion"
-        return Second(None, None, (), notes=(said,))
+        reason = " ".join(str(error).split()) or type(error).__name__
+        return Second(
+            None, None, (), notes=(f"yourdfpy refuses the file ({reason}): shapes are not compared, and there is no second reading",)
+        )
     mimics = tuple(
         Mimic(j.name, j.mimic.joint, 1.0 if j.mimic.multiplier is None else j.mimic.multiplier, j.mimic.offset or 0.0)
         for j in robot.joints
         if j.mimic
     )
-    shapes, notes = _all_shapes(robot, places.files(path.parent))
-    still = next((j.name for j in robot.joints if j.type in _MOVING and j.axis is not None and not np.any(j.axis)), "")
-    return Second(robot, shapes, mimics, still, notes)
+    shapes, notes = _all_shapes(robot, lookup.files(path.parent))
+    axisless = next((j.name for j in robot.joints if j.type in _MOVING and j.axis is not None and not np.any(j.axis)), "")
+    return Second(robot, shapes, mimics, axisless, notes)
 
 
 def _all_shapes(robot: Any, files: Files) -> tuple[dict[str, tuple[Shape, ...]] | None, tuple[str, ...]]:
-    """The shapes by link; none, and why, where yourdfpy hands out sizes that are none."""
+    """The shapes by link; none, and why, where yourdfpy returns sizes of a wrong kind."""
     link = None
     try:
         found = {}
         for link in robot.links:
             found[link.name] = tuple(_shapes(link, files))
     except (ValueError, TypeError) as error:
-        words = " ".join(str(error).split())
-        return None, (f"a shape of link '{link and link.name}' has another size than it may have ({words}): shapes are not compared",)
+        reason = " ".join(str(error).split())
+        return None, (f"a shape of link '{link and link.name}' has another size than it may have ({reason}): shapes are not compared",)
     return found, ()
 
 
 @contextlib.contextmanager
-def _hushed(name: str) -> Iterator[None]:
-    """yourdfpy logs what it repairs; urdfdom is the judge of that."""
+def _silent(name: str) -> Iterator[None]:
+    """yourdfpy logs what it repairs; whether that is an error is for urdfdom to decide."""
     logger = logging.getLogger(name)
     before = logger.disabled
     logger.disabled = True
@@ -97,34 +96,35 @@ def _hushed(name: str) -> Iterator[None]:
 def _shapes(link: Any, files: Files) -> Iterator[Shape]:
     for role, elements in ((Role.VISUAL, link.visuals), (Role.COLLISION, link.collisions)):
         for element in elements or ():
-            shape = _shape(element, role, files)
-            if shape is not None:
-                yield shape
+            kind, size, mesh = _geometry(element.geometry, files)
+            if kind:
+                pose = np.eye(4) if element.origin is None else np.asarray(element.origin, dtype=float)
+                yield Shape(kind, role, pose, size, element.name, mesh)
 
 
-def _shape(element: Any, role: Role, files: Files) -> Shape | None:
-    pose = np.eye(4) if element.origin is None else np.asarray(element.origin, dtype=float)
-    geometry = element.geometry
+def _geometry(geometry: Any, files: Files) -> tuple[str, tuple[float, ...], MeshFile | None]:
+    """Kind, size in m, and mesh file; the kind is "" where there is no geometry."""
     if geometry is None:
-        return None
+        return "", (), None
     if geometry.box is not None:
-        return Shape("box", role, pose, tuple(float(x) for x in geometry.box.size), element.name)
+        return "box", tuple(float(x) for x in geometry.box.size), None
     if geometry.sphere is not None:
-        return Shape("sphere", role, pose, (float(geometry.sphere.radius),), element.name)
+        return "sphere", (float(geometry.sphere.radius),), None
     if geometry.cylinder is not None:
-        return Shape("cylinder", role, pose, (float(geometry.cylinder.radius), float(geometry.cylinder.length)), element.name)
+        return "cylinder", (float(geometry.cylinder.radius), float(geometry.cylinder.length)), None
     if geometry.mesh is None:
-        return None
+        return "", (), None
     scale = np.asarray(1.0 if geometry.mesh.scale is None else geometry.mesh.scale, dtype=float).reshape(-1)
     if scale.size not in (1, 3):
         raise ValueError(f"a scale of {scale.size} numbers")
+    x, y, z = (float(number) for number in np.broadcast_to(scale, 3))
     uri = str(geometry.mesh.filename)
-    mesh = MeshFile(uri, _found(files.find(uri)), (float(scale[0]), float(scale[1 % scale.size]), float(scale[2 % scale.size])))
-    return Shape("mesh", role, pose, (), element.name, mesh)
+    path = files.find(uri)
+    return "mesh", (), MeshFile(uri, None if path is None else Path(path), (x, y, z))
 
 
 def _well_formed(data: bytes) -> io.BytesIO:
-    """The text as a file, mended where lxml would refuse it and urdfdom does not."""
+    """The text as a file, repaired where lxml refuses it and urdfdom does not."""
     from lxml import etree
 
     try:
@@ -135,11 +135,7 @@ def _well_formed(data: bytes) -> io.BytesIO:
     return io.BytesIO(data)
 
 
-def _found(path: str | None) -> Path | None:
-    return None if path is None else Path(path)
-
-
-# ---- second opinion --------------------------------------------------------------------------------------------------
+# ---- second reading --------------------------------------------------------------------------------------------------
 
 
 def disagreement(model: KinematicModel, second: Second) -> str:
@@ -152,40 +148,29 @@ def disagreement(model: KinematicModel, second: Second) -> str:
     other = _kinematics(second.robot, model)
     if sorted(str(body.name) for body in model.bodies) != sorted(str(body.name) for body in other.bodies):
         return "they disagree on the links"
-    q = draw(model, 3, np.random.default_rng(0))
-    ours, theirs = prepare(model).poses(q), prepare(other).poses(_same_coordinates(model, other, q))
-    places = {body.name: index for index, body in enumerate(other.bodies[1:], start=1)}
-    theirs = theirs[:, [WORLD, *(places[body.name] for body in model.bodies[1:])]]
-    distance = np.linalg.norm(ours[..., :3, 3] - theirs[..., :3, 3], axis=-1).max(axis=0)
-    angle = angle_between(ours[..., :3, :3], theirs[..., :3, :3]).max(axis=0)
-    worst = int(np.argmax(np.maximum(distance, angle)))
-    if not max(distance[worst], angle[worst]) <= _SLACK * (1 + float(np.abs(ours[..., :3, 3]).max())):
-        return f"{model.body_label(worst)} is {distance[worst]:.3g} m and {angle[worst]:.3g} rad apart"
-    return ""
+    numbers = {body.name: index for index, body in enumerate(other.bodies[1:], start=1)}
+    order = [WORLD, *(numbers[body.name] for body in model.bodies[1:])]
+    return kinematics.disagreement(model, lambda q: kinematics.prepare(other).poses(_same_coordinates(model, other, q))[:, order])
 
 
 def _kinematics(robot: Any, model: KinematicModel) -> KinematicModel:
     """yourdfpy's joints as a model; joints with several dofs are taken from the first reader, yourdfpy does not move them."""
-    above = {joint.child: joint for joint in robot.joints}
-    below: dict[str, list[str]] = {}
+    joints = {joint.child: joint for joint in robot.joints}
+    children: dict[str, list[str]] = {}
     for joint in robot.joints:
-        below.setdefault(joint.parent, []).append(joint.child)
-    roots = [link.name for link in robot.links if link.name not in above]
-    a_body_too = any(body.name == "world" for body in model.bodies[1:])
-    bodies: list[Body] = [grounded()]
-    places: dict[str, int] = {}
-    stack = list(reversed(roots))
-    while stack:
-        name = stack.pop()
-        stack.extend(reversed(below.get(name, [])))
-        if name not in above and name == "world" and not a_body_too:
-            places[name] = WORLD
+        children.setdefault(joint.parent, []).append(joint.child)
+    has_world_link = any(body.name == "world" for body in model.bodies[1:])
+    bodies: list[Body] = [world_body()]
+    numbers: dict[str, int] = {}
+    for name in parents_first([link.name for link in robot.links if link.name not in joints], children):
+        joint = joints.get(name)
+        if joint is None and name == "world" and not has_world_link:
+            numbers[name] = WORLD
             continue
-        joint = above.get(name)
-        places[name] = len(bodies)
-        parent = WORLD if joint is None else places[joint.parent]
+        numbers[name] = len(bodies)
+        parent = WORLD if joint is None else numbers[joint.parent]
         bodies.append(Body(name, parent, Joint(open=True) if joint is None else _joint(joint, model)))
-    return KinematicModel(robot.name or "", "urdf", "yourdfpy", tuple(bodies))
+    return KinematicModel(robot.name or "", model.format, "yourdfpy", tuple(bodies))
 
 
 def _joint(joint: Any, model: KinematicModel) -> Joint:
@@ -204,10 +189,10 @@ def _joint(joint: Any, model: KinematicModel) -> Joint:
 def _same_coordinates(model: KinematicModel, other: KinematicModel, q: Array) -> Array:
     """The configurations of one reader in the column order of the other."""
     columns: list[int] = []
-    places = {body.name: index for index, body in enumerate(model.bodies[1:], start=1)}
+    numbers = {body.name: index for index, body in enumerate(model.bodies[1:], start=1)}
     for body in other.bodies[1:]:
-        first = model.first_dof[places.get(body.name, WORLD)]
-        for place, dof in enumerate(body.joint.dofs):
-            start = model.columns[first + place] if first + place < len(model.columns) else 0
+        first = model.first_dof[numbers.get(body.name, WORLD)]
+        for number, dof in enumerate(body.joint.dofs, start=first):
+            start = model.columns[number] if number < len(model.columns) else 0
             columns.extend(range(start, start + dof.kind.width))
     return q[:, columns]

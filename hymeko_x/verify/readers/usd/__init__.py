@@ -1,8 +1,8 @@
-"""USD as Pixar's UsdPhysics parser sees it: bodies, joints with both local frames, limits, collision shapes.
+"""USD as Pixar's UsdPhysics parser reads it: bodies, joints with both local frames, limits, collision shapes.
 
 Masses come from MassAPI, tensors that have no principal moments from NewtonMassAPI, poses at rest and visual shapes from
-UsdGeom. Couplings are what NewtonMimicAPI and MjcEqualityJointAPI say, tendons what MjcTendon says, since UsdPhysics has no
-words for them. Physics is float32 and degrees in USD; lengths are in stage units. Everything is converted to SI, and to z up.
+UsdGeom, couplings from NewtonMimicAPI and MjcEqualityJointAPI, tendons from MjcTendon, since UsdPhysics cannot represent
+them. Physics is float32 and degrees in USD; lengths are in stage units. Everything is converted to SI, and to z up.
 Source: UsdPhysics schema and parseDesc.h (OpenUSD); newton-usd-schemas for NewtonMimicAPI.
 """
 
@@ -16,8 +16,8 @@ from pxr import Gf, Sdf, Tf, Usd, UsdPhysics
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
-from hymeko_x.verify.model import WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Loop, grounded
-from hymeko_x.verify.readers import overheard
+from hymeko_x.verify.model import WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, world_body
+from hymeko_x.verify.readers import native_output
 from hymeko_x.verify.readers.usd.joints import JointEdge, read_couplings, read_joint, read_loop
 from hymeko_x.verify.readers.usd.scene import Scene, value_of
 from hymeko_x.verify.readers.usd.shapes import read_shapes
@@ -28,28 +28,29 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from hymeko_x.verify.readers import Places
+    from hymeko_x.verify.readers import Lookup
 
-SAYS = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES, Feature.TENDONS})
+FEATURES = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES, Feature.TENDONS})
 SINGLE = 1.2e-7
 """The relative precision of what UsdPhysics stores."""
-NEAR = 1e-6
-WORLD_NAME = "world"
-_MOST_NESTED = 32
+_IDENTITY = 1e-6
+"""In m and as a matrix entry: a pose this close to the identity is it, in single precision."""
+
+_MOST_NESTED = 32  # variant sets within variants
 
 _JOINTS = ("FixedJoint", "RevoluteJoint", "PrismaticJoint", "SphericalJoint", "D6Joint", "DistanceJoint", "CustomJoint")
 
 
-def read(path: Path, places: Places) -> KinematicModel:
+def read(path: Path, lookup: Lookup) -> KinematicModel:
     """The robot that UsdPhysics sees. Raises: Refusal HX302 in USD's words."""
-    with overheard() as said:
+    with native_output() as output:
         try:
             stage = Usd.Stage.Open(str(path))
         except Tf.ErrorException as error:
-            words = said() or " ".join(str(error).split())
-            raise refuse(codes.ENGINE_REFUSED, f"USD refuses the file: {words}", Origin(str(path))) from error
-        for _ in range(_MOST_NESTED if places.variants else 0):  # a variant may bring forth prims that have sets themselves
-            if not _choose(stage, places.variants, path):
+            reason = output() or " ".join(str(error).split())
+            raise refuse(codes.ENGINE_REFUSED, f"USD refuses the file: {reason}", Origin(str(path))) from error
+        for _ in range(_MOST_NESTED if lookup.variants else 0):  # a variant may contain prims that have sets themselves
+            if not _choose(stage, lookup.variants, path):
                 break
         found = UsdPhysics.UsdPhysicsLoadStageFromPrimRange(stage, [Sdf.Path.absoluteRootPath])
     return _model(Scene.of(stage), path.stem, found)
@@ -57,21 +58,16 @@ def read(path: Path, places: Places) -> KinematicModel:
 
 def _choose(stage: Any, variants: Mapping[str, str], path: Path) -> bool:
     """Select these variants in the session, wherever the stage has their sets; returns whether that changed anything."""
-    sets = [(prim.GetVariantSet(name), variants[name]) for prim in stage.Traverse() for name in _sets_of(prim, variants)]
+    names = [(prim, name) for prim in stage.Traverse() for name in prim.GetVariantSets().GetNames() if name in variants]
+    sets = [(prim.GetVariantSet(name), variants[name]) for prim, name in names]
     changed = [(item, variant) for item, variant in sets if item.GetVariantSelection() != variant]
     with Usd.EditContext(stage, stage.GetSessionLayer()):
         for item, variant in changed:
             if variant not in item.GetVariantNames():
-                said = f"the variant set '{item.GetName()}' has no variant '{variant}'"
-                raise refuse(
-                    codes.UNDEFINED_REFERENCE, said, Origin(str(path)), hint=f"it has: {', '.join(sorted(item.GetVariantNames()))}"
-                )
+                message, known = f"the variant set '{item.GetName()}' has no variant '{variant}'", sorted(item.GetVariantNames())
+                raise refuse(codes.UNDEFINED_REFERENCE, message, Origin(str(path)), hint=f"it has: {', '.join(known)}")
             item.SetVariantSelection(variant)
     return bool(changed)
-
-
-def _sets_of(prim: Any, variants: Mapping[str, str]) -> list[str]:
-    return [name for name in prim.GetVariantSets().GetNames() if name in variants]
 
 
 def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
@@ -81,39 +77,43 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
     prims = list(scene.stage.Traverse(Usd.TraverseInstanceProxies()))
     ranks: dict[str, int] = {str(prim.GetPath()): rank for rank, prim in enumerate(prims)}
     joints.sort(key=lambda desc: ranks.get(str(desc.primPath), len(ranks)))
-    called = _names(scene.stage, [str(desc.primPath) for desc in joints])
-    edges = [read_joint(scene, desc, called[str(desc.primPath)]) for desc in joints]
+    joint_names = _names(scene.stage, [str(desc.primPath) for desc in joints])
+    edges = [read_joint(scene, desc, joint_names[str(desc.primPath)]) for desc in joints]
     order, tree, closing = _spanning_tree(list(rigid_bodies), edges)
     names = _names(scene.stage, sorted(order, key=lambda path: ranks.get(path, len(ranks))))
-    ground = [path for path in order if names[path] == WORLD_NAME and _is_ground(scene, path, tree.get(path))]
+    ground = [path for path in order if names[path] == "world" and _is_ground(scene, path, tree.get(path))]
     order = [path for path in order if path not in ground]
-    places = {path: index for index, path in enumerate(order, start=1)} | dict.fromkeys(("", *ground), WORLD)
+    numbers = {path: index for index, path in enumerate(order, start=1)} | dict.fromkeys(("", *ground), WORLD)
     shapes = read_shapes(scene, found, set(rigid_bodies))
-    bodies = [grounded(shapes=tuple(shape for path in ("", *ground) for shape in shapes.get(path, ())))]
+    bodies = [world_body(shapes=tuple(shape for path in ("", *ground) for shape in shapes.get(path, ())))]
     for path in order:
-        bodies.append(_body(scene, path, names[path], tree.get(path), places, rigid_bodies[path].kinematicBody, shapes))
+        prim = scene.stage.GetPrimAtPath(path)
+        edge = tree.get(path)
+        joint = edge.joint() if edge is not None else _root_joint(scene, prim, rigid_bodies[path].kinematicBody)
+        parent = numbers[edge.parent] if edge is not None else WORLD
+        known, mass, com, tensor = _inertia(scene, prim, bool(shapes.get(path)))
+        bodies.append(Body(names[path], parent, joint, mass, com, tensor, tuple(shapes.get(path, ())), inertia_is_known=known))
     default = scene.stage.GetDefaultPrim()
     model = KinematicModel(
         name=str(default.GetName()) if default else name,
         format="usd",
         engine=f"UsdPhysics in OpenUSD {'.'.join(map(str, Usd.GetVersion()))}",
         bodies=tuple(bodies),
-        loops=tuple(_loop(edge, places) for edge in closing),
-        says=SAYS,
+        loops=tuple(read_loop(edge, numbers.get(edge.parent, WORLD), numbers.get(edge.child, WORLD)) for edge in closing),
+        features=FEATURES,
         precision=SINGLE,
     )
-    cables = tendon_paths(prims)
-    if cables:
-        named = _names(scene.stage, cables)
-        model = read_tendons(scene, model, named, tree, places, automatic=limits_are_automatic(prims))
+    tendons = _names(scene.stage, tendon_paths(prims))
+    if tendons:
+        model = read_tendons(scene, model, tendons, tree, numbers, automatic=limits_are_automatic(prims))
     return read_couplings(scene, model, tree)
 
 
 def _is_ground(scene: Scene, path: str, edge: JointEdge | None) -> bool:
-    """Whether a body called ``world`` is the world itself, as in a URDF: it has no mass and is fixed where the world is."""
+    """Whether a body called ``world`` is the world itself, as in a URDF: it has no mass and is fixed to it at its origin."""
     if edge is None or edge.parent or edge.dofs or edge.more or scene.stage.GetPrimAtPath(path).GetAttribute("physics:mass").Get():
         return False
-    return bool(np.abs(edge.joint().placement - np.eye(4)).max() < NEAR)
+    return bool(np.abs(edge.joint().placement - np.eye(4)).max() < _IDENTITY)
 
 
 def _names(stage: Any, paths: Iterable[str]) -> dict[str, str]:
@@ -133,110 +133,76 @@ def _names(stage: Any, paths: Iterable[str]) -> dict[str, str]:
 
 
 def _spanning_tree(bodies: Sequence[str], edges: Sequence[JointEdge]) -> tuple[list[str], dict[str, JointEdge], list[JointEdge]]:
-    """Bodies with parents first, the joint above each (turned round where body 1 is the parent), and the joints that close loops.
+    """Bodies with parents first, the joint of each (turned round where body 1 is the parent), and the joints that close loops.
 
-    Trees begin at the world, then at bodies that are nobody's child, then anywhere. In the order of the stage, a joint whose two
-    bodies hang together already closes a loop.
+    Trees begin at the world, then at bodies that are no joint's child, then anywhere. In the order of the stage, a joint between two
+    bodies that are connected already closes a loop.
     """
-    below: dict[str, list[JointEdge]] = {}
+    beside: dict[str, list[JointEdge]] = {}
     for edge in _acyclic(edges):
-        below.setdefault(edge.parent, []).append(edge)
-        below.setdefault(edge.child, []).append(edge)
+        beside.setdefault(edge.parent, []).append(edge)
+        beside.setdefault(edge.child, []).append(edge)
     children = {edge.child for edge in edges if not edge.closes}
-    starts = ["", *(path for path in bodies if path not in children), *bodies]
-    known = set(bodies)
-    seen = {""}
+    unseen = set(bodies)
     order: list[str] = []
-    above: dict[str, JointEdge] = {}
+    joints: dict[str, JointEdge] = {}
     used: set[int] = set()
-    for start in starts:
-        if start and start in seen:
+    for start in ("", *(path for path in bodies if path not in children), *bodies):
+        if start and start not in unseen:
             continue
         stack = [start]
         if start:
-            seen.add(start)
+            unseen.discard(start)
             order.append(start)
         while stack:
             body = stack.pop()
-            for edge in below.get(body, ()):
+            for edge in beside.get(body, ()):
                 other = edge.child if edge.parent == body else edge.parent
-                if other in above and above[other].stacks(edge) and id(edge) not in used:
+                if other in joints and joints[other].stacks(edge) and id(edge) not in used:
                     used.add(id(edge))
-                    above[other] = above[other].with_more(edge)
-                    continue
-                if other in seen or other not in known:
-                    continue
-                seen.add(other)
-                used.add(id(edge))
-                order.append(other)
-                above[other] = edge if edge.child == other else edge.turned()
-                stack.append(other)
-    return order, above, [edge for edge in edges if id(edge) not in used]
+                    joints[other] = joints[other].with_more(edge)
+                elif other in unseen:
+                    unseen.discard(other)
+                    used.add(id(edge))
+                    order.append(other)
+                    joints[other] = edge if edge.child == other else edge.turned()
+                    stack.append(other)
+    return order, joints, [edge for edge in edges if id(edge) not in used]
 
 
 def _acyclic(edges: Sequence[JointEdge]) -> list[JointEdge]:
     """The joints that connect what was not connected before, and those beside one of them, which may be further dofs of it."""
     leader: dict[str, str] = {}
+
+    def leader_of(body: str) -> str:
+        """The representative of all bodies that are connected with this one (union-find, with paths halved)."""
+        while leader.setdefault(body, body) != body:
+            leader[body] = leader[leader[body]]
+            body = leader[body]
+        return body
+
     pairs: set[frozenset[str]] = set()
     found = []
     for edge in edges:
         pair = frozenset((edge.parent, edge.child))
-        first, second = _leader(edge.parent, leader), _leader(edge.child, leader)
-        if edge.closes or (first == second and pair not in pairs):
-            continue
-        leader[second] = first
-        pairs.add(pair)
-        found.append(edge)
+        first, second = leader_of(edge.parent), leader_of(edge.child)
+        if not edge.closes and (first != second or pair in pairs):
+            leader[second] = first
+            pairs.add(pair)
+            found.append(edge)
     return found
 
 
-def _leader(body: str, leader: dict[str, str]) -> str:
-    """The body that stands for all that hang together with this one; the way there is halved on each visit."""
-    while leader.setdefault(body, body) != body:
-        leader[body] = leader[leader[body]]
-        body = leader[body]
-    return body
-
-
-def _body(
-    scene: Scene,
-    path: str,
-    name: str,
-    edge: JointEdge | None,
-    places: Mapping[str, int],
-    kinematic: bool,
-    shapes: Mapping[str, tuple[Any, ...]],
-) -> Body:
-    prim = scene.stage.GetPrimAtPath(path)
-    weighed, mass, com, tensor = _inertia(scene, prim, bool(shapes.get(path)))
-    joint = edge.joint() if edge is not None else _root_joint(scene, prim, kinematic)
-    return Body(
-        name=name,
-        parent=places[edge.parent] if edge is not None else WORLD,
-        joint=joint,
-        mass=mass,
-        com=com,
-        tensor=tensor,
-        shapes=tuple(shapes.get(path, ())),
-        weighed=weighed,
-    )
-
-
 def _root_joint(scene: Scene, prim: Any, kinematic: bool) -> Joint:
-    """A body that no joint holds falls freely, unless it is kinematic."""
-    place = scene.pose(prim)
-    return Joint(None, place) if kinematic else Joint(None, place, (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),))
-
-
-def _loop(edge: JointEdge, places: Mapping[str, int]) -> Loop:
-    return read_loop(edge, places.get(edge.parent, WORLD), places.get(edge.child, WORLD))
+    """A body without a joint to a parent falls freely, unless it is kinematic."""
+    return Joint(None, scene.pose(prim), () if kinematic else (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),))
 
 
 # ---- inertia ---------------------------------------------------------------------------------------------------------
 
 
 def _inertia(scene: Scene, prim: Any, has_shapes: bool) -> tuple[bool, float, Array, Array]:
-    """Whether it is known, mass, centre and tensor by MassAPI. Zeros mean "not authored": engines then go by the shapes."""
+    """Whether it is known, mass, centre and tensor by MassAPI. Zeros mean "not authored": engines then compute them from the shapes."""
     api = UsdPhysics.MassAPI(prim)
     mass = float(api.GetMassAttr().Get() or 0.0) * scene.kilograms
     com = np.array(api.GetCenterOfMassAttr().Get() or (0.0, 0.0, 0.0), dtype=float)
@@ -251,7 +217,7 @@ def _inertia(scene: Scene, prim: Any, has_shapes: bool) -> tuple[bool, float, Ar
 
 
 def _newton_tensor(prim: Any) -> Array:
-    """The tensor by NewtonMassAPI, for what no principal moments can say, like moments of zero; without one nothing."""
+    """The tensor by NewtonMassAPI, which represents tensors that moments and axes cannot, like moments of zero; without one zeros."""
     numbers = value_of(prim, "newton:inertia")
     if numbers is None or len(numbers) != 6:
         return np.zeros((3, 3))

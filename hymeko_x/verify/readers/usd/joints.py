@@ -1,4 +1,4 @@
-"""Joints of UsdPhysics: two bodies, a frame on each, and what moves between the frames."""
+"""Joints of UsdPhysics: two bodies, a frame on each, and the dofs between the frames."""
 
 from __future__ import annotations
 
@@ -35,29 +35,29 @@ _D6 = (
 class JointEdge(Struct, frozen=True, eq=False):
     """One joint: bodies by path ("" is the world), the joint's frame on each, and dofs in that frame.
 
-    ``more`` are joints that add their mobility to it. ``closes`` marks a joint that the file leaves out of the articulation;
-    ``words`` what a loop needs to know of its kind.
+    ``more`` are joints that add their dofs to it. ``closes`` marks a joint that the file leaves out of the articulation;
+    ``closure`` is its kind as a loop.
     """
 
     path: str
     name: str
     parent: str
     child: str
-    above: Array
-    below: Array
+    parent_pose: Array
+    child_pose: Array
     dofs: tuple[Dof, ...]
     closes: bool
-    words: str
+    closure: str
     more: tuple[JointEdge, ...] = ()
 
     def stacks(self, other: JointEdge) -> bool:
-        """Whether another joint adds its mobility to this one: between the same bodies, in the same pose at rest.
+        """Whether another joint adds its dofs to this one: between the same bodies, in the same pose at rest.
 
         UsdPhysics has no joint with several free axes in a given order; this is how mujoco-usd-converter and Newton write one.
         """
         if (self.parent, self.child) != (other.parent, other.child) or not (self.dofs and other.dofs) or other.closes:
             return False
-        rest = self.above @ np.linalg.inv(self.below), other.above @ np.linalg.inv(other.below)
+        rest = self.parent_pose @ np.linalg.inv(self.child_pose), other.parent_pose @ np.linalg.inv(other.child_pose)
         return bool(np.abs(rest[0] - rest[1]).max() < _SAME_REST)
 
     def with_more(self, other: JointEdge) -> JointEdge:
@@ -67,12 +67,12 @@ class JointEdge(Struct, frozen=True, eq=False):
     def turned(self) -> JointEdge:
         """The same joint seen from the other body: motion and axes change sense."""
         dofs = tuple(_reversed(dof) for dof in reversed(self.dofs))
-        return replace(self, parent=self.child, child=self.parent, above=self.below, below=self.above, dofs=dofs)
+        return replace(self, parent=self.child, child=self.parent, parent_pose=self.child_pose, child_pose=self.parent_pose, dofs=dofs)
 
     def joint(self) -> Joint:
-        """The joint in the terms of the body below."""
-        own = between_frames(self.name, self.above, self.dofs, self.below)
-        others = [between_frames(edge.name, edge.above, edge.dofs, edge.below) for edge in self.more]
+        """The joint with its dofs in the frame of the child body."""
+        own = between_frames(self.name, self.parent_pose, self.dofs, self.child_pose)
+        others = [between_frames(edge.name, edge.parent_pose, edge.dofs, edge.child_pose) for edge in self.more]
         name = self.name if not others else None
         return replace(own, name=name, dofs=(*own.dofs, *(dof for joint in others for dof in joint.dofs)))
 
@@ -85,12 +85,12 @@ def _reversed(dof: Dof) -> Dof:
 def read_joint(scene: Scene, desc: Any, name: str) -> JointEdge:
     """A joint of the parser, in SI units."""
     parent, child = _path(desc.body0), _path(desc.body1)
-    above, below = (
+    poses = (
         _local(scene, desc.localPose0Position, desc.localPose0Orientation, not parent),
         _local(scene, desc.localPose1Position, desc.localPose1Orientation, not child),
     )
-    dofs, words = _dofs(scene, desc, name)
-    return JointEdge(str(desc.primPath), name, parent, child, above, below, dofs, bool(desc.excludeFromArticulation), words)
+    dofs, closure = _dofs(scene, desc, name)
+    return JointEdge(str(desc.primPath), name, parent, child, *poses, dofs, bool(desc.excludeFromArticulation), closure)
 
 
 def _path(path: Any) -> str:
@@ -104,7 +104,7 @@ def _local(scene: Scene, position: Any, orientation: Any, in_world: bool) -> Arr
 
 
 def _dofs(scene: Scene, desc: Any, name: str) -> tuple[tuple[Dof, ...], str]:
-    """What moves, and a word for the kind of closure that the joint would be."""
+    """The dofs, and the kind of closure that the joint would be."""
     kinds = UsdPhysics.ObjectType
     match desc.type:
         case kinds.FixedJoint:
@@ -167,20 +167,20 @@ def _d6_dof(scene: Scene, item: tuple[Any, Kind, int], limit: Any, name: str | N
 
 def read_loop(edge: JointEdge, body_a: int, body_b: int) -> Loop:
     """A joint that closes a cycle; z of its frames is the axis that stays free."""
-    axis = edge.dofs[0].axis if edge.words in ("hinge", "slide") else np.array([0.0, 0.0, 1.0])
+    axis = edge.dofs[0].axis if edge.closure in ("hinge", "slide") else np.array([0.0, 0.0, 1.0])
     along = frame_with_z(axis)
-    words = " ".join(dof.kind.value for dof in edge.dofs) if edge.words == "other" else ""
-    return Loop(edge.words, body_a, edge.above @ along, body_b, edge.below @ along, edge.name, words)
+    words = " ".join(dof.kind.value for dof in edge.dofs) if edge.closure == "other" else ""
+    return Loop(edge.closure, body_a, edge.parent_pose @ along, body_b, edge.child_pose @ along, edge.name, words)
 
 
 # ---- couplings -------------------------------------------------------------------------------------------------------
 
 
 def read_couplings(scene: Scene, model: KinematicModel, tree: Mapping[str, JointEdge]) -> KinematicModel:
-    """The model with what NewtonMimicAPI and MjcEqualityJointAPI say about joints that follow others.
+    """The model with the couplings by NewtonMimicAPI and MjcEqualityJointAPI.
 
-    Source: Newton's importer, where MjcEqualityJointAPI adds the powers above the first; its own names for what
-    NewtonMimicAPI says are older and count where that says nothing.
+    Source: Newton's importer, where MjcEqualityJointAPI adds the powers above the first; its names of leader and lower coefficients
+    are older, and are read where NewtonMimicAPI has none.
     """
     paths = {edge.path: edge for first in tree.values() for edge in (first, *first.more)}
     dofs = dof_names(model)

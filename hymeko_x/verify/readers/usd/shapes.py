@@ -1,4 +1,4 @@
-"""Shapes in a stage: what UsdPhysics collides with, and every other prim of geometry below a body, which is for the eye."""
+"""Shapes in a stage: the colliders of UsdPhysics, and every other prim of geometry in a body, which is only drawn."""
 
 from __future__ import annotations
 

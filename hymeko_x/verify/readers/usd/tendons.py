@@ -1,4 +1,4 @@
-"""MjcTendon prims: the tendons of a stage as MuJoCo's schema says them, which no parser of UsdPhysics knows.
+"""MjcTendon prims: the tendons of a stage by MuJoCo's schema, which no parser of UsdPhysics reads.
 
 Source: MjcPhysics (MuJoCo's USD schemas), mujoco-usd-converter, Newton's importer.
 """
@@ -28,11 +28,11 @@ _ROUND = {"sphere": SPHERE, "cylinder": CYLINDER}
 
 
 class _BadPath(Exception):
-    """A path that nobody can follow; the text says why."""
+    """A path that cannot be followed, with the reason."""
 
 
-class _Guide(Struct, frozen=True, eq=False):
-    """What paths lead through: each joint's dof by the joint's path, and the bodies by theirs; "" is the world."""
+class _Targets(Struct, frozen=True, eq=False):
+    """The targets of paths: each joint's dof by the joint's path, and the bodies by theirs; "" is the world."""
 
     scene: Scene
     dofs: Mapping[str, int]
@@ -50,42 +50,42 @@ def read_tendons(
     model: KinematicModel,
     names: Mapping[str, str],
     tree: Mapping[str, JointEdge],
-    places: Mapping[str, int],
+    numbers: Mapping[str, int],
     *,
     automatic: bool,
 ) -> KinematicModel:
     """The model with its tendons, and a note for each whose path leads nowhere.
 
-    ``names`` are those of the tendons and ``places`` the bodies, both by path; ``automatic``: whether a range alone is a limit.
+    ``names`` are those of the tendons and ``numbers`` those of the bodies, both by path; ``automatic``: whether a range alone is a limit.
     """
     dofs = dof_names(model)
     edges = [edge for first in tree.values() for edge in (first, *first.more) if edge.name in dofs]
-    known = {edge.path: dofs[edge.name] for edge in edges}
-    guide = _Guide(scene, known, {path: model.dofs[dof].kind for path, dof in known.items()}, places)
+    joint_dofs = {edge.path: dofs[edge.name] for edge in edges}
+    known = _Targets(scene, joint_dofs, {path: model.dofs[dof].kind for path, dof in joint_dofs.items()}, numbers)
     found: list[Tendon] = []
     notes: list[str] = []
     for path, name in names.items():
         try:
-            found.append(_tendon(guide, scene.stage.GetPrimAtPath(path), name, automatic=automatic))
+            found.append(_tendon(known, scene.stage.GetPrimAtPath(path), name, automatic=automatic))
         except _BadPath as error:
             notes.append(f"tendon '{name}' is left out: its path {error}")
     return replace(model, tendons=tuple(found), notes=(*model.notes, *notes))
 
 
 def limits_are_automatic(prims: Sequence[Any]) -> bool:
-    """Whether a range alone is a limit, as everywhere unless a scene says otherwise."""
+    """Whether a range alone is a limit, which is the default of a scene."""
     return not any(value_of(prim, "mjc:compiler:autoLimits") is False for prim in prims)
 
 
-def _tendon(guide: _Guide, prim: Any, name: str, *, automatic: bool) -> Tendon:
+def _tendon(known: _Targets, prim: Any, name: str, *, automatic: bool) -> Tendon:
     """One tendon in SI units. Raises: _BadPath."""
-    metres, kilograms = guide.scene.metres, guide.scene.kilograms
+    metres, kilograms = known.scene.metres, known.scene.kilograms
     newtons = metres * kilograms
     fixed = value_of(prim, "mjc:type") == "fixed"
     stiffness = number_of(prim, "mjc:stiffness", 0.0) * kilograms
     return Tendon(
         name,
-        tuple(_sum(guide, prim) if fixed else _cable(guide, prim)),
+        tuple(_sum(known, prim) if fixed else _cable(known, prim)),
         (
             stiffness,
             number_of(prim, "mjc:damping", 0.0) * kilograms,
@@ -107,29 +107,29 @@ def _bounds(prim: Any, name: str, limited: str, unit: float, *, automatic: bool)
 
 def _spring(prim: Any, metres: float) -> Spring:
     """Its lengths; -1 is the one at rest."""
-    said = _numbers(prim, "mjc:springlength")
-    if len(said) != 2 or said[0] == -1.0:
+    lengths = _numbers(prim, "mjc:springlength")
+    if len(lengths) != 2 or lengths[0] == -1.0:
         return RELAXED
-    return Spring((said[0] * metres, said[1] * metres), at_rest=False)
+    return Spring((lengths[0] * metres, lengths[1] * metres), at_rest=False)
 
 
 # ---- paths -----------------------------------------------------------------------------------------------------------
 
 
-def _sum(guide: _Guide, prim: Any) -> Iterator[Step]:
+def _sum(known: _Targets, prim: Any) -> Iterator[Step]:
     """The joints of a fixed tendon. A coefficient is a length for an angle, or for a length."""
     targets = _targets(prim, "mjc:path", "mjc:path:indices")
     coefficients = _numbers(prim, "mjc:path:coef") or [1.0] * len(targets)
     if len(coefficients) != len(targets):
         raise _BadPath(f"has {len(targets)} joints and {len(coefficients)} coefficients")
     for target, coefficient in zip(targets, coefficients, strict=True):
-        if target not in guide.dofs:
+        if target not in known.dofs:
             raise _BadPath(f"leads to {target}, which is no joint that one coordinate moves")
-        turns = guide.kinds[target] is Kind.HINGE
-        yield Step(JOINT, guide.dofs[target], coefficient * (guide.scene.metres if turns else 1.0))
+        turns = known.kinds[target] is Kind.HINGE
+        yield Step(JOINT, known.dofs[target], coefficient * (known.scene.metres if turns else 1.0))
 
 
-def _cable(guide: _Guide, prim: Any) -> Iterator[Step]:
+def _cable(known: _Targets, prim: Any) -> Iterator[Step]:
     """The sites and shapes of a cable; where a segment begins, there is a pulley, before the first one if it has a divisor."""
     targets = _targets(prim, "mjc:path", "mjc:path:indices")
     segments = _integers(prim, "mjc:path:segments") or [0] * len(targets)
@@ -144,9 +144,9 @@ def _cable(guide: _Guide, prim: Any) -> Iterator[Step]:
         if segment != last:
             yield Step(PULLEY, number=divisors[segment])
         last = segment
-        yield _knot(guide, target)
+        yield _target(known, target)
         if side:
-            yield _site(guide, guide.scene.stage.GetPrimAtPath(side), SIDE)
+            yield _site(known, known.scene.stage.GetPrimAtPath(side), SIDE)
 
 
 def _sides(prim: Any, count: int) -> list[str]:
@@ -166,26 +166,26 @@ def _targets(prim: Any, name: str, indices: str) -> list[str]:
     return [found[index] for index in order]
 
 
-def _knot(guide: _Guide, path: str) -> Step:
+def _target(known: _Targets, path: str) -> Step:
     """A site, or a ball or cylinder around which a cable goes."""
-    prim = guide.scene.stage.GetPrimAtPath(Sdf.Path(path))
+    prim = known.scene.stage.GetPrimAtPath(Sdf.Path(path))
     if not prim:
         raise _BadPath(f"leads to {path}, where nothing is")
     if _SITE_API in prim.GetPrimTypeInfo().GetAppliedAPISchemas():
-        return _site(guide, prim, SITE)
-    on = owner(prim, guide.bodies)
-    shape = shape_of(guide.scene, prim, on, Role.VISUAL)
+        return _site(known, prim, SITE)
+    on = owner(prim, known.bodies)
+    shape = shape_of(known.scene, prim, on, Role.VISUAL)
     if shape is None or shape.kind not in _ROUND:
-        return _site(guide, prim, SITE)
+        return _site(known, prim, SITE)
     axis = point_of(shape.pose[:3, 2]) if shape.kind == "cylinder" else None
-    return Step(_ROUND[shape.kind], guide.bodies[on], shape.size[0], point_of(shape.pose[:3, 3]), axis)
+    return Step(_ROUND[shape.kind], known.bodies[on], shape.size[0], point_of(shape.pose[:3, 3]), axis)
 
 
-def _site(guide: _Guide, prim: Any, kind: str) -> Step:
+def _site(known: _Targets, prim: Any, kind: str) -> Step:
     if not prim:
         raise _BadPath("has a site beside it that is not there")
-    on = owner(prim, guide.bodies)
-    return Step(kind, guide.bodies[on], point=point_of(guide.scene.relative(on, prim)[0][:3, 3]))
+    on = owner(prim, known.bodies)
+    return Step(kind, known.bodies[on], point=point_of(known.scene.relative(on, prim)[0][:3, 3]))
 
 
 # ---- values ----------------------------------------------------------------------------------------------------------

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Node = subprocess.Popen[bytes]
 
-_ROOT = Path(__file__).parents[2]
+_ROOT = Path(__file__).parents[1]
 _RAY = Path(sys.executable).with_name("ray")
 _PATIENCE = 60.0  # s, for the first node
 

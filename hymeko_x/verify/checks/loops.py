@@ -1,4 +1,8 @@
-"""Forward kinematics of every body, and the residual of every closure, at every configuration."""
+"""Closures of the tree: how open each one is at every configuration.
+
+Compared: the gap of each closure in m, and its misalignment in rad, in the motions that its kind forbids. Allowed: twice as much as for
+forward kinematics, because two bodies are off.
+"""
 
 from __future__ import annotations
 
@@ -7,91 +11,55 @@ from typing import TYPE_CHECKING
 import numpy as np
 from msgspec.structs import replace
 
-from hymeko_x.verify.checks.pair import POSITION, ROTATION, Pair, counted, worst
-from hymeko_x.verify.kinematics import prepare
-from hymeko_x.verify.model import Array, Feature, Index, KinematicModel, Loop
+from hymeko_x.verify.checks.kinematics import Peaks, allowance, batches
+from hymeko_x.verify.checks.pair import Differences, Pair, counted
+from hymeko_x.verify.model import Array, Feature, KinematicModel, Loop
 from hymeko_x.verify.spatial import angle_between, frame_with_z, inverse
-from hymeko_x.verify.verdict import Check
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
+    from hymeko_x.verify.verdict import Check
+
 LoopPair = tuple[Loop, Loop, bool]
 """A closure of each robot, and whether the second names the two bodies the other way round."""
 
+_MOST_LISTED = 3  # closures named in a note
 
-def check_motion(pair: Pair) -> Iterator[Check]:
-    """Where the bodies are, how they are turned, and how open the loops are. Batched, so that memory stays flat."""
+
+def check_loops(pair: Pair) -> Iterator[Check]:
+    """Every closure of the first robot in the second, no new ones, and how open they are."""
     loops, findings = _pair_loops(pair)
-    ours = np.array([i for i, _ in pair.match.bodies], dtype=np.intp)
-    theirs = np.array([j for _, j in pair.match.bodies], dtype=np.intp)
-    far, turned = _Peaks(len(ours)), _Peaks(len(ours))
-    gap, skew = _Peaks(len(loops)), _Peaks(len(loops))
+    if not loops and not findings:
+        return
+    gaps, angles = Peaks(len(loops)), Peaks(len(loops))
     reach = 0.0
-    forward_a, forward_b = prepare(pair.a, floor=frozenset(pair.match.floor_a)), prepare(pair.b, floor=frozenset(pair.match.floor_b))
-    for rows, poses_a in forward_a.batches(pair.q_a):
-        poses_b = forward_b.poses(pair.q_b[rows])
+    for rows, poses_a, poses_b in batches(pair):
         reach = max(reach, float(np.abs(poses_a[..., :3, 3]).max()))
-        _compare_poses(poses_a[:, ours], poses_b[:, theirs], rows.start, far, turned)
         for k, (loop_a, loop_b, swapped) in enumerate(loops):
-            distance, angle = _compare_loop(poses_a, poses_b, loop_a, loop_b, swapped=swapped)
-            gap.add(k, distance, rows.start)
-            skew.add(k, angle, rows.start)
-    depth = np.sqrt(max(1, len(forward_a.levels)))
-    metres, radians = pair.allowed(POSITION * max(1.0, reach), depth * max(1e-3, reach)), pair.allowed(ROTATION, depth)
-    yield _body_check(pair, "forward kinematics, position", "m", far, metres)
-    yield _body_check(pair, "forward kinematics, rotation", "rad", turned, radians)
-    if loops or findings:
-        anchors = max((float(np.abs(pose[:3, 3]).max()) for loop, _, _ in loops for pose in (loop.pose_a, loop.pose_b)), default=0.0)
-        gaps = pair.allowed(POSITION * max(1.0, reach), depth * max(1e-3, reach, anchors))
-        yield counted("loops", findings)
-        yield worst("loop closure, position", "m", gap.values, 2 * gaps, lambda k: _loop_label(pair, loops[k][0]))
-        yield worst("loop closure, rotation", "rad", skew.values, 2 * radians, lambda k: _loop_label(pair, loops[k][0]))
+            gap, angle = _compare_loop(poses_a, poses_b, loop_a, loop_b, swapped=swapped)
+            gaps.add(k, gap, rows.start)
+            angles.add(k, angle, rows.start)
+    anchors = max((float(np.abs(pose[:3, 3]).max()) for loop, _, _ in loops for pose in (loop.pose_a, loop.pose_b)), default=0.0)
+    allowed = allowance(pair, reach, anchors)
+    yield counted("loops", findings)
+    position, rotation = Differences("loop closure, position", "m"), Differences("loop closure, rotation", "rad")
+    for k, (loop, _, _) in enumerate(loops):
+        position.add(gaps.values[k], 2 * allowed.metres, _loop_label(pair.a, loop))
+        rotation.add(angles.values[k], 2 * allowed.radians, _loop_label(pair.a, loop))
+    yield from (*position.checks(), *rotation.checks())
 
 
-class _Peaks:
-    """The largest difference of each item so far, and the configuration where it was."""
-
-    def __init__(self, count: int) -> None:
-        self.values: Array = np.zeros(count)
-        self.rows: Index = np.zeros(count, dtype=np.intp)
-
-    def add(self, item: slice | int, differences: Array, first: int) -> None:
-        """Differences (n,) of one item or (n, items) of all, at configurations from ``first`` on; NaN counts as infinite."""
-        differences = np.where(np.isnan(differences), np.inf, differences)
-        peaks, rows = differences.max(axis=0), differences.argmax(axis=0) + first
-        higher = peaks > self.values[item]
-        self.rows[item] = np.where(higher, rows, self.rows[item])
-        self.values[item] = np.where(higher, peaks, self.values[item])
-
-
-def _compare_poses(poses_a: Array, poses_b: Array, first: int, far: _Peaks, turned: _Peaks) -> None:
-    far.add(slice(None), np.linalg.norm(poses_a[..., :3, 3] - poses_b[..., :3, 3], axis=-1), first)
-    turned.add(slice(None), angle_between(poses_a[..., :3, :3], poses_b[..., :3, :3]), first)
-
-
-def _body_check(pair: Pair, quantity: str, unit: str, peaks: _Peaks, allowed: float) -> Check:
-    """The worst body; where that is too far, the first one down the tree that is, because that is where the difference begins."""
-    bodies = pair.match.bodies
-    last = int(peaks.values.argmax())
-    beyond = np.flatnonzero(peaks.values > allowed)
-    first = int(beyond[0]) if beyond.size else last
-    at = f"{pair.a.body_label(bodies[first][0])} {pair.row_label(int(peaks.rows[first]))}" if peaks.values[last] > 0 else ""
-    if first != last:
-        at += f", worst at {pair.a.body_label(bodies[last][0])}"
-    return Check(quantity, unit, float(peaks.values[last]), at, allowed)
-
-
-# ---- loops -----------------------------------------------------------------------------------------------------------
+# ---- counterparts ----------------------------------------------------------------------------------------------------
 
 
 def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
     """Closures by name, else by the two bodies that they join; and words about those without a counterpart.
 
-    None where the second robot's format has none: trees are then compared, and a note says what else holds their bodies together.
+    None where the second robot's format has none: trees are then compared, and a note names the closures.
     """
-    if Feature.LOOPS not in pair.b.says:
-        _note_unsaid(pair)
+    if Feature.LOOPS not in pair.b.features:
+        _note_unrepresented(pair)
         return [], []
     back = {j: i for i, j in pair.match.bodies}
     there = dict(pair.match.bodies)
@@ -101,14 +69,14 @@ def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
     for loop in _with_hinges(pair.a.loops, pair.b.loops, back):
         other = _counterpart(loop, waiting, back)
         if other is None:
-            findings.append(f"{_loop_label(pair, loop)} is missing")
+            findings.append(f"{_loop_label(pair.a, loop)} is missing")
             continue
         waiting.remove(other)
         ends = back.get(other.body_a), back.get(other.body_b)
         if set(ends) != {loop.body_a, loop.body_b}:
-            findings.append(f"{_loop_label(pair, loop)} joins other bodies")
+            findings.append(f"{_loop_label(pair.a, loop)} joins other bodies")
         elif (other.kind, other.words) != (loop.kind, loop.words):
-            findings.append(f"{_loop_label(pair, loop)} is a {loop.kind}, and a {other.kind} in the other")
+            findings.append(f"{_loop_label(pair.a, loop)} is a {loop.kind}, and a {other.kind} in the other")
         else:
             pairs.append((loop, other, ends[0] != loop.body_a))
     findings += [f"loop '{loop.name or loop.kind}' is new" for loop in waiting]
@@ -137,11 +105,11 @@ def _hinge_of(first: Loop, second: Loop) -> Loop:
     return replace(first, kind="hinge", pose_a=ends[0], pose_b=ends[1])
 
 
-def _note_unsaid(pair: Pair) -> None:
+def _note_unrepresented(pair: Pair) -> None:
     loops = pair.a.loops
     if loops:
-        joined = [f"'{loop.name or loop.kind}' between {_ends_of(pair.a, loop)}" for loop in loops[:3]]
-        rest = f" and {len(loops) - 3} more" if len(loops) > 3 else ""
+        joined = [f"'{loop.name or loop.kind}' between {_ends_of(pair.a, loop)}" for loop in loops[:_MOST_LISTED]]
+        rest = f" and {len(loops) - _MOST_LISTED} more" if len(loops) > _MOST_LISTED else ""
         pair.notes.append(f"loops: {pair.b.format} has none; {len(loops)} in {pair.a.format}: {', '.join(joined)}{rest}")
 
 
@@ -153,13 +121,16 @@ def _counterpart(loop: Loop, waiting: list[Loop], back: dict[int, int]) -> Loop 
     return next((other for other in waiting if {back.get(other.body_a), back.get(other.body_b)} == ends), None)
 
 
-def _loop_label(pair: Pair, loop: Loop) -> str:
-    between = f"between {_ends_of(pair.a, loop)}"
+def _loop_label(model: KinematicModel, loop: Loop) -> str:
+    between = f"between {_ends_of(model, loop)}"
     return f"loop '{loop.name}' {between}" if loop.name else f"the loop {between}"
 
 
 def _ends_of(model: KinematicModel, loop: Loop) -> str:
     return f"{model.body_label(loop.body_a)} and {model.body_label(loop.body_b)}"
+
+
+# ---- residuals -------------------------------------------------------------------------------------------------------
 
 
 def _compare_loop(poses_a: Array, poses_b: Array, loop_a: Loop, loop_b: Loop, *, swapped: bool) -> tuple[Array, Array]:
@@ -206,7 +177,7 @@ def _axis_angle(a: Array, b: Array) -> Array:
 
 
 def _relative_angle(first_a: Array, second_a: Array, first_b: Array, second_b: Array) -> Array:
-    """How differently the two closures are turned, whatever frame each was written in."""
+    """The angle between the rotations of the two closures, whatever frame each was written in."""
     turn_a = second_a[:, :3, :3] @ np.swapaxes(first_a[:, :3, :3], 1, 2)
     turn_b = second_b[:, :3, :3] @ np.swapaxes(first_b[:, :3, :3], 1, 2)
     return angle_between(turn_a, turn_b)
