@@ -10,15 +10,16 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.assets.refer import is_of_package
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import StoredLook, subset_edge
+from hymeko_x.ir.mechanism import subset_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Mesh, Role
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import Id, Mechanism, StoredMesh
+    from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import Material, Texture
+    from hymeko_x.ir.provenance import StoredLook, StoredMesh
     from hymeko_x.source import Files
 
 

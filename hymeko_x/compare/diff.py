@@ -139,12 +139,12 @@ def _parameters(where: str, a: Parameters, b: Parameters, tolerance: Tolerance) 
 
 
 def _by_name(parameters: Parameters) -> dict[str, object]:
-    """The value of each parameter; one that is said again has a number (``name[2]``)."""
+    """The value of each parameter; one that comes again has a number (``name[2]``)."""
     found: dict[str, object] = {}
-    said: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     for name, *values in parameters:
-        said[name] += 1
-        key = name if said[name] == 1 else f"{name}[{said[name]}]"
+        counts[name] += 1
+        key = name if counts[name] == 1 else f"{name}[{counts[name]}]"
         value = values[0] if len(values) == 1 else tuple(values)
         found[key] = value[0] if isinstance(value, tuple) and len(value) == 1 else value
     return found
@@ -280,8 +280,8 @@ def _short_part(value: object, layout: Layout) -> str:
         return _short_arc(value)
     kind: Any = type(value)
     fields = zip(layout.compared(value), _default_words(kind), strict=True)
-    said = [word if inner is default else f"{name} {_short(inner)}" for inner, (name, default, word) in fields]
-    return f"{kind.__name__.lower()}({', '.join(said)})"
+    words = [word if inner is default else f"{name} {_short(inner)}" for inner, (name, default, word) in fields]
+    return f"{kind.__name__.lower()}({', '.join(words)})"
 
 
 @cache

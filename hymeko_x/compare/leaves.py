@@ -1,6 +1,6 @@
-"""The leaves in which two parts differ: what they do not say alike to the last bit, and where in the part that is.
+"""The leaves in which two parts differ: values that are not the same to the last bit, with their paths in the part.
 
-The ledger and the residue are made from the same leaves, which are looked for once.
+The ledger and the residue are made from the same leaves, which are computed once.
 """
 
 from __future__ import annotations

@@ -76,7 +76,7 @@ def losses_between(
     *,
     is_carried: bool = False,
 ) -> tuple[Loss, ...]:
-    """Everything in which what was written and read back differs from the mechanism; what it only says in other words, once.
+    """Everything in which what was written and read back differs from the mechanism; what is only described otherwise, once.
 
     ``aligned`` is what was read back, aligned with the mechanism; ``renamed`` is what only the alignment
     changed; ``leaves`` is in what their elements differ, if that is known; ``is_carried`` whether the file will carry what got lost.

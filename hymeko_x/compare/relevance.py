@@ -1,4 +1,4 @@
-"""Which differences between two mechanisms are ones of the robot: no one misses what nobody uses, or what is only said in other words."""
+"""The differences between two mechanisms that count as loss: not values that nothing uses, nor other descriptions of the same."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _AXIS = re.compile(r"dofs\[(\d+)\]\.axis")
 _FRAMES = re.compile(r"\[[01]\]\.weight.*|dofs\[\d+\]\.(axis|anchor)")
 _TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
 _NO_AXES = (X, Z)
-"""What URDF and MJCF have where no axis is said."""
+"""The axes of URDF and MJCF where none is given."""
 _WEIGHTS = ("mass", "density")
 _POINTS = ("vertices", "faces", "texcoords", "texfaces")
 _NO_NAME = "none"
@@ -32,18 +32,17 @@ _NO_NAME = "none"
 def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, tolerance: Tolerance) -> Iterator[Difference]:
     """The differences from ``before`` to ``after`` without those that are none of the robot.
 
-    A ball and a free joint have no axis, and what stands for none is not the same everywhere; nobody asks what a shape weighs that says
-    nothing of it, if it is one of the world or of a body whose mass and tensor are said; a joint moves alike whatever frames it is
-    described in. What an author said is not left out, whether or not somebody uses it.
+    No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
+    on a body whose mass and tensor are given; other frames of a joint that moves its body alike. What an author wrote counts, used or not.
     """
     alike: dict[Id, bool] = {}
     native = formats.native_format(before)
     weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
     for difference in found:
         key = difference.element
-        if _is_told_otherwise(difference, before, after):
+        if _is_described_otherwise(difference, before, after):
             continue
-        if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _weighs_nothing(before, key, difference.field):
+        if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _needs_no_weight(before, key, difference.field):
             continue
         if key.kind == "joint" and _FRAMES.fullmatch(difference.field):
             if key not in alike:
@@ -53,8 +52,8 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
         yield difference
 
 
-def _is_told_otherwise(difference: Difference, before: Mechanism, after: Mechanism) -> bool:
-    """A name where there was none; a world, of which what stands there tells; the points of a mesh, which are those of its file."""
+def _is_described_otherwise(difference: Difference, before: Mechanism, after: Mechanism) -> bool:
+    """A name where there was none; a world, which its shapes imply; the points of a mesh, which are those of its file."""
     key, field = difference.element, difference.field
     if key == WORLD:
         return not field
@@ -68,8 +67,8 @@ def _came_as_file(before: object, after: object) -> bool:
     return isinstance(before, Mesh) and before.uri is not None and not before.vertices and isinstance(after, Mesh) and after.uri is None
 
 
-def _weighs_nothing(mechanism: Mechanism, shape: Id, field: str) -> bool:
-    """Whether a shape says nothing of this weight, and its body needs none: neither the body's mass nor its tensor is left open."""
+def _needs_no_weight(mechanism: Mechanism, shape: Id, field: str) -> bool:
+    """Whether a shape has no such value, and its body needs none: neither the body's mass nor its tensor is left open."""
     edge = mechanism.graph.edges.get(shape)
     if edge is None or not isinstance(edge.data, Shape) or getattr(edge.data, field) is not None:
         return False
@@ -80,7 +79,7 @@ def _weighs_nothing(mechanism: Mechanism, shape: Id, field: str) -> bool:
 
 
 def _is_idle_axis(mechanism: Mechanism, difference: Difference) -> bool:
-    """Whether an author said an axis of a joint that turns about all."""
+    """Whether an author wrote an axis for a joint that turns about all."""
     match, edge = _AXIS.fullmatch(difference.field), mechanism.graph.edges[difference.element]
     if match is None or not isinstance(edge.data, Joint):
         return False
@@ -102,7 +101,7 @@ def _move_alike(a: RobotEdge, b: RobotEdge, tolerance: Tolerance) -> bool:
         return False
     (above, below), (other_above, other_below) = (tuple(pose_weight(arc) for arc in edge.arcs) for edge in (a, b))
     return _same(compose(above, inverse(below)), compose(other_above, inverse(other_below)), tolerance) and all(
-        _dofs_alike(dof, below, other, other_below, tolerance) for dof, other in zip(first.dofs, second.dofs, strict=True)
+        _move_alike_dofs(dof, below, other, other_below, tolerance) for dof, other in zip(first.dofs, second.dofs, strict=True)
     )
 
 
@@ -116,7 +115,7 @@ def _near(a: Vec3, b: Vec3, tolerance: Tolerance) -> bool:
     return all(abs(x - y) <= tolerance.absolute + tolerance.relative * size for x, y in zip(a, b, strict=True))
 
 
-def _dofs_alike(dof: Dof, below: Pose, other: Dof, other_below: Pose, tolerance: Tolerance) -> bool:
+def _move_alike_dofs(dof: Dof, below: Pose, other: Dof, other_below: Pose, tolerance: Tolerance) -> bool:
     """The same for two dofs of a kind in frames ``below``: a slide is anchored nowhere, a hinge on its line."""
     if dof.kind is DofKind.FREE:
         return True

@@ -1,4 +1,4 @@
-"""A mechanism: a named hypergraph of robot parts with what was said beside it.
+"""A mechanism: a named hypergraph of robot parts with its side tables.
 
 Everything that a frontend returns and a backend takes. Ids are unique per kind, so a body and a joint may share a name.
 """
@@ -17,12 +17,17 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.fields import Noted
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.values import IDENTITY, Pose
+from hymeko_x.ir.views import JointView as JointView
+from hymeko_x.ir.views import MountView as MountView
+from hymeko_x.ir.views import ShapeView as ShapeView
+from hymeko_x.ir.views import SubsetView as SubsetView
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from hymeko_x.diagnostics import Origin
     from hymeko_x.ir.notations import Notation
+    from hymeko_x.ir.provenance import StoredMesh
 
 P = TypeVar("P")
 T = TypeVar("T")
@@ -84,13 +89,13 @@ RobotGraph = Hypergraph[Id, parts.VertexPart, parts.EdgePart, parts.Weight]
 
 
 class Extra(Noted, frozen=True):
-    """Something that a format said about an element and that has no word in the IR, verbatim.
+    """Text of one format about an element that the IR cannot represent, verbatim.
 
     ``path`` leads from the element's own node to where it stood: ``""`` is the node itself, ``limit`` its child of that
     name, ``limit/@foo`` an attribute of it (``text`` is then the attribute's value). ``text`` of a child is the whole
     XML element with the namespaces that it needs. Comments of every format are of the format ``comment``, without their
     signs; path ``preceding`` and ``following`` are outside the root. ``index`` is its place among the children of its parent node (for the
-    mechanism as a whole: among everything that stands at top level); no comparison looks at it.
+    mechanism as a whole: among everything that stands at top level); comparisons ignore it.
     """
 
     format: str
@@ -113,23 +118,8 @@ class Provenance(NamedTuple):
     file: str = ""
 
 
-class StoredLook(NamedTuple):
-    """What some triangles of a mesh show: a material, with its image if it has one."""
-
-    material: parts.Material
-    texture: parts.Texture | None
-    faces: tuple[int, ...]
-
-
-class StoredMesh(NamedTuple):
-    """A mesh that a file itself holds, which the mechanism only refers to: its points, and how it looks there."""
-
-    mesh: parts.Mesh
-    looks: tuple[StoredLook, ...] = ()
-
-
 class Mechanism(Struct, frozen=True, eq=False, dict=True):
-    """Name, graph and side tables. Equality looks at name, graph and extras; places and notations do not count.
+    """Name, graph and side tables. Equality compares name, graph and extras, not places or notations.
 
     ``notations`` keeps, by element and name, how an author wrote what the value itself cannot keep, as text
     (see :class:`hymeko_x.ir.notations.Notation`); ``stereotypes`` the classes, macros and templates that elements were made
@@ -237,7 +227,7 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
             yield body
             stack.extend(joint.child for joint in reversed(self.children.get(body, ())))
 
-    # ---- what hangs on an element ----------------------------------------------------------------------------------------
+    # ---- what is on an element -----------------------------------------------------------------------------------------------
 
     @cached_property
     def shapes(self) -> Mapping[Id, tuple[ShapeView, ...]]:
@@ -324,45 +314,6 @@ _OF_EDGES = ("_kinds_of_edges", "joints", "children", "parent_joint", "shapes", 
 def _sorted(extras: Mapping[Id, tuple[Extra, ...]]) -> dict[Id, list[Extra]]:
     """Extras by element, those of one format and path in their order."""
     return {key: sorted(found, key=lambda extra: (extra.format, extra.path)) for key, found in extras.items() if found}
-
-
-class JointView(NamedTuple):
-    """A joint with its two ends: T_parent_child(q) = parent_pose * motion(q) * inverse(child_pose)."""
-
-    id: Id
-    joint: parts.Joint
-    parent: Id
-    child: Id
-    parent_pose: Pose
-    child_pose: Pose
-
-
-class ShapeView(NamedTuple):
-    """A shape with what it hangs on: its pose in the body, and its mesh and material if it has them."""
-
-    id: Id
-    shape: parts.Shape
-    body: Id
-    pose: Pose
-    mesh: Id | None
-    material: Id | None
-
-
-class SubsetView(NamedTuple):
-    """Triangles of a shape's mesh with the material that they show."""
-
-    id: Id
-    faces: tuple[int, ...]
-    material: Id
-
-
-class MountView(NamedTuple):
-    """A frame, camera, light or sensor with the body that it sits on, and its pose there."""
-
-    id: Id
-    thing: Id
-    body: Id
-    pose: Pose
 
 
 # ---- making edges --------------------------------------------------------------------------------------------------------

@@ -26,14 +26,14 @@ class Names:
         self._next: dict[Id, int] = {}
 
     def reserve(self, kind: str, name: str) -> None:
-        """Give the id of this name to nobody, or the next free one where somebody has that."""
+        """Keep the id of this name from being given out, or the next free one where it is taken."""
         if (kind, name) in self._taken:
             self.take(kind, name)
         else:
             self._taken.add((kind, name))
 
     def take(self, kind: str, name: str) -> Id:
-        """An id of this kind that nobody has, as close to the name as possible."""
+        """A free id of this kind, as close to the name as possible."""
         wanted = Id(kind, name)
         free = self.free(kind, name) if wanted in self._taken else wanted
         self._taken.add(free)

@@ -1,4 +1,4 @@
-"""What the vertices and edges of a mechanism mean: frozen values that say *what*, never *whom*.
+"""The parts that vertices and edges of a mechanism carry: frozen values.
 
 A property is not a connection: no part names another element; all connections are arcs. Which arcs an edge has,
 with which sign, weight and role, stands in the docstring of its part.
@@ -11,6 +11,15 @@ from enum import Enum
 from msgspec import Struct
 
 from hymeko_x.ir.fields import Noted
+from hymeko_x.ir.geometry import Box as Box
+from hymeko_x.ir.geometry import Capsule as Capsule
+from hymeko_x.ir.geometry import Cylinder as Cylinder
+from hymeko_x.ir.geometry import Ellipsoid as Ellipsoid
+from hymeko_x.ir.geometry import Geometry as Geometry  # noqa: TC001 - for those who import it from here
+from hymeko_x.ir.geometry import MeshShape as MeshShape
+from hymeko_x.ir.geometry import NoShape as NoShape
+from hymeko_x.ir.geometry import Plane as Plane
+from hymeko_x.ir.geometry import Sphere as Sphere
 from hymeko_x.ir.values import ZERO, Pose, Tensor, Vec3, Written, X
 
 Rgba = tuple[float, float, float, float]
@@ -41,7 +50,7 @@ class InertialWritten(Struct, frozen=True):
 
 
 class Body(Struct, frozen=True):
-    """A rigid body. ``inertial`` None means that nothing was said about its mass."""
+    """A rigid body. ``inertial`` None means that its mass is unspecified."""
 
     inertial: Inertial | None = None
 
@@ -51,12 +60,12 @@ class World(Struct, frozen=True):
 
 
 class Frame(Struct, frozen=True):
-    """A named pose on a body (an MJCF site, an SDF frame): a :class:`Mount` says where. ``size`` in m is for display."""
+    """A named pose on a body (an MJCF site, an SDF frame): a :class:`Mount` places it. ``size`` in m is for display."""
 
     size: tuple[float, ...] = ()
 
 
-# ---- vertices: looks and assets --------------------------------------------------------------------------------------------
+# ---- vertices: appearance and assets --------------------------------------------------------------------------------------------
 
 
 class Material(Struct, frozen=True):
@@ -130,7 +139,7 @@ class Light(Struct, frozen=True):
 
 
 class PoseSet(Struct, frozen=True):
-    """A named configuration (keyframe, group state): a :class:`Stance` edge says the value of each joint. ``time`` in s."""
+    """A named configuration (keyframe, group state): a :class:`Stance` edge has the value of each joint. ``time`` in s."""
 
     group: str | None = None
     time: float | None = None
@@ -167,61 +176,12 @@ class Port(Struct, frozen=True):
 
 
 class Datum(Struct, frozen=True):
-    """A vertex that only carries data: whatever a hypergraph says that no robot part means."""
+    """A vertex that only carries data: data of a hypergraph that no robot part represents."""
 
     parameters: Parameters = ()
 
 
 # ---- edges: shapes and mounts --------------------------------------------------------------------------------------------------
-
-
-class Box(Struct, frozen=True):
-    """Full edge lengths in m, centred."""
-
-    size: Vec3
-
-
-class Sphere(Struct, frozen=True):
-    """Radius in m, centred."""
-
-    radius: float
-
-
-class Cylinder(Struct, frozen=True):
-    """Radius and full length in m along z, centred."""
-
-    radius: float
-    length: float
-
-
-class Capsule(Struct, frozen=True):
-    """Radius and length in m along z without the caps, centred."""
-
-    radius: float
-    length: float
-
-
-class Ellipsoid(Struct, frozen=True):
-    """The three half axes in m, centred."""
-
-    radii: Vec3
-
-
-class Plane(Struct, frozen=True):
-    """The xy plane with normal z; half extents in m for display, 0 = infinite."""
-
-    half_size: tuple[float, float] = (0.0, 0.0)
-
-
-class MeshShape(Struct, frozen=True):
-    """The mesh that the shape's arc of role ``mesh`` points at."""
-
-
-class NoShape(Struct, frozen=True):
-    """A geometry that the source left empty or wrote in a way that nobody understands; its text is an Extra."""
-
-
-Geometry = Box | Sphere | Cylinder | Capsule | Ellipsoid | Plane | MeshShape | NoShape
 
 
 class Role(Enum):
@@ -317,7 +277,7 @@ class Dof(Noted, frozen=True):
     ``axis`` is unit (its notation in ``written``), ``anchor`` in m the point that a rotation keeps in place, ``ref`` the
     coordinate at which the child is where the arcs put it. Damping in Nms/rad or Ns/m, ``friction`` in Nm or N,
     ``stiffness`` in Nm/rad or N/m about ``spring_ref``, ``armature`` in kg m^2 or kg, ``pitch`` of a screw in m/rad.
-    ``name`` where its format names it apart from the joint.
+    ``name`` where its format gives it another name than the joint.
     """
 
     kind: DofKind = DofKind.HINGE

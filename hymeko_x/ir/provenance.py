@@ -1,15 +1,31 @@
-"""The notations as texts and residues keep them: with the format and version of the source among those of the whole."""
+"""What a mechanism keeps of its source: format and version among the kept notations, and meshes that the file itself holds."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir.mechanism import ROOT, Provenance
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping
 
+    from hymeko_x.ir import parts
     from hymeko_x.ir.mechanism import Id, Mechanism
+
+
+class StoredLook(NamedTuple):
+    """What some triangles of a mesh show: a material, with its image if it has one."""
+
+    material: parts.Material
+    texture: parts.Texture | None
+    faces: tuple[int, ...]
+
+
+class StoredMesh(NamedTuple):
+    """A mesh that a file itself holds, which the mechanism only refers to: its points, and its appearance there."""
+
+    mesh: parts.Mesh
+    looks: tuple[StoredLook, ...] = ()
 
 
 def kept_notations(mechanism: Mechanism) -> Mapping[Id, Mapping[str, str]]:

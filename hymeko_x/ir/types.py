@@ -9,7 +9,7 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 
 from msgspec import Struct
 
-from hymeko_x.ir import graph, mechanism, parts, values
+from hymeko_x.ir import geometry, graph, mechanism, parts, values
 from hymeko_x.ir.fields import attributes_of
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id
@@ -47,7 +47,7 @@ def _is_sound_arc(arc: object) -> bool:
 @cache
 def hints_of(kind: Any) -> dict[str, Any]:
     """The types of a part's fields."""
-    return get_type_hints(kind, {**vars(graph), **vars(mechanism), **vars(parts), **vars(values)})
+    return get_type_hints(kind, {**vars(graph), **vars(geometry), **vars(mechanism), **vars(parts), **vars(values)})
 
 
 _WHOLE = frozenset({int, tuple[int, ...], tuple[int, int] | None})

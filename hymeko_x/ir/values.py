@@ -2,7 +2,7 @@
 
 SI units and radians throughout. Quaternions are (w, x, y, z) with unit norm and w >= 0, tensors are
 (xx, yy, zz, xy, xz, yz). How an author wrote a rotation is kept beside it as :class:`Written`, so that the same
-format writes it back digit by digit; no comparison looks at it.
+format writes it back digit by digit; comparisons ignore it.
 """
 
 from __future__ import annotations
@@ -306,7 +306,7 @@ def numbers_text(values: tuple[float, ...]) -> str:
 
 
 def _trimmed(text: str) -> str:
-    """Numbers without what nobody needs in an exponent: ``repr`` gives it a sign, and two digits at least."""
+    """Numbers with short exponents: ``repr`` gives them a sign, and two digits at least."""
     return text.replace("e-0", "e-").replace("e+", "e")
 
 
@@ -316,7 +316,7 @@ def said_numbers(values: Mapping[str, float]) -> dict[str, str]:
 
 
 def shortest_texts(values: tuple[float, ...]) -> str:
-    """What ``repr`` says of each number, with commas between them: the fewest digits that read back to the same double.
+    """The ``repr`` of each number, with commas between them: the fewest digits that read back to the same double.
 
     A writer of JSON finds them in a tenth of the time; where it would not write them as Python does, Python is asked.
     """

@@ -1,4 +1,4 @@
-"""What a target could not say, so that it can be brought back: the difference between a robot and its native image.
+"""What a format could not represent, so that it can be restored: the difference between a robot and its native image.
 
 The *native image* of a mechanism in a format is what the format's own frontend reads from what its backend wrote.
 :func:`residue_of` is the difference between the two, and :func:`restore` adds it to the image again, edited or not:
@@ -6,8 +6,8 @@ The *native image* of a mechanism in a format is what the format's own frontend 
     restore(image, residue_of(source, image)) == source
     restore(edited image, residue) == source with the edit
 
-Every entry is bound to an element and to a digest of what the image said there (``guard``); it is applied only where the
-image still says that. So what an editor changed wins, what he deleted stays deleted, and what he added is kept.
+Every entry is bound to an element and to a digest of the image's value (``guard``); it is applied only where the
+image still has it. So what an editor changed wins, what was deleted stays deleted, and what was added is kept.
 
 Some differences are only another description of the same thing: another name, another frame on a body, a joint of
 several dofs as a chain. They are not entries but a :class:`Alignment`, which is aligned first, with all edits.
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class Fold(NamedTuple):
-    """A joint that the image says as a chain of joints with bodies between them that carry nothing."""
+    """A joint that is a chain of joints in the image, with bodies between them that carry nothing."""
 
     joint: Id
     chain: tuple[Id, ...]
@@ -35,14 +35,14 @@ class Fold(NamedTuple):
 
 
 class Join(NamedTuple):
-    """A shape that is seen and touched, which the image says twice."""
+    """A shape for both roles that is two shapes in the image."""
 
     shape: Id
     twin: Id
 
 
 class Alignment(Struct, frozen=True):
-    """How the image says the same in other words.
+    """Which element of the image is which of the source, and where the image describes the same otherwise.
 
     ``names``: source id by the image's. ``folds`` and ``joins``: what the image takes leaves. ``frames``: pose of the source's
     body frame in the image's, where they differ. Coordinates of dofs are the same in both, as every writer sees to.
@@ -55,7 +55,7 @@ class Alignment(Struct, frozen=True):
 
 
 class Change(NamedTuple):
-    """A field that the image says otherwise, or not at all (then ``guard`` is empty)."""
+    """A field whose value differs in the image, or is not there (then ``guard`` is empty)."""
 
     element: Id
     path: Path
@@ -88,7 +88,7 @@ class Run(NamedTuple):
 class Sides(Struct, frozen=True):
     """The side tables of the source where they differ: None takes an entry away.
 
-    ``forgotten`` are keys of notations that only the image uses; ``is_plain`` says that only the image has stereotypes.
+    ``forgotten`` are keys of notations that only the image uses; ``is_plain``: only the image has stereotypes.
     """
 
     notations: tuple[tuple[Id, str, str | None], ...] = ()
@@ -116,6 +116,6 @@ class Residue(Struct, frozen=True):
 
     @property
     def is_empty(self) -> bool:
-        """Whether the image says everything."""
-        said = (self.changes, self.additions, self.removals, self.order)
-        return not any(said) and self.layout is None and self.alignment == Alignment() and self.sides == Sides()
+        """Whether the image has everything."""
+        entries = (self.changes, self.additions, self.removals, self.order)
+        return not any(entries) and self.layout is None and self.alignment == Alignment() and self.sides == Sides()

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 _SAME_PLACE = 1e-5
 """Frames closer than this (m, rad) are the same: what is left is rounding, in single precision for some formats."""
 _ROUNDING = 1e-13
-"""What a number of a quaternion may change when it is said as angles."""
+"""How much a number of a quaternion may change when it is written as angles."""
 _SCALAR = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 
 
@@ -141,14 +141,14 @@ class _Pairs:
 
 
 def _content(edge: RobotEdge) -> object:
-    """What an edge says, without names."""
+    """The content of an edge, without names."""
     weights = tuple(arc.weight for arc in edge.arcs if arc.target.kind not in ("mesh", "material"))
     data = edge.data
     return (data.geometry, weights) if isinstance(data, Shape) else (data, weights)
 
 
 def _sort(edge: RobotEdge) -> object:
-    """What must be alike for two edges to be the same one, changed."""
+    """What must be equal for two edges to be the same one, changed."""
     data = edge.data
     if isinstance(data, Shape):
         return type(data.geometry), data.role is Role.COLLISION
@@ -159,7 +159,7 @@ def _sort(edge: RobotEdge) -> object:
 
 
 def _folds(image: Mechanism, source: Mechanism) -> Iterable[Fold]:
-    """The joints that the image says as a chain, which has bodies in it that the source does not know."""
+    """The joints that are a chain in the image, with bodies in it that the source does not have."""
     if not any(key.kind == "body" for key in image.graph.vertices.keys() - source.graph.vertices.keys()):
         return
     for view in source.joints.values():
@@ -185,7 +185,7 @@ def _chain_above(image: Mechanism, source: Mechanism, body: Id) -> list[JointVie
 
 
 def _joins(image: Mechanism, source: Mechanism) -> Iterable[Join]:
-    """The shapes of the source that are seen and touched, which the image says once for each."""
+    """The shapes of the source that are both visual and collision, which are two shapes in the image."""
     for body, views in source.shapes.items():
         both = [view.id for view in views if view.shape.role is Role.BOTH]
         if not both or body not in image.shapes:
@@ -219,7 +219,7 @@ def _agree_in_poses(image: Mechanism, source: Mechanism) -> bool:
 
 
 def _alike(a: Pose, b: Pose) -> bool:
-    """Whether two poses are the same but for the rounding of a rotation that was said in another notation."""
+    """Whether two poses are the same but for the rounding of a rotation that was written in another notation."""
     return a.xyz == b.xyz and (a.quat == b.quat or all(abs(x - y) <= _ROUNDING for x, y in zip(a.quat, b.quat, strict=True)))
 
 

@@ -59,7 +59,7 @@ def _changes(image: Mechanism, source: Mechanism, leaves: Mapping[Id, Leaves], d
 
 
 def _guard(image: Mechanism, key: Id, leaf: Leaf, digests: Digests) -> str:
-    """What the image said there. A mass that follows from shapes holds only as long as the shapes do."""
+    """The digest of the image's value there. A mass that follows from shapes holds only as long as the shapes do."""
     if leaf.path[-1] == TURN:
         return digest(leaf.after[0])  # type: ignore[index]
     if leaf.path[0] == "inertial" and leaf.before is None and isinstance(image.graph.vertices.get(key), Body):

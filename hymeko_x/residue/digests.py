@@ -27,7 +27,7 @@ _LONG = 64
 
 
 def guard_of(value: object, default: object = NODEFAULT) -> str:
-    """The digest of a value; empty for the default, which is what a format says that has no word for a field."""
+    """The digest of a value; empty for the default, which a field has in a format that cannot represent it."""
     return "" if default is not NODEFAULT and value == default else digest(value)
 
 

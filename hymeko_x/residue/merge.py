@@ -12,8 +12,9 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.compare.leaves import TURN, default_at, get, put
 from hymeko_x.ir.graph import Edge, Hypergraph
-from hymeko_x.ir.mechanism import ROOT, StoredLook, StoredMesh
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Body, Drive, Layer, Material, Mesh, Mount, Plane, Role, Sense, Texture
+from hymeko_x.ir.provenance import StoredLook, StoredMesh
 from hymeko_x.ir.types import is_sound, settled
 from hymeko_x.ir.values import X, Y, Z, rotate
 from hymeko_x.residue.digests import digest, digest_of, guard_of, mass_digest, shape_group
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 P = TypeVar("P")
 
 _ROUNDING = 1e-9
-"""Numbers closer than this say the same: only their last digits are restored."""
+"""Numbers closer than this are the same: only their last digits are restored."""
 
 
 _HOLDS: Mapping[type, int] = MappingProxyType({Mount: -1, Sense: -1, Drive: 1})
@@ -50,7 +51,7 @@ def restore(image: Mechanism, residue: Residue, report: Report) -> Mechanism:
 
 @dataclass(slots=True)
 class _Merge:
-    """The result so far, and what is said about it."""
+    """The result so far, and the report."""
 
     image: Mechanism
     residue: Residue
@@ -73,7 +74,7 @@ class _Merge:
     # ---- fields ------------------------------------------------------------------------------------------------------------
 
     def _change_fields(self) -> str:
-        """Put in what the image says otherwise; return the mechanism's name."""
+        """Put in the values of the source; return the mechanism's name."""
         name = self.image.name
         grouped: dict[Id, list[Change]] = defaultdict(list)
         for change in self.residue.changes:
@@ -114,7 +115,7 @@ class _Merge:
     # ---- elements ----------------------------------------------------------------------------------------------------------
 
     def _edited_shapes(self) -> tuple[set[Id], set[Id]]:
-        """Shapes that stand for others which the image cannot say: those to keep since one of them was edited, and those to withhold.
+        """Shapes that stand for others which the image cannot represent: those to keep since one of them was edited, and those to withhold.
 
         Shapes of one name on one body belong together.
         """
@@ -341,11 +342,11 @@ def _appearances(shown: _Shown, mechanism: Mechanism, image: Mechanism) -> Itera
     """The materials that only the image has, which are those of the file; first that of the shape, on the rest of the mesh."""
     if shown.view.shape.role is not Role.VISUAL or shown.view.id in mechanism.subsets:
         return
-    looks = [(subset.material, subset.faces) for subset in image.subsets.get(shown.view.id, ())]
+    appearances = [(subset.material, subset.faces) for subset in image.subsets.get(shown.view.id, ())]
     if shown.view.material is not None:
-        taken = {face for _, faces in looks for face in faces}
-        looks.insert(0, (shown.view.material, tuple([face for face in range(len(shown.mesh.faces) // 3) if face not in taken])))
-    for key, faces in looks:
+        taken = {face for _, faces in appearances for face in faces}
+        appearances.insert(0, (shown.view.material, tuple([face for face in range(len(shown.mesh.faces) // 3) if face not in taken])))
+    for key, faces in appearances:
         material = image.graph.vertices.get(key)
         if faces and isinstance(material, Material) and key not in mechanism.graph.vertices:
             textures = (image.graph.vertices.get(edge.arcs[0].target) for _, edge, _ in image.graph.edges_at(key) if _is_colour(edge.data))

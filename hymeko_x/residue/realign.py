@@ -54,7 +54,7 @@ def _with_world(mechanism: Mechanism) -> Mechanism:
 
 
 def alignment_differences(alignment: Alignment) -> Iterator[Difference]:
-    """What the image says in other words, as differences: names, chains, shapes said twice, frames and coordinates."""
+    """What the image describes otherwise, as differences: names, chains, split shapes, frames and coordinates."""
     for old, new in alignment.names:
         if old.name != new.name:
             yield Difference(new, "name", repr(new.name), repr(old.name))
@@ -90,7 +90,7 @@ def fold_chains(mechanism: Mechanism, folds: Iterable[Fold]) -> Mechanism:
 
 
 def _is_bare_chain(mechanism: Mechanism, fold: Fold, chain: list[JointView]) -> bool:
-    """Whether the joints follow each other and nothing else hangs on the bodies between them."""
+    """Whether the joints follow each other and nothing else is on the bodies between them."""
     inner = [view.child for view in chain[:-1]]
     if inner != list(fold.between) or any(below.parent != above.child for above, below in pairwise(chain)):
         return False
@@ -123,7 +123,7 @@ def _seen_from(dof: Dof, frame: Pose) -> Dof:
     return replace(dof, axis=rotate(frame.quat, dof.axis), anchor=apply(frame, dof.anchor), written=None)
 
 
-# ---- shapes said twice -----------------------------------------------------------------------------------------------------
+# ---- split shapes -----------------------------------------------------------------------------------------------------------
 
 
 def join_twins(mechanism: Mechanism, joins: Iterable[Join]) -> Mechanism:
@@ -160,7 +160,7 @@ def _shape(edge: RobotEdge) -> Shape:
 
 
 def move_frames(mechanism: Mechanism, frames: Mapping[Id, Pose]) -> Mechanism:
-    """The mechanism with other body frames: each pose says where the new frame is in the old one. Nothing moves."""
+    """The mechanism with other body frames: each pose is that of the new frame in the old one. Nothing moves."""
     if not frames:
         return mechanism
     back = {key: inverse(pose) for key, pose in frames.items() if key in mechanism.graph.vertices}

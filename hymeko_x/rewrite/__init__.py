@@ -1,6 +1,6 @@
-"""What a target cannot say, rewritten into what it can: one pure function per feature, in a fixed order per target.
+"""Rewriting a mechanism so that a format can represent it: one pure function per feature, in a fixed order per format.
 
-A rule takes a mechanism and returns one that is legal in its respect; it says in the report what it changed, and a
+A rule takes a mechanism and returns one that is legal in its respect; it reports what it changed, and a
 second application changes nothing. Backends receive the result and only print.
 """
 

@@ -35,7 +35,7 @@ def make_couplings_scalar(mechanism: Mechanism, context: Context) -> Mechanism:
     for key, _, arcs in mechanism.edges(Coupling):
         if any(arc.target.kind == "tendon" for arc in arcs):
             continue
-        reason = _unsayable(mechanism, arcs)
+        reason = _problem(mechanism, arcs)
         if reason is not None:
             gone.append(key)
             context.report.warn(codes.NOT_SAID, f"{key} is left out: {reason}", mechanism.origin(key), element=str(key))
@@ -51,8 +51,8 @@ def make_couplings_scalar(mechanism: Mechanism, context: Context) -> Mechanism:
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 
-def _unsayable(mechanism: Mechanism, arcs: tuple[RobotArc, ...]) -> str | None:
-    """Why the target cannot say this coupling, or None when it can."""
+def _problem(mechanism: Mechanism, arcs: tuple[RobotArc, ...]) -> str | None:
+    """Why the format cannot represent this coupling, or None when it can."""
     followers = [arc for arc in arcs if arc.sign > 0]
     leaders = [arc for arc in arcs if arc.sign < 0]
     if len(followers) != 1 or len(leaders) != 1:
@@ -92,7 +92,7 @@ def _is_fixed(mechanism: Mechanism, joint: Id) -> bool:
 
 
 def drop_odd_tendons(mechanism: Mechanism, context: Context) -> Mechanism:
-    """A tendon whose path nobody can follow is left out, with what acts on it."""
+    """A tendon whose path is not valid is left out, with what acts on it."""
     placed = {view.thing for views in mechanism.mounts.values() for view in views}
     gone: set[Id] = set()
     for key, tendon, arcs in mechanism.edges(Tendon):
@@ -124,15 +124,15 @@ def make_tendons_sound(mechanism: Mechanism, context: Context) -> Mechanism:
     """Limits become closed intervals; a cable around a shape has no armature."""
     changed: dict[Id, RobotEdge] = {}
     for key, tendon, arcs in mechanism.edges(Tendon):
-        said: list[tuple[bool, str]] = []
-        lower, upper = interval(tendon.limits, said)
+        findings: list[tuple[bool, str]] = []
+        lower, upper = interval(tendon.limits, findings)
         sound = replace(tendon, limits=replace(tendon.limits, lower=lower, upper=upper))
         if wrong_path(sound, arcs, mechanism.graph.edges) is not None or tendon.armature < 0.0:
-            said.append((True, f"armature {tendon.armature!r} is left out: it is negative, or the cable leads around a shape"))
+            findings.append((True, f"armature {tendon.armature!r} is left out: it is negative, or the cable leads around a shape"))
             sound = replace(sound, armature=0.0)
-        for serious, text in said:
-            say = context.report.warn if serious else context.report.note
-            say(codes.REWRITTEN, f"{key}: {text}", mechanism.origin(key), element=str(key))
+        for serious, text in findings:
+            tell = context.report.warn if serious else context.report.note
+            tell(codes.REWRITTEN, f"{key}: {text}", mechanism.origin(key), element=str(key))
         if sound != tendon:
             changed[key] = Edge(sound, arcs)
     return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism

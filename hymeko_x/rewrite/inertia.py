@@ -57,12 +57,12 @@ def make_tensors_physical(mechanism: Mechanism, context: Context) -> Mechanism:
             continue
         inertial = body.inertial
         if inertial.mass is not None and inertial.mass < 0.0:
-            _say(mechanism, context.report, key, f"mass {inertial.mass!r} is negative; 0 is written")
+            _report(mechanism, context.report, key, f"mass {inertial.mass!r} is negative; 0 is written")
             inertial = replace(inertial, mass=0.0)
         tensor = physical(inertial.tensor or _NOTHING)
         if inertial.tensor is not None and tensor != inertial.tensor:
             words = f"{_flaw(inertial.tensor)}: {numbers_text(inertial.tensor)} becomes {numbers_text(tensor)}"
-            _say(mechanism, context.report, key, words, serious=math.dist(tensor, inertial.tensor) > _ROUNDING)
+            _report(mechanism, context.report, key, words, serious=math.dist(tensor, inertial.tensor) > _ROUNDING)
             inertial = replace(inertial, tensor=tensor, written=None)
         if inertial is not body.inertial:
             changed[key] = replace(body, inertial=inertial)
@@ -83,7 +83,7 @@ def give_moving_bodies_mass(mechanism: Mechanism, context: Context) -> Mechanism
         new = _least_inertial(body.inertial)
         changed[key] = replace(body, inertial=new)
         old = "no mass" if body.inertial is None else f"mass {body.inertial.mass!r} and inertia {_words(body.inertial.tensor)}"
-        _say(mechanism, context.report, key, f"moves and has {old}; mass {new.mass!r} and inertia {_words(new.tensor)} are written")
+        _report(mechanism, context.report, key, f"moves and has {old}; mass {new.mass!r} and inertia {_words(new.tensor)} are written")
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 
@@ -231,9 +231,9 @@ def _words(tensor: Tensor | None) -> str:
     return "none" if tensor is None else numbers_text(tensor)
 
 
-def _say(mechanism: Mechanism, report: Report, body: Id, words: str, *, serious: bool = True) -> None:
-    say = report.warn if serious else report.note
-    say(codes.INERTIA_REPAIRED, f"{body}: {words}", mechanism.origin(body), element=str(body))
+def _report(mechanism: Mechanism, report: Report, body: Id, words: str, *, serious: bool = True) -> None:
+    tell = report.warn if serious else report.note
+    tell(codes.INERTIA_REPAIRED, f"{body}: {words}", mechanism.origin(body), element=str(body))
 
 
 def _matrix(tensor: Tensor) -> list[list[float]]:
@@ -251,8 +251,8 @@ _Solid = tuple[float, "Vec3"]
 def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
     """A body with a mass and no tensor gets that of its shapes: of those that collide, else of those that are seen.
 
-    The centre of mass stays as it is. MJCF means zero where it says nothing, and URDF no inertial at all: those stay,
-    and so does what has no solid, of which the notation says so: a plane that becomes a thin box later is none.
+    The centre of mass stays as it is. Unspecified inertia means zero in MJCF, and no inertial in URDF: those stay,
+    and so do bodies without solids, which get a notation: a plane that becomes a thin box later is none.
     """
     if native_format(mechanism):
         return mechanism
@@ -268,8 +268,8 @@ def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
             continue
         xx, yy, zz, xy, xz, yz = (inertial.mass * value for value in unit)
         changed[key] = replace(body, inertial=replace(inertial, tensor=(xx, yy, zz, xy, xz, yz)))
-        said = f"{key} has a mass and no inertia tensor; that of its geometry is written"
-        context.report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
+        message = f"{key} has a mass and no inertia tensor; that of its geometry is written"
+        context.report.note(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
     if unsaid:
         mechanism = replace(mechanism, notations={**mechanism.notations, **unsaid})
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism

@@ -110,7 +110,7 @@ def name_dofs(mechanism: Mechanism, context: Context) -> Mechanism:
 
 def name_dofs_once(mechanism: Mechanism, context: Context) -> Mechanism:
     """A name that two dofs have, as edits may leave it, stays with the first one. Dofs without a name stay without."""
-    named = [(view, number, name) for view in mechanism.joints.values() for number, name in enumerate(_said_names(mechanism, view)) if name]
+    named = [(view, number, name) for view in mechanism.joints.values() for number, name in enumerate(_own_names(mechanism, view)) if name]
     taken = {name for _, _, name in named}
     if len(taken) == len(named):
         return mechanism
@@ -129,8 +129,8 @@ def name_dofs_once(mechanism: Mechanism, context: Context) -> Mechanism:
     return _with_edges(mechanism, {key: _with_dofs(mechanism, key, tuple(dofs)) for key, dofs in changed.items()}, moved)
 
 
-def _said_names(mechanism: Mechanism, view: JointView) -> list[str | None]:
-    """What the dofs of a joint are called where nobody has to have a name."""
+def _own_names(mechanism: Mechanism, view: JointView) -> list[str | None]:
+    """The names of a joint's dofs, for formats in which dofs need none."""
     if len(view.joint.dofs) == 1:
         only = view.joint.dofs[0].name
         return [only or (None if mechanism.notation(view.id, UNNAMED) else view.id.name)]
@@ -201,8 +201,8 @@ def _only_name(view: JointView) -> str:
 
 
 def _warn_of_name(mechanism: Mechanism, joint: Id, wanted: str, name: str, report: Report) -> None:
-    said = f"'{wanted}' would name two dofs; the one of {joint} is written as '{name}'"
-    report.warn(codes.RENAMED, said, mechanism.origin(joint), element=str(joint))
+    message = f"'{wanted}' would name two dofs; the one of {joint} is written as '{name}'"
+    report.warn(codes.RENAMED, message, mechanism.origin(joint), element=str(joint))
 
 
 def _unused(name: str, *taken: set[str]) -> str:
@@ -249,7 +249,7 @@ FAR = 1e10
 _PLAY = 1e-9
 """The width of the interval that stands for a locked coordinate, in rad or m."""
 
-Said = list[tuple[bool, str]]
+Findings = list[tuple[bool, str]]
 """What was changed: whether it deserves a warning, and the words."""
 
 
@@ -257,64 +257,64 @@ def make_limits_intervals(mechanism: Mechanism, context: Context) -> Mechanism:
     """Every dof has either no position limits or lower < upper, and either no effort limit or a positive one."""
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.joints.values():
-        said: Said = []
-        dofs = tuple(_legal_dof(dof, said) for dof in view.joint.dofs)
-        for serious, words in said:
-            say = context.report.warn if serious else context.report.note
-            say(codes.REWRITTEN, f"{view.id}: {words}", mechanism.origin(view.id), element=str(view.id))
+        findings: Findings = []
+        dofs = tuple(_legal_dof(dof, findings) for dof in view.joint.dofs)
+        for serious, words in findings:
+            tell = context.report.warn if serious else context.report.note
+            tell(codes.REWRITTEN, f"{view.id}: {words}", mechanism.origin(view.id), element=str(view.id))
         if dofs != view.joint.dofs:
             edges[view.id] = Edge(Joint(dofs), mechanism.graph.edges[view.id].arcs)
     return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
 
 
-def _legal_dof(dof: Dof, said: Said) -> Dof:
-    lower, upper = _interval(dof, said)
-    old, effort = dof.limits, _effort(dof.limits, said)
+def _legal_dof(dof: Dof, findings: Findings) -> Dof:
+    lower, upper = _interval(dof, findings)
+    old, effort = dof.limits, _effort(dof.limits, findings)
     if (lower, upper, effort) == (old.lower, old.upper, old.effort):
         return dof
     return replace(dof, limits=replace(old, lower=lower, upper=upper, effort=effort))
 
 
-def _interval(dof: Dof, said: Said) -> tuple[float | None, float | None]:
+def _interval(dof: Dof, findings: Findings) -> tuple[float | None, float | None]:
     lower, upper = _finite(dof.limits.lower), _finite(dof.limits.upper)
     if dof.kind is DofKind.FREE and not (lower is None and upper is None):
-        said.append((True, "position limits on a free joint have no meaning; they are left out"))
+        findings.append((True, "position limits on a free joint have no meaning; they are left out"))
         return None, None
     if dof.kind is DofKind.BALL:
-        return None if lower else lower, upper  # the angle from straight, of which MJCF says the lower bound 0
-    return interval(dof.limits, said)
+        return None if lower else lower, upper  # the angle from straight, whose lower bound is 0 in MJCF
+    return interval(dof.limits, findings)
 
 
-def interval(limits: Limits, said: Said) -> tuple[float | None, float | None]:
+def interval(limits: Limits, findings: Findings) -> tuple[float | None, float | None]:
     """The bounds of one coordinate with lower < upper, or none."""
     lower, upper = _finite(limits.lower), _finite(limits.upper)
     if lower is None and upper is None:
         return None, None
     if lower is None or upper is None:
         side = "lower" if lower is None else "upper"
-        said.append((False, f"has no {side} limit; {FAR:g} stands for the missing bound"))
+        findings.append((False, f"has no {side} limit; {FAR:g} stands for the missing bound"))
         return _below(upper) if lower is None else lower, _above(lower) if upper is None else upper
     if lower > upper:
-        said.append((True, f"lower limit {lower!r} is above upper limit {upper!r}; it is written without position limits"))
+        findings.append((True, f"lower limit {lower!r} is above upper limit {upper!r}; it is written without position limits"))
         return None, None
     if lower == upper == 0.0:
-        said.append((True, "both limits are 0, as where URDF leaves them out; it is written without position limits"))
+        findings.append((True, "both limits are 0, as where URDF leaves them out; it is written without position limits"))
         return None, None
     if lower == upper:
-        said.append((False, f"both limits are {lower!r}; {_PLAY:g} of play stands for a locked joint"))
+        findings.append((False, f"both limits are {lower!r}; {_PLAY:g} of play stands for a locked joint"))
         return lower, max(lower + _PLAY, math.nextafter(lower, math.inf))
     return lower, upper
 
 
-def _effort(limits: Limits, said: Said) -> float | None:
+def _effort(limits: Limits, findings: Findings) -> float | None:
     effort = _finite(limits.effort)
     if effort is None:
         return None
     if effort == 0.0:
-        said.append((False, "effort limit 0 cannot be told from no limit; it is left out"))
+        findings.append((False, "effort limit 0 cannot be told from no limit; it is left out"))
         return None
     if effort < 0.0:
-        said.append((True, f"effort limit {effort!r} is negative; {-effort!r} is written"))
+        findings.append((True, f"effort limit {effort!r} is negative; {-effort!r} is written"))
     return abs(effort)
 
 
@@ -327,5 +327,5 @@ def _above(lower: float | None) -> float:
 
 
 def _finite(value: float | None) -> float | None:
-    """The bound, or None where it says that there is none: infinite, or beyond what stands for no bound."""
+    """The bound, or None where it means none: infinite, or beyond what stands for no bound."""
     return value if value is not None and abs(value) <= 2.0 * FAR else None

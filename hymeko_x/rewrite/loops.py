@@ -32,9 +32,9 @@ def open_second_parents(mechanism: Mechanism, context: Context) -> Mechanism:
     for view in extra:
         closures = _closures(view, Loop())
         words = "it is written as a closure of the loop" if closures else "a loop cannot be closed by such a joint, which is left out"
-        say = context.report.note if closures else context.report.warn
+        tell = context.report.note if closures else context.report.warn
         code = codes.REWRITTEN if closures else codes.NOT_SAID
-        say(code, f"{view.id} holds {view.child}, which has another parent; {words}", mechanism.origin(view.id), element=str(view.id))
+        tell(code, f"{view.id} holds {view.child}, which has another parent; {words}", mechanism.origin(view.id), element=str(view.id))
         edges |= {names.take("loop", view.id.name): closure for closure in closures}
     return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=[view.id for view in extra]))
 
@@ -50,8 +50,8 @@ def close_by_points(mechanism: Mechanism, context: Context) -> Mechanism:
         view = JointView(key, Joint(loop.dofs), first.target, second.target, pose_weight(first), pose_weight(second))
         closures = _closures(view, loop)
         if not closures:
-            said = f"{key} has dofs for which there is no closure; it is left out"
-            context.report.warn(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
+            message = f"{key} has dofs for which there is no closure; it is left out"
+            context.report.warn(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
         for number, closure in enumerate(closures):
             edges[key if number == 0 else names.take("loop", key.name)] = closure
     gone = [key for key, _, _ in joints if key not in edges]
@@ -59,9 +59,9 @@ def close_by_points(mechanism: Mechanism, context: Context) -> Mechanism:
 
 
 def anchor_closures(mechanism: Mechanism, _context: Context) -> Mechanism:
-    """The points that a ``connect`` holds together become frames on their bodies, so that both are said exactly.
+    """The points that a ``connect`` holds together become frames on their bodies, so that both are exact.
 
-    Nothing is lost and nothing is said: the closure is the same one.
+    Nothing is lost and nothing is reported: the closure is the same one.
     """
     loose = [(key, loop, arcs) for key, loop, arcs in mechanism.edges(Loop) if loop.kind == "connect" and not _is_anchored(arcs)]
     if not loose:

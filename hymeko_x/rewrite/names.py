@@ -29,8 +29,8 @@ def make_names_usable(mechanism: Mechanism, context: Context) -> Mechanism:
         mechanism = replace(mechanism, name="robot")
         context.report.note(codes.RENAMED, "the robot has no name; it is written as 'robot'")
     keys = (*mechanism.graph.vertices, *mechanism.graph.edges)
-    said = [key.name for key in keys]
-    if all(said) and not _NOT_XML.search("".join(said)):
+    texts = [key.name for key in keys]
+    if all(texts) and not _NOT_XML.search("".join(texts)):
         return mechanism
     unusable = [key for key in keys if not key.name or _NOT_XML.search(key.name)]
     names = names_in_use(mechanism)

@@ -95,7 +95,7 @@ def _with_world(mechanism: Mechanism) -> Mechanism:
 
 
 def hold_or_free_open_bases(mechanism: Mechanism, context: Context) -> Mechanism:
-    """Where the user says what the base does, each open base gets a fixed or a free joint to the world."""
+    """Where the user chose a base, each open base gets a fixed or a free joint to the world."""
     if context.options.base is None:
         return mechanism
     joint = Joint((Dof(DofKind.FREE),)) if context.options.base == "free" else Joint()

@@ -206,8 +206,8 @@ def prefer_own_colours(mechanism: Mechanism, context: Context) -> Mechanism:
         if view.shape.rgba is None or view.material is None:
             continue
         edges[view.id] = shape_edge(view.shape, view.body, view.pose, view.mesh)
-        said = f"{view.id} has a colour of its own and {view.material}; only its colour is written"
-        context.report.note(codes.REWRITTEN, said, mechanism.origin(view.id), element=str(view.id))
+        message = f"{view.id} has a colour of its own and {view.material}; only its colour is written"
+        context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
     return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
 
 

@@ -38,14 +38,14 @@ def split_subsets(mechanism: Mechanism, context: Context) -> Mechanism:
         view = views.get(key)
         pieces = [] if view is None or view.shape.role is Role.COLLISION else list(_pieces(mechanism, view, subsets))
         if view is None or view.mesh is None or not pieces:
-            said = f"{key} shows other materials on triangles that are not there to be seen; they are left out"
-            context.report.note(codes.NOT_SAID, said, mechanism.origin(key), element=str(key))
+            message = f"{key} shows other materials on triangles that are not there to be seen; they are left out"
+            context.report.note(codes.NOT_SAID, message, mechanism.origin(key), element=str(key))
             continue
         split.show(view, view.mesh, pieces)
         users[view.mesh] -= view.shape.role is Role.VISUAL
         gone += [] if users[view.mesh] else [view.mesh]
-        said = f"{key} shows {len(pieces)} materials; a visual of its own is written for each"
-        context.report.note(codes.REWRITTEN, said, mechanism.origin(key), element=str(key))
+        message = f"{key} shows {len(pieces)} materials; a visual of its own is written for each"
+        context.report.note(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
     return mechanism.with_graph(mechanism.graph.replace(vertices=split.meshes, edges=split.edges, without=gone))
 
 
@@ -136,7 +136,7 @@ def part_meshes_by_looks(mechanism: Mechanism, _context: Context) -> Mechanism:
     if not mechanism.subsets:
         return mechanism
     names = names_in_use(mechanism)
-    looks: dict[Id, dict[object, Id]] = {}
+    pieces: dict[Id, dict[object, Id]] = {}
     meshes: dict[Id, Mesh] = {}
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.every_shape():
@@ -144,7 +144,7 @@ def part_meshes_by_looks(mechanism: Mechanism, _context: Context) -> Mechanism:
         if view.mesh is None or not isinstance(mesh, Mesh) or mesh.uri is not None or view.shape.role is not Role.VISUAL:
             continue
         own = tuple((subset.faces, subset.material) for subset in mechanism.subsets.get(view.id, ()))
-        known = looks.setdefault(view.mesh, {})
+        known = pieces.setdefault(view.mesh, {})
         if own not in known:
             known[own] = names.take("mesh", view.mesh.name) if known else view.mesh
         if known[own] != view.mesh:

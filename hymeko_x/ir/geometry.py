@@ -1,0 +1,59 @@
+"""The geometries of shapes, in the shape's frame."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.values import Vec3
+
+
+class Box(Struct, frozen=True):
+    """Full edge lengths in m, centred."""
+
+    size: Vec3
+
+
+class Sphere(Struct, frozen=True):
+    """Radius in m, centred."""
+
+    radius: float
+
+
+class Cylinder(Struct, frozen=True):
+    """Radius and full length in m along z, centred."""
+
+    radius: float
+    length: float
+
+
+class Capsule(Struct, frozen=True):
+    """Radius and length in m along z without the caps, centred."""
+
+    radius: float
+    length: float
+
+
+class Ellipsoid(Struct, frozen=True):
+    """The three half axes in m, centred."""
+
+    radii: Vec3
+
+
+class Plane(Struct, frozen=True):
+    """The xy plane with normal z; half extents in m for display, 0 = infinite."""
+
+    half_size: tuple[float, float] = (0.0, 0.0)
+
+
+class MeshShape(Struct, frozen=True):
+    """The mesh that the shape's arc of role ``mesh`` points at."""
+
+
+class NoShape(Struct, frozen=True):
+    """A geometry that the source left empty or wrote in a way that cannot be read; its text is an Extra."""
+
+
+Geometry = Box | Sphere | Cylinder | Capsule | Ellipsoid | Plane | MeshShape | NoShape
