@@ -43,8 +43,13 @@ def parse(source: Source, report: Report, *, comments: bool = False, deepest: in
     return document
 
 
-def parse_text(text: str) -> Node:
-    """The element that a piece of text is, with its comments. Raises: ExpatError when it is none."""
+def parse_text(text: str, *, namespaces: bool = False) -> Node:
+    """The element that a piece of text is, with its comments. Raises: ExpatError when it is none.
+
+    ``namespaces``: a prefix that is not declared is an error as well.
+    """
+    if namespaces and ":" in text:
+        expat.ParserCreate(namespace_separator=" ").Parse(text.encode(), True)
     return TreeBuilder("", text.encode(), Report(), comments=True, deepest=None).document().root
 
 

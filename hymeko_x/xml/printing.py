@@ -1,15 +1,14 @@
-"""Printing XML: small tags that a backend fills, foreign text put back where it stood, and the text of it all.
-
-Shared by the backends of all XML formats.
-"""
+"""The one printer of XML: tags that a backend fills, extras put back where they were, and the text of both."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING
+from xml.parsers import expat
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, refuse
+from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.text import NAME, attributes_text, comment_markup, escaped
 from hymeko_x.xml.tree import COMMENT_NODE
 from hymeko_x.xml.unread import COMMENT, FOLLOWING, PRECEDING
@@ -79,23 +78,20 @@ def put_back(tag: Tag, extras: Iterable[Extra], declared: Mapping[str, str]) -> 
 
 
 def foreign_text(extra: Extra, declared: Mapping[str, str]) -> str:
-    """The text of an extra that is an element, a comment or an instruction, without what ``declared`` says already.
+    """The text of an extra that is an element, a comment or an instruction, without the namespaces that are ``declared`` already.
 
     Raises: Refusal with HX062 when it is not well-formed.
     """
     if extra.format == COMMENT:
         return comment_markup(extra.text)
-    from lxml import etree
-
     if extra.path in (PRECEDING, FOLLOWING) and not extra.text.startswith("<?"):
         raise _not_xml(extra, "outside the root there are only comments and instructions")
     spaces = attributes_text({name: uri for name, uri in declared.items() if _NAMESPACE.fullmatch(name)})
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, huge_tree=True)
     try:
-        found = list(etree.fromstring(f"<x{spaces}>{extra.text}</x>".encode(), parser))
-    except (etree.XMLSyntaxError, UnicodeEncodeError) as error:
+        around = parse_text(f"<x{spaces}>{extra.text}</x>", namespaces=True)
+    except (expat.ExpatError, UnicodeEncodeError, Refusal) as error:
         raise _not_xml(extra, str(error)) from error
-    if len(found) != 1 or not extra.text.startswith("<") or (found[0].tail or "").strip():
+    if len(around.children) != 1 or not extra.text.startswith("<") or around.text is not None:
         raise _not_xml(extra, "it is not one element")
     return without_declared(extra.text, declared)
 
@@ -106,7 +102,7 @@ def _not_xml(extra: Extra, why: str) -> Refusal:
 
 
 def _place_for(extra: Extra, tag: Tag) -> int:
-    """Where a foreign element goes: to its place, but never before a child of its own name, which is the one that counts."""
+    """The index of a foreign element: its own, but never before a child of its name, of which readers take the first."""
     name = re.match(r"<([^\s/>]+)", extra.text)
     same = [place for place, child in enumerate(tag.children) if name and isinstance(child, Tag) and child.name == name[1]]
     return max(extra.index, same[-1] + 1) if same else extra.index
@@ -119,8 +115,8 @@ def without_declared(text: str, declared: Mapping[str, str]) -> str:
         return text
     rest = text[name.end() :]
     known = [f' {attribute}="{escaped(uri)}"' for attribute, uri in declared.items()]
-    while (said := next((words for words in known if rest.startswith(words)), None)) is not None:
-        rest = rest.removeprefix(said)
+    while (repeated := next((words for words in known if rest.startswith(words)), None)) is not None:
+        rest = rest.removeprefix(repeated)
     return name[0] + rest
 
 

@@ -24,21 +24,21 @@ def read_again(source: Source, report: Report, error: expat.ExpatError, *, comme
     if not source.data.strip(b"\0 \t\r\n\xef\xbb\xbf"):
         raise refuse(codes.NOT_XML, "the file is empty", Origin(source.name)) from error
     place = _place(source, error)
-    text, said = decoded(source.data)
-    repairs = [said] if said else []
+    text, message = decoded(source.data)
+    repairs = [message] if message else []
     still = error
     for step in _REPAIRS:
-        text, said = step(text)
-        if not said and step is not without_declaration:
+        text, message = step(text)
+        if not message and step is not without_declaration:
             continue
-        repairs += [said] if said else []
+        repairs += [message] if message else []
         try:
             document = TreeBuilder(source.name, text.encode(), report, comments=comments, deepest=deepest).document()
         except expat.ExpatError as next_error:
             still = next_error
             continue
-        for said in repairs:
-            report.warn(codes.REPAIRED_XML, said, place)
+        for message in repairs:
+            report.warn(codes.REPAIRED_XML, message, place)
         return document
     return _recover(source, text, repairs, report, still, comments=comments, deepest=deepest)
 
@@ -54,10 +54,10 @@ def _recover(
         root = None
     if root is None:
         raise refuse(codes.NOT_XML, f"not XML: {expat.errors.messages[error.code]}", place) from error
-    for said in repairs:
-        report.warn(codes.REPAIRED_XML, said, place)
-    said = f"not well-formed: {expat.errors.messages[error.code]}; what could be read was read, and what could not is missing"
-    report.warn(codes.REPAIRED_XML, said, place)
+    for message in repairs:
+        report.warn(codes.REPAIRED_XML, message, place)
+    message = f"not well-formed: {expat.errors.messages[error.code]}; what could be read was read, and what could not is missing"
+    report.warn(codes.REPAIRED_XML, message, place)
     _tidy(root)
     around = [*reversed(list(root.itersiblings(preceding=True))), root, *root.itersiblings()]
     data = b"\n".join(etree.tostring(node, encoding="utf-8", with_tail=False) for node in around if not _is_declaration(node))
@@ -142,13 +142,13 @@ def without_declaration(text: str) -> tuple[str, str]:
     if found is None:
         return text, ""
     version = re.search(r"""version\s*=\s*["']([^"']*)""", found[0])
-    said = ""
+    message = ""
     if version is None or version[1] not in ("1.0", "1.1"):
-        said = f"the version in the XML declaration is '{version[1] if version else ''}'; read as 1.0"
+        message = f"the version in the XML declaration is '{version[1] if version else ''}'; read as 1.0"
     elif found.start() > 0:
-        said = "the XML declaration does not stand at the start; read as if it did"
+        message = "the XML declaration does not stand at the start; read as if it did"
     blank = re.sub(r"[^\n]", " ", found[0])
-    return _DECLARATION.sub("", text[: found.start()] + blank + text[found.end() :]), said
+    return _DECLARATION.sub("", text[: found.start()] + blank + text[found.end() :]), message
 
 
 def _without_controls(text: str) -> tuple[str, str]:
@@ -157,10 +157,10 @@ def _without_controls(text: str) -> tuple[str, str]:
     if wrong:
         clean = _REFERENCE.sub(lambda found: found[0] if _is_character(found[1]) else "", clean)
     count += wrong
-    said = f"{count} control character{'s' if count > 1 else ''} left out" if count else ""
-    if not said and text.endswith("\0"):
-        said = "NUL bytes after the end left out"
-    return clean, said
+    message = f"{count} control character{'s' if count > 1 else ''} left out" if count else ""
+    if not message and text.endswith("\0"):
+        message = "NUL bytes after the end left out"
+    return clean, message
 
 
 def _is_character(number: str) -> bool:
@@ -197,4 +197,4 @@ def _with_clean_tags(text: str) -> tuple[str, str]:
 
 
 _REPAIRS = (without_declaration, _without_controls, _without_rest, _with_clean_tags)
-"""Cheap ones first. Each takes a text and returns it repaired, with what was repaired in words; lines stay where they are."""
+"""Cheap ones first. Each takes a text and returns it repaired, with a message about the repair; line numbers stay."""

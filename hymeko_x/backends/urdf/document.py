@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.backends.urdf.joints import joint_tag
 from hymeko_x.backends.urdf.links import link_tag
-from hymeko_x.backends.urdf.materials import robot_material_tag
 from hymeko_x.backends.urdf.meshes import contents_of
 from hymeko_x.backends.urdf.sheet import UrdfSheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
@@ -69,13 +68,13 @@ def _declared(root: Tag) -> dict[str, str]:
 
 
 def _tag(key: Id, sheet: UrdfSheet) -> Tag:
-    tag = _WRITERS[key.kind](key, sheet)
+    tag = sheet.materials.robot_tag(key) if key.kind == "material" else _WRITERS[key.kind](key, sheet)
     tag.owner = key
     sheet.put_back(tag, key)
     return tag
 
 
-_WRITERS = {"body": link_tag, "joint": joint_tag, "material": robot_material_tag, "drive": transmission_tag}
+_WRITERS = {"body": link_tag, "joint": joint_tag, "drive": transmission_tag}
 
 
 def _merged(extras: list[Extra], sheet: UrdfSheet) -> Iterator[Tag | str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
-from hymeko_x.backends.urdf.materials import add_shape_material
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf.notations import Explicit
@@ -61,7 +60,7 @@ def _add_shape(link: Tag, name: str, view: ShapeView, sheet: UrdfSheet) -> None:
         tag.attributes["name"] = view.shape.name
     sheet.add_origin(tag, view.pose, always=_ORIGIN_STYLES[name] in sheet.explicit)
     _add_geometry(tag.add("geometry"), view, sheet)
-    add_shape_material(tag, view, sheet)
+    sheet.materials.add_to_shape(tag, view)
     sheet.put_back(tag, view.id)
 
 

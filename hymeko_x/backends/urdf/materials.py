@@ -11,37 +11,17 @@ from hymeko_x.ir.values import numbers_text
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
-    from hymeko_x.backends.urdf.sheet import UrdfSheet
-    from hymeko_x.ir.mechanism import Id, ShapeView
-
-
-def robot_material_tag(key: Id, sheet: UrdfSheet) -> Tag:
-    """The <material> of robot level that defines a material."""
-    material = sheet.mechanism.vertex(key, Material)
-    tag = Tag("material", {"name": material.name or key.name})
-    sheet.materials.add_appearance(tag, key, material)
-    return tag
-
-
-def add_shape_material(tag: Tag, view: ShapeView, sheet: UrdfSheet) -> None:
-    """Add a shape's material: its own colour without a name, or a name, with the definition where it belongs."""
-    if view.shape.rgba is not None:
-        tag.add("material", name="").add("color", rgba=numbers_text(view.shape.rgba))
-    elif view.material is not None:
-        material = sheet.mechanism.vertex(view.material, Material)
-        child = tag.add("material", name=material.name or "")
-        if sheet.materials.is_defined_now(view.material):
-            sheet.materials.add_appearance(child, view.material, material)
+    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
 
 
 class Materials:
-    """Where the materials of a sheet are defined."""
+    """The materials of a mechanism, and where each is defined; ``choice`` is the author's for a material."""
 
-    def __init__(self, sheet: UrdfSheet) -> None:
-        self._mechanism = sheet.mechanism
-        self._sheet = sheet
+    def __init__(self, mechanism: Mechanism, choice: Callable[[Id], Defined]) -> None:
+        self._mechanism = mechanism
+        self._choice = choice
         self._defined_before: set[Id] = set()
 
     @cached_property
@@ -77,17 +57,33 @@ class Materials:
             return own
         if self._first_of_name[material.name] != key:
             return own or Defined.INLINE
-        return self._sheet.choice(key, DEFINED)
+        return self._choice(key)
 
-    def is_defined_now(self, key: Id) -> bool:
+    def robot_tag(self, key: Id) -> Tag:
+        """The <material> of robot level that defines a material."""
+        material = self._mechanism.vertex(key, Material)
+        tag = Tag("material", {"name": material.name or key.name})
+        self._add_appearance(tag, key, material)
+        return tag
+
+    def add_to_shape(self, tag: Tag, view: ShapeView) -> None:
+        """Add a shape's material: its own colour without a name, or a name, with the definition where it belongs."""
+        if view.shape.rgba is not None:
+            tag.add("material", name="").add("color", rgba=numbers_text(view.shape.rgba))
+        elif view.material is not None:
+            material = self._mechanism.vertex(view.material, Material)
+            child = tag.add("material", name=material.name or "")
+            if self._is_defined_now(view.material):
+                self._add_appearance(child, view.material, material)
+
+    def _is_defined_now(self, key: Id) -> bool:
         """Whether a shape that uses the material has to define it; asked once for each shape, in printing order."""
         place = self.definitions[key]
         first = key not in self._defined_before
         self._defined_before.add(key)
         return place in (Defined.INLINE, Defined.BOTH) or (place is Defined.FIRST and first)
 
-    def add_appearance(self, tag: Tag, key: Id, material: Material) -> None:
-        """Add the colour and the texture of a material."""
+    def _add_appearance(self, tag: Tag, key: Id, material: Material) -> None:
         if material.rgba is not None:
             tag.add("color", rgba=numbers_text(material.rgba))
         if key in self.textures:

@@ -37,7 +37,7 @@ class UrdfSheet:
         self.within = within
         style = mechanism.notation(ROOT, notations.STYLE) or Style()
         self.explicit = style.explicit
-        self.materials = Materials(self)
+        self.materials = Materials(mechanism, lambda key: self.choice(key, notations.DEFINED))
         self._usual = dict(style.usual)
 
     def choice(self, key: Id, choice: Notation[E]) -> E:
