@@ -12,6 +12,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.formats.hymeko import (
     ALIASES,
     AXES,
+    BASE_UNITS,
     CALIBRATION_WORDS,
     DOF_WORDS,
     LIMIT_WORDS,
@@ -27,7 +28,6 @@ from hymeko_x.language.expansion import MAX_ITEMS
 from hymeko_x.language.expressions import CONSTANTS, FUNCTIONS
 from hymeko_x.language.machine import MAX_DEPTH
 from hymeko_x.language.templates import standard_templates
-from hymeko_x.language.units import BASE_UNITS
 from hymeko_x.source import Source
 
 ROOT = Path(__file__).parents[2]

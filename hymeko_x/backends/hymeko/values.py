@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
-from hymeko_x.formats.hymeko import TURNING
+from hymeko_x.formats.hymeko import TURNING, unit_factor
 from hymeko_x.ir import parts
 from hymeko_x.ir.values import NO_ROTATION, Pose, number_text
 from hymeko_x.language.syntax import Quantity, Ref
-from hymeko_x.language.units import unit_factor
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

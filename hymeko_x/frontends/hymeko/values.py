@@ -10,10 +10,10 @@ from msgspec import Struct, field
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
+from hymeko_x.formats.hymeko import BASE_UNITS, unit_dimension, unit_factor
 from hymeko_x.ir.values import Pose, Vec3, Written, numbers_text, pose, pose_from_rpy
 from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, Ref, Value, is_list, origin_of
-from hymeko_x.language.units import BASE_UNITS, unit_dimension, unit_factor
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
