@@ -246,7 +246,7 @@ def _machine() -> Machine:
 
 # ---- comments ------------------------------------------------------------------------------------------------------------
 
-_Place = tuple[int, int]
+_Position = tuple[int, int]
 _END = (1 << 60, 0)
 
 
@@ -274,21 +274,21 @@ def _comments(text: str, gaps: list[Gap], lines: Lines) -> Iterator[tuple[int, C
             yield depth, Comment(comment_text(match[0]), *lines.place(match.start()))
 
 
-def _woven(items: tuple[Item, ...], levels: list[list[Comment]], depth: int, start: _Place, end: _Place) -> tuple[Item, ...]:
+def _woven(items: tuple[Item, ...], levels: list[list[Comment]], depth: int, start: _Position, end: _Position) -> tuple[Item, ...]:
     """The items of one block with the comments between two places; nodes with those of their own blocks."""
     found: list[Item] = []
-    ends = [*(_place(item) or end for item in items[1:]), end]
+    ends = [*(_position(item) or end for item in items[1:]), end]
     for item, behind in zip(items, ends, strict=False):
-        place = _place(item)
+        place = _position(item)
         if isinstance(item, Node) and place and any(_between(level, place, behind) for level in levels[depth + 1 :]):
             item = item._replace(items=_woven(item.items, levels, depth + 1, place, behind))
         found.append(item)
     return tuple(_merged(found, list(_between(levels[depth], start, end))))
 
 
-def _between(comments: list[Comment], start: _Place, end: _Place) -> list[Comment]:
+def _between(comments: list[Comment], start: _Position, end: _Position) -> list[Comment]:
     """The comments between two places; they are in order."""
-    return comments[bisect_left(comments, start, key=_place) : bisect_left(comments, end, key=_place)]
+    return comments[bisect_left(comments, start, key=_position) : bisect_left(comments, end, key=_position)]
 
 
 def _merged(items: list[Item], comments: list[Comment]) -> list[Item]:
@@ -296,11 +296,11 @@ def _merged(items: list[Item], comments: list[Comment]) -> list[Item]:
     merged: list[Item] = []
     rest = list(reversed(comments))
     for item in items:
-        while rest and _place(item) and _place(rest[-1]) < _place(item):
+        while rest and _position(item) and _position(rest[-1]) < _position(item):
             merged.append(rest.pop())
         merged.append(item)
     return [*merged, *reversed(rest)]
 
 
-def _place(item: Item) -> tuple[int, int]:
+def _position(item: Item) -> tuple[int, int]:
     return (item.line, item.column) if item.line else ()  # type: ignore[return-value]
