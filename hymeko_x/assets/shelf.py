@@ -7,6 +7,8 @@ import posixpath
 import re
 from typing import TYPE_CHECKING, Literal
 
+from hymeko_x.ir.names import free_name
+
 if TYPE_CHECKING:
     from hymeko_x.source import Files
 
@@ -77,10 +79,9 @@ class Shelf:
         key = (suffix, sha256(data).hexdigest())
         if key in self._by_content:
             return self._by_content[key], False
-        path, number = f"{self.within}{folder}/{safe_name(stem)}{suffix}", 1
-        while path.lower() in self._taken:
-            number += 1
-            path = f"{self.within}{folder}/{safe_name(stem)}_{number}{suffix}"
+        start = f"{self.within}{folder}/"
+        name = free_name(safe_name(stem), lambda free: f"{start}{free}{suffix}".lower() in self._taken, "_")
+        path = f"{start}{name}{suffix}"
         self._taken.add(path.lower())
         self._by_content[key] = path
         return path, True

@@ -11,7 +11,7 @@ from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import Id
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from hymeko_x.ir.mechanism import Extra, Mechanism
 
@@ -49,6 +49,14 @@ class Names:
             number += 1
         self._next[wanted] = number
         return Id(kind, f"{name}#{number}")
+
+
+def free_name(wanted: str, is_taken: Callable[[str], bool], mark: str = "#") -> str:
+    """The name; when it is taken, with the mark and the first free number behind it, counted from 2."""
+    name, number = wanted, 2
+    while is_taken(name):
+        name, number = f"{wanted}{mark}{number}", number + 1
+    return name
 
 
 def rename(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:

@@ -10,6 +10,7 @@ from hymeko_x import codes
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import numbers_weight
+from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import Coupling, DofKind, Drive, Frame, Joint, Sense, Shape, Tendon
 from hymeko_x.ir.tendons import wrong_path
 from hymeko_x.rewrite.joints import interval
@@ -147,9 +148,7 @@ def name_wrapped_shapes(mechanism: Mechanism, _context: Context) -> Mechanism:
         edge = mechanism.graph.edges[key]
         if key in changed or not isinstance(edge.data, Shape) or edge.data.name:
             continue
-        name, number = key.name, 2
-        while name in taken:
-            name, number = f"{key.name}_{number}", number + 1
+        name = free_name(key.name, taken.__contains__, "_")
         taken.add(name)
         changed[key] = replace(edge, data=replace(edge.data, name=name))
     return mechanism.with_graph(mechanism.graph.replace(edges=changed)) if changed else mechanism

@@ -11,7 +11,7 @@ from hymeko_x import codes
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.kinematics import edges_to_moved_dofs
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, coupling_edge, joint_edge
-from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.names import free_name, names_in_use
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import UNLIMITED, Body, Dof, DofKind, Joint, Limits
 from hymeko_x.ir.values import IDENTITY, X, Y, Z
@@ -95,7 +95,7 @@ def name_dofs(mechanism: Mechanism, context: Context) -> Mechanism:
         new = []
         for number, dof in enumerate(dofs):
             wanted = dof.name or f"{view.id.name}{_suffix(dof, dofs)}"
-            name = _unused(wanted, seen) if len(dofs) == 1 else _unused(wanted, alone, seen)
+            name = free_name(wanted, (seen if len(dofs) == 1 else alone | seen).__contains__)
             if wanted != name:
                 _warn_of_name(mechanism, view.id, wanted, name, context.report)
             seen.add(name)
@@ -121,7 +121,7 @@ def name_dofs_once(mechanism: Mechanism, context: Context) -> Mechanism:
         if wanted not in seen:
             seen.add(wanted)
             continue
-        name = _unused(wanted, taken)
+        name = free_name(wanted, taken.__contains__)
         _warn_of_name(mechanism, view.id, wanted, name, context.report)
         taken.add(name)
         changed.setdefault(view.id, list(view.joint.dofs))[number] = replace(view.joint.dofs[number], name=name)
@@ -203,14 +203,6 @@ def _only_name(view: JointView) -> str:
 def _warn_of_name(mechanism: Mechanism, joint: Id, wanted: str, name: str, report: Report) -> None:
     message = f"'{wanted}' would name two dofs; the one of {joint} is written as '{name}'"
     report.warn(codes.RENAMED, message, mechanism.origin(joint), element=str(joint))
-
-
-def _unused(name: str, *taken: set[str]) -> str:
-    unique, number = name, 1
-    while any(unique in names for names in taken):
-        number += 1
-        unique = f"{name}#{number}"
-    return unique
 
 
 def _legal_groups(dofs: tuple[Dof, ...]) -> list[tuple[Dof, ...]]:

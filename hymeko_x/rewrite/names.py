@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.ir.names import names_in_use, rename
+from hymeko_x.ir.names import free_name, names_in_use, rename
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, Mechanism
@@ -47,15 +47,13 @@ def make_names_usable(mechanism: Mechanism, context: Context) -> Mechanism:
 
 def name_assets_once(mechanism: Mechanism, context: Context) -> Mechanism:
     """Meshes and textures are written under the name that their author gave them, or else their id's, each name once per kind."""
-    taken: set[tuple[str, str]] = set()
+    taken: dict[str, set[str]] = {}
     changed: dict[Id, Mesh | Texture] = {}
     for key, part in mechanism.assets():
         wanted = part.name or key.name
-        name, number = wanted, 1
-        while (key.kind, name) in taken:
-            number += 1
-            name = f"{wanted}#{number}"
-        taken.add((key.kind, name))
+        names = taken.setdefault(key.kind, set())
+        name = free_name(wanted, names.__contains__)
+        names.add(name)
         if name != wanted:
             changed[key] = replace(part, name=name)
             context.report.note(

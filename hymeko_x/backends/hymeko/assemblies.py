@@ -20,6 +20,7 @@ from hymeko_x.factor.forms import Hole, Signed, words
 from hymeko_x.factor.unify import unify
 from hymeko_x.formats.hymeko import AXES, RESERVED
 from hymeko_x.ir.mechanism import KINDS, Id
+from hymeko_x.ir.names import free_name
 from hymeko_x.ir.values import number_text
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Expression, Field, Node, Parameter, Ref, Stereotype
@@ -271,9 +272,7 @@ def _parameter_names(numbers: Unified, fields: list[str], texts: int) -> list[st
 
 def take_name(wanted: str, taken: set[str]) -> str:
     """The name, with a number behind it when it is taken; then it is taken."""
-    name, number = wanted, 2
-    while name in taken:
-        name, number = f"{wanted}{number}", number + 1
+    name = free_name(wanted, taken.__contains__, "")
     taken.add(name)
     return name
 

@@ -18,6 +18,7 @@ from hymeko_x.factor.sets import Costs, common_words, share
 from hymeko_x.formats.mjcf import CLASSES, MAIN
 from hymeko_x.formats.mjcf.classes import PARTIAL, Classes
 from hymeko_x.formats.mjcf.tree import parse_text
+from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import Role
 from hymeko_x.xml.printing import Tag
 
@@ -79,10 +80,7 @@ class Defaults(Struct):
 
     def free(self, wanted: str) -> str:
         """The name as a class may have it, with a number behind it when it is taken."""
-        wanted = re.sub(r"\W+", "_", wanted)
-        name, number = wanted, 2
-        while name in self.taken:
-            name, number = f"{wanted}_{number}", number + 1
+        name = free_name(re.sub(r"\W+", "_", wanted), self.taken.__contains__, "_")
         self.taken.add(name)
         return name
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import posixpath
 import re
-from itertools import count
 from typing import TYPE_CHECKING, NamedTuple
 
+from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import Material, Mesh, Role
 from hymeko_x.ir.values import number_text, numbers_text
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.parts import Rgba
@@ -46,7 +46,7 @@ def files_of_meshes(mechanism: Mechanism, within: str) -> dict[Id, str]:
                 found[key] = known[content]
                 continue
             stem = _harmless(key.name) or "mesh"
-            name = next(name for name in _numbered(stem) if name.lower() not in taken)
+            name = free_name(stem, lambda name: name.lower() in taken, "_")
             taken.add(name.lower())
             found[key] = known[content] = f"{within}{FOLDER}/{name}.obj"
     return found
@@ -54,11 +54,6 @@ def files_of_meshes(mechanism: Mechanism, within: str) -> dict[Id, str]:
 
 def _harmless(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_-]+", "_", name).strip("_")
-
-
-def _numbered(stem: str) -> Iterator[str]:
-    yield stem
-    yield from (f"{stem}_{number}" for number in count(2))
 
 
 def _shown(mechanism: Mechanism) -> dict[Id, ShapeView]:
@@ -122,7 +117,7 @@ def _subset_materials(mechanism: Mechanism, mesh: Mesh, view: ShapeView | None, 
     for material, faces in [(view.material, rest), *known] if rest else known:
         part = mechanism.graph.vertices.get(material) if material is not None else None
         stem = _harmless(material.name if material is not None else "") or _MATERIAL
-        name = next(name for name in _numbered(stem) if name not in names)
+        name = free_name(stem, names.__contains__, "_")
         names.add(name)
         own = view.shape.rgba if faces is rest else None
         rgba = own or (part.rgba if isinstance(part, Material) else None)

@@ -14,6 +14,7 @@ from pxr import Gf, Sdf, Tf, Vt
 
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import FAMILY
+from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import DofKind, Joint
 
 if TYPE_CHECKING:
@@ -133,12 +134,7 @@ class UsdSheet(Struct):
 
     def free_path(self, parent: Any, name: str) -> Any:
         """An unused path below a prim for something of this name."""
-        valid = valid_name(name)
-        path, number = parent.AppendChild(valid), 1
-        while path in self.prims:
-            number += 1
-            path = parent.AppendChild(f"{valid}_{number}")
-        return path
+        return parent.AppendChild(free_name(valid_name(name), lambda free: parent.AppendChild(free) in self.prims, "_"))
 
     def define(self, path: Any, kind: str, name: str = "") -> Prim:
         """A new prim of this type; missing ancestors become Xforms. ``name`` is the display name."""
