@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from benchmarks.cluster import cluster
-from hymeko_x.corpus import batch, cache, catalog
+from hymeko_x.corpus import cache, catalog, engines
 from hymeko_x.corpus.cases import from_catalogue
 from hymeko_x.corpus.engines import Local, OnRay
 from hymeko_x.corpus.plan import Plan, pairs_of
@@ -58,7 +58,7 @@ def _seconds(cases: tuple[Case, ...], engine: Engine) -> float:
     """The time of a run, with the start of its processes."""
     with tempfile.TemporaryDirectory() as folder:
         start = time.perf_counter()
-        batch.run(cases, Plan(pairs_of("all")), engine, Store(f"{folder}/run"), watch=_silent)
+        engines.run(cases, Plan(pairs_of("all")), engine, Store(f"{folder}/run"), watch=_silent)
         return time.perf_counter() - start
 
 

@@ -10,9 +10,8 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats
-from hymeko_x.assets.pack import pack
+from hymeko_x.assets.pack import pack, with_stored_meshes
 from hymeko_x.assets.shelf import safe_name
-from hymeko_x.assets.stored import with_stored_meshes
 from hymeko_x.collector import uncollected
 from hymeko_x.compare.leaves import leaves_again, leaves_between
 from hymeko_x.compare.ledger import losses_between

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from hymeko_x import codes, disk, formats, pipeline, staging
+from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.rewrite import Options
@@ -116,7 +116,7 @@ def test_a_folder_that_may_not_be_written_is_a_diagnostic() -> None:
 def test_an_output_folder_that_vanishes_while_writing_is_a_diagnostic(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "out"
     folder.mkdir()
-    right = staging._stage
+    right = disk._stage
 
     def stage(final: Path, data: bytes) -> tuple[Path, Path]:
         staged = right(final, data)
@@ -124,7 +124,7 @@ def test_an_output_folder_that_vanishes_while_writing_is_a_diagnostic(tmp_path: 
             shutil.rmtree(folder)
         return staged
 
-    monkeypatch.setattr(staging, "_stage", stage)
+    monkeypatch.setattr(disk, "_stage", stage)
     with pytest.raises(Refusal) as refusal:
         write(folder, "n")
     assert refusal.value.diagnostic.code == codes.CANNOT_WRITE

@@ -15,7 +15,7 @@ from hymeko_x import formats
 
 ROOT = Path(__file__).parents[1]
 LAYERS = (
-    ("collector", "diagnostics", "codes", "staging"),
+    ("collector", "diagnostics", "codes"),
     ("ir",),
     ("source",),
     ("xml", "meshes"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from benchmarks.contest.rows import CALL, PROCESS, TEXT
-from hymeko_x.corpus import blocks
+from hymeko_x.corpus.pages import renewed_blocks
 from hymeko_x.corpus.report import table
 
 if TYPE_CHECKING:
@@ -18,7 +18,7 @@ BY = "make bench"
 
 def page(text: str, rows: Sequence[Row]) -> str:
     """The page with the tables of these results in its block. Raises: ValueError when it has none."""
-    return blocks.renewed(text, BY, lambda name: _content(name, rows))
+    return renewed_blocks(text, BY, lambda name: _content(name, rows))
 
 
 def _content(name: str, rows: Sequence[Row]) -> str:

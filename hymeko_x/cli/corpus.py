@@ -26,8 +26,7 @@ if TYPE_CHECKING:
     from hymeko_x.corpus.cases import Case
     from hymeko_x.corpus.catalog import WheelPackage
     from hymeko_x.corpus.engines import Engine
-    from hymeko_x.corpus.rows import Outcome
-    from hymeko_x.corpus.tables import Tables
+    from hymeko_x.corpus.rows import Outcome, Tables
 
 EXTRA = ("fsspec", "matplotlib", "pebble", "polars")
 """The libraries that only batch runs need."""
@@ -141,7 +140,7 @@ def _run_arguments(parser: argparse.ArgumentParser) -> None:
 
 def _run(chosen: argparse.Namespace) -> int:
     """Run what is left to do; print a summary. A file that fails is a row in the results and no failure of the run."""
-    from hymeko_x.corpus import batch
+    from hymeko_x.corpus.engines import run
     from hymeko_x.corpus.store import Store
 
     for variable in _THREADS:
@@ -152,7 +151,7 @@ def _run(chosen: argparse.Namespace) -> int:
     plan = Plan(chosen.pairs, chosen.verify, chosen.samples, chosen.meshes, Limits(chosen.timeout, int(chosen.memory * 2**20)))
     store = Store(chosen.output)
     with _run_progress(len(cases), len(store.known()) if chosen.resume else 0) as watch:
-        tables = batch.run(cases, plan, _engine(chosen), store, resume=chosen.resume, watch=watch)
+        tables = run(cases, plan, _engine(chosen), store, resume=chosen.resume, watch=watch)
     print("\n".join(_summary(tables)))
     return exits.DONE
 
@@ -267,8 +266,7 @@ def _stats(chosen: argparse.Namespace) -> int:
     """Write tables and figures, and the tables of the run where they go elsewhere."""
     from hymeko_x.corpus.pages import renewed
     from hymeko_x.corpus.report import costs_page, files_of
-    from hymeko_x.corpus.store import Store
-    from hymeko_x.corpus.tables import load, load_pace, save
+    from hymeko_x.corpus.store import Store, load, load_pace, save
 
     store = Store(chosen.results)
     tables = load(store)

@@ -10,16 +10,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from hymeko_x import codes
+from hymeko_x.corpus.rows import tables_of
+from hymeko_x.corpus.store import missing, save
 from hymeko_x.corpus.supervise import Processes, supervise
 from hymeko_x.corpus.work import work
 from hymeko_x.diagnostics import refuse
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from hymeko_x.corpus.cases import Case
     from hymeko_x.corpus.plan import Plan
-    from hymeko_x.corpus.rows import Outcome
+    from hymeko_x.corpus.rows import Outcome, Tables
+    from hymeko_x.corpus.store import Store
     from hymeko_x.corpus.supervise import Task
 
 _ERRORS = 40
@@ -145,3 +148,24 @@ def fetched(folder: str, cache: Path) -> str:
                 raise refuse(codes.CANNOT_READ, f"'{folder}' cannot be fetched: {error}") from error
             part.rename(final)
     return str(final)
+
+
+# ---- a run ----------------------------------------------------------------------------------------------------
+
+
+def run(
+    cases: tuple[Case, ...], plan: Plan, engine: Engine, store: Store, *, resume: bool = False, watch: Callable[[Outcome], None]
+) -> Tables:
+    """The tables of all cases. ``watch`` is told of every outcome as it comes.
+
+    Whenever the run is stopped, what it had found is kept, and a run with ``resume`` does the rest.
+
+    Raises: Refusal HX002 when the store cannot be used.
+    """
+    store.open(plan.as_json(), resume=resume)
+    for outcome in engine.run(missing(cases, store), plan):
+        store.add(outcome)
+        watch(outcome)
+    tables = tables_of(store.outcomes())
+    save(tables, store)
+    return tables

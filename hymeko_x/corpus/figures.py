@@ -16,8 +16,8 @@ if TYPE_CHECKING:
     import polars as pl
     from matplotlib.figure import Figure
 
+    from hymeko_x.corpus.rows import Tables
     from hymeko_x.corpus.statistics import Numbers, PairRow
-    from hymeko_x.corpus.tables import Tables
     from hymeko_x.formats import Format
 
 _SETTINGS: Any = {

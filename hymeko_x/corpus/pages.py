@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
-from hymeko_x.corpus import blocks, statistics
+from hymeko_x.corpus import statistics
 from hymeko_x.corpus.report import matrix, table
 from hymeko_x.corpus.statistics import FOUND, PRINTED, percentage
 
@@ -14,8 +15,8 @@ if TYPE_CHECKING:
 
     import polars as pl
 
+    from hymeko_x.corpus.rows import Tables
     from hymeko_x.corpus.statistics import Shortness
-    from hymeko_x.corpus.tables import Tables
 
 ENOUGH = 99.0
 """What percentage of the accepted files each pair of formats should bring over."""
@@ -30,7 +31,7 @@ def renewed(text: str, tables: Tables, pace: pl.DataFrame | None = None) -> str:
 
     Raises: ValueError when it has no block, or one that nobody knows.
     """
-    return blocks.renewed(text, "hymeko-x corpus stats", lambda name: _content(name, tables, pace))
+    return renewed_blocks(text, "hymeko-x corpus stats", lambda name: _content(name, tables, pace))
 
 
 def _content(name: str, tables: Tables, pace: pl.DataFrame | None) -> str:
@@ -184,3 +185,18 @@ _WRITERS: Mapping[str, Callable[[Tables], str]] = {
     "costs": _costs,
     "million": _million,
 }
+
+
+# ---- blocks between two marks, which a program writes and nothing else changes ----------------------------------------
+
+
+def renewed_blocks(text: str, by: str, content: Callable[[str], str]) -> str:
+    """The text with new content in every block of the program that is called ``by``; ``content`` is asked by the block's name.
+
+    Raises: ValueError when there is no such block.
+    """
+    mark = f": written by `{by}` -->"
+    pattern = re.compile(rf"<!-- (?P<name>[a-z]+){re.escape(mark)}\n.*?<!-- end of (?P=name) -->", re.DOTALL)
+    if not pattern.search(text):
+        raise ValueError(f"the page has no block <!-- NAME{mark} ... <!-- end of NAME -->")
+    return pattern.sub(lambda found: f"<!-- {found['name']}{mark}\n\n{content(found['name'])}\n\n<!-- end of {found['name']} -->", text)

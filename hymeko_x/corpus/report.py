@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
     import polars as pl
 
+    from hymeko_x.corpus.rows import Tables
     from hymeko_x.corpus.statistics import PairRow, Shortness
-    from hymeko_x.corpus.tables import Tables
 
 _WORDS = {"characters": "characters", "code": "characters without comments", "bytes": "bytes", "tokens": "tokens", "gzip": "gzip bytes"}
 

@@ -6,14 +6,18 @@ are kept apart, so that the facts of two runs can be compared byte for byte.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import msgspec
 from msgspec import Struct
-from msgspec.structs import replace
+from msgspec.structs import asdict, replace
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable
+
+    import polars as pl
+
 
 DONE, REFUSED, FAILED = "done", "refused", "failed"
 """The answers of a step that came to an end: it worked; the input cannot be processed; an exception, which is a bug of ours."""
@@ -108,3 +112,43 @@ def outcome_from_json(document: Mapping[str, Any]) -> Outcome:
 def with_verdict(leg: Leg, verdict: Leg) -> Leg:
     """A conversion with what the verifier said of it."""
     return replace(leg, verdict=verdict.verdict, verdict_reason=verdict.verdict_reason, failed=verdict.failed)
+
+
+# ---- the same as three tables -----------------------------------------------------------------------------------------
+
+
+class Tables(NamedTuple):
+    """The three tables, sorted."""
+
+    robots: pl.DataFrame
+    legs: pl.DataFrame
+    costs: pl.DataFrame
+
+
+def tables_of(outcomes: Iterable[Outcome]) -> Tables:
+    """The tables of all outcomes, whatever their order."""
+    rows: tuple[list[dict[str, Any]], ...] = ([], [], [])
+    for outcome in outcomes:
+        rows[0].append(_row(outcome.robot))
+        rows[1].extend(map(_row, outcome.legs))
+        rows[2].extend(map(_row, outcome.costs))
+    robots, legs, costs = _frame(Robot, rows[0]), _frame(Leg, rows[1]), _frame(Cost, rows[2])
+    return Tables(robots.sort("key"), legs.sort("key", "target"), costs.sort("key", "step"))
+
+
+def _row(row: Robot | Leg | Cost) -> dict[str, Any]:
+    return {key: _listed(value) for key, value in asdict(row).items()}
+
+
+def _listed(value: Any) -> Any:
+    """A mapping as a list of named values, since Parquet has no column of mappings with unknown keys."""
+    return [{"name": name, "value": item} for name, item in sorted(value.items())] if isinstance(value, Mapping) else value
+
+
+def _frame(kind: type[Robot | Leg | Cost], rows: list[dict[str, Any]]) -> pl.DataFrame:
+    import polars as pl
+
+    types: dict[str, Any] = {"str": pl.String, "int": pl.Int64, "int | None": pl.Int64, "float": pl.Float64, "bool": pl.Boolean}
+    types["Mapping[str, int] | None"] = pl.List(pl.Struct({"name": pl.String, "value": pl.Int64}))
+    types["Mapping[str, str] | None"] = pl.List(pl.Struct({"name": pl.String, "value": pl.String}))
+    return pl.DataFrame(rows, schema={name: types[hint] for name, hint in kind.__annotations__.items()})

@@ -16,7 +16,7 @@ from hymeko_x import formats
 if TYPE_CHECKING:
     import polars as pl
 
-    from hymeko_x.corpus.tables import Tables
+    from hymeko_x.corpus.rows import Tables
 
 Numbers = NDArray[np.float64]
 

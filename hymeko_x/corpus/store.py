@@ -6,18 +6,20 @@ A folder, or any fsspec URL. What is there is complete, so that a run that was k
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import os
 import secrets
 from typing import TYPE_CHECKING, Any
 
 from hymeko_x import codes
-from hymeko_x.corpus.rows import outcome_from_json
+from hymeko_x.corpus.rows import Tables, outcome_from_json, tables_of
 from hymeko_x.diagnostics import Origin, refuse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    import polars as pl
     from fsspec import AbstractFileSystem
 
     from hymeko_x.corpus.cases import Case
@@ -125,3 +127,36 @@ def missing(cases: tuple[Case, ...], store: Store) -> tuple[Case, ...]:
     """The cases that have no part yet."""
     known = store.known()
     return tuple(case for case in cases if part_name(case.key) not in known)
+
+
+# ---- the tables of a run ------------------------------------------------------------------------------------------
+
+NAMES = ("robots", "legs", "costs")
+PACE = "pace.csv"
+
+
+def save(tables: Tables, store: Store) -> None:
+    """Write the tables as Parquet beside the parts."""
+    for name, frame in zip(NAMES, tables, strict=True):
+        buffer = io.BytesIO()
+        frame.write_parquet(buffer, compression="zstd", statistics=False)
+        store.put(f"{name}.parquet", buffer.getvalue())
+
+
+def load(store: Store) -> Tables:
+    """The tables of a run; of one that has not come to its end, what there is.
+
+    Raises: Refusal HX001 when there is nothing.
+    """
+    import polars as pl
+
+    if not store.has(f"{NAMES[-1]}.parquet") and store.known():
+        return tables_of(store.outcomes())
+    return Tables(*(pl.read_parquet(io.BytesIO(store.get(f"{name}.parquet"))) for name in NAMES))
+
+
+def load_pace(store: Store) -> pl.DataFrame | None:
+    """How many robots each engine does in a second, if somebody has measured it beside these results."""
+    import polars as pl
+
+    return pl.read_csv(io.BytesIO(store.get(PACE))) if store.has(PACE) else None

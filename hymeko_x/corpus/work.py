@@ -20,8 +20,7 @@ from msgspec.structs import asdict, replace
 
 from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.corpus.lengths import lengths
-from hymeko_x.corpus.limits import forget_peak, peak_megabytes, set_limits
-from hymeko_x.corpus.plan import CONVERT, ENGINE, READ
+from hymeko_x.corpus.plan import CONVERT, ENGINE, READ, forget_peak, peak_megabytes, set_limits
 from hymeko_x.corpus.rows import DONE, REFUSED, Cost, Leg, Robot
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.ir.parts import Body, Joint, Shape
@@ -113,7 +112,7 @@ def _read(case: Case, folder: Path, said: dict[str, Any]) -> tuple[Source, Mecha
     except Refusal as refusal:
         said.update(asdict(replace(robot, status=REFUSED, reason=_told(refusal, folder), diagnostics=_by_code(report, refusal))))
         return None
-    said.update(asdict(_counted(robot, mechanism, report)))
+    said.update(asdict(counted(robot, mechanism, report)))
     return source, mechanism
 
 
@@ -127,7 +126,8 @@ def _as_found(robot: Robot, source: Source) -> Robot:
     )
 
 
-def _counted(robot: Robot, mechanism: Mechanism, report: Report) -> Robot:
+def counted(robot: Robot, mechanism: Mechanism, report: Report) -> Robot:
+    """The row of a file with the numbers of its bodies, joints, dofs and shapes."""
     joints = [part for part in mechanism.graph.edges.values() if isinstance(part.data, Joint)]
     bodies = sum(isinstance(part, Body) for part in mechanism.graph.vertices.values())
     shapes = sum(isinstance(edge.data, Shape) for edge in mechanism.graph.edges.values())

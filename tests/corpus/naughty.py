@@ -13,8 +13,7 @@ from pathlib import Path
 from msgspec.structs import asdict
 
 from hymeko_x.corpus.cases import Case
-from hymeko_x.corpus.limits import set_limits
-from hymeko_x.corpus.plan import Plan
+from hymeko_x.corpus.plan import Plan, set_limits
 from hymeko_x.corpus.rows import Cost, Leg, Robot
 from hymeko_x.corpus.work import NOTES
 

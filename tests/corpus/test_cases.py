@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import hymeko_x as hx
 from hymeko_x import formats
 from hymeko_x.corpus import catalog, engines
 from hymeko_x.corpus.cases import from_folder, own_robots
@@ -14,7 +15,9 @@ from hymeko_x.corpus.plan import Plan, pairs_of
 from hymeko_x.corpus.rows import Leg, Outcome, Robot
 from hymeko_x.corpus.statistics import interval, signed_rank
 from hymeko_x.corpus.store import Store
-from tests.corpus.folder import fill
+from hymeko_x.corpus.work import counted
+from hymeko_x.diagnostics import Report
+from tests.corpus.folder import MJCF, fill
 
 
 def test_the_catalogue_lists_about_five_hundred_robots_each_once() -> None:
@@ -113,3 +116,9 @@ def test_the_signed_rank_test_is_that_of_the_textbook() -> None:
     low, high = interval(np.arange(101.0))
     assert low < 50.0 < high
     assert (low, high) == interval(np.arange(101.0))
+
+
+def test_a_file_is_counted_in_bodies_joints_dofs_and_shapes() -> None:
+    mechanism = hx.loads(MJCF, "mjcf")
+    robot = counted(Robot("k", "p", "mjcf"), mechanism, Report())
+    assert (robot.bodies, robot.joints, robot.dofs, robot.shapes) == (1, 1, 1, 1)

@@ -8,8 +8,7 @@ import pytest
 
 from hymeko_x.corpus import pages, report
 from hymeko_x.corpus.statistics import pair_rows
-from hymeko_x.corpus.store import Store
-from hymeko_x.corpus.tables import load, load_pace
+from hymeko_x.corpus.store import Store, load, load_pace
 
 ROOT = Path(__file__).parents[2]
 RESULTS = ROOT / "corpus/results"

@@ -14,8 +14,7 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from hymeko_x.corpus.store import Store
-from hymeko_x.corpus.tables import load
+from hymeko_x.corpus.store import Store, load
 from tests.corpus.folder import TOO_LARGE, fill
 
 ROOT = Path(__file__).parents[2]

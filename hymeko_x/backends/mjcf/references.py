@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.assets.refer import Keep, keep_references, new_uri
+from hymeko_x.assets.pack import Keep, keep_references, new_uri
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import NAME, below, joined, settings_of
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism

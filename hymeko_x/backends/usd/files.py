@@ -8,7 +8,7 @@ from msgspec import field
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.assets.refer import Keep, keep_references
+from hymeko_x.assets.pack import Keep, keep_references
 from hymeko_x.assets.shelf import read_file, suffix_of
 from hymeko_x.formats import native_format
 from hymeko_x.ir.builder import Builder
