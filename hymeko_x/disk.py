@@ -56,7 +56,7 @@ def open_source(
 
 
 def _content(place: Path, origin: Origin) -> bytes:
-    """The content of a file or of a pipe, whose size nobody knows beforehand."""
+    """The content of a file or of a pipe, whose size is not known beforehand."""
     with place.open("rb") as file:
         data = file.read(MOST_BYTES + 1) if place.is_fifo() else file.read()
     if len(data) > MOST_BYTES:
@@ -65,7 +65,7 @@ def _content(place: Path, origin: Origin) -> bytes:
 
 
 def write_package(package: Package, path: str, files: Files, within: Within | None = None) -> None:
-    """Write the main file to ``path`` and its assets beside it. Who is killed at it leaves the old output or the new one, whole.
+    """Write the main file to ``path`` and its assets beside it. A run that is killed leaves the old output or the new one, whole.
 
     First everything is there as temporary siblings, then all is renamed, the main file last. ``within`` gives the same
     output with its assets below a folder: such a main file stands in while assets are replaced that the old one refers to.

@@ -160,8 +160,8 @@ def with_stored_meshes(mechanism: Mechanism, format: Format, files: Files, repor
             continue
         found[key] = stored
         standing.vertices[key] = replace(stored.mesh, scale=mesh.scale, name=mesh.name)
-        said = f"{key}: '{mesh.uri}' was not found; it becomes the points that the source has of it"
-        report.note(codes.ASSET_NOT_FOUND, said, mechanism.origin(key), element=str(key))
+        message = f"{key}: '{mesh.uri}' was not found; it becomes the points that the source has of it"
+        report.note(codes.ASSET_NOT_FOUND, message, mechanism.origin(key), element=str(key))
     for view in mechanism.every_shape() if found else ():
         if view.mesh in found and view.shape.role is Role.VISUAL and view.id not in mechanism.subsets:
             for look in found[view.mesh].looks:

@@ -58,15 +58,15 @@ class Shelf:
         self.copies[path] = source
         return True
 
-    def way_to(self, source: str, said: str = "") -> str:
+    def way_to(self, source: str, written: str = "") -> str:
         """The path of an existing file relative to the output's folder; absolute only where no relative one exists.
 
-        ``said`` is how the author spelled it, which is kept where it leads there from the output's folder too.
+        ``written`` is how the author spelled it, which is kept where it leads there from the output's folder too.
         """
         if self._out_dir is None:
             return source
-        if said and not os.path.isabs(said) and os.path.abspath(os.path.join(self._out_dir, said)) == os.path.abspath(source):
-            return said
+        if written and not os.path.isabs(written) and os.path.abspath(os.path.join(self._out_dir, written)) == os.path.abspath(source):
+            return written
         try:
             return os.path.relpath(source, self._out_dir).replace(os.sep, "/")
         except ValueError:  # another drive

@@ -121,7 +121,7 @@ def _output_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Report, *, measured: bool = True) -> int:
-    """Write the mechanism that was read, say what there is to say, and return the exit code.
+    """Write the mechanism that was read, show diagnostics and losses, and return the exit code.
 
     With ``measured`` the result is read back and its losses are listed.
     """
@@ -175,13 +175,13 @@ def as_json(given: Input, output: Output, report: Report, losses: Iterable[Loss]
 def is_reached(threshold: str | None, report: Report, losses: tuple[Loss, ...] | None) -> bool:
     """Whether something at least as bad as the threshold happened; an error is worse than a loss, and that than a warning.
 
-    Where nothing could be measured, what the writer said it could not say counts as a loss.
+    Where nothing could be measured, what the writer reports as not represented counts as a loss.
     """
     if threshold is None:
         return False
     happened = {
         "error": report.worst == Severity.ERROR,
-        "loss": any(loss.fate != "carried" for loss in losses or ()) or any(said.code == codes.NOT_SAID for said in report),
+        "loss": any(loss.fate != "carried" for loss in losses or ()) or any(diagnostic.code == codes.NOT_SAID for diagnostic in report),
         "warning": report.worst == Severity.WARNING,
     }
     return any(happened[level] for level in FAIL_ON[: FAIL_ON.index(threshold) + 1])

@@ -32,7 +32,7 @@ EXTRA = ("fsspec", "matplotlib", "pebble", "polars")
 """The libraries that only batch runs need."""
 
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
-"""Each file has one processor; libraries that would take all of them are told so, unless the user said otherwise."""
+"""Each file has one processor; libraries that would take all of them are limited, unless the user set these variables."""
 
 _ENDED = (CRASHED, TIMED_OUT, OUT_OF_MEMORY, FAILED)
 
@@ -182,8 +182,8 @@ def _summary(tables: Tables) -> Iterator[str]:
     for (source, target), legs in sorted(tables.legs.group_by("source", "target")):
         done = legs.filter(legs["status"] == "done")
         verdicts = {word: len(done.filter(done["verdict"] == word)) for word in ("same", "different", "not comparable")}
-        said = ", ".join(f"{count} {word}" for word, count in verdicts.items() if count)
-        yield f"  {source} -> {target}: {len(done)} of {len(legs)} converted" + (f"; {said}" if said else "")
+        counts = ", ".join(f"{count} {word}" for word, count in verdicts.items() if count)
+        yield f"  {source} -> {target}: {len(done)} of {len(legs)} converted" + (f"; {counts}" if counts else "")
     for status in _ENDED:
         for row in tables.legs.filter(tables.legs["status"] == status).iter_rows(named=True):
             yield f"  {status}: {row['key']} -> {row['target']}: {row['reason']}"

@@ -51,8 +51,8 @@ def _alike(diagnostics: Iterable[Diagnostic]) -> Iterable[list[Diagnostic]]:
     groups: dict[object, list[Diagnostic]] = {}
     for number, diagnostic in enumerate(diagnostics):
         is_note = diagnostic.severity is Severity.NOTE
-        said = (diagnostic.code.id, _NAMES.sub("", diagnostic.message)) if is_note else number
-        groups.setdefault(said, []).append(diagnostic)
+        kind = (diagnostic.code.id, _NAMES.sub("", diagnostic.message)) if is_note else number
+        groups.setdefault(kind, []).append(diagnostic)
     return groups.values()
 
 
@@ -124,9 +124,9 @@ def _summary(fate: str, kind: str, field: str, losses: list[Loss]) -> str:
     place = f"{first.origin}: " if first.origin else ""
     shown = [_example(loss) for loss in losses[:_EXAMPLES]]
     more = [f"and {len(losses) - _EXAMPLES} more"] if len(losses) > _EXAMPLES else []
-    said = ", ".join([*shown, *more])
-    said = f"nothing -> {said}" if first.before is None else f"{said} -> nothing" if first.after is None else said
-    return f"{place}loss: {len(losses)} x {f'{kind} {field}'.rstrip()} {fate}: {said}"
+    text = ", ".join([*shown, *more])
+    text = f"nothing -> {text}" if first.before is None else f"{text} -> nothing" if first.after is None else text
+    return f"{place}loss: {len(losses)} x {f'{kind} {field}'.rstrip()} {fate}: {text}"
 
 
 def _example(loss: Loss) -> str:

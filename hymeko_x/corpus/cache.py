@@ -33,7 +33,7 @@ LOCK_SECONDS = 3600.0
 
 
 class Watch(Protocol):
-    """Who wants to see the progress of a download."""
+    """A callback that shows the progress of a download."""
 
     def __call__(self, package: WheelPackage, received: int) -> None:
         """Called about ten times a second with the bytes that have arrived so far."""
@@ -41,7 +41,7 @@ class Watch(Protocol):
 
 
 def _unwatched(package: WheelPackage, received: int) -> None:
-    """A watch that nobody looks at."""
+    """Shows nothing."""
 
 
 def cache_root(environ: Mapping[str, str]) -> Path:
@@ -80,7 +80,7 @@ def fetch(package: WheelPackage, root: Path, *, watch: Watch = _unwatched) -> Pa
 
 
 def _fetch_alone(package: WheelPackage, final: Path, watch: Watch) -> Path:
-    """Do it under a lock; whoever waited finds the work done. What a killed run left behind is removed first."""
+    """Do it under a lock; a process that waited finds the work done. What a killed run left behind is removed first."""
     from filelock import FileLock
 
     final.parent.mkdir(parents=True, exist_ok=True)
@@ -174,7 +174,7 @@ def _download_refusal(package: WheelPackage, log: str) -> Exception:
         message = f"{wanted} cannot be downloaded: the package index cannot be reached"
         return refuse(codes.OFFLINE, message, hint="are you online? what was fetched before stays usable")
     errors = [line.removeprefix("ERROR: ") for line in log.splitlines() if line.startswith("ERROR: ")]
-    words = errors[-1] if errors else (log.strip().splitlines() or ["pip said nothing"])[-1]
+    words = errors[-1] if errors else (log.strip().splitlines() or ["pip printed nothing"])[-1]
     return refuse(codes.PACKAGE_UNAVAILABLE, f"{wanted} cannot be downloaded: {words}", hint=f"the index must have {package.wheel}")
 
 

@@ -119,7 +119,7 @@ def _suffixes() -> tuple[str, ...]:
 
 
 def _format_of(name: str, head: bytes) -> Format | None:
-    """The format of a file that says what it is; HyMeKo only by its suffix."""
+    """The format of a file that can be recognised; HyMeKo only by its suffix."""
     try:
         format = formats.of_input(name, head)
     except Refusal:

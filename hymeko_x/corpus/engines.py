@@ -1,4 +1,4 @@
-"""Who runs the files: the processes of this machine, or a Ray cluster. Outcomes come as they are ready, in any order."""
+"""Engines that run the files: the processes of this machine, or a Ray cluster. Outcomes come as they are ready, in any order."""
 
 from __future__ import annotations
 
@@ -113,7 +113,7 @@ def _connected(address: str | None) -> Any:
 
 
 def _knock(address: str | None) -> None:
-    """Ray ends the process when a cluster does not answer, so somebody has to look first.
+    """Ray ends the process when a cluster does not answer, so its address is tried first.
 
     Raises: Refusal HX001.
     """
@@ -127,7 +127,7 @@ def _knock(address: str | None) -> None:
 
 
 def fetched(folder: str, cache: Path) -> str:
-    """The folder on this machine: itself, or a copy of what an fsspec URL names, fetched once by whoever is first.
+    """The folder on this machine: itself, or a copy of what an fsspec URL names, fetched once, by the first that needs it.
 
     Raises: Refusal HX001 when it cannot be fetched.
     """
@@ -156,7 +156,7 @@ def fetched(folder: str, cache: Path) -> str:
 def run(
     cases: tuple[Case, ...], plan: Plan, engine: Engine, store: Store, *, resume: bool = False, watch: Callable[[Outcome], None]
 ) -> Tables:
-    """The tables of all cases. ``watch`` is told of every outcome as it comes.
+    """The tables of all cases. ``watch`` is called with every outcome as it comes.
 
     Whenever the run is stopped, what it had found is kept, and a run with ``resume`` does the rest.
 

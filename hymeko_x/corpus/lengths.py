@@ -13,7 +13,7 @@ _XML_PARTS = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<[^<>\"']*(?:\"[^\"]*\"
 _XML_TOKEN = re.compile(r"\"[^\"]*\"|'[^']*'|</|/>|<\?|\?>|<!|[<>=]|[^\s<>=\"'/?]+")
 _BINARY = (b"PXR-USDC", b"PK\x03\x04")
 MOST_BYTES = 2**20
-"""Longer texts hold the points of meshes, which says nothing about the language; of them only the bytes are counted."""
+"""Longer texts hold the points of meshes, which are no measure of the language; of them only the bytes are counted."""
 
 
 class Lengths(Struct, frozen=True):

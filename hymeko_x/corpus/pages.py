@@ -29,7 +29,7 @@ _DOLLARS_PER_HOUR = 0.04
 def renewed(text: str, tables: Tables, pace: pl.DataFrame | None = None) -> str:
     """A page with what the results say in each of its blocks. ``pace`` is the table of ``benchmarks/pace.py``.
 
-    Raises: ValueError when it has no block, or one that nobody knows.
+    Raises: ValueError when it has no block, or one that is not known.
     """
     return renewed_blocks(text, "hymeko-x corpus stats", lambda name: _content(name, tables, pace))
 
@@ -38,7 +38,7 @@ def _content(name: str, tables: Tables, pace: pl.DataFrame | None) -> str:
     if name == "pace":
         return _pace(pace)
     if name not in _WRITERS:
-        raise ValueError(f"nobody knows what '{name}' is; known: {', '.join((*_WRITERS, 'pace'))}")
+        raise ValueError(f"there is no block '{name}'; known: {', '.join((*_WRITERS, 'pace'))}")
     return _WRITERS[name](tables)
 
 
@@ -56,10 +56,10 @@ def _summary(tables: Tables) -> str:
     asked, same = sum(row.accepted for row in rows), sum(row.same for row in rows)
     whole = len(robots.filter(robots["engine"] == "done")) - statistics.failures(tables)["key"].n_unique()
     poor = [f"{row.source} -> {row.target} ({row.share})" for row in rows if row.accepted and row.percent < ENOUGH]
-    said = f"Below {ENOUGH:g} %: {', '.join(poor)}." if poor else f"No pair of formats is below {ENOUGH:g} %."
+    below = f"Below {ENOUGH:g} %: {', '.join(poor)}." if poor else f"No pair of formats is below {ENOUGH:g} %."
     return (
         f"{len(robots)} files, of which the reference readers accept {accepted}. Of {asked} conversions of accepted files {same} give the "
-        f"same robot ({percentage(same, asked)}); {whole} files are the same robot in every format ({percentage(whole, accepted)}). {said}"
+        f"same robot ({percentage(same, asked)}); {whole} files are the same robot in every format ({percentage(whole, accepted)}). {below}"
     )
 
 
@@ -78,7 +78,7 @@ def _failures(tables: Tables) -> str:
 
 
 def _claims(tables: Tables) -> str:
-    """What the paper says, and what real robots gave."""
+    """The paper's figures, and those of real robots."""
     short = {(row.source, row.format, row.state): row for row in statistics.shortness(tables, ("code",))}
     lines = []
     for format, claimed in ((format.name, format.claimed_reduction) for format in formats.FORMATS):

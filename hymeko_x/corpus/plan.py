@@ -80,7 +80,7 @@ def pairs_of(words: str) -> tuple[tuple[str, str], ...]:
 
 
 _CPU_FACTOR = 4
-"""Processor seconds per wall-clock second of the limit: the last resort when nobody watches the clock any more."""
+"""Processor seconds per wall-clock second of the limit: the last resort when the process that watches the clock is gone."""
 
 _MEGABYTE = 1e6
 

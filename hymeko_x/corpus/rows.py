@@ -1,4 +1,4 @@
-"""What a batch run says about one robot: facts that every run repeats, and costs that no two runs share.
+"""The results of a batch run for one robot: facts that every run repeats, and costs that no two runs share.
 
 One :class:`Robot` per file, one :class:`Leg` per file and target format, one :class:`Cost` per measured step. Facts and costs
 are kept apart, so that the facts of two runs can be compared byte for byte.
@@ -26,7 +26,7 @@ CRASHED, TIMED_OUT, OUT_OF_MEMORY, UNREAD = "crashed", "timed out", "out of memo
 
 
 class Robot(Struct, frozen=True):
-    """One file as it was found. ``engine`` says what the format's reference reader did, ``reader`` which one that was where it
+    """One file as it was found. ``engine`` is the answer of the format's reference reader, ``reader`` which one that was where it
     accepts the file; ``whole`` is False where other files of the format are included, so that the lengths are not those of
     the robot."""
 
@@ -53,7 +53,7 @@ class Robot(Struct, frozen=True):
 
 
 class Leg(Struct, frozen=True):
-    """One conversion: the lengths of the result, what its format cannot say by kind, what was said by code, and the verdict.
+    """One conversion: the lengths of the result, what its format cannot represent by kind, the diagnostics by code, and the verdict.
 
     The lengths are those of the file without what it carries for the way back, which has ``residue`` bytes. Of the ``losses``,
     ``carried`` travel in there. ``verdict`` is empty where nothing was verified. ``failed`` are the verifier's quantities that
@@ -110,7 +110,7 @@ def outcome_from_json(document: Mapping[str, Any]) -> Outcome:
 
 
 def with_verdict(leg: Leg, verdict: Leg) -> Leg:
-    """A conversion with what the verifier said of it."""
+    """A conversion with its verdict."""
     return replace(leg, verdict=verdict.verdict, verdict_reason=verdict.verdict_reason, failed=verdict.failed)
 
 

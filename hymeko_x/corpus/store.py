@@ -156,7 +156,7 @@ def load(store: Store) -> Tables:
 
 
 def load_pace(store: Store) -> pl.DataFrame | None:
-    """How many robots each engine does in a second, if somebody has measured it beside these results."""
+    """How many robots each engine does in a second, if it was measured beside these results."""
     import polars as pl
 
     return pl.read_csv(io.BytesIO(store.get(PACE))) if store.has(PACE) else None

@@ -43,7 +43,7 @@ _PRELOADED = (
 
 _FROM_OUTSIDE = (-signal.SIGTERM, -getattr(signal, "SIGKILL", 9))
 _MOST_DEATHS = 3
-"""A process that somebody else ends is started again, so often; the kernel kills like this when memory runs out."""
+"""A process that is ended from outside is started again, so often; the kernel kills like this when memory runs out."""
 _NO_MEMORY = ("bad_alloc", "allocate memory", "MemoryError", "out of memory")
 
 
@@ -125,7 +125,7 @@ def supervise(case: Case, plan: Plan, folder: str, processes: Processes, task: T
 def _left(steps: tuple[str, ...], notes: Mapping[str, object], ends: Mapping[str, End]) -> tuple[str, ...]:
     """The steps that are still to be done: none when the source cannot be read, no verification of what was not written."""
     read = notes.get(READ)
-    if READ in ends or (isinstance(read, dict) and read["said"]["status"] != rows.DONE):
+    if READ in ends or (isinstance(read, dict) and read["found"]["status"] != rows.DONE):
         return ()
     open_steps = (step for step in steps if step not in notes and step not in ends)
     return tuple(step for step in open_steps if not (step.startswith(VERIFY) and step.replace(VERIFY, CONVERT, 1) in ends))
@@ -183,10 +183,10 @@ def _outcome(case: Case, plan: Plan, steps: tuple[str, ...], notes: Mapping[str,
 def _robot(case: Case, plan: Plan, notes: Mapping[str, dict[str, Any]], ends: Mapping[str, End]) -> Robot:
     if READ in ends:
         return Robot(case.key, case.package, case.format, status=ends[READ].status, reason=ends[READ].reason)
-    robot = Robot(**notes[READ]["said"])
+    robot = Robot(**notes[READ]["found"])
     if ENGINE in ends:
         return replace(robot, engine=ends[ENGINE].status, engine_reason=ends[ENGINE].reason)
-    return replace(robot, **notes[ENGINE]["said"]) if ENGINE in notes else robot
+    return replace(robot, **notes[ENGINE]["found"]) if ENGINE in notes else robot
 
 
 def _leg(robot: Robot, target: str, notes: Mapping[str, dict[str, Any]], ends: Mapping[str, End]) -> Leg:
@@ -196,7 +196,7 @@ def _leg(robot: Robot, target: str, notes: Mapping[str, dict[str, Any]], ends: M
         return replace(empty, status=rows.UNREAD, reason=robot.reason)
     if convert in ends:
         return replace(empty, status=ends[convert].status, reason=ends[convert].reason)
-    leg = Leg(**notes[convert]["said"])
+    leg = Leg(**notes[convert]["found"])
     if verify in ends:
         return replace(leg, verdict="not comparable", verdict_reason=f"the verifier {ends[verify].status}: {ends[verify].reason}")
-    return rows.with_verdict(leg, Leg(**notes[verify]["said"])) if verify in notes else leg
+    return rows.with_verdict(leg, Leg(**notes[verify]["found"])) if verify in notes else leg

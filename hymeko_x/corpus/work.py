@@ -67,40 +67,40 @@ def work(case: Case, plan: Plan, folder: str, scratch: str, steps: Sequence[str]
     """
     set_limits(plan.limits)
     bench = Path(scratch)
-    with _measured(case, READ, bench, steps) as said:
-        read = _read(case, Path(folder), said)
+    with _measured(case, READ, bench, steps) as found:
+        read = _read(case, Path(folder), found)
     if read is None:
         return
     desk = Desk(case, plan, Path(folder), bench, *read)
     if plan.verify:
-        with _measured(case, ENGINE, bench, steps) as said:
-            said.update(_ask_engine(desk))
+        with _measured(case, ENGINE, bench, steps) as found:
+            found.update(_ask_engine(desk))
     for step in steps:
         kind, _, target = step.partition(":")
         if target:
-            with _measured(case, step, bench, steps) as said:
+            with _measured(case, step, bench, steps) as found:
                 leg = _convert(desk, target) if kind == CONVERT else _verify(desk, target)
-                said.update(asdict(leg))
+                found.update(asdict(leg))
 
 
 @contextmanager
 def _measured(case: Case, step: str, scratch: Path, steps: Sequence[str]) -> Iterator[dict[str, Any]]:
-    """Note what the step says, and what it cost, once it has come to its end."""
-    said: dict[str, Any] = {}
+    """Note the result of the step, and its cost, once it has come to its end."""
+    found: dict[str, Any] = {}
     forget_peak()
     start, processor = time.perf_counter(), time.process_time()
-    yield said
+    yield found
     seconds = round(time.perf_counter() - start, 4)
     cost = Cost(case.key, step, seconds, round(time.process_time() - processor, 4), peak_megabytes())
     if step in steps:
         with (scratch / NOTES).open("a", encoding="utf-8") as notes:
-            notes.write(json.dumps({"step": step, "said": said, "cost": asdict(cost)}) + "\n")
+            notes.write(json.dumps({"step": step, "found": found, "cost": asdict(cost)}) + "\n")
 
 
 # ---- the source ------------------------------------------------------------------------------------------------------
 
 
-def _read(case: Case, folder: Path, said: dict[str, Any]) -> tuple[Source, Mechanism] | None:
+def _read(case: Case, folder: Path, found: dict[str, Any]) -> tuple[Source, Mechanism] | None:
     """The source and its mechanism, or None when our reader refuses it. Reading is confined to the folder."""
     report = Report()
     robot = Robot(case.key, case.package, case.format)
@@ -110,9 +110,9 @@ def _read(case: Case, folder: Path, said: dict[str, Any]) -> tuple[Source, Mecha
         robot = _as_found(robot, source)
         mechanism = pipeline.read(source, formats.by_name(case.format), report)
     except Refusal as refusal:
-        said.update(asdict(replace(robot, status=REFUSED, reason=_told(refusal, folder), diagnostics=_by_code(report, refusal))))
+        found.update(asdict(replace(robot, status=REFUSED, reason=_refusal_text(refusal, folder), diagnostics=_by_code(report, refusal))))
         return None
-    said.update(asdict(counted(robot, mechanism, report)))
+    found.update(asdict(counted(robot, mechanism, report)))
     return source, mechanism
 
 
@@ -144,7 +144,7 @@ def _ask_engine(desk: Desk) -> dict[str, str]:
     try:
         desk.model = model_of(desk.folder / desk.case.path, arguments=desk.source.arguments)
     except Refusal as refusal:
-        return {"engine": REFUSED, "engine_reason": _told(refusal, desk.folder)}
+        return {"engine": REFUSED, "engine_reason": _refusal_text(refusal, desk.folder)}
     return {"engine": DONE, "engine_reason": "", "reader": desk.model.engine}
 
 
@@ -164,7 +164,7 @@ def _convert(desk: Desk, target: str) -> Leg:
         disk.write_package(result.package, str(output), desk.source.files)
     except Refusal as refusal:
         status = "failed" if refusal.diagnostic.code == codes.BUG else REFUSED
-        return replace(leg, status=status, reason=_told(refusal, desk.folder, desk.scratch), diagnostics=_by_code(report, refusal))
+        return replace(leg, status=status, reason=_refusal_text(refusal, desk.folder, desk.scratch), diagnostics=_by_code(report, refusal))
     return replace(
         leg,
         files=len(result.package.files) + len(result.package.copies),
@@ -210,12 +210,12 @@ def _output(desk: Desk, target: str) -> Path:
 
 
 def _by_code(report: Report, refusal: Refusal | None = None) -> dict[str, int]:
-    said = [diagnostic.code.id for diagnostic in report] + ([refusal.diagnostic.code.id] if refusal else [])
-    return dict(sorted(Counter(said).items()))
+    ids = [diagnostic.code.id for diagnostic in report] + ([refusal.diagnostic.code.id] if refusal else [])
+    return dict(sorted(Counter(ids).items()))
 
 
 def _by_kind(losses: Sequence[Loss]) -> dict[str, int]:
-    """What a format cannot say, by what kind of element says what, and how it ends: ``joint dofs.limits.velocity dropped``."""
+    """The losses by kind of element, field and end: ``joint dofs.limits.velocity dropped``."""
     kinds = (f"{loss.element.split(' ')[0]} {_INDEX.sub('', loss.field).split(' ')[0]}".rstrip() + f" {_end(loss)}" for loss in losses)
     return dict(sorted(Counter(kinds).items()))
 
@@ -227,7 +227,7 @@ def _end(loss: Loss) -> str:
     return "new" if loss.before is None else "approximated"
 
 
-def _told(refusal: Refusal, *folders: Path) -> str:
+def _refusal_text(refusal: Refusal, *folders: Path) -> str:
     return _clean(f"{refusal.diagnostic.code.id}: {refusal.diagnostic.message}", *folders)
 
 

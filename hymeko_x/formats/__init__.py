@@ -100,7 +100,7 @@ class Format(Struct, frozen=True):
     includes: bytes | None = None
     """The pattern by which a file refers to others of its format, so that its length is not that of the robot."""
     holds_points: bool = False
-    """Whether its text holds the points of meshes, so that its length says nothing about the language."""
+    """Whether its text holds the points of meshes, so that its length is no measure of the language."""
     claimed_reduction: float | None = None
     """By how many percent HyMeKo is shorter, as the paper reports it."""
     colour: str = "#7f7f7f"

@@ -26,7 +26,7 @@ def misbehave(case: Case, plan: Plan, folder: str, scratch: str, steps: Sequence
         if step == where:
             DEEDS[deed](folder)
         said = said_at(case, step)
-        line = {"step": step, "said": said, "cost": asdict(Cost(case.key, step, 0.0, 0.0, 0.0))}
+        line = {"step": step, "found": said, "cost": asdict(Cost(case.key, step, 0.0, 0.0, 0.0))}
         with (Path(scratch) / NOTES).open("a") as notes:
             notes.write(json.dumps(line) + "\n")
 

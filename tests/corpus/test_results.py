@@ -33,7 +33,7 @@ def test_a_page_without_a_known_block_is_not_renewed() -> None:
     tables = load(Store(str(RESULTS)))
     with pytest.raises(ValueError, match="the page has no block"):
         pages.renewed("text", tables)
-    with pytest.raises(ValueError, match="nobody knows what 'nonsense' is"):
+    with pytest.raises(ValueError, match="there is no block 'nonsense'"):
         pages.renewed("<!-- nonsense: written by `hymeko-x corpus stats` -->\n<!-- end of nonsense -->", tables)
 
 
