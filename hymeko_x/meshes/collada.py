@@ -45,7 +45,7 @@ def collada_groups(data: bytes) -> list[MaterialGroup] | None:
     Source: COLLADA 1.4.1, sections 5 and 6 (core elements, geometry).
     """
     try:
-        return _File(_root(data)).tables()
+        return _File(_root(data)).groups()
     except (NotPlain, ValueError, OverflowError):  # what is not a number, and numbers that are too large
         return None
 
@@ -74,24 +74,24 @@ class _File:
         self.effects = _by_id(self.root, "{*}library_effects/{*}effect")
         self.images = _by_id(self.root, "{*}library_images/{*}image")
 
-    def tables(self) -> list[MaterialGroup]:
+    def groups(self) -> list[MaterialGroup]:
         metres = self._metres()
         found = []
         for shown, matrix in _shown(self._scene()):
             given = _given_materials(shown)
-            tables = self._geometry(_reference(shown.get("url")))
-            found += [self._coloured(_placed(table, matrix, metres), given) for table in tables]
+            groups = self._geometry(_reference(shown.get("url")))
+            found += [self._coloured(_placed(group, matrix, metres), given) for group in groups]
         return found
 
-    def _coloured(self, table: MaterialGroup, given: dict[str | None, Element]) -> MaterialGroup:
+    def _coloured(self, group: MaterialGroup, given: dict[str | None, Element]) -> MaterialGroup:
         """With the material that an instance of a geometry gives to the name that a primitive has for it."""
-        if table.material not in given:
-            return table._replace(material="", uv=None, corners=None)
-        name = _reference(given[table.material].get("target"))
+        if group.material not in given:
+            return group._replace(material="", uv=None, corners=None)
+        name = _reference(given[group.material].get("target"))
         entry = self._entry(name)
-        if table.uv is None or not entry.image:
-            return table._replace(material=name, entry=entry._replace(image=""), uv=None, corners=None)
-        return table._replace(material=name, entry=entry)
+        if group.uv is None or not entry.image:
+            return group._replace(material=name, entry=entry._replace(image=""), uv=None, corners=None)
+        return group._replace(material=name, entry=entry)
 
     def _entry(self, name: str) -> MaterialEntry:
         """The diffuse colour or image of a material."""
@@ -214,21 +214,21 @@ def _rotation(values: NDArray[Any]) -> NDArray[Any]:
 _MOVES = {"matrix": _matrix, "translate": _translation, "scale": _scaling, "rotate": _rotation}
 
 
-def _placed(table: MaterialGroup, matrix: NDArray[np.float64], metres: float) -> MaterialGroup:
+def _placed(group: MaterialGroup, matrix: NDArray[np.float64], metres: float) -> MaterialGroup:
     """The triangles where a node puts them, in m; a mirror turns them around, so that they still appearance outwards."""
-    points, faces, corners = table.points, table.faces, table.corners
+    points, faces, corners = group.points, group.faces, group.corners
     if not np.array_equal(matrix, np.eye(4)):
         points = points @ matrix[:3, :3].T + matrix[:3, 3]
     if np.linalg.det(matrix[:3, :3]) < 0.0:
         faces, corners = faces[:, ::-1], None if corners is None else corners[:, ::-1]
-    return table._replace(points=points * metres, faces=faces, corners=corners)
+    return group._replace(points=points * metres, faces=faces, corners=corners)
 
 
 # ---- geometry ----------------------------------------------------------------------------------------------------------------
 
 
 def _mesh_tables(mesh: Element, *, has_images: bool) -> list[MaterialGroup]:
-    """One table for each primitive; with texture coordinates only where there are images."""
+    """One group for each primitive; with texture coordinates only where there are images."""
     sources = {f"#{child.get('id')}": child for child in mesh if _tag(child) in ("source", "vertices")}
     known: dict[str, NDArray[np.float64]] = {}
     found = []
@@ -239,23 +239,23 @@ def _mesh_tables(mesh: Element, *, has_images: bool) -> list[MaterialGroup]:
             if name not in known:
                 known[name] = _points(sources.get(name), sources)
             faces = _triangles(child, index, known[name])
-            table = MaterialGroup(*used_rows(known[name], faces), child.get("material", ""))
+            group = MaterialGroup(*used_rows(known[name], faces), child.get("material", ""))
             map_name = _map_name(child) if has_images and places is not None else ""
             if places is not None and map_name in sources:
                 if map_name not in known:
                     known[map_name] = _floats(sources[map_name], (2, 3))[:, :2]
-                table = table._replace(uv=known[map_name], corners=_triangles(child, places, known[map_name]))
-            found.append(table)
+                group = group._replace(uv=known[map_name], corners=_triangles(child, places, known[map_name]))
+            found.append(group)
         elif tag not in ("source", "vertices") and tag not in _PASSED_OVER:
             raise NotPlain
     return found
 
 
-def _triangles(primitive: Element, index: NDArray[Any], table: NDArray[Any]) -> NDArray[Any]:
-    """The triangles of a primitive as rows of a table, of which ``index`` has one for each of its corners."""
+def _triangles(primitive: Element, index: NDArray[Any], rows: NDArray[Any]) -> NDArray[Any]:
+    """The triangles of a primitive as rows of an array, of which ``index`` has one for each of its corners."""
     is_cut = _tag(primitive) == "triangles"
     faces = index.reshape(-1, 3) if is_cut else fans(_numbers(_only(primitive.findall("{*}vcount")), _INDEX), index)
-    if faces.size and (faces.min() < 0 or faces.max() >= len(table)):
+    if faces.size and (faces.min() < 0 or faces.max() >= len(rows)):
         raise NotPlain
     return faces
 
@@ -263,7 +263,7 @@ def _triangles(primitive: Element, index: NDArray[Any], table: NDArray[Any]) -> 
 def _index(primitive: Element) -> tuple[NDArray[Any], NDArray[Any] | None]:
     """For each corner of a primitive the row of its point, and of its place in an image if it has one.
 
-    The rows of its normals and the rest stand between them.
+    The rows of its normals and of other inputs are between them.
     """
     inputs = [(int(item.get("offset", "")), item.get("semantic")) for item in primitive.iterfind("{*}input")]
     places = [offset for offset, semantic in inputs if semantic == "VERTEX"]

@@ -227,7 +227,7 @@ def _seen_through(entry: MaterialEntry, text: dict[str, list[str]]) -> MaterialE
 
 
 def opacity(dissolve: Sequence[str], transparency: Sequence[str]) -> float:
-    """How much a material hides of what is behind it, 0..1: what ``d`` says, else what ``Tr`` leaves of 1, by the words behind them.
+    """The opacity of a material, 0..1, from the words behind its statements: ``d``, else 1 minus ``Tr``.
 
     An invisible material is read as opaque: files have `Tr 1` (MeshLab) or `d 0` (Blender) for robots that are meant to be visible.
     """

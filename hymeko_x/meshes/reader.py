@@ -16,7 +16,7 @@ from hymeko_x.meshes.submesh import MOST_FACES, Appearance, ColouredMesh, Materi
 from hymeko_x.meshes.weld import joined
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 READABLE = (".stl", ".obj", ".dae", ".glb", ".gltf", ".ply", ".off")
 """The types of mesh files that can be read, by suffix."""
 _IN_SEVERAL_FILES = (".gltf", ".glb")
-"""Types whose triangles may stand in files of their own."""
+"""Types whose triangles may be in files of their own."""
 
 MOST_BYTES = 2**28
 
@@ -138,31 +138,22 @@ def inline_part(
 
 
 def read_whole(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Submesh:
-    """All triangles of a mesh file as one part without a appearance, in the order of the file; no image is opened for that.
+    """All triangles of a mesh file as one submesh without an appearance, in the order of the file; no image is opened for that.
 
     Raises: Unreadable.
     """
     check_file(data, suffix)
     if suffix == ".stl":
         return _welded(read_stl(data), None)
-    tables = _plain_tables(data, suffix)
-    if tables is None:
-        parts = read_scene(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, with_appearance=False)
-        tables = [(part.points, part.faces) for part in parts]
-    return sound((put_together(tables),))[0]
-
-
-def put_together(tables: list[Triangles]) -> Submesh:
-    """Points and triangles of several meshes as one; common points are shared, and those of no triangle are left out.
-
-    Raises: Unreadable when there is no triangle, or there are too many.
-    """
-    points, faces = put_in_one(tables)
-    return Submesh(points, _without_degenerate(faces))
+    found: Sequence[MaterialGroup | Submesh] = _plain_groups(data, suffix)
+    if not found:
+        found = read_scene(data, suffix, fetch if suffix in _IN_SEVERAL_FILES else _nothing_beside, with_appearance=False)
+    points, faces = put_in_one([(some.points, some.faces) for some in found])
+    return sound((Submesh(points, _without_degenerate(faces)),))[0]
 
 
 def put_in_one(tables: list[Triangles]) -> Triangles:
-    """The same with every triangle, also those that have no area.
+    """Points and triangles of several meshes as one; common points are shared, and those of no triangle are left out.
 
     Raises: Unreadable when there is no triangle, or there are too many.
     """
@@ -187,17 +178,19 @@ def _in_one_table(tables: list[Triangles]) -> Triangles:
     return points, np.concatenate([rows.astype(np.int64) + start for (_, rows), start in zip(tables, starts[:-1], strict=True)])
 
 
-def _plain_tables(data: bytes, suffix: str) -> list[Triangles] | None:
-    """Points and triangles of the two text formats that most robots use, where nothing about them is unusual."""
+def _plain_groups(
+    data: bytes, suffix: str, fetch: Callable[[str], bytes | None] | None = None, *, mapped: bool = False
+) -> list[MaterialGroup]:
+    """The triangles of each material of a plain COLLADA or OBJ file; nothing for other types, and where the file is not plain."""
     if suffix == ".dae":
         from hymeko_x.meshes.collada import collada_groups
 
-        return [(table.points, table.faces) for table in collada_groups(data) or ()] or None
+        return collada_groups(data) or []
     if suffix == ".obj":
         from hymeko_x.meshes.obj import obj_groups
 
-        return [(table.points, table.faces) for table in obj_groups(data) or ()] or None
-    return None
+        return obj_groups(data, fetch, mapped=mapped) or []
+    return []
 
 
 def _nothing_beside(name: str) -> bytes:
@@ -206,7 +199,7 @@ def _nothing_beside(name: str) -> bytes:
 
 
 def merged(parts: tuple[Submesh, ...]) -> Submesh:
-    """All triangles as one part without a appearance."""
+    """All triangles as one submesh without an appearance."""
     if len(parts) == 1:
         return parts[0]
     return _welded(np.concatenate([part.points[part.faces] for part in parts]), None)
@@ -227,7 +220,7 @@ def read_colours(data: bytes, suffix: str, fetch: Callable[[str], bytes], *, mis
     check_file(data, suffix)
     if suffix in _IN_SCENES:
         return _coloured([_piece_of(part) for part in read_parts(data, suffix, fetch)])
-    groups = [group for group in _groups_of(data, suffix, fetch) if len(group.faces)]
+    groups = [group for group in _plain_groups(data, suffix, lambda name: _fetched(name, fetch)) if len(group.faces)]
     if not groups:
         return ColouredMesh(read_whole(data, suffix, fetch))
     images = _images(groups, fetch)
@@ -248,25 +241,10 @@ def read_mapped(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> Subm
     Raises: Unreadable.
     """
     check_file(data, suffix)
-    from hymeko_x.meshes.obj import obj_groups
-
-    groups = [group for group in (obj_groups(data, mapped=True) or () if suffix == ".obj" else ()) if len(group.faces)]
+    groups = [group for group in (_plain_groups(data, suffix, mapped=True) if suffix == ".obj" else ()) if len(group.faces)]
     if not groups or any(group.uv is None for group in groups):
         return read_whole(data, suffix, fetch)
     return _coloured([(None, group) for group in groups]).mesh
-
-
-def _groups_of(data: bytes, suffix: str, fetch: Callable[[str], bytes]) -> list[MaterialGroup]:
-    """The triangles of each material; nothing where the file has none, or is not plain."""
-    if suffix == ".dae":
-        from hymeko_x.meshes.collada import collada_groups
-
-        return collada_groups(data) or []
-    if suffix != ".obj":
-        return []
-    from hymeko_x.meshes.obj import obj_groups
-
-    return obj_groups(data, lambda name: _fetched(name, fetch)) or []
 
 
 def _images(groups: list[MaterialGroup], fetch: Callable[[str], bytes]) -> dict[str, bytes]:

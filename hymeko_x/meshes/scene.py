@@ -1,4 +1,4 @@
-"""Mesh files of all types as trimesh reads them; the only place that knows it. Nothing is loaded from a network."""
+"""Mesh files of all types as trimesh reads them; the only user of that library. Nothing is loaded from a network."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def _placed_part(mesh: Any, matrix: Any, *, with_appearance: bool) -> Iterable[S
 
 
 def _metres(units: str | None) -> float:
-    """The length of the file's unit in m; 1 where it says nothing."""
+    """The length of the file's unit in m; 1 where it has none."""
     import trimesh
 
     return 1.0 if units is None else float(trimesh.units.unit_conversion(units, "meters"))

@@ -32,7 +32,7 @@ def read_stl(data: bytes) -> NDArray[Any]:
 
 
 def stl_is_exact(data: bytes) -> bool:
-    """Whether the bytes are a binary STL file whose length is what its header says."""
+    """Whether the bytes are a binary STL file whose length follows from its header."""
     return len(data) > _STL_HEADER + 4 and len(data) == _STL_HEADER + 4 + stl_faces(data) * _STL_FACE.itemsize
 
 

@@ -86,7 +86,7 @@ class LoadedMesh(Mesh, frozen=True, eq=False, kw_only=True):
 def fans(sizes: NDArray[Any], corners: NDArray[Any]) -> NDArray[Any]:
     """Polygons, given by how many corners each has and all their corners, as fans of triangles (n, 3).
 
-    Raises: ValueError when the corners are not as many as the sizes say, or a size is negative.
+    Raises: ValueError when the corners are not as many as the sizes add up to, or a size is negative.
     """
     if sizes.size and (sizes.min() < 0 or sizes.sum() != corners.size):
         raise ValueError("another number of corners than the polygons have")

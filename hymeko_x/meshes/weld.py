@@ -36,7 +36,7 @@ def joined(rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[np.int32]]:
 def _first_equal(rows: NDArray[Any]) -> NDArray[np.intp]:
     """For each row the number of the first one that equals it.
 
-    Equal rows share a slot, and the first row of a slot represents all in it. Rows that differ from the one that stands for them
+    Equal rows share a slot, and the first row of a slot represents all in it. Rows that differ from that one
     appearance for other slots among themselves; that those are few is likely, not certain.
     """
     first = _first_in_slots(rows, 0)

@@ -173,7 +173,7 @@ def _schema_aspect(schema: str, home: str) -> str:
 
 
 def text_with_residue(layer: Any, main: str, residue: str) -> bytes:
-    """A layer, which is ``main`` as text, with a residue in its header; what stands behind that stays as it is."""
+    """A layer, which is ``main`` as text, with a residue in its header; the prims stay as they are."""
     header = Sdf.Layer.CreateAnonymous(".usda")
     header.TransferContent(layer)
     for prim in list(header.rootPrims):

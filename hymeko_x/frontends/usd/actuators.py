@@ -82,8 +82,7 @@ def read_actuator(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder) -> N
     """The actuator of a prim with the edge to its targets; one without a known target stays an extra."""
     arcs = [arc for role, name in _relationships(prim) for arc in _arcs(prim, role, name, ends, builder)]
     if not arcs:
-        message = f"actuator '{prim.path}' has no target that exists; it is kept as written"
-        builder.report.warn(codes.UNDEFINED_REFERENCE, message, builder.origin, element=prim.path)
+        builder.warn(prim, codes.UNDEFINED_REFERENCE, f"actuator '{prim.path}' has no target that exists; it is kept as written")
         return
     parameters = _parameters(prim, builder)
     is_plain = arcs[0].target.kind != "body" and not any(name in _GENERAL for name, _ in parameters)

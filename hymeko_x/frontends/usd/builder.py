@@ -18,7 +18,7 @@ from hymeko_x.frontends.usd.transforms import Transforms, numbers_of
 from hymeko_x.ir.builder import Builder
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
+    from hymeko_x.diagnostics import Code, Report
     from hymeko_x.frontends.usd.prims import Prim
     from hymeko_x.frontends.usd.stage import Scene
     from hymeko_x.ir.mechanism import Id
@@ -67,6 +67,10 @@ class UsdBuilder(Builder, dict=True):
     def origin(self) -> Origin:
         """The file; USD keeps no lines."""
         return Origin(self.source.name)
+
+    def warn(self, prim: Prim, code: Code, message: str) -> None:
+        """Report a warning about a prim."""
+        self.report.warn(code, message, self.origin, element=prim.path)
 
     def new_id(self, prim: Prim, kind: str, fallback: str | None = None) -> Id:
         """A fresh id for the element that a prim represents, after the name that it has."""
@@ -124,8 +128,7 @@ class UsdBuilder(Builder, dict=True):
         if word in AXES:
             return word
         self.read_names.get(prim.path, set()).discard(name)
-        message = f"{prim.path}: {name} is '{word}'; {default} instead"
-        self.report.warn(codes.UNKNOWN_WORD, message, self.origin, element=prim.path)
+        self.warn(prim, codes.UNKNOWN_WORD, f"{prim.path}: {name} is '{word}'; {default} instead")
         return default
 
     def number(self, prim: Prim, name: str, default: float) -> float:

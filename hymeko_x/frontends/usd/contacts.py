@@ -87,8 +87,7 @@ def read_collision_groups(prims: list[Prim], builder: UsdBuilder) -> None:
     try:
         pairs = _pairs(groups, builder)
     except _TooMany as error:
-        message = f"collision groups with {error} are kept as written; no other format represents them"
-        builder.report.warn(codes.NOT_SAID, message, builder.origin, element=groups[0].path)
+        builder.warn(groups[0], codes.NOT_SAID, f"collision groups with {error} are kept as written; no other format represents them")
         return
     if not pairs:
         return

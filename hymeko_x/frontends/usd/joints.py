@@ -57,7 +57,7 @@ def read_joint(prim: Prim, builder: UsdBuilder) -> ReadJoint | None:
         return None
     if first.body == second.body:
         message = f"joint '{prim.path}' connects {first.body} with itself; it is kept as written and moves nothing"
-        builder.report.warn(codes.MISSING_PART, message, builder.origin, element=prim.path)
+        builder.warn(prim, codes.MISSING_PART, message)
         return None
     key = builder.new_id(prim, "joint")
     dofs = _dofs(prim, builder)

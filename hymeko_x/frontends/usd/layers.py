@@ -270,7 +270,7 @@ def _parts(layer: Any, spec: Any, known: dict[str, Any]) -> Iterator[Place]:
 
 
 def drop_unknown_types(layers: list[Any], source: Source, report: Report) -> None:
-    """Remove attributes of types that USD does not know, which have no usable value, from the layers (copies)."""
+    """Remove attributes of types that USD cannot read, which have no usable value, from the layers (copies)."""
     for layer in layers:
         for prim in specs(layer):
             unknown = [attribute for attribute in prim.attributes if attribute.typeName.type == Tf.Type.Unknown]

@@ -169,8 +169,7 @@ def read_subsets(mesh: Prim, shape: Id, builder: UsdBuilder) -> None:
         faces = np.asarray(prim.value("indices"), dtype=np.int64)
         why = _broken(faces, free)
         if why is not None:
-            message = f"subset '{prim.path}' {why}; it is kept as written"
-            builder.report.warn(codes.ASSET_UNREADABLE, message, builder.origin, element=prim.path)
+            builder.warn(prim, codes.ASSET_UNREADABLE, f"subset '{prim.path}' {why}; it is kept as written")
             continue
         free[faces] = False
         ordered = np.sort(faces)

@@ -45,8 +45,7 @@ def read_tendons(prims: list[Prim], ends: dict[str, DofRef], builder: UsdBuilder
         try:
             _read_tendon(prim, ends, builder, automatic=automatic)
         except _BadPath as error:
-            message = f"the path of tendon '{prim.path}' {error}; it is kept as written"
-            builder.report.warn(codes.UNDEFINED_REFERENCE, message, builder.origin, element=prim.path)
+            builder.warn(prim, codes.UNDEFINED_REFERENCE, f"the path of tendon '{prim.path}' {error}; it is kept as written")
 
 
 def _limits_are_automatic(prims: list[Prim]) -> bool:

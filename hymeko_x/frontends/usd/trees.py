@@ -35,7 +35,7 @@ def build_trees(joints: list[ReadJoint], roots: Iterable[Id], held: Iterable[Id]
     """Add every joint as an edge of a tree or as a loop, and a free joint above each body that is left without one.
 
     Returns the joints as they are in the result. ``roots`` are the bodies that have an articulation root, ``held`` those
-    whose simulation is switched off: they stand still.
+    whose simulation is switched off: they are fixed.
     """
     joints = merge_parallel(joints, builder)
     tree, loops = _split(joints)
