@@ -25,8 +25,9 @@ from msgspec import Struct
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.verify.dh.lines import Frame, Line, Link, link_between, motion
-from hymeko_x.verify.kinematics import prepare
+from hymeko_x.verify.kinematics import draw, prepare
 from hymeko_x.verify.model import WORLD, Array, Kind, KinematicModel
+from hymeko_x.verify.spatial import rigid, rotation_about
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -156,8 +157,6 @@ def _line(model: KinematicModel, index: int, parent: Array, rest: Array) -> Line
 
 
 def _displaced(kind: Kind, axis: Array, anchor: Array, by: float, pitch: float) -> Array:
-    from hymeko_x.verify.spatial import rigid, rotation_about
-
     if kind is Kind.SLIDE:
         return rigid(np.eye(3), by * axis)
     turn = rotation_about(axis, np.asarray(by))
@@ -245,7 +244,6 @@ def _joint_motions(row: Row, values: Array) -> Array:
 
 def error_against_pinocchio(model: KinematicModel, found: Table, samples: int = 100, seed: int = 0) -> float:
     """The largest entry in which the table's pose of the tip differs from Pinocchio's at random configurations."""
-    from hymeko_x.verify.kinematics import draw
     from hymeko_x.verify.pinocchio import build
 
     start, tip = found.ends

@@ -72,6 +72,7 @@ class _Limb(Struct, frozen=True, eq=False):
     pose: Array
     mass: float
     is_child: bool
+    has_name: bool
 
 
 def _pair_by_place(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], taken: set[int]) -> None:
@@ -86,7 +87,7 @@ def _pair_by_place(a: KinematicModel, b: KinematicModel, pairs: dict[int, int], 
         crowded = len(rivals) != free.count
         for limbs in [list(_limbs(a, k, pairs)) for k in rivals]:
             for limb in limbs:  # the first of a chain that has a counterpart
-                other = _counterpart((a, b), limb, free, crowded=crowded)
+                other = _counterpart(limb, free, crowded=crowded)
                 if other is not None:
                     pairs[limb.body] = other.body
                     taken.add(other.body)
@@ -104,7 +105,7 @@ def _limbs(model: KinematicModel, body: int, matched: Container[int]) -> Iterato
             return
         part = model.bodies[body]
         names, kinds, pose = names + _joint_names(part), kinds + _hinged(part), pose @ part.joint.placement
-        yield _Limb(body, names, kinds, pose, part.mass, depth == 0)
+        yield _Limb(body, names, kinds, pose, part.mass, depth == 0, part.name is not None)
         if not only_carries(model, body):
             return
         (body,) = model.children[body]
@@ -134,12 +135,12 @@ class _Free:
         near = {other.body: other for name in names for other in self._by_name.get(name, ())}
         return [other for other in near.values() if names <= set(other.names) or names >= set(other.names)]
 
-    def of_kinds(self, limb: _Limb) -> Iterator[_Limb]:
+    def of_kinds(self, limb: _Limb) -> Sequence[_Limb]:
         """Those whose dofs are of the same kinds."""
-        yield from self._by_kinds.get(limb.kinds, ())
+        return self._by_kinds.get(limb.kinds, ())
 
 
-def _counterpart(models: tuple[KinematicModel, KinematicModel], limb: _Limb, free: _Free, *, crowded: bool) -> _Limb | None:
+def _counterpart(limb: _Limb, free: _Free, *, crowded: bool) -> _Limb | None:
     """The limb with the same joints, else with the same kinds of dofs; where both have names, at the same place as well."""
     named = free.named(limb)
     if named:
@@ -148,17 +149,13 @@ def _counterpart(models: tuple[KinematicModel, KinematicModel], limb: _Limb, fre
     for other in free.of_kinds(limb):
         distance = _distance(limb, other)
         renamed = not crowded and limb.is_child and other.is_child and distance < _SAME_PLACE
-        if not renamed and not _one_is_unnamed(models, limb, other):
+        if not renamed and limb.has_name and other.has_name:
             continue
         if nearest is None or distance < nearest[0]:
             nearest = distance, other
         if distance == 0.0:
             break
     return nearest[1] if nearest else None
-
-
-def _one_is_unnamed(models: tuple[KinematicModel, KinematicModel], limb: _Limb, other: _Limb) -> bool:
-    return models[0].bodies[limb.body].name is None or models[1].bodies[other.body].name is None
 
 
 def _joint_names(body: Body) -> tuple[str, ...]:
