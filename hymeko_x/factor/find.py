@@ -215,25 +215,12 @@ class _Keys:
 
     def __init__(self, flat: Flat, dialect: Dialect) -> None:
         self._dialect = dialect
-        self.alike = self._alike(flat)
+        self.alike = flat.labels(lambda number: (flat.shape[number], *map(self._unsigned, flat.forms[number].texts)))
         self._flat = flat
         self.members: dict[Hashable, list[int]] = {}
         for number in range(len(flat)):
             for key in self.of(number):
                 self.members.setdefault(key, []).append(number)
-
-    def _alike(self, flat: Flat) -> list[int]:
-        """A number for each form; the same where shapes are, and numbers up to their signs."""
-        known: dict[Hashable, int] = {}
-        alike = [0] * len(flat)
-        children: dict[int, list[int]] = {}
-        for number in range(len(flat) - 1, -1, -1):
-            texts = tuple([self._unsigned(text) for text in flat.forms[number].texts])
-            key = (flat.shape[number], texts, tuple(children.pop(number, ())))
-            alike[number] = known.setdefault(key, len(known))
-            if flat.up[number] >= 0:
-                children.setdefault(flat.up[number], []).append(alike[number])
-        return alike
 
     @staticmethod
     def _unsigned(text: object) -> str:

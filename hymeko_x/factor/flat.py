@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.factor.forms import Call, Element, Hole, Signed
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable
+    from collections.abc import Callable, Hashable, Iterable
 
     from hymeko_x.factor.forms import Dialect, Item, Text
 
@@ -106,7 +106,7 @@ class Flat:
         """Where each form's texts start; one entry more than there are forms."""
         self._number(workspace.lists)
         self.size = self._measured()
-        self.shape = self._shapes()
+        self.shape = self.labels(self._shape_of)
 
     def __len__(self) -> int:
         return len(self.forms)
@@ -152,17 +152,20 @@ class Flat:
         arguments = [costs.argument + len(name) + self.length(text) for name, text, default in given if text != default]
         return costs.call + len(form.tag) + sum(arguments)
 
-    def _shapes(self) -> list[int]:
+    def labels(self, key_of: Callable[[int], Hashable]) -> list[int]:
+        """A label for each form; the same where the keys of forms and everything in them are the same."""
         known: dict[Hashable, int] = {}
-        shape = [0] * len(self.forms)
-        children: dict[int, list[int]] = {}
+        labels = [0] * len(self.forms)
+        below: dict[int, list[int]] = {}
         for number in range(len(self.forms) - 1, -1, -1):
-            form = self.forms[number]
-            below = tuple(reversed(children.pop(number, ())))
-            shape[number] = known.setdefault((form.tag, form.is_call, form.leaves, below), len(known))
+            labels[number] = known.setdefault((key_of(number), tuple(below.pop(number, ()))), len(known))
             if self.up[number] >= 0:
-                children.setdefault(self.up[number], []).append(shape[number])
-        return shape
+                below.setdefault(self.up[number], []).append(labels[number])
+        return labels
+
+    def _shape_of(self, number: int) -> Hashable:
+        form = self.forms[number]
+        return form.tag, form.is_call, form.leaves
 
     def length(self, text: Text) -> int:
         """The cost of a text."""

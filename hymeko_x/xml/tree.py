@@ -18,7 +18,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterator
+    from collections.abc import Iterator
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id
@@ -96,16 +96,8 @@ class Node:
         """The value of an attribute, or None when there is none."""
         return self.attributes.pop(attribute, None)
 
-    def take_child(self, tag: str) -> Node | None:
-        """The first unread child of this name, or None."""
-        for child in self.children:
-            if child.tag == tag and not child.taken:
-                child.taken = True
-                return child
-        return None
-
-    def take_child_among(self, tags: Container[str]) -> Node | None:
-        """The first unread child that has one of these names, or None."""
+    def take_child(self, *tags: str) -> Node | None:
+        """The first unread child with one of these names, or None."""
         for child in self.children:
             if child.tag in tags and not child.taken:
                 child.taken = True
@@ -118,12 +110,6 @@ class Node:
             if child.tag == tag and not child.taken:
                 child.taken = True
                 yield child
-
-    def take_whole(self, tag: str) -> None:
-        """Take the first child of this name with everything in it, without reading it."""
-        child = self.take_child(tag)
-        if child is not None:
-            child.attributes, child.children, child.text = {}, [], None
 
     def take_text(self) -> str:
         """The text of the element, stripped; none, and nothing taken, where there are elements between the words."""
@@ -154,11 +140,7 @@ class Node:
 
     # ---- looking without taking ------------------------------------------------------------------------------------------
 
-    def has(self, tag: str) -> bool:
-        """Whether a child of this name is unread."""
-        return any(child.tag == tag and not child.taken for child in self.children)
-
-    def has_among(self, tags: Container[str]) -> bool:
+    def has(self, *tags: str) -> bool:
         """Whether a child with one of these names is unread."""
         return any(child.tag in tags and not child.taken for child in self.children)
 

@@ -204,27 +204,15 @@ def _read_open_limits(joint: Node, builder: UrdfBuilder) -> Limits:
 
 
 def _bound(node: Node, name: str, builder: UrdfBuilder) -> float | None:
-    if name not in node.attributes:
-        return 0.0
-    return _limited(take_number(node, name, builder, instead="unlimited is used"))
+    return _rate(node, name, builder) if name in node.attributes else 0.0
 
 
 def _rates(node: Node, lower: float | None, upper: float | None, builder: UrdfBuilder) -> Limits:
-    return Limits(
-        lower,
-        upper,
-        _rate(node, "velocity", builder),
-        _rate(node, "effort", builder),
-        _rate(node, "acceleration", builder),
-        _rate(node, "jerk", builder),
-    )
+    return Limits(lower, upper, *(_rate(node, name, builder) for name in ("velocity", "effort", "acceleration", "jerk")))
 
 
 def _rate(node: Node, name: str, builder: UrdfBuilder) -> float | None:
-    return _limited(take_number(node, name, builder, instead="unlimited is used"))
-
-
-def _limited(value: float | None) -> float | None:
+    value = take_number(node, name, builder, instead="unlimited is used")
     return None if value is None or abs(value) >= words.NO_LIMIT else value
 
 
@@ -321,20 +309,18 @@ def _note_meaningless(joints: list[Node], builder: UrdfBuilder) -> None:
 
 def _take_usual(fixed: list[Node], tag: str) -> str:
     """The most frequent text of this child, taken out of the joints that have it; empty when it is not frequent enough."""
-    texts = [(node, _text(node, tag)) for node in fixed]
-    votes = Counter(text for _, text in texts if text)
+    found = [(child, f"<{tag}{attributes_text(child.attributes)}/>") for node in fixed if (child := _plain_child(node, tag))]
+    votes = Counter(text for _, text in found)
     text, count = votes.most_common(1)[0] if votes else ("", 0)
     if count < 2 or 2 * count < len(fixed):
         return ""
-    for node, own in texts:
+    for child, own in found:
         if own == text:
-            node.take_whole(tag)
+            child.taken, child.attributes = True, {}
     return text
 
 
-def _text(node: Node, tag: str) -> str:
-    """The first such child as text, if it has nothing but attributes; empty otherwise."""
+def _plain_child(node: Node, tag: str) -> Node | None:
+    """The first such child, if it has nothing but attributes."""
     child = next((child for child in node.children if child.tag == tag and not child.taken), None)
-    if child is None or child.children or child.text is not None:
-        return ""
-    return f"<{tag}{attributes_text(child.attributes)}/>"
+    return None if child is None or child.children or child.text is not None else child

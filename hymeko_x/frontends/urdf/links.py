@@ -110,13 +110,13 @@ def _read_geometry(shape: Node, builder: UrdfBuilder) -> tuple[Geometry, Id | No
     if node is None:
         _warn_empty(shape, f"<{shape.tag}> has no <geometry>", builder)
         return NoShape(), None
-    found = node.take_child_among(_GEOMETRIES)
+    found = node.take_child(*_GEOMETRIES)
     if found is None:
         tags = ", ".join(f"<{child.tag}>" for child in node.unread_children())
         known = ", ".join(f"<{tag}>" for tag in _GEOMETRIES)
         _warn_empty(node, f"<geometry> contains {tags or 'nothing'}, expected one of {known}", builder)
         return NoShape(), None
-    if node.has_among(_GEOMETRIES):
+    if node.has(*_GEOMETRIES):
         message = f"{node.subject}: <geometry> contains more than one shape; the first one counts, the others are kept as written"
         builder.warn(codes.REPEATED, node, message)
     if found.tag == "mesh":
