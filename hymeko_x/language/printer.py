@@ -28,16 +28,16 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
 
-class Block(NamedTuple):
+class TextBlock(NamedTuple):
     """A node whose signature and items are texts already, or blocks again."""
 
     signature: str
-    items: tuple[str | Block, ...]
+    items: tuple[str | TextBlock, ...]
 
 
-Piece = Item | Block | str
-_OPEN = (Node, Block)
-_ON_LINES_OF_THEIR_OWN = (Node, Block, Comment)
+Piece = Item | TextBlock | str
+_OPEN = (Node, TextBlock)
+_ON_LINES_OF_THEIR_OWN = (Node, TextBlock, Comment)
 
 WIDTH = 120
 INDENT = "  "
@@ -62,7 +62,7 @@ def print_document(document: Document) -> str:
     return "\n".join(lines) + "\n"
 
 
-def print_block(block: Block) -> str:
+def print_block(block: TextBlock) -> str:
     """The text of a document that is one block, ending in a newline."""
     return "\n".join(_lines(block)) + "\n"
 
@@ -129,7 +129,7 @@ def print_value(value: Value) -> str:
 # ---- layout ------------------------------------------------------------------------------------------------------------
 
 
-def _lines(item: Item | Block) -> list[str]:
+def _lines(item: Item | TextBlock) -> list[str]:
     """The lines of an item: one if it fits, else its parts indented. Works through nested blocks with a stack."""
     lines: list[str] = []
     stack: list[tuple[int, Piece]] = [(0, item)]
@@ -153,12 +153,12 @@ def _lines(item: Item | Block) -> list[str]:
 
 def _text(piece: Piece) -> str:
     """A piece in one line."""
-    if isinstance(piece, Block):
+    if isinstance(piece, TextBlock):
         return f"{piece.signature} {{ {_joined(piece.items)} }}" if piece.items else f"{piece.signature} {{}}"
     return piece if isinstance(piece, str) else print_item(piece)
 
 
-def _in_line(node: Node | Block, room: int) -> str | None:
+def _in_line(node: Node | TextBlock, room: int) -> str | None:
     """A node with items in one line; None when that is longer than ``room`` or has line breaks."""
     head = _head(node)
     used = len(head) + 4
@@ -171,11 +171,11 @@ def _in_line(node: Node | Block, room: int) -> str | None:
     return f"{head} {{ {' '.join(texts)} }}"
 
 
-def _head(node: Node | Block) -> str:
-    return node.signature if isinstance(node, Block) else _signature(node)
+def _head(node: Node | TextBlock) -> str:
+    return node.signature if isinstance(node, TextBlock) else _signature(node)
 
 
-def _is_long(node: Node | Block) -> bool:
+def _is_long(node: Node | TextBlock) -> bool:
     """Whether a node surely needs several lines; spares printing a whole robot to find out."""
     return len(node.items) > WIDTH // 2 or Comment in map(type, node.items)
 

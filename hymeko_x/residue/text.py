@@ -15,7 +15,7 @@ from hymeko_x.ir.mechanism import KINDS, WORLD, Extra, Id
 from hymeko_x.ir.parts import EdgePart, Weight
 from hymeko_x.ir.types import fits, is_sound
 from hymeko_x.ir.values import Pose
-from hymeko_x.language.printer import Block, print_block, print_field, print_item, print_name
+from hymeko_x.language.printer import TextBlock, print_block, print_field, print_item, print_name
 from hymeko_x.language.syntax import ArcItem, Field, Node, Ref
 from hymeko_x.language.values import decoded, decoded_turn, encoded, encoded_turn, given_fields, name_ref
 from hymeko_x.residue import Addition, Alignment, Change, Fold, Join, Removal, Residue, Run, Sides
@@ -44,7 +44,7 @@ class BadResidue(Exception):
 
 def print_residue(residue: Residue) -> str:
     """The text of a residue."""
-    sections: tuple[tuple[str, Iterable[str | Block]], ...] = (
+    sections: tuple[tuple[str, Iterable[str | TextBlock]], ...] = (
         ("names", _by_kind((new.kind, old.name, new.name) for old, new in residue.alignment.names)),
         ("folds", map(_fold, residue.alignment.folds)),
         ("joins", [print_field(join.shape.name, name_ref(join.twin.name)) for join in residue.alignment.joins]),
@@ -56,12 +56,12 @@ def print_residue(residue: Residue) -> str:
         ("order", map(_moved, residue.order)),
         ("known", _by_kind((*key, mark) for key, mark in residue.known)),
     )
-    items: list[str | Block] = [print_field("version", VERSION)]
+    items: list[str | TextBlock] = [print_field("version", VERSION)]
     items += ["plain"] if residue.sides.is_plain else []
-    items += [Block(name, found) for name, content in sections if (found := tuple(content))]
+    items += [TextBlock(name, found) for name, content in sections if (found := tuple(content))]
     if residue.layout is not None:
         items += [_id_list("layout", residue.layout), _id_list("unplaced", residue.unplaced)]
-    return print_block(Block("carried : residue", tuple(items)))
+    return print_block(TextBlock("carried : residue", tuple(items)))
 
 
 def parse_residue(text: str) -> Residue:
@@ -157,7 +157,7 @@ class _Sections:
 # ---- groups --------------------------------------------------------------------------------------------------------------
 
 
-def _grouped(entries: Iterable[tuple[Id, str]]) -> Iterator[Block]:
+def _grouped(entries: Iterable[tuple[Id, str]]) -> Iterator[TextBlock]:
     """The fields of each element; elements of one kind with the same fields share them."""
     fields: dict[Id, list[str]] = defaultdict(list)
     for key, item in entries:
@@ -166,7 +166,7 @@ def _grouped(entries: Iterable[tuple[Id, str]]) -> Iterator[Block]:
     for key, found in fields.items():
         groups[key.kind, *found].append(key.name)
     for (kind, *alike), names in groups.items():
-        yield Block(print_name(kind), (_list("of", names), *alike))
+        yield TextBlock(print_name(kind), (_list("of", names), *alike))
 
 
 def _by_kind(rows: Iterable[tuple[str, ...]]) -> list[str]:
@@ -205,9 +205,9 @@ def _renamed(kind: str, old: str, new: str) -> tuple[Id, Id]:
     return Id("body" if kind == WORLD.kind else kind, old), Id(kind, new)
 
 
-def _fold(fold: Fold) -> Block:
+def _fold(fold: Fold) -> TextBlock:
     chain, between = ([key.name for key in keys] for keys in (fold.chain, fold.between))
-    return Block(print_name(fold.joint.name), (_list("chain", chain), _list("between", between)))
+    return TextBlock(print_name(fold.joint.name), (_list("chain", chain), _list("between", between)))
 
 
 def _folded(node: Node) -> Fold:
@@ -262,14 +262,14 @@ def _path(key: Id, text: str) -> Path:
 # ---- elements --------------------------------------------------------------------------------------------------------------
 
 
-def _addition(addition: Addition) -> Block:
+def _addition(addition: Addition) -> TextBlock:
     """An element as a node: its part's fields, and an edge's arcs behind them."""
     key, part = addition
     data = part.data if isinstance(part, Edge) else part
     items = [print_field(name, value) for name, value in given_fields(data)]
     if isinstance(part, Edge):
         items += map(_arc_text, part.arcs)
-    return Block(f"{print_name(key.name)} : {print_name(key.kind)}", tuple(items))
+    return TextBlock(f"{print_name(key.name)} : {print_name(key.kind)}", tuple(items))
 
 
 def _arc_text(arc: RobotArc) -> str:
@@ -321,7 +321,7 @@ def _run(item: Field) -> Run:
 # ---- side tables -------------------------------------------------------------------------------------------------------------
 
 
-def _side_sections(sides: Sides) -> tuple[tuple[str, Iterable[str | Block]], ...]:
+def _side_sections(sides: Sides) -> tuple[tuple[str, Iterable[str | TextBlock]], ...]:
     return (
         ("notations", _grouped((key, print_field(name, encoded(text))) for key, name, text in sides.notations)),
         ("forgotten", map(print_name, sides.forgotten)),

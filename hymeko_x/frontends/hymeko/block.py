@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from hymeko_x.formats.hymeko import Word
-    from hymeko_x.frontends.hymeko.values import Parameter, ValueReader
+    from hymeko_x.frontends.hymeko.values import ParameterValue, ValueReader
 
 
 class Block:
@@ -75,7 +75,7 @@ class Block:
         else:
             self.fields.setdefault(item.name, item)
 
-    def take_rest(self, read: Callable[[Field], Parameter]) -> list[tuple[str, Parameter]]:
+    def take_rest(self, read: Callable[[Field], ParameterValue]) -> list[tuple[str, ParameterValue]]:
         """The fields of an open block that are neither words nor settings, in order, as names and values."""
         left = [item for item in self.free or () if isinstance(item.name, QuotedName) or item.name in self.fields]
         self.fields.clear()

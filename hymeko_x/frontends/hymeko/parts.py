@@ -12,7 +12,7 @@ from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_field
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
-    from hymeko_x.frontends.hymeko.values import Parameter
+    from hymeko_x.frontends.hymeko.values import ParameterValue
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.language.expansion import Element
     from hymeko_x.language.syntax import Item
@@ -67,9 +67,9 @@ def _renamed(items: tuple[Item, ...], kind: str) -> tuple[Item, ...]:
     return tuple(item._replace(name=aliases[item.name]) if is_field(item, aliases) else item for item in items)
 
 
-def _nested_parameters(builder: HymekoBuilder, block: Block) -> list[tuple[str, Parameter]]:
+def _nested_parameters(builder: HymekoBuilder, block: Block) -> list[tuple[str, ParameterValue]]:
     """Fields of nested nodes as parameters with dotted names; arcs of a vertex are left to be reported."""
-    found: list[tuple[str, Parameter]] = []
+    found: list[tuple[str, ParameterValue]] = []
     stack = [(node.name, node) for node in reversed(block.nodes)]
     block.nodes = []
     while stack:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.parts import Rgba
 
-Parameter = float | str | tuple[float, ...]
+ParameterValue = float | str | tuple[float, ...]
 
 DEFAULT_UNITS: Mapping[str, float] = MappingProxyType({"length": 1.0, "angle": unit_factor("deg") or 0.0, "mass": 1.0, "time": 1.0})
 """Plain numbers are metres, kilograms, seconds and, as published, degrees."""
@@ -112,7 +112,7 @@ class ValueReader(Struct):
             return self._rotated(xyz, value[1], item)
         raise self.refuse(item, f"a pose has a position and a rotation, not {len(value)} parts")
 
-    def parameter(self, item: Field) -> float | str | tuple[float, ...]:
+    def parameter(self, item: Field) -> ParameterValue:
         """A free value: a number, a text, or a list of numbers."""
         value = item.value
         if value is None:
