@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 from msgspec import Struct
 
-if TYPE_CHECKING:
-    from hymeko_x.ir.values import Vec3
+from hymeko_x.ir.values import Vec3  # noqa: TC001 - msgspec and hypothesis resolve the types of fields here
 
 
 class Box(Struct, frozen=True):
