@@ -11,7 +11,7 @@ import math
 from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from orjson import dumps
+from msgspec.json import encode
 
 from hymeko_x.ir.fields import Noted
 
@@ -321,7 +321,7 @@ def shortest_texts(values: tuple[float, ...]) -> str:
     A writer of JSON finds them in a tenth of the time; where it would not write them as Python does, Python is asked.
     """
     try:
-        text = dumps(values)[1:-1].decode()
+        text = encode(values)[1:-1].decode()
     except TypeError:  # a number that is no plain one of Python
         return ",".join([repr(float(value)) for value in values])
     if text.count(".") == len(values) and "e" not in text and "0.0000" not in text:
