@@ -5,12 +5,14 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 JOBS ?= 2
 
-.PHONY: demo test test-full lint types pytest bench peers fuzz corpus clean help
+.PHONY: demo test test-full test-format coverage lint types pytest bench peers fuzz corpus clean help
 
 help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
 	@echo "make test   ruff, mypy --strict, pytest"
 	@echo "make test-full  the same with the tests that take minutes: every robot, every size"
+	@echo "make test-format FORMAT=urdf  what belongs to one format, without real robots: under a minute"
+	@echo "make coverage  which lines no test runs; writes docs/coverage.md"
 	@echo "make bench  speed as ratios against yardsticks timed in the same run, other people's programs among them; writes README's table"
 	@echo "make peers  other people's programs, each into .peers/, and the tests that compare with them"
 	@echo "make fuzz   damage texts of every format and read them; PROFILE=ci (minutes) or nightly (hours)"
@@ -41,6 +43,15 @@ pytest: $(STAMP)
 
 test-full: lint types
 	$(BIN)/python -m pytest -W error -n $(JOBS) tests
+
+FORMAT ?= urdf
+
+test-format: $(STAMP)
+	$(BIN)/python -m pytest -q -W error -n $(JOBS) -m "not full and not corpus and not slow and not peers" $(if $(filter hymeko,$(FORMAT)),tests/language,tests/$(FORMAT))
+
+coverage: $(STAMP)
+	$(BIN)/python -m pytest -W error -n $(JOBS) -m "not full" --cov --cov-report=json:.coverage.json tests
+	$(BIN)/python -m tests.coverage_page .coverage.json docs/coverage.md
 
 bench: $(STAMP)
 	@$(BIN)/python -m peers || echo "what could not be installed has no figures"
