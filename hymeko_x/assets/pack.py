@@ -93,7 +93,7 @@ def keep_references(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
                 f"{key}: '{part.uri}' was not found; the reference is kept",
                 mechanism.origin(key),
                 element=str(key),
-                hint=_hint(part.uri),
+                hint=package_hint(part.uri),
             )
         elif uri != part.uri:
             changed[key] = replace(part, uri=uri)
@@ -127,7 +127,8 @@ def _is_below(uri: str) -> bool:
     return not (uri.startswith("/") or "\\" in uri or ".." in parts or _SCHEME.match(uri) or (len(uri) > 1 and uri[1] == ":"))
 
 
-def _hint(uri: str) -> str:
+def package_hint(uri: str) -> str:
+    """How the user can tell where the package of a uri is; empty for a uri without one."""
     match = re.match(r"(?:package|model):/*([^/]+)", uri, re.IGNORECASE)
     return f"--package {match[1]}=DIR tells where the package is" if match else ""
 

@@ -111,7 +111,7 @@ def test_a_visual_with_three_materials_becomes_three_shapes_with_their_colours()
     files = {"a.dae": dae()}
     result, new, _, said = packed(with_meshes(Mesh("a.dae"), material=Id("material", "grey")), files)
     assert list(new) == ["meshes/a.obj", "meshes/a_2.obj", "meshes/a_3.obj"]
-    assert said == ["note HX202 mesh 'a/0' has 3 looks; each one becomes a mesh of its own"]
+    assert said == ["note HX202 mesh 'a/0' has 3 appearances; each one becomes a mesh of its own"]
     views = result.shapes[body("b0")]
     assert [view.shape.name for view in views] == ["s0", None, None]
     assert [result.vertex(view.material, Material).rgba for view in views if view.material] == [
@@ -166,7 +166,7 @@ def test_a_look_that_lies_on_a_line_is_left_out(other: str) -> None:
     assert said[1:] == (
         ["note HX202 mesh 'a/0' shows 'red' on a line, where nothing is seen; that is left out"]
         if is_seen
-        else ["warning HX203 mesh 'a/0': 'a.obj' cannot be read: all of its looks lie on lines; left out: visual 's0' of body 'b0'"]
+        else ["warning HX203 mesh 'a/0': 'a.obj' cannot be read: all of its parts lie on lines; left out: visual 's0' of body 'b0'"]
     )
     assert compiles(with_meshes(Mesh("a.obj")), files).ngeom == is_seen
 

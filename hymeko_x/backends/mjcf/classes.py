@@ -35,7 +35,7 @@ _ROLES: Mapping[str, Mapping[str, str]] = MappingProxyType(
     }
 )
 """The attributes of geoms that are only seen and of those that only touch."""
-_WEIGHTLESS = {"density": "0"}
+_MASSLESS = {"density": "0"}
 
 ROLE_CLASSES = Classes(
     [
@@ -45,7 +45,7 @@ ROLE_CLASSES = Classes(
         )
     ]
 )
-"""The classes of every robot from elsewhere. Geoms weigh nothing: bodies have their inertials."""
+"""The classes of every robot from elsewhere. Geoms have no mass: bodies have their inertials."""
 
 _LIKENESS = frozenset(("type", "size", "material", "rgba", "density", "friction"))
 _MOTION = frozenset(("type", "axis", "range", "ref", "springref", "stiffness", "damping", "frictionloss", "armature", "actuatorfrcrange"))
@@ -176,7 +176,7 @@ def write_defaults(sheet: MjcfSheet) -> None:
     """<default> before all other sections, with the classes of the elements that are written there."""
     tags = [tag for tag in _walk(sheet.root) if tag.owner is not None]
     roles = {tag.attributes.get("class") for tag in tags if tag.name == "geom"}
-    shared = {(MAIN, "geom"): dict(_WEIGHTLESS)} if roles else {}
+    shared = {(MAIN, "geom"): dict(_MASSLESS)} if roles else {}
     shared |= {(role, "geom"): dict(attributes) for role, attributes in _ROLES.items() if role in roles}
     inside: dict[str, list[str]] = {MAIN: [role for role in _ROLES if role in roles]}
     for found in shared_attributes(tags).classes:

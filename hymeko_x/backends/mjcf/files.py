@@ -1,4 +1,4 @@
-"""Meshes and textures as MuJoCo takes them: binary STL, OBJ or MSH, one mesh per look, with a volume; PNG images."""
+"""Meshes and textures as MuJoCo takes them: binary STL, OBJ or MSH, one mesh per appearance, with a volume; PNG images."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.assets.pack import package_hint
 from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
 from hymeko_x.formats.mjcf.words import from_mjcf
@@ -46,10 +47,10 @@ _File = tuple[str, bytes]
 
 
 class _Piece(Struct, frozen=True):
-    """What one mesh vertex becomes: a file, the look that it brings along, and whether it is a mere surface."""
+    """What one mesh vertex becomes: a mesh of a single appearance, and the material of that, if the file has it."""
 
     mesh: Id
-    look: Id | None
+    material: Id | None
 
 
 class _Packing(Builder, kw_only=True):
@@ -61,7 +62,7 @@ class _Packing(Builder, kw_only=True):
     report: Report
     gone: list[Id] = field(default_factory=list)
     surfaces: set[Id] = field(default_factory=set)
-    looks: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
+    materials: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
     textured: frozenset[Id | None] = frozenset()
 
 
@@ -110,7 +111,7 @@ def _pack_texture(run: _Packing, key: Id, texture: Texture) -> bool:
 
 
 def _pack_meshes(run: _Packing) -> None:
-    """Every mesh once for the eye and once for contact, as far as the two differ."""
+    """Every mesh once to be shown and once for contact, as far as the two differ."""
     users = run.mechanism.shapes_by_mesh()
     for key, mesh in run.mechanism.vertices(Mesh):
         if mesh.uri is not None:
@@ -135,7 +136,7 @@ def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> 
         if reason is None:
             _add_mesh(run, key, replace(mesh, texcoords=(), texfaces=()), part)
             return
-        _say_converted(run, key, reason)
+        _report_converted(run, key, reason)
         bare = replace(mesh, vertices=(), faces=(), texcoords=(), texfaces=())
         _write_mesh(run, key, bare, part if has_places else replace(part, uv=None), key.name, solid=solid)
     except Unreadable as error:
@@ -162,7 +163,7 @@ def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> No
     try:
         parts = read_parts(data, suffix_of(path), _fetcher(run.files, path, mesh.uri or ""))
         hull = _pack_hull(run, key, mesh, parts, found) if felt else None
-        pieces = _pack_looks(run, key, mesh, parts, found, hull) if seen or not users else []
+        pieces = _pack_appearances(run, key, mesh, parts, found, hull) if seen or not users else []
     except Unreadable as error:
         _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"'{mesh.uri}' cannot be read: {error}")
         return
@@ -180,12 +181,11 @@ def _use(run: _Packing, view: ShapeView, mesh: Id | None, material: Id | None) -
 
 
 def _show(run: _Packing, view: ShapeView, pieces: list[_Piece]) -> None:
-    """A visual becomes one per look; the looks of the file count where it has some, as in RViz, else the shape's own."""
+    """A visual becomes one per appearance; those of the file count where it has some, as in RViz, else the shape's own."""
     for number, piece in enumerate(pieces):
-        shape = view.shape if piece.look is None else replace(view.shape, rgba=None)
-        edge = shape_edge(
-            shape if number == 0 else replace(shape, name=None), view.body, view.pose, piece.mesh, piece.look or view.material
-        )
+        shape = view.shape if piece.material is None else replace(view.shape, rgba=None)
+        shape = shape if number == 0 else replace(shape, name=None)
+        edge = shape_edge(shape, view.body, view.pose, piece.mesh, piece.material or view.material)
         key = view.id if number == 0 else run.names.take("shape", view.id.name)
         if edge != run.mechanism.graph.edges.get(key):
             run.edges[key] = edge
@@ -194,21 +194,22 @@ def _show(run: _Packing, view: ShapeView, pieces: list[_Piece]) -> None:
 # ---- one file --------------------------------------------------------------------------------------------------------------------
 
 
-def _pack_looks(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], file: _File, hull: Id | None) -> list[_Piece]:
-    """The meshes that show a file, one per look. The file itself where MuJoCo reads it and it has one look.
+def _pack_appearances(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], file: _File, hull: Id | None) -> list[_Piece]:
+    """The meshes that show a file, one per appearance. The file itself where MuJoCo reads it and it has one appearance.
 
     Raises: Unreadable.
     """
     if len(parts) > 1:
-        _say_converted(run, key, f"has {len(parts)} looks; each one becomes a mesh of its own")
+        _report_converted(run, key, f"has {len(parts)} appearances; each one becomes a mesh of its own")
         return [_own_mesh(run, mesh, part) for part in _with_surface(run, key, parts)]
     part = parts[0]
-    look = _material(run, part.appearance, mesh)
-    if hull == key and not _is_altered(part):
-        return [_Piece(key, look)]
+    material = _material(run, part.appearance, mesh)
+    is_altered = _is_flat(part) or len(part.points) < _FEWEST_POINTS  # then the mesh for contact is not also the one to show
+    if hull == key and not is_altered:
+        return [_Piece(key, material)]
     target = key if hull is None else run.names.take("mesh", f"{key.name}_visual")
     _store(run, target, key, mesh, part, file, solid=False)
-    return [_Piece(target, look)]
+    return [_Piece(target, material)]
 
 
 def _own_mesh(run: _Packing, mesh: Mesh, part: Submesh) -> _Piece:
@@ -231,7 +232,7 @@ def _pack_hull(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, ...], f
 
 
 def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Submesh, file: _File, *, solid: bool) -> None:
-    """The file as it is where MuJoCo takes it, else converted; the report says why."""
+    """The file as it is where MuJoCo takes it, else converted; with a note of the reason."""
     _check_surface(part)
     path, data = file
     suffix = suffix_of(path)
@@ -240,7 +241,7 @@ def _store(run: _Packing, target: Id, key: Id, mesh: Mesh, part: Submesh, file: 
         uri = run.shelf.copy(_MESHES, file_stem(mesh.uri or path), suffix, path, data)
         _add_mesh(run, target, replace(mesh, uri=uri), part)
         return
-    _say_converted(run, key, reason)
+    _report_converted(run, key, reason)
     _write_mesh(run, target, mesh, part, file_stem(mesh.uri or path), solid=solid, stl=suffix == ".stl")
 
 
@@ -267,9 +268,9 @@ def _with_surface(run: _Packing, key: Id, parts: tuple[Submesh, ...]) -> list[Su
         else:
             seen.append(part)
     if not seen:
-        raise Unreadable("all of its looks lie on lines")
+        raise Unreadable("all of its parts lie on lines")
     if lines:
-        _say_converted(run, key, f"shows {', '.join(lines)} on a line, where nothing is seen; that is left out")
+        _report_converted(run, key, f"shows {', '.join(lines)} on a line, where nothing is seen; that is left out")
     return seen
 
 
@@ -282,7 +283,7 @@ def _refusal(part: Submesh, suffix: str, data: bytes, *, solid: bool) -> str | N
     if solid and _is_flat(part):
         return f"is flat, and a hull needs a volume: it gets a thickness of {_THICKNESS:g} of its size"
     if len(part.points) < _FEWEST_POINTS:
-        return f"has {len(part.points)} points, and MuJoCo needs {_FEWEST_POINTS}: one of them is said again"
+        return f"has {len(part.points)} points, and MuJoCo needs {_FEWEST_POINTS}: one of them is written twice"
     if suffix == ".obj" and (objects := _objects_in(data)) > 1:
         return f"has {objects} objects, and MuJoCo keeps the first of them"
     if suffix == ".stl" and not stl_is_exact(data):
@@ -298,7 +299,7 @@ def _objects_in(obj: bytes) -> int:
 
 
 def _write_mesh(run: _Packing, key: Id, mesh: Mesh, part: Submesh, stem: str, *, solid: bool, stl: bool = False) -> None:
-    """A converted file: STL stays STL where that is enough, all else becomes OBJ, which may say a point twice."""
+    """A converted file: STL stays STL where that is enough, all else becomes OBJ, which may hold a point twice."""
     import numpy as np
 
     from hymeko_x.meshes.measures import thickened
@@ -348,24 +349,19 @@ def _is_sheet(part: Submesh, mesh: Mesh) -> bool:
     return volume_of_sheets(part) * abs(x * y * z) < _LEAST_VOLUME
 
 
-def _is_altered(part: Submesh) -> bool:
-    """Whether the mesh for contact is not also the one to show."""
-    return _is_flat(part) or len(part.points) < _FEWEST_POINTS
+# ---- appearances ----------------------------------------------------------------------------------------------------------------------
 
 
-# ---- looks ----------------------------------------------------------------------------------------------------------------------
-
-
-def _material(run: _Packing, look: Appearance | None, mesh: Mesh) -> Id | None:
-    """The material of a file's look; equal looks share one."""
-    if look is None or (look.rgba is None and look.image is None):
+def _material(run: _Packing, found: Appearance | None, mesh: Mesh) -> Id | None:
+    """The material of an appearance in a file; equal ones share it."""
+    if found is None or (found.rgba is None and found.image is None):
         return None
-    known = run.looks.get((look.rgba, look.image))
+    known = run.materials.get((found.rgba, found.image))
     if known is not None:
         return known
-    key = run.looks[look.rgba, look.image] = run.add_material(Material(look.name or file_stem(mesh.uri or ""), look.rgba))
-    if look.image is not None:
-        run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", look.image)), key)
+    key = run.materials[found.rgba, found.image] = run.add_material(Material(found.name or file_stem(mesh.uri or ""), found.rgba))
+    if found.image is not None:
+        run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", found.image)), key)
     return key
 
 
@@ -382,22 +378,21 @@ def _fetcher(files: Files, path: str, uri: str) -> Callable[[str], bytes]:
     return fetch
 
 
-# ---- words -----------------------------------------------------------------------------------------------------------------------
+# ---- diagnostics -----------------------------------------------------------------------------------------------------------------------
 
 
-def _say_converted(run: _Packing, key: Id, words: str) -> None:
-    run.report.note(codes.ASSET_CONVERTED, f"{key} {words}", run.mechanism.origin(key), element=str(key))
+def _report_converted(run: _Packing, key: Id, message: str) -> None:
+    run.report.note(codes.ASSET_CONVERTED, f"{key} {message}", run.mechanism.origin(key), element=str(key))
 
 
-def _leave_out(run: _Packing, key: Id, users: list[ShapeView], code: Code, words: str) -> None:
+def _leave_out(run: _Packing, key: Id, users: list[ShapeView], code: Code, message: str) -> None:
     """The mesh and every shape of it; the warning names them."""
     kinds = ", ".join(f"{view.shape.role.value} '{view.shape.name or view.id.name}' of {view.body}" for view in users)
     uri = run.mechanism.vertex(key, Mesh).uri
-    _warn(run, key, code, f"{words}; left out: {kinds or 'nothing that is shown'}", uri)
+    _warn(run, key, code, f"{message}; left out: {kinds or 'nothing that is shown'}", uri)
     run.gone += [key, *(view.id for view in users)]
 
 
-def _warn(run: _Packing, key: Id, code: Code, words: str, uri: str | None = None) -> None:
-    package = re.match(r"(?:package|model):/*([^/]+)", uri or "", re.IGNORECASE)
-    hint = f"--package {package[1]}=DIR tells where the package is" if package and code is codes.ASSET_NOT_FOUND else ""
-    run.report.warn(code, f"{key}: {words}", run.mechanism.origin(key), element=str(key), hint=hint)
+def _warn(run: _Packing, key: Id, code: Code, message: str, uri: str | None = None) -> None:
+    hint = package_hint(uri or "") if code is codes.ASSET_NOT_FOUND else ""
+    run.report.warn(code, f"{key}: {message}", run.mechanism.origin(key), element=str(key), hint=hint)

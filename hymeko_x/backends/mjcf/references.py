@@ -28,7 +28,7 @@ _KEPT = ("asset", "deformable")
 def pack_native(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """The mechanism with every file copied below the output, or referred to from there.
 
-    The folders that <compiler> names stay as long as no file has to move; else every path is said in full.
+    The folders that <compiler> names stay as long as no file has to move; else every path is written in full.
     """
     settings = _settings(mechanism)
     packed = keep_references(mechanism, shelf, files, report, Keep.PACKAGES_AND_PATHS)
@@ -50,7 +50,7 @@ def _settings(mechanism: Mechanism) -> Settings:
 
 
 def _with_files(mechanism: Mechanism) -> list[tuple[Id, Extra]]:
-    """What goes along as it is and may name files: sections of the whole, and the sides of a texture."""
+    """The extras that may name files: sections of the whole, and the sides of a texture."""
     found = [(ROOT, extra) for extra in mechanism.extras.get(ROOT, ()) if _names_files(extra)]
     for key, _ in mechanism.vertices(Texture):
         found += [(key, extra) for extra in mechanism.extras.get(key, ()) if extra.path.startswith("@file")]

@@ -72,7 +72,7 @@ RULES: tuple[Rule, ...] = (
 
 
 def _make_tensors_physical(mechanism: Mechanism, context: Context) -> Mechanism:
-    """Inertias as they are where the file tells MuJoCo to repair those that it would refuse otherwise."""
+    """Inertias as they are where <compiler> makes MuJoCo repair those that it would refuse otherwise."""
     return mechanism if compiler_has(mechanism, ("balanceinertia", "boundinertia")) else make_tensors_physical(mechanism, context)
 
 
@@ -87,7 +87,7 @@ def _drop_empty_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
 
 
 _COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})
-"""How many numbers place a dof, and how many say how fast it moves; one of each for all others."""
+"""How many coordinates and velocities a dof has; one of each for all others."""
 _KEY = re.compile(r"<key\b[^>]*?/>|<key\b.*?</key>", re.DOTALL)
 _NUMBERS = re.compile(r'\b(qpos|qvel|ctrl)="([^"]*)"')
 

@@ -15,7 +15,7 @@ import msgspec
 
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import Classes, merge
-from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, Settings, parameter_text, parameter_value, plan_of
+from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, Settings, inherited_values, parameter_text, parameter_value
 from hymeko_x.formats.mjcf.notations import frame
 from hymeko_x.formats.mjcf.places import same_value
 from hymeko_x.formats.mjcf.schema import attributes_of
@@ -30,7 +30,7 @@ from hymeko_x.xml.printing import Tag
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from hymeko_x.formats.mjcf.codec import Group, Plan
+    from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism, RobotArc
     from hymeko_x.ir.parts import Dof, Parameters
@@ -47,7 +47,7 @@ _REFERENCES = frozenset(("mesh", "material", "texture"))
 
 @dataclass(slots=True)
 class MjcfSheet:
-    """The document and what it says about itself. ``kept``: the sections and comments at top level that are written as they were."""
+    """The document, its settings and its classes. ``kept``: the sections and comments at top level that are written as they were."""
 
     mechanism: Mechanism
     root: Tag
@@ -56,7 +56,7 @@ class MjcfSheet:
     classes: Classes
     kept: list[tuple[str, Extra]] = field(default_factory=list)
     rank: Mapping[Id, int] = field(default_factory=dict)
-    plans: dict[tuple[int, int], Plan] = field(default_factory=dict)
+    known: dict[tuple[int, int], dict[str, Any]] = field(default_factory=dict)
 
     # ---- names -----------------------------------------------------------------------------------------------------------
 
@@ -153,12 +153,11 @@ class MjcfSheet:
         return found
 
     def _inherited(self, groups: tuple[Group, ...], base: Mapping[str, str]) -> Mapping[str, Any]:
-        """The values of an element that has no attributes of its own; without those that MuJoCo would refuse."""
+        """The values of an element that has no attributes of its own; by the identities of both, which live as long as the sheet."""
         place = id(groups), id(base) if base else 0
-        plan = self.plans.get(place)
-        if plan is None:
-            plan = self.plans[place] = plan_of(groups, self.settings, base)
-        return plan.silent
+        if place not in self.known:
+            self.known[place] = inherited_values(groups, base, self.settings)
+        return self.known[place]
 
     def _means(self, group: Group, attributes: Mapping[str, str], value: Any) -> bool:
         try:

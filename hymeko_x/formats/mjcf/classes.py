@@ -30,14 +30,14 @@ FAMILIES: Mapping[str, str] = MappingProxyType(
 """Under which element of <default> the defaults of an element stand, where that is not its own tag."""
 
 TURNS = ("quat", "euler", "axisangle", "xyaxes", "zaxis")
-"""The attributes that say an orientation; an element's own replaces whichever the class has."""
+"""The attributes for an orientation; an element's own one replaces that of its class."""
 ANY_TURN = frozenset(TURNS)
 
 ACTUATORS = frozenset(
     ("general", "motor", "position", "velocity", "intvelocity", "orientation", "pid", "damper", "cylinder", "muscle", "adhesion", "dcmotor")
 )
 """In <default> all of these set one and the same actuator: what they have in common is inherited across tags, and the last one
-says which kind it is, so that gains of another tag before it are gone."""
+decides which kind it is, so that gains of another tag before it are gone."""
 
 _SHARED = frozenset(
     (

@@ -1,17 +1,18 @@
-"""What the attributes of MJCF elements mean, and how they are said: the same table for reader and writer.
+"""What the attributes of MJCF elements mean: one table for reader and writer.
 
 A :class:`Group` turns the attributes that belong together into one value of the IR and back; ``seen`` is what
-MuJoCo makes of them, so that two ways of saying the same can be told from two ways of saying almost the same.
+MuJoCo makes of them, so that two texts of the same meaning are distinguished from two of almost the same.
 """
 
 from __future__ import annotations
 
 import math
+from contextlib import suppress
 from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from msgspec import Struct, field
+from msgspec import Struct
 
 from hymeko_x.formats.mjcf.classes import ANY_TURN, TURNS
 from hymeko_x.ir.values import (
@@ -27,12 +28,12 @@ from hymeko_x.ir.written import pose_as_written
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Mapping
+    from collections.abc import Callable, Mapping
 
     from hymeko_x.ir.values import Vec3
 
 DEGREE = math.pi / 180.0
-"""MuJoCo multiplies with this number, and so does everybody who wants the same bits."""
+"""MuJoCo multiplies with this number; another one would give other bits."""
 
 
 class BadAttribute(Exception):
@@ -45,7 +46,7 @@ class BadAttribute(Exception):
 
 
 class Settings(Struct, frozen=True):
-    """What <compiler> says about the meaning of numbers and file names."""
+    """What <compiler> settles about the meaning of numbers and file names."""
 
     degree: bool = True
     eulerseq: str = "xyz"
@@ -56,17 +57,10 @@ class Settings(Struct, frozen=True):
     strip_path: bool = False
 
 
-def _unknown(value: Any, said: Mapping[str, str], settings: Settings) -> bool:
-    """What nobody can tell without writing the value."""
-    return False
-
-
 class Group(Struct, frozen=True, eq=False):
     """Attributes that make one value. Each is equal to itself alone.
 
-    ``needs``: attributes of other groups on which their meaning depends. ``exact``: what is written always says the same.
-    ``repeats``: whether what is written surely says the same as the attributes that the value was just read from, which is seen
-    without writing it, since numbers survive being written; where it does not know, it is asked what is written.
+    ``needs``: attributes of other groups on which their meaning depends. ``exact``: what is written always means the same.
     """
 
     key: str
@@ -76,78 +70,23 @@ class Group(Struct, frozen=True, eq=False):
     seen: Callable[[Mapping[str, str], Settings], Any]
     needs: tuple[str, ...] = ()
     exact: bool = False
-    repeats: Callable[[Any, Mapping[str, str], Settings], bool] = _unknown
 
 
-Asked = tuple[Group, tuple[str, ...]]
-"""A group, and those of its attributes that an element says itself."""
-
-
-class Plan(Struct, frozen=True):
-    """How to read all groups of an element without asking each of them: most elements say few of their attributes.
-
-    ``silent`` are the values of the groups of which the element itself says nothing, only ``base``, which its class gives;
-    ``places`` are, by attribute, the groups that look at it, and ``always`` those that have to be asked anyway.
-    """
-
-    groups: tuple[Group, ...]
-    base: Mapping[str, str]
-    silent: Mapping[str, Any]
-    places: Mapping[str, tuple[int, ...]]
-    always: frozenset[int]
-    known: dict[tuple[str, ...], list[Asked]] = field(default_factory=dict)
-
-    def said_in(self, attributes: Iterable[str]) -> list[Asked]:
-        """The groups that these attributes are for, in order."""
-        names = tuple(attributes)
-        asked = self.known.get(names)
-        if asked is None:
-            found = set(self.always)
-            for name in names:
-                found.update(self.places.get(name, ()))
-            groups = [self.groups[place] for place in sorted(found)]
-            asked = self.known[names] = [(group, tuple([name for name in group.names if name in names])) for group in groups]
-        return asked
-
-
-def plan_of(groups: tuple[Group, ...], settings: Settings, base: Mapping[str, str]) -> Plan:
-    """The plan for elements to which their class gives ``base``, in a file with these settings."""
-    silent, always = _said_by(base, groups, settings) if base else _unsaid(groups, settings)
-    return Plan(groups, base, silent, _places_of(groups), always)
-
-
-@lru_cache(256)
-def _places_of(groups: tuple[Group, ...]) -> Mapping[str, tuple[int, ...]]:
-    places: dict[str, tuple[int, ...]] = {}
-    for place, group in enumerate(groups):
-        for name in (*group.names, *group.needs):
-            places[name] = (*places.get(name, ()), place)
-    return MappingProxyType(places)
-
-
-@lru_cache(256)
-def _unsaid(groups: tuple[Group, ...], settings: Settings) -> tuple[Mapping[str, Any], frozenset[int]]:
-    return _said_by({}, groups, settings)
-
-
-def _said_by(base: Mapping[str, str], groups: tuple[Group, ...], settings: Settings) -> tuple[Mapping[str, Any], frozenset[int]]:
-    """The values of the groups, and the places of those that have none."""
-    silent: dict[str, Any] = {}
-    always: set[int] = set()
-    for place, group in enumerate(groups):
-        try:
-            silent[group.key] = group.read(base, settings)
-        except BadAttribute:
-            always.add(place)
-    return MappingProxyType(silent), frozenset(always)
+def inherited_values(groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> dict[str, Any]:
+    """The values of an element to which its class gives ``base`` and that has no attributes itself; without those that MuJoCo refuses."""
+    found: dict[str, Any] = {}
+    for group in groups:
+        with suppress(BadAttribute):
+            found[group.key] = group.read(base, settings)
+    return found
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------
 
 
-def numbers_of(said: Mapping[str, str], name: str, least: int, most: int) -> tuple[float, ...] | None:
+def numbers_of(attributes: Mapping[str, str], name: str, least: int, most: int) -> tuple[float, ...] | None:
     """The numbers of an attribute, or None when it is not there. Raises: BadAttribute."""
-    text = said.get(name)
+    text = attributes.get(name)
     if text is None:
         return None
     found = read_numbers(text)
@@ -157,9 +96,9 @@ def numbers_of(said: Mapping[str, str], name: str, least: int, most: int) -> tup
     return found
 
 
-def vector_of(said: Mapping[str, str], name: str, default: Vec3) -> Vec3:
+def vector_of(attributes: Mapping[str, str], name: str, default: Vec3) -> Vec3:
     """Three numbers."""
-    found = numbers_of(said, name, 3, 3)
+    found = numbers_of(attributes, name, 3, 3)
     return default if found is None else found  # type: ignore[return-value]
 
 
@@ -187,9 +126,9 @@ def angle_text(angle: float, degree: bool) -> str:
     return degrees_text(angle) if degree else number_text(angle)
 
 
-def plain(said: Mapping[str, str], names: tuple[str, ...]) -> tuple[Any, ...]:
+def plain(attributes: Mapping[str, str], names: tuple[str, ...]) -> tuple[Any, ...]:
     """Attributes as numbers where they are numbers, else as text: what does not depend on spelling."""
-    return tuple([None if (text := said.get(name)) is None else read_numbers(text) or text for name in names])
+    return tuple([None if (text := attributes.get(name)) is None else read_numbers(text) or text for name in names])
 
 
 _TURN_COUNTS = MappingProxyType({"quat": 4, "axisangle": 4, "xyaxes": 6})
@@ -197,13 +136,13 @@ _TURN_COUNTS = MappingProxyType({"quat": 4, "axisangle": 4, "xyaxes": 6})
 # ---- orientations -----------------------------------------------------------------------------------------------------------
 
 
-def written_turn(said: Mapping[str, str], settings: Settings) -> Written | None:
+def written_turn(attributes: Mapping[str, str], settings: Settings) -> Written | None:
     """The orientation as it is written; angles in rad. None for none, or for no rotation. Raises: BadAttribute."""
-    if ANY_TURN.isdisjoint(said):
+    if ANY_TURN.isdisjoint(attributes):
         return None
-    turn = next(turn for turn in TURNS if turn in said)
+    turn = next(turn for turn in TURNS if turn in attributes)
     count = _TURN_COUNTS.get(turn, 3)
-    numbers = numbers_of(said, turn, count, count)
+    numbers = numbers_of(attributes, turn, count, count)
     assert numbers is not None
     if turn == "euler":
         if settings.degree:
@@ -214,15 +153,15 @@ def written_turn(said: Mapping[str, str], settings: Settings) -> Written | None:
     return Written(turn, numbers)
 
 
-def read_pose(said: Mapping[str, str], settings: Settings) -> Pose:
+def read_pose(attributes: Mapping[str, str], settings: Settings) -> Pose:
     """``pos`` and an orientation, or ``fromto``. Raises: BadAttribute."""
-    if "fromto" in said:
-        points = numbers_of(said, "fromto", 6, 6)
+    if "fromto" in attributes:
+        points = numbers_of(attributes, "fromto", 6, 6)
         assert points is not None
         written: Written | None = Written("fromto", points)
     else:
-        written = written_turn(said, settings)
-    xyz = vector_of(said, "pos", ZERO)
+        written = written_turn(attributes, settings)
+    xyz = vector_of(attributes, "pos", ZERO)
     if written is None:
         return Pose(xyz)
     try:
@@ -252,36 +191,27 @@ def write_pose(value: Pose, settings: Settings) -> dict[str, str]:
     """``pos`` and the orientation, or ``fromto``."""
     if value.written is not None and value.written.kind == "fromto":
         return {"fromto": numbers_text(value.written.numbers)}
-    said = {} if value.xyz == ZERO else {"pos": numbers_text(value.xyz)}
-    return said | write_turn(value.quat, value.written, settings)
+    attributes = {} if value.xyz == ZERO else {"pos": numbers_text(value.xyz)}
+    return attributes | write_turn(value.quat, value.written, settings)
 
 
 def same_pose(a: Pose, b: Pose) -> bool:
-    """Whether two poses are equal and written alike."""
+    """Whether two poses are equal and written in the same way."""
     return a == b and a.written == b.written
 
 
 POSE_NAMES = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")
 
 
-def seen_pose(said: Mapping[str, str], settings: Settings) -> Any:
-    if "fromto" in said:
-        return plain(said, ("fromto",))
-    turn = plain(said, TURNS)
-    return read_numbers(said.get("pos", "0 0 0")), turn if any(turn) else ((1.0, 0.0, 0.0, 0.0), *[None] * 4)
+def seen_pose(attributes: Mapping[str, str], settings: Settings) -> Any:
+    if "fromto" in attributes:
+        return plain(attributes, ("fromto",))
+    turn = plain(attributes, TURNS)
+    return read_numbers(attributes.get("pos", "0 0 0")), turn if any(turn) else ((1.0, 0.0, 0.0, 0.0), *[None] * 4)
 
 
-_OTHER_TURNS = ANY_TURN - {"quat"} | {"fromto"}
-
-
-def repeats_pose(value: Pose, said: Mapping[str, str], settings: Settings) -> bool:
-    """A position and a quaternion, each said if and only if it is not that of the identity, are written as they were read."""
-    turned = value.written is not None or value.quat != NO_ROTATION
-    return ("pos" in said) == (value.xyz != ZERO) and ("quat" in said) == turned and _OTHER_TURNS.isdisjoint(said)
-
-
-POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose, repeats=repeats_pose)
-SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose, seen_pose, repeats=repeats_pose)
+POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose)
+SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose, seen_pose)
 
 
 # ---- plain groups ------------------------------------------------------------------------------------------------------------
@@ -290,8 +220,8 @@ SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose, seen_p
 def real(name: str, default: float | None = None) -> Group:
     """One number."""
 
-    def read(said: Mapping[str, str], settings: Settings) -> float | None:
-        found = numbers_of(said, name, 1, 1)
+    def read(attributes: Mapping[str, str], settings: Settings) -> float | None:
+        found = numbers_of(attributes, name, 1, 1)
         return default if found is None else found[0]
 
     def write(value: float | None, settings: Settings) -> dict[str, str]:
@@ -303,8 +233,8 @@ def real(name: str, default: float | None = None) -> Group:
 def first_real(name: str, default: float) -> Group:
     """One number, of which some formats want more (coefficients of a polynomial); only the first one is typed."""
 
-    def read(said: Mapping[str, str], settings: Settings) -> float:
-        found = numbers_of(said, name, 1, 3)
+    def read(attributes: Mapping[str, str], settings: Settings) -> float:
+        found = numbers_of(attributes, name, 1, 3)
         return default if found is None else found[0]
 
     def write(value: float, settings: Settings) -> dict[str, str]:
@@ -316,8 +246,8 @@ def first_real(name: str, default: float) -> Group:
 def reals(name: str, least: int, most: int) -> Group:
     """Some numbers; empty when there are none."""
 
-    def read(said: Mapping[str, str], settings: Settings) -> tuple[float, ...]:
-        return numbers_of(said, name, least, most) or ()
+    def read(attributes: Mapping[str, str], settings: Settings) -> tuple[float, ...]:
+        return numbers_of(attributes, name, least, most) or ()
 
     def write(value: tuple[float, ...], settings: Settings) -> dict[str, str]:
         return {name: numbers_text(value)} if value else {}
@@ -330,16 +260,16 @@ def text(name: str) -> Group:
     return Group(
         name,
         (name,),
-        lambda said, settings: said.get(name),
+        lambda attributes, settings: attributes.get(name),
         lambda value, settings: {} if value is None else {name: value},
-        lambda said, settings: said.get(name),
+        lambda attributes, settings: attributes.get(name),
         exact=True,
     )
 
 
 def seen_numbers(name: str, default: float | None) -> Callable[[Mapping[str, str], Settings], Any]:
-    def seen(said: Mapping[str, str], settings: Settings) -> Any:
-        found = said.get(name)
+    def seen(attributes: Mapping[str, str], settings: Settings) -> Any:
+        found = attributes.get(name)
         return ((default,) if default is not None else None) if found is None else read_numbers(found)
 
     return seen
@@ -352,11 +282,11 @@ _NAMES_ONLY = frozenset(
 )
 
 
-def parameter_value(name: str, said: str) -> float | str | tuple[float, ...]:
-    """An attribute as a number, numbers or text; text wherever numbers would not say the same."""
-    found = None if name in _NAMES_ONLY else read_numbers(said)
+def parameter_value(name: str, attributes: str) -> float | str | tuple[float, ...]:
+    """An attribute as a number, numbers or text; text wherever numbers would not mean the same."""
+    found = None if name in _NAMES_ONLY else read_numbers(attributes)
     if not found:
-        return said
+        return attributes
     return found[0] if len(found) == 1 else found
 
 

@@ -1,4 +1,4 @@
-"""What the attributes of MJCF joints and tendons mean, and how they are said."""
+"""What the attributes of MJCF joints and tendons mean."""
 
 from __future__ import annotations
 
@@ -41,17 +41,17 @@ _DOF_WORDS = {kind: word for word, kind in DOF_KINDS.items()}
 _TURNING = (None, "hinge", "ball")
 
 
-def read_kind(said: Mapping[str, str], settings: Settings) -> DofKind:
-    word = said.get("type", "hinge")
+def read_kind(attributes: Mapping[str, str], settings: Settings) -> DofKind:
+    word = attributes.get("type", "hinge")
     if word not in DOF_KINDS:
         raise BadAttribute("type", f"one of {', '.join(DOF_KINDS)}")
     return DOF_KINDS[word]
 
 
-def _read_axis(said: Mapping[str, str], settings: Settings) -> tuple[Vec3, Written | None]:
-    if said.get("type") in ("ball", "free"):
+def _read_axis(attributes: Mapping[str, str], settings: Settings) -> tuple[Vec3, Written | None]:
+    if attributes.get("type") in ("ball", "free"):
         return Z, None
-    raw = vector_of(said, "axis", Z)
+    raw = vector_of(attributes, "axis", Z)
     try:
         axis = unit(raw)
     except ZeroDivisionError as error:
@@ -67,36 +67,39 @@ def _write_axis(value: tuple[Vec3, Written | None], settings: Settings) -> dict[
 def _motion(name: str) -> Group:
     """A coordinate of a joint: an angle in the unit of the file, or a length."""
 
-    def in_degrees(said: Mapping[str, str], settings: Settings) -> bool:
-        return settings.degree and said.get("type") in _TURNING
+    def in_degrees(attributes: Mapping[str, str], settings: Settings) -> bool:
+        return settings.degree and attributes.get("type") in _TURNING
 
-    def read(said: Mapping[str, str], settings: Settings) -> float:
-        found = numbers_of(said, name, 1, 1)
+    def read(attributes: Mapping[str, str], settings: Settings) -> float:
+        found = numbers_of(attributes, name, 1, 1)
         if found is None:
             return 0.0
-        return radians(found[0]) if in_degrees(said, settings) else found[0]
+        return radians(found[0]) if in_degrees(attributes, settings) else found[0]
 
     def write(value: tuple[float, DofKind], settings: Settings) -> dict[str, str]:
         coordinate, kind = value
         return {name: angle_text(coordinate, settings.degree and kind is not DofKind.SLIDE)}
 
-    return Group(name, (name,), lambda said, s: (read(said, s), read_kind(said, s)), write, seen_numbers(name, 0.0), ("type",))
+    def read_both(attributes: Mapping[str, str], settings: Settings) -> tuple[float, DofKind]:
+        return read(attributes, settings), read_kind(attributes, settings)
+
+    return Group(name, (name,), read_both, write, seen_numbers(name, 0.0), ("type",))
 
 
 Span = tuple[float, float] | None
 
 
-def _is_limited(said: Mapping[str, str], settings: Settings, span: str, flag: str) -> bool:
-    found = numbers_of(said, span, 2, 2)
-    word = said.get(flag, "auto")
+def _is_limited(attributes: Mapping[str, str], settings: Settings, span: str, flag: str) -> bool:
+    found = numbers_of(attributes, span, 2, 2)
+    word = attributes.get(flag, "auto")
     if word not in ("true", "false", "auto"):
         raise BadAttribute(flag, "true, false or auto")
     ordered = found is not None and found[0] < found[1]
     if word == "auto" and not settings.autolimits and found is not None and any(found):
         raise BadAttribute(flag, f"true or false beside {span}, since <compiler autolimits> is false")
-    if word == "true" and not ordered and said.get("type") not in ("ball", "free"):
+    if word == "true" and not ordered and attributes.get("type") not in ("ball", "free"):
         raise BadAttribute(span, f"a lower and a greater number, since {flag} is true")
-    if span == "range" and (ordered or word == "true") and found is not None and found[0] != 0.0 and said.get("type") == "ball":
+    if span == "range" and (ordered or word == "true") and found is not None and found[0] != 0.0 and attributes.get("type") == "ball":
         raise BadAttribute(span, "0 and the greatest angle of a ball joint")
     return ordered and (word == "true" or (word == "auto" and settings.autolimits))
 
@@ -104,11 +107,11 @@ def _is_limited(said: Mapping[str, str], settings: Settings, span: str, flag: st
 def span(name: str, flag: str, *, angular: bool = False) -> Group:
     """An interval with its flag; None where it does not hold."""
 
-    def read(said: Mapping[str, str], settings: Settings) -> tuple[Span, DofKind]:
-        kind = read_kind(said, settings) if angular else DofKind.SLIDE
-        if not _is_limited(said, settings, name, flag):
+    def read(attributes: Mapping[str, str], settings: Settings) -> tuple[Span, DofKind]:
+        kind = read_kind(attributes, settings) if angular else DofKind.SLIDE
+        if not _is_limited(attributes, settings, name, flag):
             return None, kind
-        low, high = numbers_of(said, name, 2, 2) or (0.0, 0.0)
+        low, high = numbers_of(attributes, name, 2, 2) or (0.0, 0.0)
         if angular and settings.degree and kind is not DofKind.SLIDE:
             return (radians(low), radians(high)), kind
         return (low, high), kind
@@ -118,38 +121,37 @@ def span(name: str, flag: str, *, angular: bool = False) -> Group:
         if found is None:
             return {flag: "false"}
         degree = angular and settings.degree and kind is not DofKind.SLIDE
-        said = {name: f"{angle_text(found[0], degree)} {angle_text(found[1], degree)}"}
-        return said if settings.autolimits else {flag: "true", **said}
+        attributes = {name: f"{angle_text(found[0], degree)} {angle_text(found[1], degree)}"}
+        return attributes if settings.autolimits else {flag: "true", **attributes}
 
-    def seen(said: Mapping[str, str], settings: Settings) -> Any:
-        found, word = read_numbers(said.get(name, "0 0")) or (0.0, 0.0), said.get(flag, "auto")
+    def seen(attributes: Mapping[str, str], settings: Settings) -> Any:
+        found, word = read_numbers(attributes.get(name, "0 0")) or (0.0, 0.0), attributes.get(flag, "auto")
         return found, word == "true" or (word == "auto" and settings.autolimits and found[0] < found[-1])
 
-    def repeats(value: tuple[Span, DofKind], said: Mapping[str, str], settings: Settings) -> bool:
-        return value[0] is not None and flag not in said and settings.autolimits and not (angular and settings.degree)
-
-    return Group(name, (name, flag), read, write, seen, ("type",) if angular else (), repeats=repeats)
+    return Group(name, (name, flag), read, write, seen, ("type",) if angular else ())
 
 
 KIND = Group(
-    "type", ("type",), read_kind, lambda value, settings: {"type": _DOF_WORDS[value]}, lambda said, settings: said.get("type", "hinge")
+    "type",
+    ("type",),
+    read_kind,
+    lambda value, settings: {"type": _DOF_WORDS[value]},
+    lambda attributes, settings: attributes.get("type", "hinge"),
 )
 AXIS = Group(
     "axis",
     ("axis",),
     _read_axis,
     _write_axis,
-    lambda said, settings: read_numbers(said.get("axis", "0 0 1")),
+    lambda attributes, settings: read_numbers(attributes.get("axis", "0 0 1")),
     ("type",),
-    repeats=lambda value, said, settings: "axis" in said and said.get("type") not in ("ball", "free"),
 )
 ANCHOR = Group(
     "pos",
     ("pos",),
-    lambda said, settings: vector_of(said, "pos", ZERO),
+    lambda attributes, settings: vector_of(attributes, "pos", ZERO),
     lambda value, settings: {"pos": numbers_text(value)},
-    lambda said, settings: read_numbers(said.get("pos", "0 0 0")),
-    repeats=lambda value, said, settings: "pos" in said,
+    lambda attributes, settings: read_numbers(attributes.get("pos", "0 0 0")),
 )
 REF = _motion("ref")
 SPRING_REF = _motion("springref")

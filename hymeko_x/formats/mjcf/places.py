@@ -1,4 +1,4 @@
-"""What the attributes of MJCF geoms, sites, cameras, lights, inertials and assets mean, and how they are said."""
+"""What the attributes of MJCF geoms, sites, cameras, lights, inertials and assets mean."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 from msgspec.structs import replace
 
-from hymeko_x.formats.mjcf.classes import ANY_TURN, TURNS
+from hymeko_x.formats.mjcf.classes import TURNS
 from hymeko_x.formats.mjcf.codec import (
     POSE,
     POSE_NAMES,
@@ -22,7 +22,6 @@ from hymeko_x.formats.mjcf.codec import (
     read_pose,
     real,
     reals,
-    repeats_pose,
     seen_numbers,
     seen_pose,
     text,
@@ -81,27 +80,27 @@ class Place(Struct, frozen=True):
     grid: float | None = None
 
 
-def _check_ends(said: Mapping[str, str], word: str) -> None:
-    """Both ends say what lies along them and where, so that a position beside them is refused, as MuJoCo does."""
-    if "fromto" not in said:
+def _check_ends(attributes: Mapping[str, str], word: str) -> None:
+    """Both ends give length and pose, so that a position beside them is refused, as MuJoCo does."""
+    if "fromto" not in attributes:
         return
     if word not in _ALONG:
         raise BadAttribute("fromto", "a capsule, cylinder, box or ellipsoid")
-    if any(read_numbers(said.get("pos", "")) or ()):
+    if any(read_numbers(attributes.get("pos", "")) or ()):
         raise BadAttribute("pos", "nothing beside fromto")
 
 
-def _read_place(said: Mapping[str, str], settings: Settings) -> Place:
-    pose = read_pose(said, settings)
-    word = said.get("type", "sphere")
-    _check_ends(said, word)
-    if word == "hfield" and not said.get("hfield"):
+def _read_place(attributes: Mapping[str, str], settings: Settings) -> Place:
+    pose = read_pose(attributes, settings)
+    word = attributes.get("type", "sphere")
+    _check_ends(attributes, word)
+    if word == "hfield" and not attributes.get("hfield"):
         raise BadAttribute("hfield", "the name of a height field")
-    if word == "mesh" and "mesh" in said:
+    if word == "mesh" and "mesh" in attributes:
         return Place(MeshShape(), pose)
-    if word not in _SIZES or "mesh" in said:
+    if word not in _SIZES or "mesh" in attributes:
         return Place(NoShape(), pose)
-    size = list(numbers_of(said, "size", 1, 3) or ())
+    size = list(numbers_of(attributes, "size", 1, 3) or ())
     length = None if pose.written is None or pose.written.kind != "fromto" else length_of(pose.written)
     if length is not None:
         size = _sizes_along(word, size, length / 2.0)
@@ -135,7 +134,7 @@ def _geometry(word: str, size: list[float], length: float | None) -> Geometry:
 
 def _write_place(value: Place, settings: Settings) -> dict[str, str]:
     word, size = _word_and_size(value)
-    said = {"type": word} if word else {}
+    attributes = {"type": word} if word else {}
     pose = value.pose
     if pose.written is not None and pose.written.kind == "fromto":
         along = {"capsule": 1, "cylinder": 1, "box": 2, "ellipsoid": 2}.get(word or "")
@@ -144,8 +143,8 @@ def _write_place(value: Place, settings: Settings) -> dict[str, str]:
         else:
             pose = Pose(pose.xyz, pose.quat)
     if size:
-        said["size"] = numbers_text(size)
-    return said | write_pose(pose, settings)
+        attributes["size"] = numbers_text(size)
+    return attributes | write_pose(pose, settings)
 
 
 def _word_and_size(value: Place) -> tuple[str | None, tuple[float, ...]]:
@@ -168,38 +167,29 @@ def _word_and_size(value: Place) -> tuple[str | None, tuple[float, ...]]:
             return None, ()
 
 
-def _seen_place(said: Mapping[str, str], settings: Settings) -> Any:
-    word = said.get("type", "sphere")
-    size = [*(read_numbers(said.get("size", "")) or ()), 0.0, 0.0, 0.0][:3]
-    if "fromto" in said:
+def _seen_place(attributes: Mapping[str, str], settings: Settings) -> Any:
+    word = attributes.get("type", "sphere")
+    size = [*(read_numbers(attributes.get("size", "")) or ()), 0.0, 0.0, 0.0][:3]
+    if "fromto" in attributes:
         size[1:] = (size[0], 0.0) if word in ("box", "ellipsoid") else (0.0, size[2])
-    return word, size, seen_pose(said, settings)
+    return word, size, seen_pose(attributes, settings)
 
 
-def _repeats_place(value: Place, said: Mapping[str, str], settings: Settings) -> bool:
-    word, size = _word_and_size(value)
-    return (
-        bool(size) and said.get("type") == word and read_numbers(said.get("size", "")) == size and repeats_pose(value.pose, said, settings)
-    )
-
-
-PLACE = Group(
-    "place", ("type", "size", "fromto", *POSE_NAMES), _read_place, _write_place, _seen_place, ("mesh", "hfield"), repeats=_repeats_place
-)
+PLACE = Group("place", ("type", "size", "fromto", *POSE_NAMES), _read_place, _write_place, _seen_place, ("mesh", "hfield"))
 
 GEOM = (PLACE, text("mesh"), text("material"), reals("rgba", 4, 4), real("mass"), real("density"), reals("friction", 1, 3))
 
 FITTED_GEOM = tuple(group for group in GEOM if group.key != "mesh")
-"""A primitive that MuJoCo fits to a mesh: the mesh's name says what to fit, and stays as it is."""
+"""A primitive that MuJoCo fits to a mesh: the name of the mesh is kept as it is."""
 
 
-def _read_site_size(said: Mapping[str, str], settings: Settings) -> tuple[float, ...]:
-    word = said.get("type", "sphere")
+def _read_site_size(attributes: Mapping[str, str], settings: Settings) -> tuple[float, ...]:
+    word = attributes.get("type", "sphere")
     if (word not in _SIZES and word != "mesh") or word == "plane":
         raise BadAttribute("type", "one of sphere, capsule, ellipsoid, cylinder, box, mesh")
-    _check_ends(said, word)
-    found = numbers_of(said, "size", 1, 3) or ()
-    needed = 1 if "fromto" in said else _SIZES.get(word, 0)
+    _check_ends(attributes, word)
+    found = numbers_of(attributes, "size", 1, 3) or ()
+    needed = 1 if "fromto" in attributes else _SIZES.get(word, 0)
     if any(number <= 0.0 for number in (*found, *[_MARK] * 3)[:needed]):
         raise BadAttribute("size", "lengths that are more than 0")
     return found
@@ -211,8 +201,8 @@ SITE = (SITE_POSE, replace(reals("size", 1, 3), read=_read_site_size, needs=("ty
 def seen_from(group: Group, frame: Pose) -> Group:
     """A group of a pose, for an element that stands in a <frame>: its value is seen from the body."""
 
-    def read(said: Mapping[str, str], settings: Settings) -> Any:
-        return _moved(frame, group.read(said, settings))
+    def read(attributes: Mapping[str, str], settings: Settings) -> Any:
+        return _moved(frame, group.read(attributes, settings))
 
     def write(value: Any, settings: Settings) -> dict[str, str]:
         return group.write(_moved(inverse(frame), value), settings)
@@ -231,7 +221,7 @@ def _moved(frame: Pose, value: Any) -> Any:
 
 
 def same_value(a: Any, b: Any) -> bool:
-    """Whether two values are equal, and written alike where it is remembered."""
+    """Whether two values are equal, and written in the same way where that is noted."""
     if a != b:
         return False
     if isinstance(a, Pose):
@@ -249,8 +239,8 @@ def same_value(a: Any, b: Any) -> bool:
 def _degrees(name: str) -> Group:
     """An angle that is always in degrees."""
 
-    def read(said: Mapping[str, str], settings: Settings) -> float | None:
-        found = numbers_of(said, name, 1, 1)
+    def read(attributes: Mapping[str, str], settings: Settings) -> float | None:
+        found = numbers_of(attributes, name, 1, 1)
         return None if found is None else radians(found[0])
 
     def write(value: float | None, settings: Settings) -> dict[str, str]:
@@ -262,30 +252,30 @@ def _degrees(name: str) -> Group:
 CAMERA = (POSE, _degrees("fovy"), reals("resolution", 2, 2))
 
 
-def _read_shine(said: Mapping[str, str], settings: Settings) -> Pose:
-    xyz = vector_of(said, "pos", ZERO)
-    raw = vector_of(said, "dir", (0.0, 0.0, -1.0))
+def _read_shine(attributes: Mapping[str, str], settings: Settings) -> Pose:
+    xyz = vector_of(attributes, "pos", ZERO)
+    raw = vector_of(attributes, "dir", (0.0, 0.0, -1.0))
     try:
-        return pose_as_written(xyz, Written("dir", raw)) if "dir" in said else Pose(xyz)
+        return pose_as_written(xyz, Written("dir", raw)) if "dir" in attributes else Pose(xyz)
     except ZeroDivisionError as error:
         raise BadAttribute("dir", "a direction") from error
 
 
 def _write_shine(value: Pose, settings: Settings) -> dict[str, str]:
 
-    said = {} if value.xyz == ZERO else {"pos": numbers_text(value.xyz)}
+    attributes = {} if value.xyz == ZERO else {"pos": numbers_text(value.xyz)}
     if value.written is not None and value.written.kind == "dir":
-        said["dir"] = numbers_text(value.written.numbers)
+        attributes["dir"] = numbers_text(value.written.numbers)
     elif value.quat != NO_ROTATION:
-        said["dir"] = numbers_text(rotate(value.quat, (0.0, 0.0, -1.0)))
-    return said
+        attributes["dir"] = numbers_text(rotate(value.quat, (0.0, 0.0, -1.0)))
+    return attributes
 
 
-SHINE = Group("pose", ("pos", "dir"), _read_shine, _write_shine, lambda said, settings: plain(said, ("pos", "dir")))
+SHINE = Group("pose", ("pos", "dir"), _read_shine, _write_shine, lambda attributes, settings: plain(attributes, ("pos", "dir")))
 
 
-def _read_light_kind(said: Mapping[str, str], settings: Settings) -> str:
-    return said.get("type") or ("directional" if said.get("directional") == "true" else "spot")
+def _read_light_kind(attributes: Mapping[str, str], settings: Settings) -> str:
+    return attributes.get("type") or ("directional" if attributes.get("directional") == "true" else "spot")
 
 
 LIGHT_KIND = Group(
@@ -293,21 +283,21 @@ LIGHT_KIND = Group(
     ("type", "directional"),
     _read_light_kind,
     lambda value, settings: {"type": value},
-    lambda said, settings: _read_light_kind(said, settings),
+    lambda attributes, settings: _read_light_kind(attributes, settings),
 )
 LIGHT = (SHINE, LIGHT_KIND, reals("diffuse", 3, 3))
 
 # ---- inertials -----------------------------------------------------------------------------------------------------------------
 
 
-def _read_inertial(said: Mapping[str, str], settings: Settings) -> Inertial:
-    if "pos" not in said or "mass" not in said:
-        raise BadAttribute("mass" if "pos" in said else "pos", "a value: <inertial> needs pos and mass")
-    mass = numbers_of(said, "mass", 1, 1) or (0.0,)
-    com = vector_of(said, "pos", ZERO)
-    full = numbers_of(said, "fullinertia", 6, 6)
-    diagonal = numbers_of(said, "diaginertia", 3, 3)
-    turn = written_turn(said, settings)
+def _read_inertial(attributes: Mapping[str, str], settings: Settings) -> Inertial:
+    if "pos" not in attributes or "mass" not in attributes:
+        raise BadAttribute("mass" if "pos" in attributes else "pos", "a value: <inertial> needs pos and mass")
+    mass = numbers_of(attributes, "mass", 1, 1) or (0.0,)
+    com = vector_of(attributes, "pos", ZERO)
+    full = numbers_of(attributes, "fullinertia", 6, 6)
+    diagonal = numbers_of(attributes, "diaginertia", 3, 3)
+    turn = written_turn(attributes, settings)
     if full is not None:
         if turn is not None or diagonal is not None:
             raise BadAttribute("fullinertia", "no orientation and no diaginertia beside it")
@@ -317,27 +307,22 @@ def _read_inertial(said: Mapping[str, str], settings: Settings) -> Inertial:
     tensor = (*diagonal, 0.0, 0.0, 0.0)
     if turn is None:
         return Inertial(mass[0], com, tensor)  # type: ignore[arg-type]
-    frame = read_pose({name: said[name] for name in TURNS if name in said}, settings)
+    frame = read_pose({name: attributes[name] for name in TURNS if name in attributes}, settings)
     if frame == IDENTITY and frame.written is None:
         return Inertial(mass[0], com, tensor)  # type: ignore[arg-type]
     return Inertial(mass[0], com, rotate_tensor(frame.quat, tensor), InertialWritten(frame, tensor))  # type: ignore[arg-type]
 
 
 def _write_inertial(value: Inertial, settings: Settings) -> dict[str, str]:
-    said = {"pos": numbers_text(value.com), "mass": number_text(value.mass or 0.0)}
+    attributes = {"pos": numbers_text(value.com), "mass": number_text(value.mass or 0.0)}
     if value.tensor is None:
-        return said
+        return attributes
     if value.written is not None and value.tensor == rotate_tensor(value.written.frame.quat, value.written.tensor):
         turn = write_turn(value.written.frame.quat, value.written.frame.written, settings)
-        return {**said, **turn, "diaginertia": numbers_text(value.written.tensor[:3])}
+        return {**attributes, **turn, "diaginertia": numbers_text(value.written.tensor[:3])}
     if not any(value.tensor[3:]):
-        return {**said, "diaginertia": numbers_text(value.tensor[:3])}
-    return {**said, "fullinertia": numbers_text(value.tensor)}
-
-
-def _repeats_inertial(value: Inertial, said: Mapping[str, str], settings: Settings) -> bool:
-    """Without axes of its own, a tensor is written as it was read where it is said in six numbers because three would not do."""
-    return value.written is None and ANY_TURN.isdisjoint(said) and ("fullinertia" in said) == any((value.tensor or ())[3:])
+        return {**attributes, "diaginertia": numbers_text(value.tensor[:3])}
+    return {**attributes, "fullinertia": numbers_text(value.tensor)}
 
 
 _INERTIAL_NAMES = ("pos", "mass", "diaginertia", "fullinertia", *TURNS)
@@ -346,8 +331,7 @@ INERTIAL = Group(
     _INERTIAL_NAMES,
     _read_inertial,
     _write_inertial,
-    lambda said, settings: (plain(said, ("mass", "diaginertia", "fullinertia")), seen_pose(said, settings)),
-    repeats=_repeats_inertial,
+    lambda attributes, settings: (plain(attributes, ("mass", "diaginertia", "fullinertia")), seen_pose(attributes, settings)),
 )
 
 MATERIAL = (
@@ -364,9 +348,9 @@ MATERIAL = (
 SCALE = Group(
     "scale",
     ("scale",),
-    lambda said, settings: vector_of(said, "scale", (1.0, 1.0, 1.0)),
+    lambda attributes, settings: vector_of(attributes, "scale", (1.0, 1.0, 1.0)),
     lambda value, settings: {"scale": numbers_text(value)},
-    lambda said, settings: read_numbers(said.get("scale", "1 1 1")),
+    lambda attributes, settings: read_numbers(attributes.get("scale", "1 1 1")),
 )
 
 MESH = (

@@ -1,4 +1,4 @@
-"""The sections and names of MJCF, and what <compiler> says: for reader and writer."""
+"""The sections and names of MJCF, and the settings of <compiler>: for reader and writer."""
 
 from __future__ import annotations
 
@@ -92,18 +92,18 @@ NAMESPACES: Mapping[str, str] = MappingProxyType({"frame": "site", "loop": "equa
 
 def settings_of(compilers: Iterable[Mapping[str, str]]) -> Settings:
     """The meaning of numbers and file names from the attributes of all <compiler> elements; a later one wins."""
-    said: dict[str, str] = {}
+    found: dict[str, str] = {}
     for attributes in compilers:
-        said.update(attributes)
-    assets = said.get("assetdir", "")
+        found.update(attributes)
+    assets = found.get("assetdir", "")
     return Settings(
-        degree=said.get("angle", "degree") != "radian",
-        eulerseq=said.get("eulerseq", "xyz"),
-        autolimits=said.get("autolimits", "true") != "false",
-        inertia_from_geoms=said.get("inertiafromgeom", "auto") == "true",
-        mesh_folder=said.get("meshdir", assets),
-        texture_folder=said.get("texturedir", assets),
-        strip_path=said.get("strippath", "false") == "true",
+        degree=found.get("angle", "degree") != "radian",
+        eulerseq=found.get("eulerseq", "xyz"),
+        autolimits=found.get("autolimits", "true") != "false",
+        inertia_from_geoms=found.get("inertiafromgeom", "auto") == "true",
+        mesh_folder=found.get("meshdir", assets),
+        texture_folder=found.get("texturedir", assets),
+        strip_path=found.get("strippath", "false") == "true",
     )
 
 
@@ -179,7 +179,7 @@ def trimmed(coefficients: list[float]) -> list[float]:
 
 
 TRANSMISSIONS = ("joint", "jointinparent", "tendon", "site", "body", "cranksite", "slidersite", "refsite")
-"""The attributes of an actuator that say what it acts on; all but the first five stand beside another one."""
+"""The attributes of an actuator that name what it acts on; all but the first five stand beside another one."""
 
 RESOLVED = ("kp", "kv", "ctrlrange", "forcerange")
 """Parameters of an actuator that are typed even where its class gives them."""
@@ -189,7 +189,7 @@ LAW = (
     *("actrange", "lengthrange", "actdim", "cranklength", "inheritrange", "dampratio", "timeconst", "tausmooth"),
     *("range", "force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"),
 )
-"""What else says how an actuator drives; typed as well, behind what the actuator says itself."""
+"""Other parameters of its law; typed even where its class gives them, behind the actuator's own."""
 
 TENDON_PARAMETERS = (
     "springlength",
@@ -227,4 +227,4 @@ SENSED_TYPES: Mapping[str, str] = MappingProxyType({"body": "body", "xbody": "bo
 """What ``objtype`` and ``reftype`` mean."""
 
 ALONE = frozenset({"site", "joint", "tendon", "actuator", "body", "geom", "camera"})
-"""Sensed things whose arc needs no role: the kind of the target says the attribute."""
+"""Sensed elements whose arc needs no role: the attribute follows from the kind of the target."""

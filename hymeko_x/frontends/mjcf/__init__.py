@@ -1,6 +1,6 @@
 """MJCF in. Everything in a file becomes typed parts of a mechanism, or an extra, or a diagnostic with its place.
 
-Source: MJCF of MuJoCo 4.0; docs/mapping/mjcf.md says what becomes what.
+Source: MJCF of MuJoCo 4.0; docs/mapping/mjcf.md lists what becomes what.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ def read(source: Source, report: Report) -> Reading:
 
 
 def _settings(root: Element) -> Settings:
-    """What all <compiler> elements say together; a later one wins."""
+    """The settings of all <compiler> elements together; a later one wins."""
     compilers = [child for child in root.children if child.tag == "compiler"]
     for compiler in compilers:
         if compiler.attributes.get("coordinate") == "global":
@@ -82,7 +82,7 @@ def _settings(root: Element) -> Settings:
 
 
 def _keep_sections(root: Element, builder: MjcfBuilder) -> None:
-    """Everything at top level that has no word in the IR and that others refer to, and comments, in order."""
+    """Keep comments and the sections that the IR cannot represent, in order; others refer to them."""
     for child in root.detach(COMMENT, *KEPT_SECTIONS):
         builder.keep_at_root(child)
 
@@ -113,8 +113,8 @@ def _check_root(root: Element) -> None:
 
 def _warn_of_ignored(root: Element, report: Report) -> None:
     for child in root_sections(root, "body"):
-        said = "a <body> outside of <worldbody> is ignored by MuJoCo; it goes along as it is"
-        report.warn(codes.UNKNOWN_WORD, said, child.origin)
+        message = "a <body> outside of <worldbody> is ignored by MuJoCo; it is kept as an extra"
+        report.warn(codes.UNKNOWN_WORD, message, child.origin)
 
 
 def _read_name(root: Element, source: Source, builder: MjcfBuilder) -> str:

@@ -55,14 +55,14 @@ def _read_actuator(element: Element, builder: MjcfBuilder) -> None:
         builder.show(drive)
 
 
-def _check(element: Element, said: dict[str, str], words: list[str], builder: MjcfBuilder) -> None:
+def _check(element: Element, attributes: dict[str, str], words: list[str], builder: MjcfBuilder) -> None:
     """What MuJoCo refuses."""
     if not words:
         raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag}> acts on nothing: it needs {', '.join(TRANSMISSIONS[:6])}", element.origin)
     if "cranksite" in words and "slidersite" not in words:
         raise refuse(codes.MISSING_ATTRIBUTE, f"<{element.tag} cranksite> needs slidersite", element.origin)
     for word in ("ctrl", "force"):
-        flag, numbers = said.get(f"{word}limited", "auto"), read_numbers(said.get(f"{word}range", "")) or (0.0, 0.0)
+        flag, numbers = attributes.get(f"{word}limited", "auto"), read_numbers(attributes.get(f"{word}range", "")) or (0.0, 0.0)
         forced = word == "ctrl" and element.tag in ("adhesion", "damper")
         if flag == "auto" and any(numbers) and not (builder.settings.autolimits or forced):
             raise refuse(
@@ -70,10 +70,10 @@ def _check(element: Element, said: dict[str, str], words: list[str], builder: Mj
                 f"<{element.tag}> has {word}range but not {word}limited, and <compiler autolimits> is false",
                 element.origin,
             )
-        if (flag == "true" or forced) and not numbers[0] < numbers[-1] and not said.get("inheritrange"):
+        if (flag == "true" or forced) and not numbers[0] < numbers[-1] and not attributes.get("inheritrange"):
             raise refuse(
                 codes.BAD_NUMBER,
-                f"<{element.tag} {word}range> is '{said.get(f'{word}range', '')}', expected a lower and a greater number",
+                f"<{element.tag} {word}range> is '{attributes.get(f'{word}range', '')}', expected a lower and a greater number",
                 element.origin,
             )
 

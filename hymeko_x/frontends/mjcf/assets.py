@@ -1,4 +1,4 @@
-"""<asset>: meshes, textures and materials; height fields, skins and models go along as they are."""
+"""<asset>: meshes, textures and materials; height fields, skins and models are kept as extras."""
 
 from __future__ import annotations
 

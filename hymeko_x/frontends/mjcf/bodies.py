@@ -90,7 +90,7 @@ def _read_body(element: Element, scope: Scope, builder: MjcfBuilder) -> list[tup
 
 
 def _check_mocap(element: Element, scope: Scope) -> None:
-    """A body that is moved from outside hangs on the world and has no joints."""
+    """A body that is moved from outside is a child of the world and has no joints."""
     if element.attributes.get("mocap") != "true":
         return
     jointed = any(child.tag in ("joint", "freejoint") for child in element.children)

@@ -1,4 +1,4 @@
-"""A mechanism in the making: what the readers of bodies, assets and relations add to."""
+"""The mechanism that the readers of bodies, assets and relations build."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import merge
-from hymeko_x.formats.mjcf.codec import BadAttribute, plan_of
+from hymeko_x.formats.mjcf.codec import BadAttribute
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.tree import verbatim
 from hymeko_x.ir.builder import Builder
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Refusal, Report
     from hymeko_x.formats.mjcf.classes import Classes
-    from hymeko_x.formats.mjcf.codec import Group, Plan, Settings
+    from hymeko_x.formats.mjcf.codec import Group, Settings
     from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files
@@ -44,8 +44,6 @@ class MjcfBuilder(Builder):
     named: dict[tuple[str, str], Id] = field(default_factory=dict)
     roles: dict[Id, dict[str, str]] = field(default_factory=dict)
     place: int = 0
-    plans: dict[tuple[int, int], Plan] = field(default_factory=dict)
-    """How to read the attributes of each kind of element, by the identities of its groups and of what its class gives."""
 
     # ---- names -----------------------------------------------------------------------------------------------------------
 
@@ -90,7 +88,7 @@ class MjcfBuilder(Builder):
     # ---- values ----------------------------------------------------------------------------------------------------------
 
     def base(self, element: Element, key: Id, childclass: str | None = None, tag: str = "") -> Mapping[str, str]:
-        """What the element's class gives; the class name is taken and remembered."""
+        """The attributes that the element's class gives; the class is noted."""
         own = element.take("class")
         if own is not None:
             self.check_class(element, own)
@@ -105,80 +103,67 @@ class MjcfBuilder(Builder):
     def values(
         self, element: Element, groups: tuple[Group, ...], base: Mapping[str, str], key: Id, prefix: str = "", *, always: bool = False
     ) -> Values:
-        """What the attributes mean, with what the class gives.
+        """What the attributes mean, with those that the class gives.
 
-        Where printing the values again would not say the same, or ``always``, the attributes are noted as they are.
+        Where printing the values again would not mean the same, or ``always``, the attributes are noted as they are.
         """
-        own = element.attributes
-        plan = self._plan_of(groups, base)
-        found = dict(plan.silent)
-        asked = plan.said_in(own)
-        if not asked:
-            return found
-        merged, settings = merge(base, own), self.settings
+        own, settings = element.attributes, self.settings
+        merged = merge(base, own)
+        found: Values = {}
         taken: list[str] = []
         try:
-            for group, touched in asked:
+            for group in groups:
                 value = found[group.key] = group.read(merged, settings)
-                if not touched:
-                    continue
+                touched = [name for name in group.names if name in own]
                 taken += touched
-                if not always and (group.exact or group.repeats(value, merged, settings) or self._says_again(group, value, base, own)):
-                    continue
-                for name in touched:
-                    self.note(key, attribute(name, prefix), own[name])
+                if touched and (always or not (group.exact or self._is_written_again(group, value, base, own))):
+                    for name in touched:
+                        self.note(key, attribute(name, prefix), own[name])
         except BadAttribute as error:
             raise self.bad(element, error) from error
         for name in taken:
             own.pop(name, None)
         return found
 
-    def _plan_of(self, groups: tuple[Group, ...], base: Mapping[str, str]) -> Plan:
-        place = id(groups), id(base) if base else 0
-        plan = self.plans.get(place)
-        if plan is None:
-            plan = self.plans[place] = plan_of(groups, self.settings, base)
-        return plan
-
-    def _says_again(self, group: Group, value: Any, base: Mapping[str, str], own: Mapping[str, str]) -> bool:
-        """Whether printing a value would say the same as the element's own attributes that it was read from."""
+    def _is_written_again(self, group: Group, value: Any, base: Mapping[str, str], own: Mapping[str, str]) -> bool:
+        """Whether printing a value gives attributes of the same meaning as those that it was read from."""
         written = group.write(value, self.settings)
         for name in group.names:
-            if not _say_the_same(written.get(name), own.get(name)):
+            if not _are_same_numbers(written.get(name), own.get(name)):
                 break
         else:
             return True
         merged = merge(base, own)
         context = {name: merged[name] for name in group.needs if name in merged}
-        said = merge({**base, **context}, written)
-        if all(said.get(name) == merged.get(name) for name in group.names):
+        again = merge({**base, **context}, written)
+        if all(again.get(name) == merged.get(name) for name in group.names):
             return True
-        return bool(group.seen(said, self.settings) == group.seen(merged, self.settings))
+        return bool(group.seen(again, self.settings) == group.seen(merged, self.settings))
 
     def bad(self, element: Element, error: BadAttribute) -> Refusal:
         """The refusal of an attribute that MuJoCo refuses."""
         text = element.attributes.get(error.attribute)
-        said = f"is '{text}'" if text is not None else "is missing or inherited"
-        return refuse(codes.BAD_NUMBER, f"<{element.tag} {error.attribute}> {said}, expected {error.expected}", element.origin)
+        found = f"is '{text}'" if text is not None else "is missing or inherited"
+        return refuse(codes.BAD_NUMBER, f"<{element.tag} {error.attribute}> {found}, expected {error.expected}", element.origin)
 
     # ---- side tables -----------------------------------------------------------------------------------------------------
 
     def show(self, key: Id) -> None:
-        """Give an element its place among all."""
+        """Give an element its place among all elements."""
         self.layout.append(key)
         self.place += 1
 
     def keep(self, element: Element, key: Id, path: str = "") -> None:
-        """Everything that is left of an element goes along with what it became."""
+        """Everything unread of an element is kept with the element of the mechanism that it became."""
         self.add_extras(key, *unread_extras(element, path, words.NAME, verbatim))
 
     def keep_at_root(self, element: Element, path: str = "") -> None:
-        """An element that has no word in the IR, as it is."""
+        """An element that the IR cannot represent is kept verbatim."""
         self.add_extras(ROOT, extra_of(element, path, self.place, words.NAME, verbatim))
         self.place += not path
 
     def keep_rest(self, root: Element) -> None:
-        """What nobody took at top level."""
+        """Everything unread at top level is kept."""
         for child in root.children:
             self.keep_at_root(child)
         root.children = []
@@ -189,7 +174,7 @@ class MjcfBuilder(Builder):
         return self.build(name, Provenance(words.NAME, words.VERSION, self.file))
 
 
-def _say_the_same(a: str | None, b: str | None) -> bool:
+def _are_same_numbers(a: str | None, b: str | None) -> bool:
     """Whether two texts of an attribute are the same, or the same numbers."""
     if a == b:
         return True

@@ -124,7 +124,7 @@ def check_words(root: Element) -> Words:
     Raises: Refusal (HX020, HX021, HX023, HX027, HX047) at the first element, attribute or value that MuJoCo 4.0 does not know there.
     """
     stack = [(root, "mujoco")]
-    sound: set[tuple[str, ...]] = set()  # places with the names of attributes that an element may have there: most say the same ones
+    sound: set[tuple[str, ...]] = set()  # places with the names of attributes that an element may have there: most have the same ones
     names: dict[tuple[str, str], Origin] = {}
     references: list[Reference] = []
     tags: set[str] = set()
@@ -132,12 +132,12 @@ def check_words(root: Element) -> Words:
         element, path = stack.pop()
         place = _place_of(path)
         tags.add(element.tag)
-        said = (path, *element.attributes)
-        if said not in sound:
+        form = (path, *element.attributes)
+        if form not in sound:
             _check_attributes(element, path, place)
         if element.attributes:
             _check_values(element, place)
-        if said not in sound or len(element.attributes) + 1 < len(said):
+        if form not in sound or len(element.attributes) + 1 < len(form):
             _check_needs(element, place)
             sound.add((path, *element.attributes))
         if place.rules and (broken := complaint(element, place.rules)) is not None:
@@ -169,14 +169,14 @@ def _known_children(element: Element, path: str) -> list[tuple[Element, str]]:
 
 def _check_attributes(element: Element, path: str, place: _Place) -> None:
     known = place.attributes
-    said = element.attributes.keys()
-    if not said <= known:
-        for name in said:
+    own = element.attributes.keys()
+    if not own <= known:
+        for name in own:
             if name not in known and (path != "mujoco" or not (":" in name or name.startswith("xmlns"))):
                 changed = REMOVED.get(f"{element.tag}@{name}")
                 raise _unknown(element, f"<{element.tag}> has no attribute '{name}'", name, sorted(known), changed)
-    if len(said) > 1 and len(turns := ANY_TURN & said) > 1:
-        found = ", ".join(name for name in said if name in turns)
+    if len(own) > 1 and len(turns := ANY_TURN & own) > 1:
+        found = ", ".join(name for name in own if name in turns)
         raise refuse(codes.REPEATED, f"<{element.tag}> has more than one orientation: {found}", element.origin)
 
 
@@ -248,7 +248,7 @@ def _of_hexadecimal(word: str) -> float | None:
 
 
 def _as_decimals(text: str) -> str:
-    """Numbers of which some are hexadecimal, which only MuJoCo reads, as everybody does."""
+    """Numbers of which some are hexadecimal, which only MuJoCo reads, as decimal ones."""
     return " ".join(number_text(float.fromhex(word)) if "x" in word.lower() else word for word in text.split())
 
 
@@ -267,7 +267,7 @@ def _check_name(element: Element, kind: str, names: dict[tuple[str, str], Origin
 
 
 def _unknown(element: Element, message: str, word: str, known: list[str], changed: str | None) -> Refusal:
-    """The refusal of a word; the hint says what changed since it was one, or what was meant."""
+    """The refusal of a word; the hint names what became of it, or what was meant."""
     from difflib import get_close_matches
 
     near = get_close_matches(word, known, n=2)
@@ -280,8 +280,8 @@ def _unknown(element: Element, message: str, word: str, known: list[str], change
 
 def _references_of(element: Element, attributes: tuple[tuple[str, str], ...]) -> list[Reference]:
     """What the element refers to by these attributes."""
-    said = [(kind, element.attributes.get(attribute)) for attribute, kind in attributes]
-    return [Reference(element, kind, name) for kind, name in said if name]
+    found = [(kind, element.attributes.get(attribute)) for attribute, kind in attributes]
+    return [Reference(element, kind, name) for kind, name in found if name]
 
 
 def check_references(found: Iterable[Reference], builder: MjcfBuilder) -> None:

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def read_equalities(sections: list[Element], builder: MjcfBuilder) -> None:
-    """Closures and couplings in order; those of tendons and flexes go along as they are."""
+    """Closures and couplings in order; those of tendons and flexes are kept as extras."""
     placed: dict[Id, Pose] = {}
     for section in sections:
         for element in section.children:
@@ -63,8 +63,8 @@ def _read_coupling(element: Element, builder: MjcfBuilder) -> None:
     builder.base(element, key, tag="joint@equality")
     try:
         found = numbers_of(element.attributes, "polycoef", 1, 5)
-        said = (0.0, 1.0) if found is None else found if len(found) > 1 else (found[0], 1.0)
-        coefficients = shifted(said, -leader_ref)
+        written = (0.0, 1.0) if found is None else found if len(found) > 1 else (found[0], 1.0)
+        coefficients = shifted(written, -leader_ref)
     except BadAttribute as error:
         raise builder.bad(element, error) from error
     except OverflowError as error:
@@ -113,17 +113,17 @@ def _read_loop(element: Element, builder: MjcfBuilder, placed: dict[Id, Pose]) -
 
 
 def _body_arcs(element: Element, key: Id, builder: MjcfBuilder, placed: dict[Id, Pose]) -> tuple[RobotArc, ...]:
-    """Both bodies with the closure's frame in each, where the bodies are at the reference configuration unless it says where."""
+    """Both bodies with the closure's frame in each, where the bodies are at the reference configuration unless relpose is given."""
     first = find_end(element, "body", "body1", builder)
     second = find_end(element, "body", "body2", builder) if "body2" in element.attributes else WORLD
     if first == second:
         raise refuse(codes.REPEATED, f"<{element.tag}> joins '{first.name}' to itself", element.origin)
-    said = {name: text for name in ("anchor", "relpose") if (text := element.take(name)) is not None}
-    for name, text in said.items():
+    given = {name: text for name in ("anchor", "relpose") if (text := element.take(name)) is not None}
+    for name, text in given.items():
         builder.note(key, attribute(name), text)
     try:
-        anchor = numbers_of(said, "anchor", 3, 3) or (0.0, 0.0, 0.0)
-        relative = numbers_of(said, "relpose", 7, 7)
+        anchor = numbers_of(given, "anchor", 3, 3) or (0.0, 0.0, 0.0)
+        relative = numbers_of(given, "relpose", 7, 7)
     except BadAttribute as error:
         raise builder.bad(element, error) from error
     at = Pose((anchor[0], anchor[1], anchor[2]))

@@ -140,7 +140,7 @@ def _check_size(root: Element) -> None:
 
 
 def _count(element: Element) -> int:
-    """How often an element's content is made; 1 where the text says no number, about which MuJoCo will complain."""
+    """How often an element's content is made; 1 where the text is no number, which MuJoCo will refuse."""
     product = 1
     for word in element.attributes.get("count", "1").split()[:3]:
         product *= int(word) if word.isascii() and word.isdigit() and len(word) < 12 else MOST_COPIES if word.isdigit() else 1
@@ -276,14 +276,14 @@ def _rename_files(element: Element, folder: str, settings: Settings, flat: FlatM
             element.attributes.setdefault("name", file_stem(text) or element.tag)
         path = source.files.find(uri)
         if path is not None and token not in flat.assets:
-            with contextlib.suppress(OSError):  # to MuJoCo it is missing, which it says where it needs it
+            with contextlib.suppress(OSError):  # then it is missing, which MuJoCo reports where it needs the file
                 flat.assets[token] = source.files.read(path)
         if token in flat.assets and element.tag == "flexcomp":
             flat.models[token] = flat.assets[token]  # it is read where models are, before assets
 
 
 def _token(uri: str, flat: FlatModel) -> str:
-    """The name of a file where MuJoCo sees it: with its suffix, which says what it is."""
+    """The name of a file where MuJoCo sees it: with its suffix, which tells the type."""
     token = flat.tokens.setdefault(uri, f"file{len(flat.tokens)}{posixpath.splitext(uri)[1]}")
     flat.uris[token] = uri
     return token

@@ -19,14 +19,14 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
 
 _SHOWN = 3
-"""Geoms of this group and those above are not shown unless somebody asks for them."""
+"""Geoms of this group and higher ones are not shown by default."""
 
 
 def read_geom(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
     """A shape on a body; what only MuJoCo knows of it stays with it as it is."""
     own_class = element.attributes.get("class")
-    said = {**builder.classes.of("geom", own_class or scope.childclass), **element.attributes}
-    role = role_of(said)
+    given = {**builder.classes.of("geom", own_class or scope.childclass), **element.attributes}
+    role = role_of(given)
     key = builder.names.take("shape", f"{scope.body.name}/{PLACES[role]}")
     builder.origins[key] = element.origin
     base = builder.base(element, key, scope.childclass)
@@ -35,7 +35,7 @@ def read_geom(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
         builder.register(element, "geom", name, key)
     if scope.frame:
         builder.note(key, frame_of(), scope.frame)
-    fitted = "mesh" in said and said.get("type") != "mesh"
+    fitted = "mesh" in given and given.get("type") != "mesh"
     found = builder.values(element, FITTED_GEOM if fitted else GEOM, base, key, always=bool(scope.frame))
     place: Place = found["place"]
     shape = Shape(place.geometry, role, name, found["rgba"] or None, found["mass"], found["density"], found["friction"])
@@ -47,11 +47,11 @@ def read_geom(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
     builder.keep(element, key)
 
 
-def role_of(said: Mapping[str, str]) -> Role:
+def role_of(given: Mapping[str, str]) -> Role:
     """For the eye alone when it can touch nothing; for contact alone when it is in a group that is not shown."""
-    if not _number(said.get("contype", "1")) and not _number(said.get("conaffinity", "1")):
+    if not _number(given.get("contype", "1")) and not _number(given.get("conaffinity", "1")):
         return Role.VISUAL
-    return Role.COLLISION if _number(said.get("group", "0")) >= _SHOWN else Role.BOTH
+    return Role.COLLISION if _number(given.get("group", "0")) >= _SHOWN else Role.BOTH
 
 
 def _number(text: str) -> int:

@@ -32,7 +32,7 @@ def read_site(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
 
 
 def read_camera(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
-    """A camera; whom it follows and how is among its parameters."""
+    """A camera; the body that it follows is among its parameters."""
     key, found, base = _read(element, scope, "camera", CAMERA, builder)
     width, height = found["resolution"] or (0.0, 0.0)
     resolution = (int(width), int(height)) if found["resolution"] else None
@@ -49,7 +49,7 @@ def read_light(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
 
 
 def take_parameters(element: Element, base: Mapping[str, str], resolved: Names = (), law: Names = ()) -> Parameters:
-    """Every attribute that is left and says something else than the class, as a parameter.
+    """Every unread attribute that differs from the class's, as a parameter.
 
     Those in ``resolved`` and ``law`` are parameters even where the class gives them; the former come first, of the latter come last
     those that only the class gives.

@@ -1,6 +1,6 @@
-"""What the attributes of one element may not say together: rules that MuJoCo checks element by element.
+"""Combinations of attributes and values that MuJoCo refuses, element by element.
 
-Each rule gets an element and says what is wrong with it, or None. Numbers and words have been checked before.
+Each rule takes an element and returns the complaint, or None. Kinds of values have been checked before.
 """
 
 from __future__ import annotations
@@ -90,9 +90,9 @@ def _unique(*tags: str) -> Rule:
 
 
 def _eulerseq(element: Element) -> str | None:
-    said = element.attributes.get("eulerseq", "xyz")
-    good = len(said) == 3 and set(said) <= set("xyzXYZ")
-    return None if good else f"<compiler eulerseq> is '{said}', expected three letters of x, y, z, X, Y, Z"
+    text = element.attributes.get("eulerseq", "xyz")
+    good = len(text) == 3 and set(text) <= set("xyzXYZ")
+    return None if good else f"<compiler eulerseq> is '{text}', expected three letters of x, y, z, X, Y, Z"
 
 
 def _frame_scale(element: Element) -> str | None:
@@ -113,8 +113,8 @@ def _hfield(element: Element) -> str | None:
 
 
 def _contact_size(element: Element) -> str | None:
-    said = element.attributes.get("condim", "3")
-    return None if int(said) in (1, 3, 4, 6) else f"<{element.tag} condim> is '{said}', expected 1, 3, 4 or 6"
+    text = element.attributes.get("condim", "3")
+    return None if int(text) in (1, 3, 4, 6) else f"<{element.tag} condim> is '{text}', expected 1, 3, 4 or 6"
 
 
 def _layers(element: Element) -> str | None:
@@ -187,21 +187,21 @@ def _attached(element: Element) -> str | None:
 
 
 def _hull(element: Element) -> str | None:
-    said = element.attributes.get("maxhullvert", "-1")
-    return None if int(said) < 0 or int(said) > 3 else f"<mesh maxhullvert> is '{said}', expected more than 3"
+    text = element.attributes.get("maxhullvert", "-1")
+    return None if int(text) < 0 or int(text) > 3 else f"<mesh maxhullvert> is '{text}', expected more than 3"
 
 
 def _direct_current(element: Element) -> str | None:
     """What no class can make up for: a constant or resistance of zero that no nominal values give, half of a thermal model."""
     constants, resistance, thermal = (_numbers(element, name) for name in ("motorconst", "resistance", "thermal"))
-    said = element.attributes
-    if constants and "nominal" not in said and not any(number > 0.0 for number in constants):
-        return f"<dcmotor motorconst> is '{said['motorconst']}', expected more than 0"
-    if resistance and "nominal" not in said and resistance[0] <= 0.0:
-        return f"<dcmotor resistance> is '{said['resistance']}', expected more than 0"
+    own = element.attributes
+    if constants and "nominal" not in own and not any(number > 0.0 for number in constants):
+        return f"<dcmotor motorconst> is '{own['motorconst']}', expected more than 0"
+    if resistance and "nominal" not in own and resistance[0] <= 0.0:
+        return f"<dcmotor resistance> is '{own['resistance']}', expected more than 0"
     both = thermal[:2]
     half = len(both) == 2 and max(both) > 0.0 and min(both) <= 0.0
-    return f"<dcmotor thermal> is '{said['thermal']}', expected two numbers more than 0 first" if half else None
+    return f"<dcmotor thermal> is '{own['thermal']}', expected two numbers more than 0 first" if half else None
 
 
 _NOT_NEGATIVE = _less_than(0.0, "cutoff", "noise")
@@ -221,7 +221,7 @@ _DRIVES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
         "dcmotor": (_less_than(0.0, "motorconst", "resistance", "inductance"), _direct_current),
     }
 )
-"""Of actuators and of what their classes say."""
+"""Of actuators and of their classes."""
 
 _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
     {
@@ -261,11 +261,7 @@ _RULES: Mapping[str, tuple[Rule, ...]] = MappingProxyType(
 
 def complaint(element: Element, rules: tuple[Rule, ...]) -> str | None:
     """What MuJoCo would refuse in this element by these rules; None when it is fine."""
-    for rule in rules:
-        said = rule(element)
-        if said is not None:
-            return said
-    return None
+    return next((found for rule in rules if (found := rule(element)) is not None), None)
 
 
 def rules_of(path: str) -> tuple[Rule, ...]:

@@ -62,9 +62,9 @@ def _read_tendon(element: Element, builder: MjcfBuilder) -> None:
 
 
 def _take_parameters(element: Element, base: Mapping[str, str]) -> Parameters:
-    """What else counts for the length and the forces of a tendon, also where its class says it."""
-    said = merge(base, element.attributes)
-    found = tuple((name, parameter_value(name, said[name])) for name in TENDON_PARAMETERS if name in said)
+    """Other parameters of a tendon's length and forces, also where its class gives them."""
+    merged = merge(base, element.attributes)
+    found = tuple((name, parameter_value(name, merged[name])) for name in TENDON_PARAMETERS if name in merged)
     for name, _ in found:
         element.take(name)
     return found
