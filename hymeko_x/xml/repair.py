@@ -132,7 +132,7 @@ def decoded(data: bytes) -> tuple[str, str]:
             text = data.decode(candidate)
         except (UnicodeError, LookupError):
             continue
-        return text, "" if candidate == name else f"the text is not {name}, as it says; read as {candidate}"
+        return text, "" if candidate == name else f"the text is not {name}, as declared; read as {candidate}"
     return data.decode("latin-1"), f"the text is not {name}; read as latin-1"
 
 

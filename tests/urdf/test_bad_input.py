@@ -97,7 +97,7 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
     "another encoding than declared": (
         ('<?xml version="1.0" encoding="ascii"?>\n' + robot('<link name="café"/>')).encode(),
         [
-            "3:16: warning[HX005]: the text is not ascii, as it says; read as utf-8",
+            "3:16: warning[HX005]: the text is not ascii, as declared; read as utf-8",
         ],
     ),
     "a document type": (

@@ -1,6 +1,6 @@
 """The URDF frontend. Everything in a file becomes typed parts of a mechanism, or an extra, or a diagnostic with its origin.
 
-Source: URDF 1.0 as urdfdom reads it; docs/mapping/urdf.md says the mapping.
+Source: URDF 1.0 as urdfdom reads it; docs/mapping/urdf.md has the mapping.
 """
 
 from __future__ import annotations
