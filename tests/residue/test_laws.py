@@ -9,7 +9,7 @@ from msgspec import Struct
 import hymeko_x as hx
 from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.ir import parts, values
+from hymeko_x.ir import geometry, parts, values
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.ir.types import hints_of, settled
@@ -69,7 +69,7 @@ def test_the_text_is_a_fixed_point(source: Mechanism, image: Mechanism) -> None:
 def test_the_types_of_every_part_are_known() -> None:
     kinds = [
         kind
-        for module in (parts, values)
+        for module in (geometry, parts, values)
         for kind in vars(module).values()
         if isinstance(kind, type) and issubclass(kind, Struct) and kind.__module__ == module.__name__
     ]
