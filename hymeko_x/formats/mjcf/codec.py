@@ -188,11 +188,16 @@ def write_turn(quat: tuple[float, ...], written: Written | None, settings: Setti
 
 
 def write_pose(value: Pose, settings: Settings) -> dict[str, str]:
-    """``pos`` and the orientation, or ``fromto``."""
-    if value.written is not None and value.written.kind == "fromto":
-        return {"fromto": numbers_text(value.written.numbers)}
+    """``pos`` and the orientation; of a pose between two points, which only sites and geoms have, as a quaternion."""
     attributes = {} if value.xyz == ZERO else {"pos": numbers_text(value.xyz)}
     return attributes | write_turn(value.quat, value.written, settings)
+
+
+def write_site_pose(value: Pose, settings: Settings) -> dict[str, str]:
+    """``fromto``, or as :func:`write_pose`."""
+    if value.written is not None and value.written.kind == "fromto":
+        return {"fromto": numbers_text(value.written.numbers)}
+    return write_pose(value, settings)
 
 
 def same_pose(a: Pose, b: Pose) -> bool:
@@ -211,7 +216,7 @@ def seen_pose(attributes: Mapping[str, str], settings: Settings) -> Any:
 
 
 POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose)
-SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose, seen_pose)
+SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_site_pose, seen_pose)
 
 
 # ---- plain groups ------------------------------------------------------------------------------------------------------------
