@@ -193,7 +193,7 @@ def write_pose(value: Pose, settings: Settings) -> dict[str, str]:
     return attributes | write_turn(value.quat, value.written, settings)
 
 
-def write_site_pose(value: Pose, settings: Settings) -> dict[str, str]:
+def write_pose_or_ends(value: Pose, settings: Settings) -> dict[str, str]:
     """``fromto``, or as :func:`write_pose`."""
     if value.written is not None and value.written.kind == "fromto":
         return {"fromto": numbers_text(value.written.numbers)}
@@ -216,7 +216,7 @@ def seen_pose(attributes: Mapping[str, str], settings: Settings) -> Any:
 
 
 POSE = Group("pose", POSE_NAMES, read_pose, write_pose, seen_pose)
-SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_site_pose, seen_pose)
+SITE_POSE = Group("pose", (*POSE_NAMES, "fromto"), read_pose, write_pose_or_ends, seen_pose)
 
 
 # ---- plain groups ------------------------------------------------------------------------------------------------------------

@@ -26,7 +26,7 @@ from hymeko_x.formats.mjcf.codec import (
     seen_pose,
     text,
     vector_of,
-    write_pose,
+    write_pose_or_ends,
     write_turn,
     written_turn,
 )
@@ -144,7 +144,7 @@ def _write_place(value: Place, settings: Settings) -> dict[str, str]:
             pose = Pose(pose.xyz, pose.quat)
     if size:
         attributes["size"] = numbers_text(size)
-    return attributes | write_pose(pose, settings)
+    return attributes | write_pose_or_ends(pose, settings)
 
 
 def _word_and_size(value: Place) -> tuple[str | None, tuple[float, ...]]:
