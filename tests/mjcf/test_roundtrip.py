@@ -10,7 +10,9 @@ from mjmodels import compiled, differences, read, read_text, through_hymeko, wri
 
 from hymeko_x.compare.diff import diff
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.ir.parts import Body
+from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.parts import Body, Inertial, InertialWritten
+from hymeko_x.ir.values import Z, pose, quat_about, rotate_tensor
 from hymeko_x.rewrite import Options, legalize
 
 if TYPE_CHECKING:
@@ -187,3 +189,12 @@ def test_replicate_is_expanded_by_mujoco_with_a_note() -> None:
     assert [key.name for key, _ in robot.vertices(Body)] == ["b0", "b1", "b2"]
     assert [said.message for said in report] == ["<replicate> was expanded by MuJoCo; lines after it are those of the expanded file"]
     assert differences(compiled(text), compiled(write(robot))) == []
+
+
+def test_a_tensor_whose_author_wrote_products_in_axes_of_their_own_is_written_whole() -> None:
+    text = '<mujoco><worldbody><body name="b"><freejoint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/></body></worldbody></mujoco>'
+    robot, key = read_text(text), Id("body", "b")
+    frame, tensor = pose(quat=quat_about(Z, 0.5)), (1.0, 1.25, 1.5, 0.125, 0.0, 0.0)
+    inertial = Inertial(1.0, (0.0, 0.0, 0.0), rotate_tensor(frame.quat, tensor), InertialWritten(frame, tensor))
+    edited = robot.with_graph(robot.graph.replace(vertices={key: Body(inertial)}))
+    assert read_text(write(edited)).vertex(key, Body).inertial == inertial

@@ -56,7 +56,7 @@ class MjcfSheet:
     classes: Classes
     kept: list[tuple[str, Extra]] = field(default_factory=list)
     rank: Mapping[Id, int] = field(default_factory=dict)
-    known: dict[tuple[int, int], dict[str, Any]] = field(default_factory=dict)
+    known: dict[tuple[tuple[Group, ...], int], dict[str, Any]] = field(default_factory=dict)
 
     # ---- names -----------------------------------------------------------------------------------------------------------
 
@@ -153,8 +153,8 @@ class MjcfSheet:
         return found
 
     def _inherited(self, groups: tuple[Group, ...], base: Mapping[str, str]) -> Mapping[str, Any]:
-        """The values of an element that has no attributes of its own; by the identities of both, which live as long as the sheet."""
-        place = id(groups), id(base) if base else 0
+        """The values of an element that has no attributes of its own. The classes keep every base alive, and so its identity."""
+        place = groups, id(base) if base else 0
         if place not in self.known:
             self.known[place] = inherited_values(groups, base, self.settings)
         return self.known[place]

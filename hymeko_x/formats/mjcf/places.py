@@ -317,9 +317,10 @@ def _write_inertial(value: Inertial, settings: Settings) -> dict[str, str]:
     attributes = {"pos": numbers_text(value.com), "mass": number_text(value.mass or 0.0)}
     if value.tensor is None:
         return attributes
-    if value.written is not None and value.tensor == rotate_tensor(value.written.frame.quat, value.written.tensor):
-        turn = write_turn(value.written.frame.quat, value.written.frame.written, settings)
-        return {**attributes, **turn, "diaginertia": numbers_text(value.written.tensor[:3])}
+    if value.written is not None:
+        frame, own = value.written.frame, value.written.tensor
+        if not any(own[3:]) and value.tensor == rotate_tensor(frame.quat, own):
+            return {**attributes, **write_turn(frame.quat, frame.written, settings), "diaginertia": numbers_text(own[:3])}
     if not any(value.tensor[3:]):
         return {**attributes, "diaginertia": numbers_text(value.tensor[:3])}
     return {**attributes, "fullinertia": numbers_text(value.tensor)}
