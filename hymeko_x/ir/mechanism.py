@@ -8,7 +8,7 @@ from __future__ import annotations
 from functools import cached_property
 from itertools import chain
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from msgspec import Struct, field
 from msgspec.structs import replace
@@ -16,6 +16,10 @@ from msgspec.structs import replace
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import Noted
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
+from hymeko_x.ir.ids import ROOT as ROOT
+from hymeko_x.ir.ids import WORLD as WORLD
+from hymeko_x.ir.ids import Id as Id
+from hymeko_x.ir.provenance import Provenance as Provenance
 from hymeko_x.ir.values import IDENTITY, Pose
 from hymeko_x.ir.views import JointView as JointView
 from hymeko_x.ir.views import MountView as MountView
@@ -32,20 +36,6 @@ if TYPE_CHECKING:
 P = TypeVar("P")
 T = TypeVar("T")
 
-
-class Id(NamedTuple):
-    """The key of an element: its kind (``body``, ``joint``, ``shape``, ...) and a name unique among its kind."""
-
-    kind: str
-    name: str
-
-    def __str__(self) -> str:
-        return f"{self.kind} '{self.name}'"
-
-
-WORLD = Id("world", "world")
-ROOT = Id("mechanism", "")
-"""The key under which side tables keep what belongs to the mechanism as a whole."""
 
 KINDS: Mapping[type, str] = MappingProxyType(
     {
@@ -104,18 +94,6 @@ class Extra(Noted, frozen=True):
     index: int = 0
 
     uncompared = ("index",)
-
-
-class Provenance(NamedTuple):
-    """Where a mechanism came from: the format whose extras, notations and default classes it has, and the file that was read.
-
-    ``version`` is given where the format needs one to be understood; then texts and residues keep format and version. All empty:
-    the mechanism was made by a program.
-    """
-
-    format: str = ""
-    version: str = ""
-    file: str = ""
 
 
 class Mechanism(Struct, frozen=True, eq=False, dict=True):

@@ -4,13 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x.ir.mechanism import ROOT, Provenance
+from hymeko_x.ir.ids import ROOT
 
 if TYPE_CHECKING:
     from collections.abc import Container, Mapping
 
     from hymeko_x.ir import parts
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.ids import Id
+
+
+class Provenance(NamedTuple):
+    """Where a mechanism came from: the format whose extras, notations and default classes it has, and the file that was read.
+
+    ``version`` is given where the format needs one to be understood; then texts and residues keep format and version. All empty:
+    the mechanism was made by a program.
+    """
+
+    format: str = ""
+    version: str = ""
+    file: str = ""
 
 
 class StoredLook(NamedTuple):
@@ -28,12 +40,11 @@ class StoredMesh(NamedTuple):
     looks: tuple[StoredLook, ...] = ()
 
 
-def kept_notations(mechanism: Mechanism) -> Mapping[Id, Mapping[str, str]]:
+def kept_notations(notations: Mapping[Id, Mapping[str, str]], source: Provenance) -> Mapping[Id, Mapping[str, str]]:
     """The notations by element; where the source has a version, the mechanism as a whole has an entry of the format's name."""
-    format, version, _ = mechanism.source
-    if not version:
-        return mechanism.notations
-    return {**mechanism.notations, ROOT: {**mechanism.notations.get(ROOT, {}), format: version}}
+    if not source.version:
+        return notations
+    return {**notations, ROOT: {**notations.get(ROOT, {}), source.format: source.version}}
 
 
 def take_provenance(notations: Mapping[Id, dict[str, str]], formats: Container[str], otherwise: Provenance) -> Provenance:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from hymeko_x.ir import parts
-    from hymeko_x.ir.mechanism import Id
+    from hymeko_x.ir.ids import Id
     from hymeko_x.ir.values import Pose
 
 

@@ -109,7 +109,7 @@ def laid_out(have: Sequence[Id], want: Sequence[Id], known: set[Id]) -> tuple[Id
 
 def sides_between(image: Mechanism, source: Mechanism) -> Sides:
     """What stands beside the graph."""
-    written, noted = kept_notations(source), kept_notations(image)
+    written, noted = kept_notations(source.notations, source.source), kept_notations(image.notations, image.source)
     used = {name for table in written.values() for name in table}
     forgotten = {name for table in noted.values() for name in table} - used
     extras = tuple(_extras(image, source))
@@ -159,7 +159,7 @@ def _extras(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, Extra, bo
 def with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mechanism:
     sides = residue.sides
     there = {ROOT, *mechanism.graph.vertices, *mechanism.graph.edges}
-    noted = kept_notations(image).items()
+    noted = kept_notations(image.notations, image.source).items()
     notations = {key: {name: text for name, text in table.items() if name not in sides.forgotten} for key, table in noted}
     for key, name, text in sides.notations:
         if text is None:

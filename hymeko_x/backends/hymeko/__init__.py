@@ -95,7 +95,11 @@ def _settings(sheet: HymekoSheet, plain: bool) -> list[Item]:
         items.append(Node("units", (Field("angle"), Field("rad"))))
     if sheet.files:
         items.append(Field("files", sheet.files))
-    notations = {key: text for key, text in kept_notations(sheet.mechanism).get(ROOT, {}).items() if key != ROOT_NAME.name}
+    notations = {
+        key: text
+        for key, text in kept_notations(sheet.mechanism.notations, sheet.mechanism.source).get(ROOT, {}).items()
+        if key != ROOT_NAME.name
+    }
     if notations:
         items.extend(written_items(notations, flags=False))
     items.extend(foreign_items(_in_place(sheet.mechanism)[1], at_root=True))
