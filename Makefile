@@ -11,7 +11,7 @@ help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
 	@echo "make test   ruff, mypy --strict, pytest"
 	@echo "make test-full  the same with the tests that take minutes: every robot, every size"
-	@echo "make test-format FORMAT=urdf  what belongs to one format, without real robots: under a minute"
+	@echo "make test-format FORMAT=urdf  what belongs to one format, without real robots"
 	@echo "make coverage  which lines no test runs; writes docs/coverage.md"
 	@echo "make bench  speed as ratios against yardsticks timed in the same run, other people's programs among them; writes README's table"
 	@echo "make peers  other people's programs, each into .peers/, and the tests that compare with them"
