@@ -307,13 +307,14 @@ def _as_tag(extra: Extra) -> Tag | str:
 
 
 class FrameTag(msgspec.Struct, frozen=True):
-    """A <frame>: its attributes, its pose in the body, its childclass, and the frames around it with itself, outermost first."""
+    """A <frame>: its attributes, its pose in the body, its childclass, the frame around it, and its depth, 1 for the outermost."""
 
     number: str
     attributes: dict[str, str]
     pose: Pose
     childclass: str | None
-    path: tuple[str, ...]
+    outer: FrameTag | None
+    depth: int
 
 
 @dataclass(slots=True)
@@ -332,18 +333,20 @@ class BodyTag:
 
     def add(self, tag: Tag, frame: FrameTag | None) -> None:
         """Put an element into the frame; frames are opened and closed where they change, and named when they open first."""
-        path = () if frame is None else frame.path
-        same = 0
-        while same < min(len(path), len(self.opened)) and path[same] == self.opened[same][0]:
-            same += 1
-        del self.opened[same:]
-        for number in path[same:]:
-            found = self.frames[number]
+        closed: list[FrameTag] = []
+        while frame is not None and not self._is_open(frame):
+            closed.append(frame)
+            frame = frame.outer
+        del self.opened[frame.depth if frame else 0 :]
+        for found in reversed(closed):
             inner = Tag("frame", dict(found.attributes))
             found.attributes.pop("name", None)
             self._innermost.children.append(inner)
-            self.opened.append((number, inner))
+            self.opened.append((found.number, inner))
         self._innermost.children.append(tag)
+
+    def _is_open(self, frame: FrameTag) -> bool:
+        return len(self.opened) >= frame.depth and self.opened[frame.depth - 1][0] == frame.number
 
     @property
     def _innermost(self) -> Tag:
@@ -367,6 +370,7 @@ def open_body(sheet: MjcfSheet, key: Id, tag: Tag, childclass: str | None) -> Bo
             attributes,
             compose(parent.pose, pose) if parent else pose,
             attributes.get("childclass", inherited),
-            (*(parent.path if parent else ()), number),
+            parent,
+            parent.depth + 1 if parent else 1,
         )
     return BodyTag(key, tag, childclass, frames)
