@@ -19,7 +19,7 @@ VERBS = {
     "export": ("hymeko_x.cli.convert", "read HyMeKo (standard input by default), write another format"),
     "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
     "diff": ("hymeko_x.cli.compare", "what differs between two robots, element by element"),
-    "verify": ("hymeko_x.cli.compare", "are two files the same robot? asked of the formats' own engines"),
+    "verify": ("hymeko_x.cli.compare", "whether two files are the same robot, by the formats' own engines"),
     "roundtrip": ("hymeko_x.cli.compare", "through other formats and back, every leg verified"),
     "check": ("hymeko_x.cli.info", "is a robot complete and sane? for people and for repair loops"),
     "dh": ("hymeko_x.cli.dh", "Denavit-Hartenberg tables: standard, modified, Hayati-Roberts"),

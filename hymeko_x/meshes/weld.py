@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 _ROUNDS = 8
-"""How often rows that share a slot with others appearance for a new one, before all are sorted instead."""
+"""How often rows that share a slot with others look for a new one, before all are sorted instead."""
 _LEAST_BITS = 12
 """Of the number of a slot: a table that fits into the nearest cache costs nothing."""
 _BITS, _HALF = 64, np.uint64(32)
@@ -37,7 +37,7 @@ def _first_equal(rows: NDArray[Any]) -> NDArray[np.intp]:
     """For each row the number of the first one that equals it.
 
     Equal rows share a slot, and the first row of a slot represents all in it. Rows that differ from that one
-    appearance for other slots among themselves; that those are few is likely, not certain.
+    look for other slots among themselves; that those are few is likely, not certain.
     """
     first = _first_in_slots(rows, 0)
     rest = _unequal(rows, rows, first)

@@ -27,11 +27,6 @@ _ROUNDING = 1e-13
 _SCALAR = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 
 
-def alignment_between(image: Mechanism, source: Mechanism) -> Alignment:
-    """The alignment that leads from the image to the source. Linear in both."""
-    return align(image, source)[0]
-
-
 def align(image: Mechanism, source: Mechanism) -> tuple[Alignment, Mechanism]:
     """The alignment that leads from the image to the source, and the aligned image. Linear in both."""
     names = _other_names(image, source)

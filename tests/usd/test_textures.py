@@ -58,7 +58,7 @@ GLASS = "newmtl glass\nKd 0.5 0.5 0.5\nd 0.25\nnewmtl paint\nKd 1 0 0\n"
 
 
 def lay_glass(folder: Path) -> Path:
-    """A robot whose mesh file has one colour to appearance through and another one; where it is opaque it says nothing about that."""
+    """A robot whose mesh file has one transparent colour and an opaque one, whose opacity the file leaves out."""
     (folder / "a.obj").write_text(
         f"mtllib a.mtl\n{PYRAMID}usemtl glass\nf 1 4 3\nf 1 3 2\nusemtl paint\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n"
     )
@@ -346,7 +346,7 @@ def test_an_image_comes_out_of_a_package_again(tmp_path: Path, layout: Literal["
     assert (tmp_path / texture.uri).read_bytes() == image()
 
 
-# ---- colours to appearance through ---------------------------------------------------------------------------------------------------
+# ---- transparent colours -------------------------------------------------------------------------------------------------------------
 
 
 def test_a_colour_to_look_through_reaches_a_stage_and_comes_back_in_the_mesh_file(tmp_path: Path) -> None:

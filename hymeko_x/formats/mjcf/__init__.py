@@ -30,8 +30,5 @@ TARGETS: Mapping[str, str] = MappingProxyType({"joint": "joint", "tendon": "tend
 LIGHTS = ("spot", "directional", "point", "image")
 """The types of light; the first one is the default."""
 
-MESH_SUFFIXES = (".stl", ".obj", ".msh")
-"""The mesh files that MuJoCo reads by itself; STL only binary."""
-
 MOST_STL_FACES = 200_000
 """MuJoCo refuses an STL file with more faces, while OBJ files may have any number."""

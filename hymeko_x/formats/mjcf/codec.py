@@ -200,11 +200,6 @@ def write_pose_or_ends(value: Pose, settings: Settings) -> dict[str, str]:
     return write_pose(value, settings)
 
 
-def same_pose(a: Pose, b: Pose) -> bool:
-    """Whether two poses are equal and written in the same way."""
-    return a == b and a.written == b.written
-
-
 POSE_NAMES = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")
 
 
