@@ -47,10 +47,10 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
     plant = MultibodyPlant(0.0)
     parser = Parser(plant)
     for name, folder in lookup.packages.items():
-        parser.package_map().Add(name, str(folder))
+        parser.package_map().Add(name, folder)
     with native_output() as output:
         try:
-            parser.AddModelsFromString(path.read_text("utf-8"), "sdf") if path.suffix != ".sdf" else parser.AddModels(str(path))
+            parser.AddModelsFromString(path.read_text("utf-8"), "sdf") if path.suffix != ".sdf" else parser.AddModels(path)
         except (RuntimeError, SystemExit, MemoryError) as error:
             reason = " ".join(str(error).split()) or output()
             raise refuse(codes.ENGINE_REFUSED, f"libsdformat refuses the file: {reason}", Origin(str(path))) from error
