@@ -10,7 +10,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats
-from hymeko_x.assets.pack import pack, with_stored_meshes
+from hymeko_x.assets.pack import pack, with_stand_ins
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.collector import uncollected
 from hymeko_x.compare.leaves import leaves_again, leaves_between
@@ -136,7 +136,7 @@ def convert(
 def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
     """Rewritten, with its files placed, and printed."""
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
-    complete = _completed(with_stored_meshes(mechanism, format, files, report), format, files, report)
+    complete = _completed(with_stand_ins(mechanism, format, files, report), format, files, report)
     legal = legalize(complete, format.name, options, report)
     printed = _placed_and_printed(legal, format, options, files, report, place)
     folder = f"{safe_name(options.beside)}/"

@@ -17,18 +17,18 @@ from msgspec import field
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats
-from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
+from hymeko_x.assets.shelf import Shelf, read_file
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import file_stem, subset_edge
+from hymeko_x.ir.mechanism import file_stem, subset_edge, suffix_of
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Mesh, Role, Texture
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.ir.parts import Material
     from hymeko_x.ir.provenance import StoredLook, StoredMesh
     from hymeko_x.source import Files
@@ -149,22 +149,41 @@ class _Standing(Builder):
         self.edges[self.names.take("subset", material.name)] = subset_edge(look.faces, shape, material)
 
 
-def with_stored_meshes(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
-    """The mechanism with the points and looks that are stored of every mesh whose file is missing. An exact format keeps the reference."""
+def with_stand_ins(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
+    """The mechanism with what the file that was read has in the places of meshes and images whose files are missing.
+
+    An exact format keeps the reference, and one for which packages are elsewhere keeps those to packages.
+    """
     if not mechanism.stored or format.is_exact:
         return mechanism
     standing = _Standing(names=names_in_use(mechanism))
     found: dict[Id, StoredMesh] = {}
-    for key, mesh in mechanism.vertices(Mesh):
-        stored = mechanism.stored.get(mesh.uri or "")
-        if stored is None or (format.keeps_package_uris and is_of_package(mesh.uri or "")) or files.find(mesh.uri or "") is not None:
+    for key, part in mechanism.assets():
+        stored = mechanism.stored.get(key)
+        if (
+            stored is None
+            or part.uri is None
+            or (format.keeps_package_uris and is_of_package(part.uri))
+            or files.find(part.uri) is not None
+        ):
             continue
-        found[key] = stored
-        standing.vertices[key] = replace(stored.mesh, scale=mesh.scale, name=mesh.name)
-        message = f"{key}: '{mesh.uri}' was not found; it becomes the points that the source has of it"
+        if not isinstance(stored, Texture):
+            found[key] = stored
+        other = stored if isinstance(stored, Texture) else stored.mesh
+        standing.vertices[key] = replace(other, name=part.name)
+        instead = "the points that the source has of it" if other.uri is None else f"'{other.uri}', which the source has in its place"
+        message = f"{key}: '{part.uri}' was not found; it becomes {instead}"
         report.note(codes.ASSET_NOT_FOUND, message, mechanism.origin(key), element=str(key))
-    for view in mechanism.every_shape() if found else ():
+    if not standing.vertices:
+        return mechanism
+    for view in mechanism.every_shape():
         if view.mesh in found and view.shape.role is Role.VISUAL and view.id not in mechanism.subsets:
             for look in found[view.mesh].looks:
                 standing.show(view.id, look)
-    return standing.added_to(mechanism) if found else mechanism
+    return replace(standing.added_to(mechanism), extras=_unplaced(mechanism.extras, found))
+
+
+def _unplaced(extras: Mapping[Id, tuple[Extra, ...]], meshes: Iterable[Id]) -> dict[Id, tuple[Extra, ...]]:
+    """The extras without those by which the points of these meshes, which already are in their places, would be moved again."""
+    bare = {key: tuple([extra for extra in extras.get(key, ()) if not formats.is_placing(extra)]) for key in meshes}
+    return {key: found for key, found in {**extras, **bare}.items() if found}

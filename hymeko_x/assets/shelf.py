@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import posixpath
 import re
 from typing import TYPE_CHECKING, Literal
 
@@ -91,11 +90,6 @@ def safe_name(name: str) -> str:
     """A name that means a file on every system and nothing else: letters, digits and ``. _ - + = @ ( )``, no dot in front."""
     safe = _UNSAFE.sub("_", name).strip(". ")[:_MOST_LETTERS] or "file"
     return f"_{safe}" if _DEVICES.fullmatch(safe.split(".")[0]) else safe
-
-
-def suffix_of(path: str) -> str:
-    """The suffix of a path in small letters, with its dot."""
-    return posixpath.splitext(path.replace("\\", "/").rstrip("]"))[1].lower()
 
 
 def read_file(files: Files, uri: str) -> tuple[str, bytes] | None:

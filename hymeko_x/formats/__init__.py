@@ -21,7 +21,7 @@ from hymeko_x.diagnostics import Origin, refuse
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.mechanism import Extra, Mechanism
 
 _XML_TOKENS = "hymeko_x.corpus.lengths:xml_tokens"
 
@@ -65,6 +65,8 @@ class Format(Struct, frozen=True):
     """Whether meshes and images are put beside the output when the user does not choose."""
     pack: str | None = None
     """The function ``(mechanism, shelf, files, report) -> mechanism`` that names its files; None: it refers to any file by its uri."""
+    placing: frozenset[str] = frozenset()
+    """The extras of a mesh by which its points are elsewhere than in its file, or are made."""
     keeps_package_uris: bool = False
     """Whether ``package://NAME`` is written as it is: programs that read the format find packages in their own ways."""
 
@@ -171,6 +173,7 @@ MJCF = Format(
     roots=("mujoco", "mujocoinclude"),
     completes="hymeko_x.frontends.mjcf.complete:complete",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
+    placing=frozenset({"@refpos", "@refquat", "@builtin", "@params"}),
     inherited="hymeko_x.formats.mjcf.classes:without_inherited",
     shapes_have_weight="hymeko_x.formats.mjcf.words:shapes_have_weight",
     has_compact_extras=True,
@@ -255,6 +258,11 @@ def families() -> tuple[Format, ...]:
 def native_format(mechanism: Mechanism) -> Format | None:
     """The format whose engine gives a mechanism more than its parts hold, if it came from there; see :attr:`Format.completes`."""
     return next((format for format in FORMATS if format.completes and format.name == mechanism.source.format), None)
+
+
+def is_placing(extra: Extra) -> bool:
+    """Whether an extra of a mesh says that its points are elsewhere than in its file."""
+    return extra.path[:1] == "@" and any(extra.format == row.name and extra.path in row.placing for row in FORMATS)
 
 
 def loaded(name: str) -> Any:

@@ -5,6 +5,7 @@ Everything that a frontend returns and a backend takes. Ids are unique per kind,
 
 from __future__ import annotations
 
+import posixpath
 from functools import cached_property
 from itertools import chain
 from types import MappingProxyType
@@ -102,8 +103,8 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
     ``notations`` keeps, by element and name, how an author wrote what the value itself cannot keep, as text
     (see :class:`hymeko_x.ir.notations.Notation`); ``stereotypes`` the classes, macros and templates that elements were made
     from; ``layout`` the order in which the author wrote the elements (of any kind), as far as known; ``places`` by uri the
-    name that the file which carried the mechanism has for a mesh or an image; ``stored`` the content that this file itself has
-    of a mesh by its uri, which is used where there is no such file; ``source`` where all of it came from.
+    name that the file which carried the mechanism has for a mesh or an image; ``stored`` what this file has in the place of a
+    mesh or an image, which is used where its file is not found; ``source`` where all of it came from.
     """
 
     name: str
@@ -114,7 +115,7 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
     stereotypes: Mapping[Id, tuple[str, ...]] = field(default_factory=dict)
     layout: tuple[Id, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
-    stored: Mapping[str, StoredMesh] = field(default_factory=dict)
+    stored: Mapping[Id, StoredMesh | parts.Texture] = field(default_factory=dict)
     source: Provenance = Provenance()
 
     __ne__ = object.__ne__  # the opposite of __eq__, which a Struct's own is not
@@ -369,3 +370,8 @@ def file_stem(uri: str) -> str:
     """The name of a file without folders and suffix (``package://a/b/hip.stl``, ``a.usdz[b/hip.png]`` -> ``hip``); may be empty."""
     last = uri.replace("\\", "/").rstrip("/]").rpartition("/")[2]
     return last.rpartition(".")[0] or last
+
+
+def suffix_of(path: str) -> str:
+    """The suffix of a path in small letters, with its dot."""
+    return posixpath.splitext(path.replace("\\", "/").rstrip("]"))[1].lower()

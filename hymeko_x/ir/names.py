@@ -87,6 +87,7 @@ def rename(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
         origins=_rekeyed(mechanism.origins, names),
         notations=_rekeyed(mechanism.notations, names),
         stereotypes=_rekeyed(mechanism.stereotypes, names),
+        stored=_rekeyed(mechanism.stored, names),
         layout=tuple(names.get(key, key) for key in mechanism.layout),
     )
 

@@ -34,7 +34,7 @@ class StoredLook(NamedTuple):
 
 
 class StoredMesh(NamedTuple):
-    """A mesh that a file itself holds, which the mechanism only refers to: its points, and its appearance there."""
+    """A mesh as the file that was read has it, where the mechanism refers to another one: its points or file, and its appearance there."""
 
     mesh: parts.Mesh
     looks: tuple[StoredLook, ...] = ()

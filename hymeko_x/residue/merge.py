@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from msgspec.structs import replace
 
@@ -13,20 +13,19 @@ from hymeko_x import codes
 from hymeko_x.compare.leaves import TURN, default_at, get, put
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Body, Drive, Layer, Material, Mesh, Mount, Plane, Role, Sense, Texture
-from hymeko_x.ir.provenance import StoredLook, StoredMesh
+from hymeko_x.ir.parts import Body, Drive, Mount, Plane, Sense
 from hymeko_x.ir.types import is_sound, settled
-from hymeko_x.ir.values import X, Y, Z, rotate
 from hymeko_x.residue.digests import digest, digest_of, guard_of, mass_digest, shape_group
 from hymeko_x.residue.realign import realign, renamed_since, with_new_names, with_old_names
 from hymeko_x.residue.sides import by_kind, moved, with_sides
+from hymeko_x.residue.stand_ins import with_stand_ins
 
 if TYPE_CHECKING:
-    from collections.abc import Hashable, Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.compare.leaves import Path
     from hymeko_x.diagnostics import Report
-    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge, ShapeView
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.residue import Change, Removal, Residue
 
@@ -67,9 +66,8 @@ class _Merge:
         self._add(withheld)
         removed = self._remove(kept)
         self._let_nothing_dangle(removed)
-        merged = replace(self.image, name=name, graph=self._ordered(), places={**self.image.places, **dict(self._places())})
-        stored = stored_meshes(merged, self.image)
-        return with_sides(replace(merged, stored=stored) if stored else merged, self.residue, self.image)
+        merged = with_sides(replace(self.image, name=name, graph=self._ordered()), self.residue, self.image)
+        return with_stand_ins(merged, self.image)
 
     # ---- fields ------------------------------------------------------------------------------------------------------------
 
@@ -200,19 +198,6 @@ class _Merge:
             users[arc.target].append(key)
         return [arc.target for arc in part.arcs]
 
-    def _places(self) -> Iterator[tuple[str, str]]:
-        """How the image calls the files that the source calls otherwise."""
-        for key, part in self.vertices.items():
-            before = self.image.graph.vertices.get(key)
-            if (
-                isinstance(part, Mesh | Texture)
-                and isinstance(before, Mesh | Texture)
-                and part.uri
-                and before.uri
-                and part.uri != before.uri
-            ):
-                yield part.uri, self.image.places.get(before.uri, before.uri)
-
     def _ordered(self) -> Hypergraph:  # type: ignore[type-arg]
         if not self.residue.order:
             return Hypergraph(self.vertices, self.edges)
@@ -293,65 +278,3 @@ def _numbers(value: object) -> Iterator[float]:
 
 def _path_text(path: Path) -> str:
     return ".".join(str(step) for step in path if step not in ("data", "arcs", "weight", TURN))
-
-
-# ---- meshes that the image holds -----------------------------------------------------------------------------------------
-
-
-_PLACE_DIGITS = 6
-"""Places that agree to so many digits behind the point are the same."""
-
-
-class _Shown(NamedTuple):
-    """A mesh where a shape shows it; equal ``place`` means that the same points are seen at the same place, for the same purpose."""
-
-    view: ShapeView
-    mesh: Mesh
-    place: Hashable
-
-
-def stored_meshes(mechanism: Mechanism, image: Mechanism) -> dict[str, StoredMesh]:
-    """By uri, what the image has where the mechanism refers to a file: what the shape of the same name shows."""
-    if not any(part.vertices for _, part in image.vertices(Mesh)):
-        return {}
-    found: dict[str, StoredMesh] = {}
-    for body, views in mechanism.shapes.items():
-        seen = {shown.view.id: shown for shown in _shown(image.shapes.get(body, ()), image)}
-        for shown in _shown(views, mechanism):
-            there, uri = seen.get(shown.view.id), shown.mesh.uri
-            if uri is None or there is None or there.place != shown.place or not there.mesh.vertices:
-                continue
-            if uri not in found or not found[uri].looks:
-                mesh = there.mesh
-                bare = Mesh(None, (1.0, 1.0, 1.0), None, mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces)
-                found[uri] = StoredMesh(bare, tuple(_appearances(there, mechanism, image)))
-    return found
-
-
-def _shown(views: Iterable[ShapeView], mechanism: Mechanism) -> Iterator[_Shown]:
-    for view in views:
-        mesh = mechanism.graph.vertices.get(view.mesh) if view.mesh else None
-        if isinstance(mesh, Mesh):
-            axes = (rotate(view.pose.quat, axis) for axis in (X, Y, Z))
-            matrix = [factor * number for axis, factor in zip(axes, mesh.scale, strict=True) for number in axis]
-            place = tuple(round(number, _PLACE_DIGITS) + 0.0 for number in (*view.pose.xyz, *matrix))
-            yield _Shown(view, mesh, (view.shape.role, place))
-
-
-def _appearances(shown: _Shown, mechanism: Mechanism, image: Mechanism) -> Iterator[StoredLook]:
-    """The materials that only the image has, which are those of the file; first that of the shape, on the rest of the mesh."""
-    if shown.view.shape.role is not Role.VISUAL or shown.view.id in mechanism.subsets:
-        return
-    appearances = [(subset.material, subset.faces) for subset in image.subsets.get(shown.view.id, ())]
-    if shown.view.material is not None:
-        taken = {face for _, faces in appearances for face in faces}
-        appearances.insert(0, (shown.view.material, tuple([face for face in range(len(shown.mesh.faces) // 3) if face not in taken])))
-    for key, faces in appearances:
-        material = image.graph.vertices.get(key)
-        if faces and isinstance(material, Material) and key not in mechanism.graph.vertices:
-            textures = (image.graph.vertices.get(edge.arcs[0].target) for _, edge, _ in image.graph.edges_at(key) if _is_colour(edge.data))
-            yield StoredLook(material, next((part for part in textures if isinstance(part, Texture)), None), faces)
-
-
-def _is_colour(part: object) -> bool:
-    return isinstance(part, Layer) and part.use == "rgb"

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import mujoco
 import pytest
+import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
@@ -304,9 +305,8 @@ def test_where_nothing_but_side_notes_differs_they_come_back() -> None:
 
 def test_a_file_that_was_copied_is_found_on_the_way_back(tmp_path: Path) -> None:
     """The source calls its mesh by a name that means nothing beside the file that carries it."""
-    stl = b"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n"
     (tmp_path / "parts").mkdir()
-    (tmp_path / "parts" / "plate.stl").write_bytes(stl)
+    trimesh.creation.box((1.0, 1.0, 0.1)).export(tmp_path / "parts" / "plate.stl")
     (tmp_path / "a").mkdir()
     mesh = '<visual><geometry><mesh filename="../parts/plate.stl"/></geometry></visual>'
     (tmp_path / "a" / "robot.urdf").write_text(f'<robot name="r"><link name="base">{mesh}</link></robot>')

@@ -11,11 +11,11 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.assets.pack import package_hint
-from hymeko_x.assets.shelf import Shelf, read_file, suffix_of
+from hymeko_x.assets.shelf import Shelf, read_file
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
 from hymeko_x.formats.mjcf.words import from_mjcf
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge
+from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge, suffix_of
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.meshes.images import UnreadableImage, png_bytes

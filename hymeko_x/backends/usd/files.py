@@ -9,10 +9,10 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.assets.pack import Keep, keep_references
-from hymeko_x.assets.shelf import read_file, suffix_of
+from hymeko_x.assets.shelf import read_file
 from hymeko_x.formats import native_format
 from hymeko_x.ir.builder import Builder
-from hymeko_x.ir.mechanism import file_stem, shape_edge, subset_edge
+from hymeko_x.ir.mechanism import file_stem, shape_edge, subset_edge, suffix_of
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.meshes.submesh import LoadedMesh
