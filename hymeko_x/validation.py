@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 
 from hymeko_x import codes
+from hymeko_x.assets.pack import package_hint
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView
 from hymeko_x.rewrite.inertia import principal_moments
@@ -250,4 +251,4 @@ def _check_mesh(found: _Findings, view: ShapeView, key: Id, files: Files) -> Non
         found.error(codes.BAD_SIZE, view.id, f"a mesh of {_owner(view)} has the scale {mesh.scale}")
     if mesh.uri is not None and not mesh.vertices and files.find(mesh.uri) is None:
         message = f"the mesh '{mesh.uri}' of {_owner(view)} was not found"
-        found.warn(codes.ASSET_NOT_FOUND, view.id, message, "--package NAME=DIR gives the folder of package://NAME")
+        found.warn(codes.ASSET_NOT_FOUND, view.id, message, package_hint(mesh.uri))

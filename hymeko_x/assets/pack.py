@@ -17,6 +17,7 @@ from msgspec import field
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats
+from hymeko_x.assets.resolve import is_of_nameless_package
 from hymeko_x.assets.shelf import Shelf, read_file
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import file_stem, subset_edge, suffix_of
@@ -118,7 +119,7 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> st
 
 def is_of_package(uri: str) -> bool:
     """Whether the uri names a package, and means the same from everywhere."""
-    return _PACKAGE.match(uri) is not None
+    return _PACKAGE.match(uri) is not None and not is_of_nameless_package(uri)
 
 
 def _is_below(uri: str) -> bool:
@@ -129,6 +130,8 @@ def _is_below(uri: str) -> bool:
 
 def package_hint(uri: str) -> str:
     """How the user can tell where the package of a uri is; empty for a uri without one."""
+    if is_of_nameless_package(uri):
+        return "its package has no name: the file is looked for in the folder of the robot and in those above; --package =DIR adds one"
     match = re.match(r"(?:package|model):/*([^/]+)", uri, re.IGNORECASE)
     return f"--package {match[1]}=DIR tells where the package is" if match else ""
 

@@ -30,6 +30,7 @@ MOST_WILDCARDS = 4
 """In how many parts of a path there may be wildcards: each can multiply the folders that are looked into."""
 
 _SCHEME = re.compile(r"([A-Za-z][A-Za-z0-9+.-]+):/*")  # one letter would be a Windows drive
+_NAMELESS = re.compile(r"(package|model):///(?!/)", re.IGNORECASE)
 _PACKED = re.compile(r"(.+\.usdz)\[([^\[\]]+)\]", re.IGNORECASE | re.DOTALL)
 _PACKAGE_NAME = re.compile(rb"<name>\s*([^<\s]+)\s*</name>")
 
@@ -50,7 +51,8 @@ class DiskFiles(Struct, frozen=True, dict=True):
         """The path of the file that ``uri`` names, or None.
 
         A package is looked for in ``packages``, then in the search path, then upwards from ``base``, nearest first: a
-        folder whose `package.xml` bears the name, and a folder of that name above or beside. A file in a package of USD is
+        folder whose `package.xml` bears the name, and a folder of that name above or beside. One without a name (``package:///a.stl``)
+        is ``base`` or a folder above. A file in a package of USD is
         named as there: ``robot.usdz[textures/a.png]``.
         """
         if (packed := _PACKED.fullmatch(uri)) is not None:
@@ -143,6 +145,8 @@ class DiskFiles(Struct, frozen=True, dict=True):
         elif scheme[1].lower() == "file":
             yield from self._file_url(uri[len("file:") :])
         elif scheme[1].lower() in ("package", "model"):
+            if is_of_nameless_package(uri):
+                yield from (folder / uri[scheme.end() :] for folder in self._folders_of_nameless())
             name, _, rest = uri[scheme.end() :].partition("/")
             yield from (folder / rest for folder in self._package_folders(name) if rest)
 
@@ -150,6 +154,13 @@ class DiskFiles(Struct, frozen=True, dict=True):
         """`file:///a`, `file://localhost/a` and `file:/a` are absolute; `file://a` is a common slip and taken as relative."""
         path = rest.removeprefix("//localhost").removeprefix("//")
         yield from (self.base / text for text in dict.fromkeys((unquote(path), path)))
+
+    def _folders_of_nameless(self) -> Iterator[Path]:
+        """Where the files of a package without a name are: where the user says, with the description, or where packages stand."""
+        if "" in self.packages:
+            yield self.packages[""]
+        yield from self._upwards
+        yield from self.search_path
 
     def _package_folders(self, name: str) -> Iterator[Path]:
         if name in ("", ".", ".."):
@@ -205,6 +216,11 @@ class DiskFiles(Struct, frozen=True, dict=True):
 
     def _is_inside(self, path: Path) -> bool:
         return self.confine is None or path.resolve().is_relative_to(self.confine.resolve())
+
+
+def is_of_nameless_package(uri: str) -> bool:
+    """Whether a uri is ``package:///...``, which some exporters write for what lies beside the description."""
+    return _NAMELESS.match(uri.strip()) is not None
 
 
 _WILDCARD = re.compile(r"[*?\[]")

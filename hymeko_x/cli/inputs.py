@@ -69,7 +69,7 @@ def _standard_input(chosen: argparse.Namespace) -> Source:
 
 def _package(text: str) -> tuple[str, Path]:
     name, equals, folder = text.partition("=")
-    if not (name and equals and folder):
+    if not (equals and folder):
         raise argparse.ArgumentTypeError(f"expected NAME=DIR, found '{text}'")
     return name, _folder(folder)
 

@@ -135,3 +135,12 @@ def test_a_file_above_the_limit_is_not_read(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr(resolve, "MOST_BYTES", 4)
     with pytest.raises(OSError, match="File too large"):
         DiskFiles(tmp_path).read(str(put(tmp_path / "mesh.stl")))
+
+
+def test_a_package_without_a_name_is_the_folder_of_the_description_or_one_above(tmp_path: Path) -> None:
+    beside, above = put(tmp_path / "robot/part.stl"), put(tmp_path / "meshes/link.stl")
+    files = DiskFiles(tmp_path / "robot")
+    assert files.find("package:///part.stl") == str(beside)
+    assert files.find("package:///meshes/link.stl") == str(above)
+    assert files.find("package:///gone.stl") is None
+    assert DiskFiles(tmp_path / "robot/urdf", {"": tmp_path}).find("package:///robot/part.stl") == str(beside)
