@@ -13,10 +13,11 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
-from hymeko_x import codes
+from hymeko_x import codes, formats
 from hymeko_x.assets.pack import package_hint
+from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir import parts
-from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView
+from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView, suffix_of
 from hymeko_x.rewrite.inertia import principal_moments
 
 if TYPE_CHECKING:
@@ -69,6 +70,7 @@ def validate(
             _check_size(found, shape)
             if shape.mesh is not None:
                 _check_mesh(found, shape, shape.mesh, files)
+        _check_files(found, files)
 
 
 class _Findings(Struct, frozen=True):
@@ -252,3 +254,19 @@ def _check_mesh(found: _Findings, view: ShapeView, key: Id, files: Files) -> Non
     if mesh.uri is not None and not mesh.vertices and files.find(mesh.uri) is None:
         message = f"the mesh '{mesh.uri}' of {_owner(view)} was not found"
         found.warn(codes.ASSET_NOT_FOUND, view.id, message, package_hint(mesh.uri))
+
+
+def _check_files(found: _Findings, files: Files) -> None:
+    """Images exist, and the engine of the format that the robot came from reads each file."""
+    mechanism = found.mechanism
+    row = next((row for row in formats.FORMATS if row.name == mechanism.source.format and row.refused), None)
+    refused = None if row is None else formats.loaded(row.refused or "")
+    for key, part in mechanism.assets():
+        if part.uri is None or (isinstance(part, parts.Mesh) and part.vertices):
+            continue
+        content = read_file(files, part.uri)
+        if content is None and isinstance(part, parts.Texture):
+            found.warn(codes.ASSET_NOT_FOUND, key, f"the image '{part.uri}' was not found", package_hint(part.uri))
+        reason = None if content is None or refused is None else refused(suffix_of(part.uri), content[1])
+        if reason is not None:
+            found.error(codes.ASSET_UNREADABLE, key, f"the file '{part.uri}' {reason}")

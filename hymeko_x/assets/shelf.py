@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import posixpath
 import re
 from typing import TYPE_CHECKING, Literal
 
@@ -56,6 +57,17 @@ class Shelf:
         self._taken.add(path.lower())
         self.copies[path] = source
         return True
+
+    def place_instead(self, path: str, suffix: str, data: bytes) -> str:
+        """Store content in the place of a file that is copied to ``path``, or referred to there; returns its path, with its own suffix."""
+        stem, old = os.path.splitext(path)
+        if path not in self.copies or old.lower() != suffix:
+            self.copies.pop(path, None)
+            folder = "" if self.mode == "reference" else posixpath.dirname(stem).removeprefix(self.within)
+            return self.place(folder or "assets", posixpath.basename(stem), suffix, data)
+        del self.copies[path]
+        self.files[path] = data
+        return path
 
     def way_to(self, source: str, written: str = "") -> str:
         """The path of an existing file relative to the output's folder; absolute only where no relative one exists.

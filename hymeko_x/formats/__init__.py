@@ -65,6 +65,8 @@ class Format(Struct, frozen=True):
     """Whether meshes and images are put beside the output when the user does not choose."""
     pack: str | None = None
     """The function ``(mechanism, shelf, files, report) -> mechanism`` that names its files; None: it refers to any file by its uri."""
+    refused: str | None = None
+    """The function ``(suffix, data) -> reason or None``: why its engine does not read a file of a type that it reads."""
     placing: frozenset[str] = frozenset()
     """The extras of a mesh by which its points are elsewhere than in its file, or are made."""
     keeps_package_uris: bool = False
@@ -173,6 +175,7 @@ MJCF = Format(
     roots=("mujoco", "mujocoinclude"),
     completes="hymeko_x.frontends.mjcf.complete:complete",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
+    refused="hymeko_x.formats.mjcf.files:refused",
     placing=frozenset({"@refpos", "@refquat", "@builtin", "@params"}),
     inherited="hymeko_x.formats.mjcf.classes:without_inherited",
     shapes_have_weight="hymeko_x.formats.mjcf.words:shapes_have_weight",

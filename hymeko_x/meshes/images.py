@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 import io
+from typing import TYPE_CHECKING
+
+from hymeko_x.meshes.png import SIGNATURE, png_fault, without_faulty_chunks
+
+if TYPE_CHECKING:
+    from PIL.Image import Image as PillowImage
 
 MOST_BYTES = 2**27
-_PNG = b"\x89PNG\r\n\x1a\n"
 _JPEG = b"\xff\xd8\xff"
 
 
@@ -14,11 +19,14 @@ class UnreadableImage(Exception):
 
 
 def png_bytes(data: bytes) -> bytes:
-    """The image as PNG; one that is PNG already comes back bit by bit, after it was seen to decode.
+    """The image as a PNG that strict decoders read; one that is such already comes back bit by bit, after it was seen to decode.
 
-    Raises: UnreadableImage.
+    A PNG with faulty chunks beside its pixels loses these alone. Raises: UnreadableImage.
     """
-    return _encoded(data, (_PNG,), decode=True)
+    if png_fault(data) is None:
+        return _encoded(data, (SIGNATURE,), decode=True)
+    bare = without_faulty_chunks(data)
+    return _encoded(data if bare is None else bare, () if bare is None else (SIGNATURE,), decode=True)
 
 
 def shown_image(data: bytes) -> tuple[bytes, str]:
@@ -28,7 +36,7 @@ def shown_image(data: bytes) -> tuple[bytes, str]:
 
     Raises: UnreadableImage.
     """
-    found = _encoded(data, (_PNG, _JPEG), decode=False)
+    found = _encoded(data, (SIGNATURE, _JPEG), decode=False)
     return found, ".jpg" if found.startswith(_JPEG) else ".png"
 
 
@@ -43,7 +51,15 @@ def _encoded(data: bytes, as_it_is: tuple[bytes, ...], *, decode: bool) -> bytes
                 (image.load if decode else image.verify)()
                 return data
             out = io.BytesIO()
-            image.convert("RGBA" if "A" in image.getbands() else "RGB").save(out, "PNG", compress_level=3)
+            _in_bytes(image).save(out, "PNG", compress_level=3)
             return out.getvalue()
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
         raise UnreadableImage(str(error).split("\n")[0] or type(error).__name__) from error
+
+
+def _in_bytes(image: PillowImage) -> PillowImage:
+    """The image with 8 bits for each sample; of deeper ones these are the upper 8."""
+    if image.mode.startswith("I;16"):
+        return image.convert("I").point(lambda value: value / 256, "L").convert("RGB")
+    has_opacity = "A" in image.getbands() or "transparency" in image.info
+    return image.convert("RGBA" if has_opacity else "RGB")

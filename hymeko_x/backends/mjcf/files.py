@@ -13,6 +13,7 @@ from hymeko_x import codes
 from hymeko_x.assets.pack import package_hint
 from hymeko_x.assets.shelf import Shelf, read_file
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
+from hymeko_x.formats.mjcf.files import refused
 from hymeko_x.formats.mjcf.words import from_mjcf
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import Extra, Id, file_stem, shape_edge, suffix_of
@@ -276,8 +277,6 @@ def _with_surface(run: _Packing, key: Id, parts: tuple[Submesh, ...]) -> list[Su
 
 def _refusal(part: Submesh, suffix: str, data: bytes, *, solid: bool) -> str | None:
     """Why MuJoCo would not take the file as it is, or None when it would."""
-    from hymeko_x.meshes.stl import stl_is_exact
-
     if suffix not in (".stl", ".obj"):
         return f"is a {suffix[1:].upper()} file, which MuJoCo does not read"
     if solid and _is_flat(part):
@@ -286,11 +285,7 @@ def _refusal(part: Submesh, suffix: str, data: bytes, *, solid: bool) -> str | N
         return f"has {len(part.points)} points, and MuJoCo needs {_FEWEST_POINTS}: one of them is written twice"
     if suffix == ".obj" and (objects := _objects_in(data)) > 1:
         return f"has {objects} objects, and MuJoCo keeps the first of them"
-    if suffix == ".stl" and not stl_is_exact(data):
-        return "is STL as text or with a wrong length; MuJoCo reads only exact binary STL"
-    if suffix == ".stl" and len(part.faces) > MOST_STL_FACES:
-        return f"has {len(part.faces)} triangles, and MuJoCo reads STL only up to {MOST_STL_FACES}"
-    return None
+    return refused(suffix, data)
 
 
 def _objects_in(obj: bytes) -> int:
@@ -361,7 +356,7 @@ def _material(run: _Packing, found: Appearance | None, mesh: Mesh) -> Id | None:
         return known
     key = run.materials[found.rgba, found.image] = run.add_material(Material(found.name or file_stem(mesh.uri or ""), found.rgba))
     if found.image is not None:
-        run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", found.image)), key)
+        run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", png_bytes(found.image))), key)
     return key
 
 

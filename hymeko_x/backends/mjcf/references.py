@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.assets.pack import Keep, keep_references, new_uri
+from hymeko_x import codes
+from hymeko_x.assets.pack import Keep, keep_references, new_uri, package_hint
+from hymeko_x.assets.shelf import read_file
+from hymeko_x.formats.mjcf.files import mended, refused
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import NAME, below, joined, settings_of
-from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
+from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism, suffix_of
 from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.xml.text import escaped, unescaped
 
@@ -32,16 +35,65 @@ def pack_native(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report
     """
     settings = _settings(mechanism)
     packed = keep_references(mechanism, shelf, files, report, Keep.PACKAGES_AND_PATHS)
+    packed = _with_mended_files(mechanism, packed, shelf, files, report)
     moved: dict[tuple[str, str], str] = {}
     for key, extra in _with_files(mechanism):
         for _, file in _FILE.findall(_text(extra)):
             folder = _folder(key, settings)
             uri = joined(folder, unescaped(file), settings)
-            moved[folder, file] = new_uri(uri, "assets", shelf, files, Keep.PACKAGES_AND_PATHS) or uri
+            there = new_uri(uri, "assets", shelf, files, Keep.PACKAGES_AND_PATHS)
+            if there is None:
+                _report_missing(uri, mechanism, key, extra, report)
+            else:
+                there = _mended(uri, there, key, mechanism, shelf, files, report)
+            moved[folder, file] = there or uri
     same = all(joined(folder, unescaped(file), settings) == uri for (folder, file), uri in moved.items())
     if same and packed.graph == mechanism.graph and _all_below(packed, settings):
         return packed
     return replace(packed, extras=_in_full(packed, moved, settings))
+
+
+def _report_missing(uri: str, mechanism: Mechanism, key: Id, extra: Extra, report: Report) -> None:
+    owner = f"{key}" if key != ROOT else f"<{parse_text(extra.text).tag}>"
+    message = f"{owner}: '{uri}' was not found; the reference is kept"
+    report.warn(codes.ASSET_NOT_FOUND, message, mechanism.origin(key), element=str(key), hint=package_hint(uri))
+
+
+# ---- files that MuJoCo refuses -------------------------------------------------------------------------------------------------
+
+
+def _with_mended_files(mechanism: Mechanism, packed: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
+    """The packed mechanism with files that MuJoCo reads in the places of those that it refuses."""
+    changed: dict[Id, Mesh | Texture] = {}
+    for (key, part), (_, new) in zip(mechanism.assets(), packed.assets(), strict=True):
+        if part.uri is not None and new.uri is not None:
+            uri = _mended(part.uri, new.uri, key, mechanism, shelf, files, report)
+            if uri != new.uri:
+                changed[key] = replace(new, uri=uri)
+    return packed.with_graph(packed.graph.replace(vertices=changed)) if changed else packed
+
+
+def _mended(uri: str, there: str, key: Id, mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> str:
+    """The path of a file that MuJoCo reads, which is ``there`` where it reads that of ``uri``."""
+    from hymeko_x.meshes.images import UnreadableImage
+    from hymeko_x.meshes.submesh import Unreadable
+
+    suffix = suffix_of(uri)
+    found = read_file(files, uri) if suffix in (".png", ".stl") else None
+    reason = None if found is None else refused(suffix, found[1])
+    if found is None or reason is None:
+        return there
+    try:
+        path = shelf.place_instead(there, *mended(suffix, found[1]))
+    except (Unreadable, UnreadableImage) as error:
+        message = f"{key}: '{uri}' cannot be read: {error}"
+        report.warn(codes.ASSET_UNREADABLE, message, mechanism.origin(key), element=str(key))
+        return there
+    report.note(codes.ASSET_CONVERTED, f"{key} {reason}", mechanism.origin(key), element=str(key))
+    return path
+
+
+# ---- references in extras ------------------------------------------------------------------------------------------------------
 
 
 def _settings(mechanism: Mechanism) -> Settings:
