@@ -12,8 +12,6 @@ import pytest
 
 from hymeko_x import codes
 from hymeko_x.cli import VERBS, exits, main, terminal
-from hymeko_x.cli.terminal import loss_lines as lines
-from hymeko_x.compare.ledger import Loss
 from hymeko_x.diagnostics import Diagnostic, Origin, Severity, refuse
 
 
@@ -191,33 +189,25 @@ def test_a_diagnostic_in_colour_says_the_same_as_a_plain_one() -> None:
 
 
 def test_a_long_list_of_one_severity_is_cut_and_counted(capsys: pytest.CaptureFixture[str]) -> None:
-    terminal.show([Diagnostic(codes.BAD_NUMBER, Severity.WARNING, f"number {i}") for i in range(50)])
+    terminal.show([Diagnostic(codes.BAD_NUMBER, Severity.WARNING, f"number {'x' * i}") for i in range(50)])
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 41
     assert lines[-1] == "... and 10 more of severity warning (--report FILE.json lists all)"
 
 
-def test_notes_that_say_the_same_of_other_elements_are_shown_by_examples(capsys: pytest.CaptureFixture[str]) -> None:
-    capsules = [Diagnostic(codes.REWRITTEN, Severity.NOTE, f"shape 'leg/{i}' is a capsule", Origin("a.xml", i)) for i in range(20)]
+def test_alike_diagnostics_of_any_severity_are_one_line_with_their_lines(capsys: pytest.CaptureFixture[str]) -> None:
+    capsules = [Diagnostic(codes.REWRITTEN, Severity.NOTE, f"shape 'leg/{i}' is a capsule", Origin("a.xml", i + 1)) for i in range(20)]
     other = Diagnostic(codes.REWRITTEN, Severity.NOTE, "shape 'floor' is a plane", Origin("a.xml", 3))
-    warnings = [Diagnostic(codes.MISSING_LIMIT, Severity.WARNING, f"joint 'j{i}' has no <limit>", Origin("a.xml", i)) for i in range(5)]
-    terminal.show([*capsules[:5], other, *warnings, *capsules[5:]])
-    shown = [*map(str, capsules[:3]), "... and 17 more like it (--report FILE.json lists all)", str(other), *map(str, warnings)]
-    assert capsys.readouterr().err.splitlines() == shown
-
-
-def test_losses_of_a_kind_say_on_which_side_their_elements_are() -> None:
-    gone = [Loss(f"shape 'hip/{number}'", "", "shape(...)", None, "carried", Origin("a.xml", number)) for number in range(5)]
-    new = [Loss(f"shape 'thigh/{number}'", "", None, "shape(...)", "carried") for number in range(2)]
-    changed = [Loss(f"joint '{name}'", f"dofs[{place}].damping", "1", "0", "carried") for place, name in enumerate("xy")]
-    said = [
-        Loss("mechanism", "comment content", text, None, "carried") for text in ("left", "the right leg, of which this is said at length")
-    ]
-    assert list(lines([*gone, *new, *changed, *said])) == [
-        "loss: 2 x joint dofs[].damping carried: 'x' 1 -> 0, 'y' 1 -> 0",
-        "a.xml:0: loss: 5 x shape carried: 'hip/0', 'hip/1', 'hip/2', and 2 more -> nothing",
-        "loss: 2 x shape carried: nothing -> 'thigh/0', 'thigh/1'",
-        "loss: 2 x mechanism comment content carried: left, the right leg, of which this is said... -> nothing",
+    warnings = [Diagnostic(codes.MISSING_LIMIT, Severity.WARNING, f"joint 'j{i}' has no <limit>", Origin("a.xml", i)) for i in (4, 5)]
+    wrong = (("1e", "a"), ("2e", "b"))
+    errors = [Diagnostic(codes.BAD_NUMBER, Severity.ERROR, f"mass {mass} is no number", Origin(file, 7)) for mass, file in wrong]
+    terminal.show([*capsules[:5], other, *warnings, *capsules[5:], *errors, Diagnostic(codes.BUG, Severity.NOTE, "no place")])
+    assert capsys.readouterr().err.splitlines() == [
+        "a.xml:1: note[HX101]: shape 'leg/0' is a capsule (19 more alike: lines 2, 3, 4, 5, 6, 7, 8, 9, ...)",
+        "a.xml:3: note[HX101]: shape 'floor' is a plane",
+        "a.xml:4: warning[HX044]: joint 'j4' has no <limit> (1 more alike: line 5)",
+        "a:7: error[HX020]: mass 1e is no number (1 more alike: line b:7)",
+        "note[HX901]: no place",
     ]
 
 

@@ -75,9 +75,9 @@ def test_import_prints_hymeko(folder: Path) -> None:
     assert hx.loads(run.stdout, "hymeko") == hx.load("arm.urdf")
 
 
-def test_import_into_a_file_prints_nothing(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_import_into_a_file_prints_what_was_written(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["import", "arm.urdf", "-o", "arm.hymeko"]) == exits.DONE
-    assert capfd.readouterr() == ("", "")
+    assert capfd.readouterr() == ("", "wrote arm.hymeko (2 bodies, 1 joint)\n")
     assert hx.load("arm.hymeko") == hx.load("arm.urdf")
 
 
@@ -90,7 +90,7 @@ def test_import_piped_into_export_is_mjcf(folder: Path) -> None:
     run = piped(["import", "arm.urdf"], ["export", "--to", "mjcf", "--base", "fixed"])
     assert run.returncode == exits.DONE
     assert "error" not in run.stderr
-    assert "loss: joint 'elbow' dofs[0].limits.velocity" in run.stderr
+    assert "velocity limit of 1 joint" in run.stderr
     assert run.stdout.startswith('<mujoco model="arm">')
 
 
@@ -110,7 +110,7 @@ def test_export_without_a_format_is_a_usage_error(folder: Path, capsys: pytest.C
 def test_convert_to_the_same_format_gives_the_same_file(folder: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["convert", "arm.urdf", "again.urdf"]) == exits.DONE
     assert (folder / "again.urdf").read_text() == ARM
-    assert capfd.readouterr() == ("", "")
+    assert capfd.readouterr() == ("", "wrote again.urdf (2 bodies, 1 joint)\n")
 
 
 def test_the_report_names_source_target_diagnostics_and_losses(folder: Path) -> None:
@@ -147,15 +147,24 @@ def test_a_loss_is_measured_by_reading_the_result_back(
     assert json.loads(said.out)["losses"] == [
         {
             "element": "joint 'elbow'",
+            "target_element": "joint 'elbow'",
+            "kind": "joint",
             "field": "dofs[0].limits.effort",
-            "before": "10",
-            "after": "9",
-            "fate": "carried",
+            "aspect": "physics",
+            "before": 10,
+            "after": 9,
+            "unit": "N m",
+            "error": 1,
+            "fate": "kept",
             "file": "arm.urdf",
             "line": 15,
         }
     ]
-    assert said.err == "arm.urdf:15: loss: joint 'elbow' dofs[0].limits.effort carried: 10 -> 9\n"
+    assert said.err.splitlines() == [
+        "wrote lossy.urdf (2 bodies, 1 joint)",
+        "kept: effort limit of 1 joint, 1 field or element in all",
+        "-v lists each with its place, --report FILE.json has all",
+    ]
 
 
 def test_a_long_value_is_shown_in_one_short_line() -> None:

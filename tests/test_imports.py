@@ -21,7 +21,7 @@ LAYERS = (
     ("xml", "meshes"),
     ("formats",),
     ("rewrite", "compare", "language", "factor"),
-    ("residue", "assets"),
+    ("residue", "assets", "reporting"),
     ("frontends", "backends"),
     ("pipeline", "disk", "verify", "validation", "corpus"),
     ("delivery",),

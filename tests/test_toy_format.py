@@ -65,10 +65,10 @@ def test_it_is_imported_and_exported(capsys: pytest.CaptureFixture[str]) -> None
     assert capsys.readouterr().out == ARM
 
 
-def test_its_losses_are_measured_and_carried_and_restored(capsys: pytest.CaptureFixture[str]) -> None:
+def test_its_losses_are_measured_and_kept_and_restored(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["convert", "arm.urdf", "out.toy", "--json"]) == exits.DONE
     losses = json.loads(capsys.readouterr().out)["losses"]
-    assert [(loss["element"], loss["field"], loss["fate"]) for loss in losses] == [("joint 'upper'", "dofs[0]", "carried")]
+    assert [(loss["element"], loss["field"], loss["fate"]) for loss in losses] == [("joint 'upper'", "dofs[0]", "kept")]
     assert Path("out.toy").read_text().startswith("arm\nbase upper\nupper fore\n#carried : residue {\n")
     assert hx.load("out.toy") == hx.load("arm.urdf")
     hx.convert("arm.urdf", "pure.toy", pure=True)

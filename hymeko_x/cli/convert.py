@@ -12,20 +12,22 @@ from hymeko_x.cli import exits
 from hymeko_x.cli.compare import CODES, engine_arguments, verdict_lines, verdict_of
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, read_input
-from hymeko_x.cli.terminal import show, show_losses
+from hymeko_x.cli.report import report_arguments, show_report, written_line
 from hymeko_x.delivery import Delivery, report_unwritten
 from hymeko_x.diagnostics import Report, Severity
+from hymeko_x.reporting.document import document
+from hymeko_x.reporting.sarif import sarif
 from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Package
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Iterable
 
     from hymeko_x.cli.inputs import Input
     from hymeko_x.compare.ledger import Loss
     from hymeko_x.formats import Format
     from hymeko_x.pipeline import Result
+    from hymeko_x.reporting.document import Json
 
 FAIL_ON = ("error", "loss", "warning")
 
@@ -116,7 +118,7 @@ def _output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--nested", action="store_true", default=None, help="USD: put each body inside of its parent")
     parser.add_argument("--pure", action="store_true", help="write no residue of what the format cannot say itself")
     parser.add_argument("--split", action="store_true", help="xacro: put the macros into a file of their own")
-    parser.add_argument("--report", metavar="FILE.json", help="write diagnostics and losses to a file")
+    report_arguments(parser)
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
 
 
@@ -134,14 +136,14 @@ def _deliver(given: Input, output: Output, chosen: argparse.Namespace, report: R
     failed = is_reached(chosen.fail_on, report, result.losses)
     if not failed:
         _write(delivery, output, result)
-    show(report)
-    show_losses(result.losses or ())
-    wants_json = getattr(chosen, "json", False)
-    document = as_json(given, output, report, result.losses) if chosen.report or wants_json else ""
+    written = "" if failed or not path else written_line(path, given.mechanism, result.package)
+    show_report(written, report, result.losses or (), chosen)
     if chosen.report:
-        disk.write_package(Package(f"{document}\n".encode()), chosen.report, NoFiles())
-    if wants_json:
-        print(document)
+        found = _document(given, output, report, result.losses)
+        data = as_text(sarif(found) if chosen.report.lower().endswith(".sarif") else found)
+        disk.write_package(Package(f"{data}\n".encode()), chosen.report, NoFiles())
+    if getattr(chosen, "json", False):
+        print(as_text(_document(given, output, report, result.losses)))
     return exits.FAIL_ON if failed else exits.DONE
 
 
@@ -159,16 +161,15 @@ def _write(delivery: Delivery, output: Output, result: Result) -> None:
         delivery.put(result)
 
 
-def as_json(given: Input, output: Output, report: Report, losses: Iterable[Loss] | None) -> str:
+def _document(given: Input, output: Output, report: Report, losses: tuple[Loss, ...] | None) -> Json:
     """The document of `--report` and of `convert --json`."""
+    return document((given.source.name, given.format.name), (output.path, output.format.name), report, losses)
+
+
+def as_text(document: Json) -> str:
+    """A document as indented JSON."""
     import json
 
-    document = {
-        "source": {"path": given.source.name, "format": given.format.name},
-        "target": {"path": output.path, "format": output.format.name},
-        "diagnostics": [diagnostic.as_json() for diagnostic in report],
-        "losses": [loss.as_json() for loss in losses or ()],
-    }
     return json.dumps(document, indent=2, ensure_ascii=False)
 
 
@@ -181,7 +182,7 @@ def is_reached(threshold: str | None, report: Report, losses: tuple[Loss, ...] |
         return False
     happened = {
         "error": report.worst == Severity.ERROR,
-        "loss": any(loss.fate != "carried" for loss in losses or ()) or any(diagnostic.code == codes.NOT_SAID for diagnostic in report),
+        "loss": any(loss.fate != "kept" for loss in losses or ()) or any(diagnostic.code == codes.NOT_SAID for diagnostic in report),
         "warning": report.worst == Severity.WARNING,
     }
     return any(happened[level] for level in FAIL_ON[: FAIL_ON.index(threshold) + 1])

@@ -1,59 +1,71 @@
-"""Diagnostics and losses for people: text on standard error, in colour where a terminal shows it."""
+"""Diagnostics for people: text on standard error, in colour where a terminal shows it."""
 
 from __future__ import annotations
 
 import os
 import re
 import sys
-from collections import defaultdict
-from textwrap import shorten
 from typing import TYPE_CHECKING, TextIO
+
+from msgspec.structs import replace
 
 from hymeko_x.diagnostics import Diagnostic, Severity
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
-
-    from hymeko_x.compare.ledger import Loss
+    from collections.abc import Iterable, Sequence
 
 MOST_LINES = 40
-"""How many diagnostics of one severity are shown; a summary names the rest. `--report` has them all."""
-_EXAMPLES = 3
+"""How many kinds of diagnostics of one severity are shown; a summary counts the rest. `--report` has them all."""
+_MOST_PLACES = 8
 _ALL = "(--report FILE.json lists all)"
-_NAMES = re.compile(r"'[^']*'|\d+")
+_VARIABLE = re.compile(r"'[^']*'|[-+]?\d+\.?\d*(?:e[-+]?\d+)?")
+"""What differs between diagnostics that are alike: names and numbers."""
 
 _COLOURS = {Severity.NOTE: "36", Severity.WARNING: "33", Severity.ERROR: "31"}
 
 
 def show(diagnostics: Iterable[Diagnostic], stream: TextIO | None = None) -> None:
-    """Print diagnostics to standard error: a few notes that say the same of different elements stand for all, and long lists are cut."""
+    """Print diagnostics to standard error: one of those that are alike stands for all, with their lines, and long lists are cut."""
     stream = sys.stderr if stream is None else stream
     coloured = is_coloured(stream)
     room = dict.fromkeys(Severity, MOST_LINES)
     left = dict.fromkeys(Severity, 0)
-    for alike in _alike(diagnostics):
+    for alike in alike_diagnostics(diagnostics):
         severity = alike[0].severity
-        shown = alike[: min(room[severity], _EXAMPLES)]
-        for diagnostic in shown:
-            print(render(diagnostic, coloured), file=stream)
-        room[severity] -= len(shown)
-        if shown and len(shown) < len(alike):
-            print(f"... and {len(alike) - len(shown)} more like it {_ALL}", file=stream)
-        elif not shown:
+        if room[severity]:
+            room[severity] -= 1
+            print(render_alike(alike, coloured), file=stream)
+        else:
             left[severity] += len(alike)
     for severity, count in left.items():
         if count:
             print(f"... and {count} more of severity {severity.value} {_ALL}", file=stream)
 
 
-def _alike(diagnostics: Iterable[Diagnostic]) -> Iterable[list[Diagnostic]]:
-    """Notes that only differ in names and numbers together, where the first of them was made; every warning and error alone."""
-    groups: dict[object, list[Diagnostic]] = {}
-    for number, diagnostic in enumerate(diagnostics):
-        is_note = diagnostic.severity is Severity.NOTE
-        kind = (diagnostic.code.id, _NAMES.sub("", diagnostic.message)) if is_note else number
-        groups.setdefault(kind, []).append(diagnostic)
-    return groups.values()
+def alike_diagnostics(diagnostics: Iterable[Diagnostic]) -> list[list[Diagnostic]]:
+    """Diagnostics that only differ in names and numbers together, where the first of them was made."""
+    groups: dict[tuple[str, Severity, str], list[Diagnostic]] = {}
+    for diagnostic in diagnostics:
+        groups.setdefault((diagnostic.code.id, diagnostic.severity, _VARIABLE.sub("", diagnostic.message)), []).append(diagnostic)
+    return list(groups.values())
+
+
+def render_alike(alike: Sequence[Diagnostic], coloured: bool) -> str:
+    """The first of diagnostics that are alike, with the number of the others and their lines."""
+    first, *others = alike
+    if not others:
+        return render(first, coloured)
+    places = list(dict.fromkeys(_place(diagnostic, first) for diagnostic in others if diagnostic.origin and diagnostic.origin.line))
+    shown = [*places[:_MOST_PLACES], *(["..."] if len(places) > _MOST_PLACES else [])]
+    lines = f": line{'s' if len(places) > 1 else ''} {', '.join(shown)}" if places else ""
+    return render(replace(first, message=f"{first.message} ({len(others)} more alike{lines})"), coloured)
+
+
+def _place(diagnostic: Diagnostic, first: Diagnostic) -> str:
+    """The line; with its file where that is another one than the first diagnostic's."""
+    origin = diagnostic.origin
+    assert origin is not None
+    return str(origin.line) if first.origin and origin.file == first.origin.file else f"{origin.file}:{origin.line}"
 
 
 def render(diagnostic: Diagnostic, coloured: bool) -> str:
@@ -76,62 +88,3 @@ def paint(style: str, text: str) -> str:
 def is_coloured(stream: TextIO) -> bool:
     """Colour on a terminal only, and never where NO_COLOR is set (https://no-color.org)."""
     return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
-
-
-# ---- losses ------------------------------------------------------------------------------------------------------------
-
-_FATES = ("dropped", "approximated", "carried")
-_KINDS = ("mechanism", "body", "joint", "loop", "coupling", "tendon", "actuator", "drive", "sensor", "shape", "contact", "frame")
-"""What a robot is, before what it looks like and what stands in comments."""
-
-_PLACE = re.compile(r"\[\d+\]")
-_WORDS = 40
-
-
-def show_losses(losses: Sequence[Loss]) -> None:
-    """Print the ledger to standard error: elements of one kind together, the worst first, and long lists are cut."""
-    groups = list(loss_lines(losses))
-    for line in groups[:MOST_LINES]:
-        print(line, file=sys.stderr)
-    if len(groups) > MOST_LINES:
-        print(f"... and {len(groups) - MOST_LINES} more kinds of losses", file=sys.stderr)
-    if len(groups) < len(losses) or len(groups) > MOST_LINES:
-        print(f"{len(losses)} losses in all; --report FILE.json lists each", file=sys.stderr)
-
-
-def loss_lines(losses: Sequence[Loss]) -> Iterator[str]:
-    """A line for every group of elements of one kind in which the same became of the same field."""
-    groups: dict[tuple[str, str, str, bool, bool], list[Loss]] = defaultdict(list)
-    for loss in losses:
-        groups[loss.fate, _kind(loss), _PLACE.sub("[]", loss.field), loss.after is None, loss.before is None].append(loss)
-    for group in sorted(groups, key=lambda group: (_FATES.index(group[0]), _rank(group[1], group[2]))):
-        found = groups[group]
-        yield str(found[0]) if len(found) == 1 else _summary(*group[:3], found)
-
-
-def _kind(loss: Loss) -> str:
-    return loss.element.partition(" ")[0]
-
-
-def _rank(kind: str, field: str) -> tuple[bool, int]:
-    """What stands there verbatim comes last."""
-    return " " in field, _KINDS.index(kind) if kind in _KINDS else len(_KINDS)
-
-
-def _summary(fate: str, kind: str, field: str, losses: list[Loss]) -> str:
-    """A few of them stand for all: with what they were and are, or on the side of the arrow on which they are there."""
-    first = losses[0]
-    place = f"{first.origin}: " if first.origin else ""
-    shown = [_example(loss) for loss in losses[:_EXAMPLES]]
-    more = [f"and {len(losses) - _EXAMPLES} more"] if len(losses) > _EXAMPLES else []
-    text = ", ".join([*shown, *more])
-    text = f"nothing -> {text}" if first.before is None else f"{text} -> nothing" if first.after is None else text
-    return f"{place}loss: {len(losses)} x {f'{kind} {field}'.rstrip()} {fate}: {text}"
-
-
-def _example(loss: Loss) -> str:
-    """The name of the element and what became of it; what the mechanism itself has goes by its first words."""
-    name = loss.element.partition(" ")[2]
-    if loss.before is not None and loss.after is not None:
-        return f"{name} {loss.change}".strip()
-    return name or shorten(loss.before or loss.after or "", _WORDS, placeholder="...")

@@ -48,10 +48,14 @@ class Difference(NamedTuple):
 
 
 class Tolerance(Struct, frozen=True):
-    """How far numbers may be apart: |a - b| <= absolute + relative * max(|a|, |b|); rotations by their angle in rad."""
+    """How far numbers may be apart: |a - b| <= absolute + relative * max(|a|, |b|); rotations by their angle in rad.
+
+    ``by_vector``: the largest number of a vector is the measure for all of its numbers.
+    """
 
     absolute: float = 0.0
     relative: float = 0.0
+    by_vector: bool = False
 
     def accepts(self, a: float, b: float) -> bool:
         """Whether two numbers count as equal; infinities and NaN equal themselves, and nothing else."""
@@ -60,6 +64,14 @@ class Tolerance(Struct, frozen=True):
         if math.isinf(a) or math.isinf(b):
             return False
         return abs(a - b) <= self.absolute + self.relative * max(abs(a), abs(b))
+
+    def accepts_all(self, a: tuple[float, ...], b: tuple[float, ...]) -> bool:
+        """Whether two vectors of one length count as equal."""
+        if self.by_vector:
+            size = max(map(abs, (*a, *b)), default=0.0)
+            allowed = self.absolute + self.relative * size
+            return size < math.inf and all(abs(x - y) <= allowed for x, y in zip(a, b, strict=True))
+        return all(map(self.accepts, a, b))
 
 
 EXACT = Tolerance()
@@ -161,7 +173,7 @@ def _tuples(where: str, a: tuple[object, ...], b: tuple[object, ...], tolerance:
         yield from _arrays(where, a, b, tolerance)
         return
     if all(isinstance(x, NUMBERS) for x in (*a, *b)):
-        if len(a) != len(b) or not all(tolerance.accepts(x, y) for x, y in zip(a, b, strict=True)):  # type: ignore[arg-type]
+        if len(a) != len(b) or not tolerance.accepts_all(a, b):  # type: ignore[arg-type]
             yield where, _short(a), _short(b)
         return
     for number in range(max(len(a), len(b))):

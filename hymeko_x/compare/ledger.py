@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from hymeko_x import formats
 from hymeko_x.compare.diff import Difference, Tolerance, diff
 from hymeko_x.compare.relevance import relevant
+from hymeko_x.compare.units import unit_of
 from hymeko_x.ir.mechanism import ROOT, file_stem
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Mesh, Texture
@@ -26,15 +27,30 @@ LONGEST_VALUE = 120
 """How many letters of a value a person is shown; the report has all of them."""
 
 
+Fate = Literal["kept", "approximated", "dropped"]
+"""*Kept*: the output's residue holds it. *Approximated*: the output represents something else. *Dropped*: it represents nothing there."""
+
+_ABSENT = ("none", "[]")
+"""How a difference shows that a field has no value; a weight without a value is the identity."""
+
+_ABSENT_AT_ZERO = ("armature", "damping", "friction", "stiffness")
+"""The last words of fields that stand for nothing when they are zero."""
+
+
 class Loss(NamedTuple):
-    """One line of the ledger: what is not the same in the result."""
+    """One line of the ledger: what is not the same in the result.
+
+    ``unit`` is that of the numbers in ``before`` and ``after``; ``target`` the element in the result, None where it has none.
+    """
 
     element: str
     field: str
     before: str | None
     after: str | None
-    fate: Literal["carried", "approximated", "dropped"]
+    fate: Fate
     origin: Origin | None = None
+    unit: str = ""
+    target: str | None = None
 
     def __str__(self) -> str:
         place = f"{self.origin}: " if self.origin else ""
@@ -45,18 +61,6 @@ class Loss(NamedTuple):
     def change(self) -> str:
         """Before and after in one short line."""
         return f"{_shown(self.before)} -> {_shown(self.after)}"
-
-    def as_json(self) -> dict[str, str | int | None]:
-        """The keys of the `--report` contract."""
-        return {
-            "element": self.element,
-            "field": self.field,
-            "before": self.before,
-            "after": self.after,
-            "fate": self.fate,
-            "file": self.origin.file if self.origin else None,
-            "line": self.origin.line if self.origin else None,
-        }
 
 
 def _shown(value: str | None) -> str:
@@ -81,10 +85,14 @@ def losses_between(
     ``aligned`` is what was read back, aligned with the mechanism; ``renamed`` is what only the alignment
     changed; ``leaves`` is in what their elements differ, if that is known; ``is_carried`` whether the file will carry what got lost.
     """
-    kept = relevant(diff(mechanism, aligned, TOLERANCE, leaves), mechanism, aligned, TOLERANCE)
+    tolerance = Tolerance(1e-12, format.precision, by_vector=True) if format.precision else TOLERANCE
+    kept = relevant(diff(mechanism, aligned, tolerance, leaves), mechanism, aligned, tolerance)
+    renamed = tuple(renamed)
+    names = {difference.element: str(difference.after)[1:-1] for difference in renamed if difference.field == "name"}
     renamed = (difference for difference in renamed if not _is_number(difference, mechanism))
     found = (*renamed, *kept, *_unsaid_notes(mechanism, aligned))
-    return tuple([_loss(difference, mechanism, is_carried) for difference in found if not _is_boilerplate(difference, mechanism, format)])
+    lost = [difference for difference in found if not _is_boilerplate(difference, mechanism, format)]
+    return tuple([_loss(difference, mechanism, aligned, names, is_kept=is_carried) for difference in lost])
 
 
 def _is_number(difference: Difference, mechanism: Mechanism) -> bool:
@@ -116,8 +124,18 @@ def _is_boilerplate(difference: Difference, mechanism: Mechanism, format: Format
     return difference.before is None and difference.field.startswith(f"{format.family} ")
 
 
-def _loss(difference: Difference, mechanism: Mechanism, is_carried: bool) -> Loss:
-    gone: Literal["approximated", "dropped"] = "dropped" if difference.after is None else "approximated"
-    element = "mechanism" if difference.element == ROOT else str(difference.element)
-    origin = mechanism.origin(difference.element)
-    return Loss(element, difference.field, difference.before, difference.after, "carried" if is_carried else gone, origin)
+def _loss(difference: Difference, mechanism: Mechanism, aligned: Mechanism, names: Mapping[Id, str], *, is_kept: bool) -> Loss:
+    key, field, before, after = difference
+    origin = mechanism.origin(key)
+    if key == ROOT:
+        return Loss("mechanism", field, before, after, _fate(field, after, is_kept), origin, "", "mechanism")
+    target = f"{key.kind} '{names.get(key, key.name)}'" if key in aligned.graph else None
+    return Loss(str(key), field, before, after, _fate(field, after, is_kept), origin, unit_of(mechanism, key, field), target)
+
+
+def _fate(field: str, after: str | None, is_kept: bool) -> Fate:
+    if is_kept:
+        return "kept"
+    last = field.rpartition(".")[2]
+    is_absent = after is None or (after in _ABSENT and last != "weight") or (after == "0" and last in _ABSENT_AT_ZERO)
+    return "dropped" if is_absent else "approximated"

@@ -170,7 +170,7 @@ def _convert(desk: Desk, target: str) -> Leg:
         files=len(result.package.files) + len(result.package.copies),
         residue=0 if result.bare is None else len(result.package.main) - len(result.bare),
         losses=None if result.losses is None else len(result.losses),
-        carried=sum(loss.fate == "carried" for loss in result.losses or ()),
+        carried=sum(loss.fate == "kept" for loss in result.losses or ()),
         lost=_by_kind(result.losses or ()),
         diagnostics=_by_code(report),
         **asdict(lengths(result.package.main if result.bare is None else result.bare, target)),

@@ -81,6 +81,8 @@ class Format(Struct, frozen=True):
     """The function ``mechanism -> bool``: whether masses of shapes may count although their bodies have inertials."""
     boilerplate: frozenset[str] = frozenset()
     """Fields of the whole that every file of the format has, and no other."""
+    precision: float = 0.0
+    """How far a number that it stores may be off, as a part of the number, where it stores less than doubles: no loss in the ledger."""
     has_compact_extras: bool = False
     """Whether no white space stands between the tags of its extras."""
 
@@ -202,6 +204,7 @@ USD = Format(
     engines=MappingProxyType({"pxr": "usd-core"}),
     stated_notations=MappingProxyType({"pose on the stage": "usd.pose"}),
     names_are_identifiers=True,
+    precision=1e-6,  # eight roundings of single precision: numbers are converted between units and frames on the way
     tokens="hymeko_x.formats.usd.tokens:tokens",
     includes=rb"@[^@\n]+\.usd[acz]?@",
     holds_points=True,

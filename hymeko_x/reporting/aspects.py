@@ -1,0 +1,74 @@
+"""Which aspect of a robot a loss concerns: people want the physical first, and everything else in one line."""
+
+from __future__ import annotations
+
+import re
+from enum import Enum
+from typing import TYPE_CHECKING
+
+from hymeko_x import formats
+
+if TYPE_CHECKING:
+    from hymeko_x.compare.ledger import Loss
+
+
+class Aspect(Enum):
+    """What a loss concerns, the most important first."""
+
+    PHYSICS = "physics"
+    """Bodies, joints, shapes, actuators, sensors, and their numbers."""
+    SETTINGS = "settings"
+    """Extras: what only one format or its engine understands."""
+    FORM = "form"
+    """The same in another form: a chain of joints, two shapes for one of both roles, an inertia that an engine computes written out."""
+    NAME = "name"
+    """A name, or the path of a file."""
+    APPEARANCE = "appearance"
+    """Materials, textures, colours, lights, the size at which a frame is drawn."""
+    TEXT = "text"
+    """Comments and declarations."""
+
+
+_FORMS = ("chain", "frame")
+_COMPUTED = ("mass", "density")
+"""Of a shape: from these an engine computes the inertia of its body, which is written out."""
+_POINTS = ("vertices", "faces", "texcoords", "texfaces")
+"""Of a mesh: they go to a file, or come from one."""
+_DRAWN = ("material", "texture", "layer", "subset", "light")
+_DRAWN_FIELDS = ("rgba", "width")
+_DRAWN_EXTRAS = re.compile(r"@(rgba|group|material|type)$")
+_DECLARATION = re.compile(r"@xmlns\b|text\(\)$")
+_MATERIAL = " as 'material'"
+
+
+def aspect_of(loss: Loss) -> Aspect:
+    """The aspect of a loss, from its element's kind, its field, and what stands on its two sides."""
+    kind, field = kind_of(loss), loss.field
+    if field.startswith("comment ") or _DECLARATION.search(field):
+        return Aspect.TEXT
+    if kind in _DRAWN or _MATERIAL in (loss.before or loss.after or ""):
+        return Aspect.APPEARANCE
+    if kind == "frame" and (field == "size" or _DRAWN_EXTRAS.search(field)):
+        return Aspect.APPEARANCE
+    if is_extra(loss):
+        return Aspect.SETTINGS
+    if field in _FORMS or loss.before == "none" or ((kind, field) == ("shape", "role") and loss.before == "both"):
+        return Aspect.FORM
+    last = field.rpartition(".")[2]
+    if last == "name" or (last == "uri" and kind == "mesh"):
+        return Aspect.NAME
+    if last in _DRAWN_FIELDS and kind in ("shape", "tendon"):
+        return Aspect.APPEARANCE
+    is_computed = (kind == "shape" and field in _COMPUTED) or (kind == "mesh" and field in _POINTS)
+    return Aspect.FORM if is_computed else Aspect.PHYSICS
+
+
+def kind_of(loss: Loss) -> str:
+    """The kind of a loss's element: ``joint`` of ``joint 'elbow'``."""
+    return loss.element.partition(" ")[0]
+
+
+def is_extra(loss: Loss) -> bool:
+    """Whether it is an extra, whose field begins with the name of its format."""
+    format, blank, _ = loss.field.partition(" ")
+    return bool(blank) and (format == "comment" or any(format == row.name for row in formats.FORMATS))

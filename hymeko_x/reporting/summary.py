@@ -1,0 +1,246 @@
+"""The losses of a conversion in a few lines: one for each kind of loss, the physical first, and one for everything else."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.ir.values import number_text
+from hymeko_x.reporting.aspects import Aspect, aspect_of, kind_of
+from hymeko_x.reporting.values import error_of, size_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from hymeko_x.compare.ledger import Loss
+
+_EXAMPLES = 2
+_SHORT = 3
+"""So many digits a number has in a summary."""
+
+_KINDS = ("body", "joint", "loop", "coupling", "tendon", "actuator", "sensor", "shape", "mesh", "contact", "frame", "camera", "pose")
+"""The kinds of elements in the order of the summary; all others come after them."""
+
+_PLURALS = {
+    "body": "bodies",
+    "pose": "named poses",
+    "mesh": "meshes",
+    "comment or declaration": "comments and declarations",
+    "field or element": "fields and elements",
+}
+_SATELLITES = {"drive": "actuator", "sense": "sensor", "layer": "texture", "stance": "pose", "subset": "material"}
+"""Edges that go with the element that they place or connect: they are not listed beside it."""
+
+_WORDS = {
+    "dofs.limits.lower": "position limits",
+    "dofs.limits.upper": "position limits",
+    "dofs.limits.velocity": "velocity limit",
+    "dofs.limits.effort": "effort limit",
+    "dofs.spring_ref": "spring reference",
+    "dofs.ref": "coordinate reference",
+    "dofs.safety": "safety controller",
+    "inertial": "mass and inertia",
+    "inertial.com": "centre of mass",
+    "inertial.tensor": "inertia tensor",
+    "weight": "pose",
+    "weight.xyz": "position",
+    "weight.rotation": "orientation",
+    "target": "connection",
+}
+"""Fields of several kinds of elements in a roboticist's words; all others by the last of their names."""
+
+_PLACE = re.compile(r"\[\d+\]")
+_TAG = re.compile(r"<([\w:.-]+)")
+_ON = re.compile(r"\+ ((?:body|world) '[^']*')")
+_WORD = re.compile(r"([a-z]+)(?:\(|$)")
+
+
+class Group(NamedTuple):
+    """Losses of which the same became: of one kind of element, and of one field or of the whole element."""
+
+    verb: str
+    """``dropped``, ``approximated`` or ``added``."""
+    kind: str
+    field: str
+    losses: tuple[Loss, ...]
+
+
+def summary_lines(losses: Sequence[Loss]) -> list[str]:
+    """A line for every kind of physical loss, then one for settings; the most important first."""
+    gone = [loss for loss in losses if loss.fate != "kept"]
+    lines = [_line(group) for group in groups(loss for loss in gone if aspect_of(loss) is Aspect.PHYSICS)]
+    settings = [loss for loss in gone if aspect_of(loss) is Aspect.SETTINGS]
+    return [*lines, *_settings(settings)]
+
+
+def minor_line(losses: Sequence[Loss]) -> str:
+    """What is only called, shown or described otherwise, in one line; empty where there is nothing."""
+    gone = [loss for loss in losses if loss.fate != "kept"]
+    found = {aspect: [loss for loss in gone if aspect_of(loss) is aspect] for aspect in Aspect}
+    parts = []
+    if found[Aspect.NAME]:
+        first = found[Aspect.NAME][0]
+        parts.append(f"{_counts(found[Aspect.NAME])} renamed ({_short(first.before)} -> {_short(first.after)})")
+    if found[Aspect.FORM]:
+        parts.append(f"{_counts(found[Aspect.FORM])} described in another form")
+    if found[Aspect.APPEARANCE]:
+        parts.append(f"appearance of {_counts(found[Aspect.APPEARANCE])}")
+    if found[Aspect.TEXT]:
+        parts.append(counted(len(found[Aspect.TEXT]), "comment or declaration"))
+    return f"no physics: {'; '.join(parts)}" if parts else ""
+
+
+def kept_line(losses: Sequence[Loss]) -> str:
+    """What the output does not represent and yet keeps, in one line; empty where there is nothing."""
+    kept = [loss for loss in losses if loss.fate == "kept"]
+    if not kept:
+        return ""
+    named = [_what(group) for group in groups(loss for loss in kept if aspect_of(loss) is Aspect.PHYSICS)][:_SHORT]
+    total = counted(len(kept), "field or element")
+    return f"kept: {', '.join([*named, f'{total} in all'] if named else [total])}"
+
+
+# ---- groups ------------------------------------------------------------------------------------------------------------
+
+
+def groups(losses: Iterable[Loss]) -> list[Group]:
+    """Losses of one fate, kind and field together; an edge that goes with an element that is lost as well is left out."""
+    found: dict[tuple[str, str, str], list[Loss]] = {}
+    for loss in losses:
+        verb = "added" if loss.before is None and not loss.field else loss.fate
+        found.setdefault((verb, kind_of(loss), _word(loss.field)), []).append(loss)
+    _replace_shapes(found)
+    whole = {(verb, kind) for verb, kind, field in found if not field}
+    kept = [Group(*key, tuple(losses)) for key, losses in found.items() if not _goes_with_another(*key, whole)]
+    return sorted(kept, key=_rank)
+
+
+def _replace_shapes(found: dict[tuple[str, str, str], list[Loss]]) -> None:
+    """A shape that is gone from a body on which there are new ones is approximated by these: a capsule by a cylinder and spheres."""
+    gone, new = found.get(("dropped", "shape", ""), []), found.get(("added", "shape", ""), [])
+    bodies = {_body(loss.before) for loss in gone} & {_body(loss.after) for loss in new}
+    if not bodies:
+        return
+    found["approximated", "shape", ""] = [loss for loss in gone if _body(loss.before) in bodies]
+    for key, text in (("dropped", "before"), ("added", "after")):
+        rest = [loss for loss in found.pop((key, "shape", "")) if _body(getattr(loss, text)) not in bodies]
+        if rest:
+            found[key, "shape", ""] = rest
+
+
+def _body(text: str | None) -> str:
+    """The body that a shape is on, from how a difference shows the shape."""
+    match = _ON.search(text or "")
+    return match[1] if match else ""
+
+
+def _goes_with_another(verb: str, kind: str, field: str, whole: set[tuple[str, str]]) -> bool:
+    if kind == "mount":
+        return any((verb, placed) in whole for placed in ("frame", "camera", "light", "sensor")) or not field
+    return (verb, _SATELLITES.get(kind, "")) in whole
+
+
+_VERBS = ("dropped", "kept", "approximated", "added")
+
+
+def _rank(group: Group) -> tuple[int, bool, int]:
+    """What is gone first, and of that whole elements before fields."""
+    kind = _KINDS.index(group.kind) if group.kind in _KINDS else len(_KINDS)
+    return _VERBS.index(group.verb), bool(group.field), kind
+
+
+def _word(field: str) -> str:
+    """A field in a roboticist's words, the same for all places of a list."""
+    path = _PLACE.sub("", field).strip(".")
+    return _WORDS.get(path) or path.rpartition(".")[2].replace("_", " ") or ("connection" if field else "")
+
+
+# ---- lines -------------------------------------------------------------------------------------------------------------
+
+
+def _line(group: Group) -> str:
+    return f"{group.verb}: {_what(group)}{_amount(group)}: {_names(group)}"
+
+
+def _what(group: Group) -> str:
+    count = counted(len({loss.element for loss in group.losses}), group.kind)
+    return f"{group.field} of {count}" if group.field else count
+
+
+def counted(count: int, kind: str) -> str:
+    """A number of elements or things: ``1 body``, ``2 bodies``."""
+    return f"{count} {kind if count == 1 else _PLURALS.get(kind, f'{kind}s')}"
+
+
+def _counts(losses: Sequence[Loss]) -> str:
+    """How many elements of each kind."""
+    elements: dict[str, set[str]] = {}
+    for loss in losses:
+        elements.setdefault(kind_of(loss), set()).add(loss.element)
+    counts = sorted(((len(found), kind) for kind, found in elements.items() if kind != "mechanism"), reverse=True)
+    shown = [counted(count, kind) for count, kind in counts[:_SHORT]]
+    if len(counts) > _SHORT:
+        shown.append(f"{sum(count for count, _ in counts[_SHORT:])} more")
+    return ", ".join(shown) or "the robot"
+
+
+def _amount(group: Group) -> str:
+    """The size of the numbers that are gone, or the largest error of those that are others."""
+    if not group.field:
+        return " by other shapes" if group.verb == "approximated" else ""
+    if group.verb == "approximated":
+        errors = [error for loss in group.losses if (error := error_of(loss)) is not None]
+        return f", off by up to {_number(max(errors))}{_unit(group)}" if errors else _change(group)
+    sizes = [size for loss in group.losses if (size := size_of(loss)) is not None]
+    if not sizes:
+        return ""
+    least = "" if min(sizes) == max(sizes) else "up to "
+    return f", {least}{_number(max(sizes))}{_unit(group)}"
+
+
+def _change(group: Group) -> str:
+    """What the first of them was, and what it became, where both are a word."""
+    before, after = (_WORD.match(text or "") for text in group.losses[0][2:4])
+    return f" ({_bare(before[1])} -> {_bare(after[1])})" if before and after and before[1] != after[1] else ""
+
+
+def _bare(word: str) -> str:
+    """The name of a geometry: ``mesh`` of a mesh shape."""
+    return word.removesuffix("shape")
+
+
+def _unit(group: Group) -> str:
+    units = sorted({loss.unit for loss in group.losses if loss.unit})
+    return f" {' or '.join(units)}" if units else ""
+
+
+def _number(value: float) -> str:
+    return number_text(float(f"{value:.{_SHORT}g}"))
+
+
+def _names(group: Group) -> str:
+    names = list(dict.fromkeys(loss.element.partition(" ")[2] or loss.element for loss in group.losses))
+    return ", ".join([*names[:_EXAMPLES], *(["..."] if len(names) > _EXAMPLES else [])])
+
+
+def _short(text: str | None) -> str:
+    return "no name" if text is None or text == "none" else text
+
+
+def _settings(losses: Sequence[Loss]) -> Iterator[str]:
+    """What only one format or its engine understands: how much of it, and the first few by name."""
+    by_format: dict[str, list[Loss]] = {}
+    for loss in losses:
+        by_format.setdefault(loss.field.partition(" ")[0], []).append(loss)
+    for format, found in by_format.items():
+        named = list(dict.fromkeys(map(_setting, found)))
+        shown = ", ".join([*named[: 2 * _EXAMPLES], *(["..."] if len(named) > 2 * _EXAMPLES else [])])
+        verb = "dropped" if any(loss.before is not None for loss in found) else "added"
+        yield f"{verb}: {counted(len(found), 'setting')} that only {format} has: {shown}"
+
+
+def _setting(loss: Loss) -> str:
+    """The name of an attribute, or the tag of an element."""
+    attribute = loss.field.rpartition("@")
+    tag = _TAG.match(loss.before or loss.after or "")
+    return attribute[2] if attribute[1] else f"<{tag[1]}>" if tag else loss.field.partition(" ")[2]

@@ -1,0 +1,221 @@
+"""The report of a conversion: at most a dozen lines for people, all of it as JSON and as SARIF."""
+
+from __future__ import annotations
+
+import json
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import jsonschema
+import pytest
+
+from hymeko_x import codes
+from hymeko_x.cli import exits, main
+from hymeko_x.cli.report import MOST_LINES, brief_lines
+from hymeko_x.compare.ledger import Fate, Loss
+from hymeko_x.corpus import catalog
+from hymeko_x.diagnostics import Diagnostic, Origin, Severity
+from hymeko_x.reporting.aspects import Aspect, aspect_of
+from hymeko_x.reporting.document import document
+from hymeko_x.reporting.values import error_of, values_of
+from tests.reporting.robots import biped
+
+if TYPE_CHECKING:
+    from tests.conftest import RealRobots
+
+SCHEMA = json.loads(files("hymeko_x.reporting").joinpath("conversion.schema.json").read_text("utf-8"))
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def real(real_robot: RealRobots, end: str) -> Path:
+    return real_robot(next(file for file in catalog.development_files("mjcf") if file.path.endswith(end)))
+
+
+def reported(source: Path | str, capsys: pytest.CaptureFixture[str], *options: str) -> list[str]:
+    """The report of a conversion to URDF in the working folder."""
+    assert main(["convert", str(source), "out.urdf", "--pure", *options]) == exits.DONE
+    return capsys.readouterr().err.replace(str(source), "IN").splitlines()
+
+
+# ---- for people ----------------------------------------------------------------------------------------------------------
+
+
+def test_a_walker_loses_its_loops_springs_and_motors_in_urdf(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "biped.xml").write_text(biped())
+    assert reported("biped.xml", capsys) == [
+        "wrote out.urdf (13 bodies, 13 joints) and 1 file in shapes/",
+        "dropped: 4 loops: 'left-rod', 'left-plantar', ...",
+        "dropped: 10 actuators: 'left-hip-roll', 'left-hip-yaw', ...",
+        "dropped: armature of 8 joints, up to 0.09 kg m^2: 'left-hip', 'left-hip-pitch', ...",
+        "dropped: stiffness of 4 joints, up to 1500 N m/rad: 'left-shin', 'left-heel-spring', ...",
+        "approximated: 2 shapes by other shapes: 'left-foot/shape', 'right-foot/shape'",
+        "approximated: kind of 2 joints (ball -> hinge): 'left-achilles-rod', 'right-achilles-rod'",
+        "approximated: connection of 2 joints: 'left-achilles-rod', 'right-achilles-rod'",
+        "no physics: 4 joints renamed ('left-hip-roll' -> no name); 4 joints, 2 shapes, 1 mesh described in another form",
+        "IN:6: note[HX101]: joint 'left-hip' has dofs or a frame that the format cannot represent; it is written as a chain of 2 joints"
+        " (5 more alike: lines 12, 14, 22, 28, 30)",
+        "IN:20: note[HX101]: shape 'left-foot/shape' is a capsule, which the format cannot represent; it is written as a cylinder and two"
+        " spheres (1 more alike: line 36)",
+        "3 more kinds; -v lists each with its place, --report FILE.json has all",
+    ]
+
+
+@pytest.mark.corpus
+def test_the_panda_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert reported(real(real_robot, "franka_emika_panda/panda_free_base.xml"), capsys) == [
+        "wrote out.urdf (11 bodies, 11 joints) and 67 files in assets/",
+        "dropped: 1 tendon: 'split'",
+        "dropped: 8 actuators: 'actuator1', 'actuator2', ...",
+        "dropped: armature of 9 joints, 0.1 kg or kg m^2: 'joint1', 'joint2', ...",
+        "dropped: 7 settings that only mjcf has: <compiler>, <option>, <default>, <keyframe>, ...",
+        "no physics: 11 meshes renamed ('link0_c' -> 'link0'); appearance of 5 materials, 1 light; 3 comments and declarations",
+        "-v lists each with its place, --report FILE.json has all",
+    ]
+
+
+def test_a_quiet_report_has_nothing_but_errors(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "biped.xml").write_text(biped())
+    assert reported("biped.xml", capsys, "-q") == []
+
+
+def test_a_verbose_report_has_each_loss_with_its_place(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "biped.xml").write_text(biped())
+    lines = reported("biped.xml", capsys, "-v", "--report", "all.json")
+    losses = json.loads((folder / "all.json").read_text())["losses"]
+    assert sum(" loss: " in line or line.startswith("loss: ") for line in lines) == len(losses)
+    assert "IN:9: loss: joint 'left-hip-pitch' dofs[0].armature dropped: 0.09 -> 0" in lines
+
+
+def test_no_report_is_longer_than_a_dozen_lines() -> None:
+    odd = [Diagnostic(codes.BAD_NUMBER, Severity.WARNING, "x" * i, hint="mend it") for i in range(20)]
+    notes = [Diagnostic(codes.REWRITTEN, Severity.NOTE, "y" * i) for i in range(20)]
+    losses = [loss(f"joint 'a{i}'", f"dofs[0].{'z' * i}", "1", "2") for i in range(30)]
+    lines = brief_lines("wrote x", [*notes, *odd], losses)
+    assert len(lines) == MOST_LINES
+    assert [sum(part in line for line in lines) for part in ("wrote", "warning[", "approximated:", "note[")] == [1, 2, 4, 2]
+    assert lines[-1] == "62 more kinds; -v lists each with its place, --report FILE.json has all"
+    assert brief_lines("", odd[:1], ()) == ["warning[HX020]: ", "  hint: mend it"]
+
+
+# ---- what a loss is ------------------------------------------------------------------------------------------------------
+
+
+def loss(element: str, field: str, before: str | None, after: str | None, fate: Fate = "approximated") -> Loss:
+    return Loss(element, field, before, after, fate)
+
+
+@pytest.mark.parametrize(
+    ("found", "aspect"),
+    [
+        (loss("joint 'a'", "dofs[0].armature", "1", "0"), Aspect.PHYSICS),
+        (loss("joint 'a'", "mjcf @solref", "1 2", None), Aspect.SETTINGS),
+        (loss("joint 'a'", "name", "'a'", "'b'"), Aspect.NAME),
+        (loss("joint 'a'", "chain", "a", "a b c"), Aspect.FORM),
+        (loss("body 'a'", "inertial", "none", "inertial(mass 1)"), Aspect.FORM),
+        (loss("body 'a'", "comment content", "a leg", None), Aspect.TEXT),
+        (loss("mechanism", "urdf @xmlns:xacro", "http://x", None), Aspect.TEXT),
+        (loss("material 'a'", "", "material()", None), Aspect.APPEARANCE),
+        (loss("shape 'a'", "[1]", "~ material 'a' as 'material'", None), Aspect.APPEARANCE),
+        (loss("shape 'a'", "rgba", "[1 0 0 1]", "none"), Aspect.APPEARANCE),
+        (loss("frame 'a'", "", "frame()", None), Aspect.PHYSICS),
+        (loss("frame 'a'", "size", "[0.1]", "[]"), Aspect.APPEARANCE),
+        (loss("shape 'a'", "role", "both", "visual, and collision as 'b'"), Aspect.FORM),
+        (loss("shape 'a'", "role", "collision", "visual"), Aspect.PHYSICS),
+        (loss("mesh 'a'", "scale", "[1 1 1]", "[2 2 2]"), Aspect.PHYSICS),
+    ],
+)
+def test_a_loss_concerns_the_physics_or_something_else(found: Loss, aspect: Aspect) -> None:
+    assert aspect_of(found) is aspect
+
+
+@pytest.mark.parametrize(
+    ("field", "before", "after", "values", "error"),
+    [
+        ("dofs[0].armature", "0.1", "0.25", (0.1, 0.25), 0.15),
+        ("dofs[0].limits.upper", "inf", "none", (float("inf"), None), None),
+        ("inertial.com", "[0 0 -1e-3]", "[0 0.5 0]", ([0.0, 0.0, -0.001], [0.0, 0.5, 0.0]), 0.5),
+        ("[0].weight.rotation", "[1 0 0 0]", "[0 1 0 0]", ([1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0]), 3.141592653589793),
+        ("name", "'it\\'s'", '"x"', ("it's", "x"), None),
+        ("active", "True", "False", (True, False), None),
+        ("mjcf @solref", "1 2", None, ("1 2", None), None),
+        ("[1]", "[0] + joint 'a'", "[x]", ("[0] + joint 'a'", "[x]"), None),
+    ],
+)
+def test_values_of_a_loss_are_numbers_and_errors_have_a_size(
+    field: str, before: str, after: str | None, values: tuple[object, object], error: float | None
+) -> None:
+    found = loss("joint 'a'", field, before, after)
+    assert values_of(found) == values
+    assert error_of(found) == pytest.approx(error)
+
+
+# ---- for programs --------------------------------------------------------------------------------------------------------
+
+
+def test_the_json_report_follows_its_schema(folder: Path) -> None:
+    (folder / "biped.xml").write_text(biped())
+    assert main(["convert", "biped.xml", "out.urdf", "--pure", "--report", "all.json"]) == exits.DONE
+    found = json.loads((folder / "all.json").read_text())
+    jsonschema.validate(found, SCHEMA)
+    assert found["counts"] == {fate: sum(row["fate"] == fate for row in found["losses"]) for fate in ("kept", "approximated", "dropped")}
+    knee = next(row for row in found["losses"] if row["element"] == "joint 'left-heel-spring'" and "stiffness" in row["field"])
+    assert knee == {
+        "element": "joint 'left-heel-spring'",
+        "target_element": "joint 'left-heel-spring'",
+        "kind": "joint",
+        "field": "dofs[0].stiffness",
+        "aspect": "physics",
+        "before": 1250,
+        "after": 0,
+        "unit": "N m/rad",
+        "error": 1250,
+        "fate": "dropped",
+        "file": "biped.xml",
+        "line": 17,
+    }
+    motor = next(row for row in found["losses"] if row["element"] == "actuator 'left-knee'")
+    assert (motor["target_element"], motor["fate"], motor["line"]) == (None, "dropped", 40)
+
+
+def test_the_schema_refuses_what_is_no_report() -> None:
+    found = document(("a", "urdf"), ("b", "mjcf"), (), (loss("joint 'a'", "x", "1", "2"),))
+    jsonschema.validate(found, SCHEMA)
+    found["losses"][0]["fate"] = "carried"  # type: ignore[index]
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate(found, SCHEMA)
+
+
+def test_the_sarif_report_has_a_result_for_each_diagnostic_and_each_loss(folder: Path) -> None:
+    (folder / "a biped.xml").write_text(biped())
+    assert main(["convert", "a biped.xml", "out.urdf", "--pure", "--report", "all.json"]) == exits.DONE
+    assert main(["convert", "a biped.xml", "out.urdf", "--pure", "--report", "all.sarif"]) == exits.DONE
+    flat = json.loads((folder / "all.json").read_text())
+    found = json.loads((folder / "all.sarif").read_text())
+    (run,) = found["runs"]
+    assert (found["version"], run["tool"]["driver"]["name"]) == ("2.1.0", "hymeko-x")
+    assert len(run["results"]) == len(flat["diagnostics"]) + len(flat["losses"])
+    assert {result["ruleId"] for result in run["results"]} == {rule["id"] for rule in run["tool"]["driver"]["rules"]}
+    gone = next(result for result in run["results"] if result["message"]["text"].startswith("loop 'left-rod'"))
+    assert (gone["ruleId"], gone["level"]) == ("dropped", "warning")
+    assert gone["locations"] == [{"physicalLocation": {"artifactLocation": {"uri": "a%20biped.xml"}, "region": {"startLine": 39}}}]
+    assert gone["properties"] in flat["losses"]
+
+
+def test_a_diagnostic_without_a_line_is_a_result_without_a_region() -> None:
+    from hymeko_x.reporting.sarif import sarif
+
+    said = (
+        Diagnostic(codes.BAD_NUMBER, Severity.WARNING, "odd", Origin("a.urdf"), hint="mend it"),
+        Diagnostic(codes.BUG, Severity.NOTE, "x"),
+    )
+    (run,) = sarif(document(("a.urdf", "urdf"), ("b", "mjcf"), said, None))["runs"]  # type: ignore[misc]
+    first, second = run["results"]
+    assert first["message"] == {"text": "odd (mend it)"}
+    assert first["locations"] == [{"physicalLocation": {"artifactLocation": {"uri": "a.urdf"}}}]
+    assert "locations" not in second
