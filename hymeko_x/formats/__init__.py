@@ -232,6 +232,7 @@ SDF = Format(
     "sdf",
     "Simulation Description Format (Gazebo)",
     (".sdf", ".world"),
+    "hymeko_x.frontends.sdf",
     roots=("sdf",),
     tokens=_XML_TOKENS,
     reference="hymeko_x.verify.readers.sdf",

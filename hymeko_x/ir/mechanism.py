@@ -195,7 +195,11 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
         return tuple(key for key, _ in self.vertices(parts.Body) if key not in above or above[key].parent == WORLD)
 
     def depth_first(self) -> Iterator[Id]:
-        """The bodies, parents before children, each subtree in one piece, siblings in joint order. Not recursive."""
+        """The bodies, parents before children, each subtree in one piece, siblings in joint order. Not recursive.
+
+        A body that several joints lead to is below its parent joint, the first one.
+        """
+        above = self.parent_joint
         stack = list(reversed(self.roots))
         seen: set[Id] = set()
         while stack:
@@ -204,7 +208,7 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
                 continue
             seen.add(body)
             yield body
-            stack.extend(joint.child for joint in reversed(self.children.get(body, ())))
+            stack.extend(joint.child for joint in reversed(self.children.get(body, ())) if above[joint.child].id == joint.id)
 
     # ---- what is on an element -----------------------------------------------------------------------------------------------
 

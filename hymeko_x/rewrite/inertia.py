@@ -279,19 +279,45 @@ def unit_tensor(views: Iterable[ShapeView]) -> Tensor | None:
     """The tensor in m^2, in body axes about the centre of the shapes, of 1 kg spread evenly over them; None without a solid."""
     solids = [(view, solid) for view in views if (solid := _solid(view.shape.geometry)) is not None]
     chosen = [item for item in solids if item[0].shape.role is not Role.VISUAL] or solids
-    volume = sum(solid[0] for _, solid in chosen)
-    if volume <= 0.0:
+    spread = _spread([(view, solid[0], solid) for view, solid in chosen])
+    return None if spread is None else spread.tensor
+
+
+def inertial_of_solids(views: Iterable[ShapeView], density: float) -> Inertial | None:
+    """Mass, centre of mass and tensor of the shapes that collide, each of its own density in kg/m^3 or of the given one.
+
+    None where one of them is no primitive solid, or there is none.
+    """
+    parts = []
+    for view in views:
+        if view.shape.role is Role.VISUAL:
+            continue
+        solid = _solid(view.shape.geometry)
+        if solid is None:
+            return None
+        parts.append((view, solid[0] * (density if view.shape.density is None else view.shape.density), solid))
+    spread = _spread(parts)
+    if spread is None or spread.mass is None or spread.tensor is None:
+        return None
+    xx, yy, zz, xy, xz, yz = (spread.mass * value for value in spread.tensor)
+    return Inertial(spread.mass, spread.com, (xx, yy, zz, xy, xz, yz))
+
+
+def _spread(parts: list[tuple[ShapeView, float, _Solid]]) -> Inertial | None:
+    """The sum of the weights, their centre, and the tensor of 1 kg spread like them; None without weight."""
+    whole = sum(weight for _, weight, _ in parts)
+    if whole <= 0.0:
         return None
     centre = ZERO
-    for view, (share, _) in chosen:
-        centre = add(centre, scaled(view.pose.xyz, share / volume))
+    for view, share, _ in parts:
+        centre = add(centre, scaled(view.pose.xyz, share / whole))
     total = [0.0] * 6
-    for view, (share, moments) in chosen:
+    for view, share, (_, moments) in parts:
         own = rotate_tensor(view.pose.quat, (*moments, 0.0, 0.0, 0.0))
         arm = _of_point(add(view.pose.xyz, scaled(centre, -1.0)))
-        total = [value + share / volume * (a + b) for value, a, b in zip(total, own, arm, strict=True)]
+        total = [value + share / whole * (a + b) for value, a, b in zip(total, own, arm, strict=True)]
     xx, yy, zz, xy, xz, yz = total
-    return xx, yy, zz, xy, xz, yz
+    return Inertial(whole, centre, (xx, yy, zz, xy, xz, yz))
 
 
 def _of_point(at: Vec3) -> Tensor:

@@ -123,7 +123,8 @@ def test_a_missing_engine_is_named_with_its_package(written: Write, monkeypatch:
 def test_sdf_without_drake_names_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "robot.sdf"
     file.write_text("<sdf version='1.9'><model name='m'><link name='a'/></model></sdf>", "utf-8")
-    monkeypatch.setitem(sys.modules, "pydrake", None)
+    for name in ["pydrake", *(name for name in sys.modules if name.startswith("pydrake."))]:
+        monkeypatch.setitem(sys.modules, name, None)
     monkeypatch.delitem(sys.modules, "hymeko_x.verify.readers.sdf", raising=False)
     with pytest.raises(Refusal) as caught:
         hx.verify(file, file)

@@ -1,20 +1,25 @@
 """SDF as libsdformat reads it, through Drake's MultibodyPlant.
 
-Drake has bodies, joints, limits, damping and inertia; it does not hand out shapes and mimic joints, which verdicts note.
-Source: pydrake.multibody.plant.
+Drake has bodies, joints, limits, damping, inertia and shapes; it does not hand out mimic joints, which verdicts note.
+Source: pydrake.multibody.plant, pydrake.geometry.
 """
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from pydrake.geometry import Box, Capsule, Convex, Cylinder, Ellipsoid, HalfSpace, Mesh, Sphere
+from pydrake.geometry import Role as GeometryRole
 from pydrake.multibody.parsing import Parser
-from pydrake.multibody.plant import MultibodyPlant
+from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, MultibodyPlant
+from pydrake.multibody.tree import BodyIndex
+from pydrake.systems.framework import DiagramBuilder
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.verify.model import (
     WORLD,
     Array,
@@ -25,26 +30,71 @@ from hymeko_x.verify.model import (
     Kind,
     KinematicModel,
     Loop,
+    MeshFile,
+    Role,
+    Shape,
     between_frames,
     parents_first,
     world_body,
 )
 from hymeko_x.verify.readers import native_output
-from hymeko_x.verify.spatial import shifted_tensor
+from hymeko_x.verify.spatial import frame_with_z, shifted_tensor
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
-    from pathlib import Path
 
     from hymeko_x.verify.readers import Lookup
 
 FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
+_SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS})
 _TURNS = {"ball_rpy": Kind.BALL, "quaternion_floating": Kind.FREE, "rpy_floating": Kind.FREE}
+_ROLES = {Role.VISUAL: GeometryRole.kIllustration, Role.COLLISION: GeometryRole.kProximity}
+_STATIC = "sdformat_model_static_"
+"""How the names of the joints begin that Drake adds to static models."""
 
 
 def read(path: Path, lookup: Lookup) -> KinematicModel:
-    """The robot that libsdformat reads. Raises: Refusal HX302 in its words."""
-    plant = MultibodyPlant(0.0)
+    """The robot that libsdformat reads. Raises: Refusal HX302 in its words.
+
+    Where Drake refuses nothing but a mesh file, the robot is read without its shapes.
+    """
+    plant, scene = AddMultibodyPlantSceneGraph(DiagramBuilder(), 0.0)
+    try:
+        _load(path, plant, lookup)
+    except Refusal:
+        plant, scene = MultibodyPlant(0.0), None
+        _load(path, plant, lookup)
+    return _model(plant, None if scene is None else scene.model_inspector(), path.stem, _screw_axes(path, plant, lookup))
+
+
+def _screw_axes(path: Path, plant: Any, lookup: Lookup) -> dict[int, Array]:
+    """The axis of each screw, by the number of the joint: Drake tells how a screw moves, and only when the plant is complete."""
+    screws = [index for index in plant.GetJointIndices() if plant.get_joint(index).type_name() == "screw"]
+    if not screws:
+        return {}
+    complete = MultibodyPlant(0.0)
+    _load(path, complete, lookup)
+    complete.Finalize()
+    found = {}
+    for index in screws:
+        joint, context = complete.get_joint(index), complete.CreateDefaultContext()
+        q: Any = np.zeros(complete.num_positions())
+        for start, count in ((body.floating_positions_start(), 4) for body in _floating(complete)):
+            q[start : start + count] = (1.0, 0.0, 0.0, 0.0)
+        q[joint.position_start()] = 1.0
+        complete.SetPositions(context, q)
+        turn = joint.frame_on_child().CalcPose(context, joint.frame_on_parent()).rotation().ToAngleAxis()
+        found[int(index)] = np.array(turn.axis()) * (1.0 if turn.angle() > 0.0 else -1.0)
+    return found
+
+
+def _floating(plant: Any) -> Iterator[Any]:
+    """The bodies that float, whose first four coordinates are a quaternion."""
+    bodies = (plant.get_body(BodyIndex(index)) for index in range(1, plant.num_bodies()))
+    return (body for body in bodies if body.is_floating_base_body())
+
+
+def _load(path: Path, plant: Any, lookup: Lookup) -> None:
     parser = Parser(plant)
     for name, folder in lookup.packages.items():
         parser.package_map().Add(name, folder)
@@ -54,10 +104,9 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
         except (RuntimeError, SystemExit, MemoryError) as error:
             reason = " ".join(str(error).split()) or output()
             raise refuse(codes.ENGINE_REFUSED, f"libsdformat refuses the file: {reason}", Origin(str(path))) from error
-    return _model(plant, path.stem)
 
 
-def _model(plant: Any, name: str) -> KinematicModel:
+def _model(plant: Any, scene: Any | None, name: str, screws: Mapping[int, Array]) -> KinematicModel:
     joints: dict[int, Any] = {}
     closing: list[Any] = []
     for joint in (plant.get_joint(index) for index in plant.GetJointIndices()):
@@ -68,13 +117,17 @@ def _model(plant: Any, name: str) -> KinematicModel:
         children.setdefault(_parent(joints[index]) if index in joints else WORLD, []).append(index)
     order = parents_first(children.get(WORLD, ()), children)
     numbers = {WORLD: WORLD} | {index: number for number, index in enumerate(order, start=1)}
+    words = _Words(_scopes(plant), screws)
     return KinematicModel(
         name=name,
         format="sdf",
         engine="libsdformat in Drake",
-        bodies=(world_body(), *(_body(plant, index, joints.get(index), numbers) for index in order)),
-        loops=tuple(_loop(joint, numbers) for joint in closing),
-        features=FEATURES,
+        bodies=(
+            world_body(shapes=tuple(_shapes(plant, scene, WORLD))),
+            *(_body(plant, scene, index, joints.get(index), numbers, words) for index in order),
+        ),
+        loops=tuple(_loop(joint, numbers, words) for joint in closing),
+        features=FEATURES if scene is None else FEATURES | _SHAPES,
     )
 
 
@@ -82,29 +135,102 @@ def _parent(joint: Any) -> int:
     return int(joint.parent_body().index())
 
 
-def _body(plant: Any, index: int, joint: Any | None, numbers: Mapping[int, int]) -> Body:
-    from pydrake.multibody.tree import BodyIndex
+def _scopes(plant: Any) -> dict[int, str]:
+    """What stands before the names in each model; the only one at top level has nothing."""
+    from pydrake.multibody.tree import ModelInstanceIndex
 
+    names = {index: str(plant.GetModelInstanceName(ModelInstanceIndex(index))) for index in range(2, plant.num_model_instances())}
+    tops = {name.partition("::")[0] for name in names.values()}
+    if len(tops) != 1:
+        return {index: f"{name}::" for index, name in names.items()}
+    return {index: f"{rest}::" if rest else "" for index, rest in ((index, name.partition("::")[2]) for index, name in names.items())}
+
+
+class _Words(NamedTuple):
+    """What stands before the names in each model, and the axis of each screw."""
+
+    scopes: Mapping[int, str]
+    screws: Mapping[int, Array]
+
+    def name(self, element: Any) -> str:
+        """The name of a body or joint with the models around it."""
+        return self.scopes.get(int(element.model_instance()), "") + str(element.name())
+
+
+def _body(plant: Any, scene: Any | None, index: int, joint: Any | None, numbers: Mapping[int, int], words: _Words) -> Body:
+    """A body; for an inertia that is not physical Drake takes a ball of water, of which the file knows nothing."""
     body = plant.get_body(BodyIndex(index))
     inertia = body.default_spatial_inertia()
     mass, com = float(inertia.get_mass()), np.array(inertia.get_com())
     tensor = shifted_tensor(-mass, com, np.array(inertia.CalcRotationalInertia().CopyToFullMatrix3()))
-    if joint is None:
-        return Body(body.name(), WORLD, Joint(open=True), mass, com, tensor)
-    return Body(body.name(), numbers[_parent(joint)], _joint(joint), mass, com, tensor)
+    known = not np.allclose(tensor, np.eye(3) * 0.4 * mass * (mass * 0.75e-3 / math.pi) ** (2 / 3), rtol=1e-9, atol=0.0)
+    name, shapes = words.name(body), tuple(_shapes(plant, scene, index))
+    parent, above = (WORLD, _base(plant, body)) if joint is None else (numbers[_parent(joint)], _joint(joint, words))
+    return Body(name, parent, above, mass, com, tensor, shapes, inertia_is_known=known)
 
 
-def _joint(joint: Any) -> Joint:
-    return between_frames(joint.name(), _fixed_pose(joint.frame_on_parent()), tuple(_dofs(joint)), _fixed_pose(joint.frame_on_child()))
+# ---- joints ------------------------------------------------------------------------------------------------------------------
+
+
+def _base(plant: Any, body: Any) -> Joint:
+    """The joint of a body without one: libsdformat says where it is, and that it floats; at the origin it is open."""
+    pose = np.array(plant.GetDefaultFloatingBaseBodyPose(body).GetAsMatrix4())
+    return Joint(open=True) if np.array_equal(pose, np.eye(4)) else Joint(None, pose, (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),))
+
+
+def _joint(joint: Any, words: _Words) -> Joint:
+    """A joint; Drake does not say in which model one between two models is, nor who named one of a static model."""
+    is_inside = joint.parent_body().index() == WORLD or joint.parent_body().model_instance() == joint.child_body().model_instance()
+    name = None if str(joint.name()).startswith(_STATIC) or not is_inside else words.name(joint)
+    parent_pose = _fixed_pose(joint.frame_on_parent())
+    if joint.type_name() == "weld":
+        parent_pose = parent_pose @ np.array(joint.X_FM().GetAsMatrix4())
+    return between_frames(name, parent_pose, tuple(_dofs(joint, name, words)), _fixed_pose(joint.frame_on_child()))
 
 
 def _fixed_pose(frame: Any) -> Array:
     return np.array(frame.GetFixedPoseInBodyFrame().GetAsMatrix4())
 
 
-def _dofs(joint: Any) -> Iterator[Dof]:
+# ---- shapes ------------------------------------------------------------------------------------------------------------------
+
+
+def _shapes(plant: Any, scene: Any | None, index: int) -> Iterator[Shape]:
+    if scene is None:
+        return
+    frame = plant.GetBodyFrameIdOrThrow(BodyIndex(index))
+    for role, kind in _ROLES.items():
+        for geometry in scene.GetGeometries(frame, kind):
+            word, size, mesh = _geometry(scene.GetShape(geometry))
+            pose = np.array(scene.GetPoseInFrame(geometry).GetAsMatrix4())
+            yield Shape(word, role, pose, size, str(scene.GetName(geometry)).rpartition("::")[2], mesh)
+
+
+def _geometry(shape: Any) -> tuple[str, tuple[float, ...], MeshFile | None]:
+    match shape:
+        case Box():
+            return "box", tuple(map(float, shape.size())), None
+        case Sphere():
+            return "sphere", (shape.radius(),), None
+        case Cylinder() | Capsule():
+            return type(shape).__name__.lower(), (shape.radius(), shape.length()), None
+        case Ellipsoid():
+            return "ellipsoid", (shape.a(), shape.b(), shape.c()), None
+        case HalfSpace():
+            return "plane", (), None
+        case Mesh() | Convex():
+            path, (x, y, z) = str(shape.source().path()), map(float, shape.scale3())
+            return "mesh", (), MeshFile(path, Path(path), (x, y, z))
+        case other:
+            return type(other).__name__.lower(), (), None
+
+
+# ---- dofs ----------------------------------------------------------------------------------------------------------
+
+
+def _dofs(joint: Any, name: str | None, words: _Words) -> Iterator[Dof]:
     """Drake's joint types; a universal joint turns about x and then y, a planar one slides in x and y and turns about z."""
-    kind, name = joint.type_name(), joint.name()
+    kind = joint.type_name()
     x, y, z = np.eye(3)
     match kind:
         case "weld":
@@ -114,7 +240,7 @@ def _dofs(joint: Any) -> Iterator[Dof]:
         case "prismatic":
             yield _scalar(joint, Kind.SLIDE, np.array(joint.translation_axis()), 0, name)
         case "screw":
-            yield _scalar(joint, Kind.SCREW, np.array(joint.screw_axis()), 0, name, float(joint.screw_pitch()) / (2 * math.pi))
+            yield _scalar(joint, Kind.SCREW, words.screws[int(joint.index())], 0, name, float(joint.screw_pitch()) / (2 * math.pi))
         case "universal":
             yield _scalar(joint, Kind.HINGE, x, 0, None)
             yield _scalar(joint, Kind.HINGE, y, 1, None)
@@ -139,8 +265,12 @@ def _scalar(joint: Any, kind: Kind, axis: Array, index: int, name: str | None, p
     )
 
 
-def _loop(joint: Any, numbers: Mapping[int, int]) -> Loop:
+def _loop(joint: Any, numbers: Mapping[int, int], words: _Words) -> Loop:
     ends = numbers[_parent(joint)], numbers[int(joint.child_body().index())]
     frames = _fixed_pose(joint.frame_on_parent()), _fixed_pose(joint.frame_on_child())
     kind = {"weld": "weld", "ball_rpy": "connect"}.get(joint.type_name(), "other")
-    return Loop(kind, ends[0], frames[0], ends[1], frames[1], joint.name(), joint.type_name() if kind == "other" else "")
+    dofs = tuple(_dofs(joint, None, words))
+    if len(dofs) == 1 and dofs[0].kind in (Kind.HINGE, Kind.SLIDE):
+        kind, along = dofs[0].kind.value, frame_with_z(dofs[0].axis, dofs[0].anchor)
+        frames = frames[0] @ along, frames[1] @ along
+    return Loop(kind, ends[0], frames[0], ends[1], frames[1], words.name(joint), joint.type_name() if kind == "other" else "")

@@ -1,0 +1,103 @@
+"""The words of SDF that its reader and its writer share, and the few rules for both.
+
+Source: the SDF schemas 1.3 to 1.12 and libsdformat; docs/mapping/sdf.md has the mapping.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING, NamedTuple
+
+from hymeko_x.ir.parts import DofKind, Role
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.ir.parts import Joint
+
+FORMAT = "sdf"
+RESIDUE = "hymeko:residue"
+"""The element that carries a residue as the last child of the root; elements with a prefix are custom ones, which readers leave alone."""
+RESIDUE_NAMESPACE = "urn:hymeko-x"
+
+VERSIONS = tuple(f"1.{minor}" for minor in range(13))
+DEFAULT_VERSION = "1.9"
+"""What is written unless the file came from another version or needs a later one."""
+VERSION_OF_MIMIC = "1.11"
+VERSION_OF_AUTO = "1.11"
+DENSITY = 1000.0
+"""kg/m^3 of collisions from which an inertial is computed."""
+
+MODEL_FRAME = "__model__"
+WORLD_FRAME = "world"
+SCOPE = "::"
+
+
+def minor(version: str) -> int:
+    """The number behind the point of a version."""
+    return int(version.partition(".")[2] or 0)
+
+
+def scoped(scope: str, name: str) -> str:
+    """The name of an element of a model, as it is outside of that model; the scope is empty or ends in ``::``."""
+    return scope + name
+
+
+def split_scope(name: str) -> tuple[str, str]:
+    """The scope of a name, empty or ending in ``::``, and the name in it."""
+    scope, mark, own = name.rpartition(SCOPE)
+    return scope + mark, own
+
+
+# ---- joints ------------------------------------------------------------------------------------------------------------------
+
+
+class JointType(NamedTuple):
+    """A value of ``<joint type>``: the kinds of the joint's dofs, and whether <limit> bounds the position."""
+
+    dofs: tuple[DofKind, ...] = ()
+    bounded: bool = True
+
+
+JOINT_TYPES: Mapping[str, JointType] = MappingProxyType(
+    {
+        "fixed": JointType(),
+        "revolute": JointType((DofKind.HINGE,)),
+        "continuous": JointType((DofKind.HINGE,), bounded=False),
+        "prismatic": JointType((DofKind.SLIDE,)),
+        "screw": JointType((DofKind.SCREW,)),
+        "ball": JointType((DofKind.BALL,), bounded=False),
+        "universal": JointType((DofKind.HINGE, DofKind.HINGE)),
+        "revolute2": JointType((DofKind.HINGE, DofKind.HINGE)),
+    }
+)
+"""``gearbox`` is none of them: it couples two joints. ``piston`` of old versions was never implemented."""
+
+AXES = ("axis", "axis2")
+
+
+def default_type(joint: Joint) -> str | None:
+    """The type of a joint by its dofs; None when SDF has none."""
+    kinds = tuple(dof.kind for dof in joint.dofs)
+    if kinds == (DofKind.HINGE,):
+        limits = joint.dofs[0].limits
+        return "continuous" if limits.lower is None and limits.upper is None else "revolute"
+    if kinds == (DofKind.HINGE, DofKind.HINGE):
+        first, second = (dof.axis for dof in joint.dofs)
+        return "universal" if abs(sum(a * b for a, b in zip(first, second, strict=True))) < 1e-9 else "revolute2"
+    return next((word for word, kind in JOINT_TYPES.items() if kind.dofs == kinds), None)
+
+
+# ---- shapes ------------------------------------------------------------------------------------------------------------------
+
+ROLES: Mapping[str, Role] = MappingProxyType({"visual": Role.VISUAL, "collision": Role.COLLISION})
+"""The elements of a link that hold a shape."""
+
+
+def shape_name(tag: str, number: int) -> str:
+    """The name of the n-th visual or collision of a link, counted from 1, when its author gave it none: SDF requires one."""
+    return tag if number == 1 else f"{tag}_{number}"
+
+
+OTHER_GEOMETRIES = ("cone", "polyline", "heightmap", "image", "empty")
+"""Geometries that the IR cannot represent; they are kept as written."""

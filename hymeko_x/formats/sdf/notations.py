@@ -1,0 +1,63 @@
+"""How authors wrote SDF, where several ways mean the same."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
+
+from hymeko_x.ir.notations import Notation, flag, word
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+VERSION = word("sdf.version")
+"""Mechanism: the version of the file. Its presence says that the mechanism came from SDF."""
+WORLD = word("sdf.world")
+"""Mechanism: the name of the <world> in which its models are."""
+TYPE = word("sdf.type")
+"""Joint: its type where another one would be written by default."""
+ENDS = word("sdf.ends")
+"""Joint: the frames that it names as parent and child, with a blank between them, where these are not links."""
+ATTACHED = word("sdf.attached")
+"""Frame: ``attached_to`` as written."""
+NO_INERTIAL = flag("sdf.inertial", "missing")
+"""Body: it has the inertial that libsdformat gives to a link without one."""
+AUTO = flag("sdf.auto")
+"""Body: its inertial is that of its collisions."""
+IMPLIED = flag("sdf.implied")
+"""Joint: not in the file; a model without <static> floats, one with it stands."""
+
+
+class WrittenPose(Struct, frozen=True):
+    """A <pose> as its author wrote it: its attributes in the order ``relative_to``, ``rotation_format``, ``degrees``, and its text."""
+
+    relative_to: str | None = None
+    rotation_format: str | None = None
+    degrees: str | None = None
+    text: str = ""
+
+
+_MARKS = ("relative_to", "rotation_format", "degrees")
+
+
+def _pose_text(pose: WrittenPose) -> str:
+    said = [f"{name}={value}" for name in _MARKS if (value := getattr(pose, name)) is not None]
+    return "; ".join([*said, pose.text])
+
+
+def _pose(text: str) -> WrittenPose:
+    *said, numbers = text.split("; ")
+    known = dict(item.partition("=")[::2] for item in said)
+    return WrittenPose(known.get("relative_to"), known.get("rotation_format"), known.get("degrees"), numbers)
+
+
+POSE = Notation("sdf.pose", _pose_text, _pose)
+"""Link, joint, frame, model, shape, sensor, light: its <pose> as written."""
+
+WRITTEN: Notation[Mapping[str, str]] = Notation(
+    "sdf.written",
+    lambda texts: "; ".join(f"{path}={text}" for path, text in texts.items()),
+    lambda text: dict(item.partition("=")[::2] for item in text.split("; ") if "=" in item),
+)
+"""Any element: the texts of values, by path, that would not be written, or be written otherwise: defaults, other units, no limits."""

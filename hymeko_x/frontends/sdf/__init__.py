@@ -1,0 +1,145 @@
+"""The SDF frontend. Everything in a file becomes typed parts of a mechanism, or an extra, or a diagnostic with its origin.
+
+Source: SDF 1.3 to 1.12 as libsdformat reads it; docs/mapping/sdf.md has the mapping.
+"""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes, formats
+from hymeko_x.diagnostics import refuse
+from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf import notations
+from hymeko_x.frontends.sdf.builder import Model, SdfBuilder, TextsUnread
+from hymeko_x.frontends.sdf.include import expand_includes
+from hymeko_x.frontends.sdf.joints import read_joint
+from hymeko_x.frontends.sdf.links import read_link
+from hymeko_x.frontends.sdf.models import (
+    attach_models,
+    break_cycles,
+    close_cycles,
+    collect_models,
+    hold_bases,
+    mount_frames,
+    name_from_outside,
+    place_content,
+    place_model,
+    register_content,
+)
+from hymeko_x.frontends.sdf.sensors import read_light
+from hymeko_x.ir.mechanism import ROOT, WORLD
+from hymeko_x.source import Reading
+from hymeko_x.xml.parse import parse
+from hymeko_x.xml.unread import FOLLOWING, PRECEDING, extra_of
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import Extra
+    from hymeko_x.source import Source
+    from hymeko_x.xml.tree import Document, Node
+
+
+def read(source: Source, report: Report) -> Reading:
+    """The mechanism that an SDF file describes, and the residue that it carries.
+
+    Raises: Refusal with HX004 (not XML), HX006 (the root is not <sdf>), HX007 (too large), HX008 (entities).
+    """
+    document = parse(source, report)
+    root = document.root
+    _check_root(root)
+    carried = [_whole_text(node) for node in root.take_children(words.RESIDUE)]
+    version = _read_version(root, report)
+    included = expand_includes(root, source, document.data, words.minor(version), report)
+    builder = SdfBuilder(report=report, unread=TextsUnread(root, included.texts, report), versions=included.versions)
+    builder.note(ROOT, notations.VERSION, version)
+    world = _take_world(root, report)
+    name = _read_models(root, world, source, builder)
+    for child in list(root.children):
+        builder.unread.close(child)
+    return Reading(builder.finish(name, _around(document), source.name, version), "".join(carried))
+
+
+def _whole_text(node: Node) -> str:
+    """The text of an element with nothing else in it."""
+    node.attributes.clear()
+    return node.take_text()
+
+
+def _check_root(root: Node) -> None:
+    if root.tag != "sdf":
+        hint = (
+            "SDF up to 1.2 had the root <gazebo>; Gazebo Classic converts such files"
+            if root.tag == "gazebo"
+            else formats.root_hint(root.tag)
+        )
+        raise refuse(codes.WRONG_ROOT, f"the root element is <{root.tag}>, not <sdf>", root.origin, hint=hint)
+
+
+def _read_version(root: Node, report: Report) -> str:
+    version = root.take("version")
+    if version in words.VERSIONS:
+        return version
+    found = "has no version" if version is None else f"has version '{version}', known are {words.VERSIONS[0]} to {words.VERSIONS[-1]}"
+    report.error(codes.UNKNOWN_WORD, f"<sdf> {found}; read as {words.DEFAULT_VERSION}", root.origin)
+    return words.DEFAULT_VERSION
+
+
+def _take_world(root: Node, report: Report) -> Node | None:
+    """The first <world>; others stay as they are written."""
+    world = root.take_child("world")
+    if root.has("world"):
+        report.warn(codes.REPEATED, "the file has several worlds; the first one is read, the others are kept as written", root.origin)
+    return world
+
+
+def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBuilder) -> str:
+    """Everything in the world, or in the model of the file. Returns the name of the mechanism."""
+    place = root if world is None else world
+    tops = list(place.take_children("model"))
+    around = Model(place, "", WORLD)
+    named = None if world is None else world.take("name") or "default"
+    if named is not None:
+        builder.note(ROOT, notations.WORLD, named)
+    is_alone = len(tops) == 1
+    models = collect_models(tops, builder, is_alone=is_alone)
+    scenes = [*models, *([around] if world is not None else [])]
+    for model in scenes:
+        register_content(model, builder)
+    if is_alone and world is not None:
+        name_from_outside(models[0], builder)
+    for model in scenes:
+        place_content(model, builder)
+    for model in reversed(models):
+        place_model(model, builder)
+    break_cycles(builder)
+    attach_models(models, builder)
+    _read_content(scenes, builder)
+    mount_frames(scenes, builder)
+    close_cycles(scenes, builder)
+    hold_bases(models, builder, in_world=world is not None)
+    for node in place.take_children("light"):
+        read_light(node, WORLD, around, builder)
+    if not models:
+        builder.report.error(codes.MISSING_PART, "the file has no model; the result has no bodies", root.origin)
+    own = tops[0].take("name") if is_alone else named
+    return own or PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
+
+
+def _read_content(models: list[Model], builder: SdfBuilder) -> None:
+    """Links of all models first: a joint may lead into another model."""
+    for model in models:
+        for node in model.node.children:
+            if node.tag == "link" and node.owner is not None:
+                read_link(node, model, builder)
+    for model in models:
+        for node in model.node.children:
+            if node.tag == "joint" and node.owner is not None:
+                read_joint(node, model, builder)
+
+
+def _around(document: Document) -> list[Extra]:
+    """The comments and instructions before and after the root element."""
+    before = [extra_of(node, PRECEDING, place, words.FORMAT) for place, node in enumerate(document.preceding)]
+    return before + [extra_of(node, FOLLOWING, place, words.FORMAT) for place, node in enumerate(document.following)]

@@ -1,0 +1,179 @@
+"""The builder of an SDF file's mechanism, and the readers of what several elements contain: values, poses and references."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct, field
+
+from hymeko_x import codes
+from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf import notations
+from hymeko_x.formats.sdf.notations import WrittenPose
+from hymeko_x.formats.sdf.values import BadText, is_same_text, is_unit, read_pose
+from hymeko_x.frontends.sdf.frames import Frames
+from hymeko_x.ir.builder import Builder
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Provenance
+from hymeko_x.ir.values import IDENTITY, Pose
+from hymeko_x.xml.unread import Unread
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.diagnostics import Code, Report
+    from hymeko_x.formats.sdf.values import Codec, Field
+    from hymeko_x.ir.mechanism import Extra, Mechanism
+    from hymeko_x.ir.values import Vec3
+    from hymeko_x.xml.tree import Node
+
+
+class TextsUnread(Unread):
+    """What is unread in a tree whose elements come from several files: their texts are looked up by the file of the element."""
+
+    def __init__(self, root: Node, texts: Mapping[str, bytes], report: Report) -> None:
+        super().__init__(root, texts[root.file], words.FORMAT, report)
+        self._texts = texts
+
+    def verbatim(self, node: Node) -> str:
+        """The element as its own file has it."""
+        self._data = self._texts[node.file]
+        return super().verbatim(node)
+
+
+class Model(Struct, frozen=True):
+    """A <model>: its node, the scope of the names in it, the frame that it is, and the model around it (None = at top level)."""
+
+    node: Node
+    scope: str
+    frame: Id
+    around: Model | None = None
+    is_static: bool = False
+
+
+class SdfBuilder(Builder):
+    """The mechanism of an SDF file so far. ``named`` has the element that a name means, by its name outside of all models."""
+
+    report: Report
+    unread: Unread
+    versions: Mapping[str, int]
+    frames: Frames = field(default_factory=Frames)
+    named: dict[str, Id] = field(default_factory=dict)
+    meshes: dict[tuple[str, Vec3], Id] = field(default_factory=dict)
+    joints: dict[str, Id] = field(default_factory=dict)
+    attached: dict[Id, Id] = field(default_factory=dict)
+    written: dict[Id, dict[str, str]] = field(default_factory=dict)
+
+    # ---- diagnostics -----------------------------------------------------------------------------------------------------
+
+    def warn(self, code: Code, node: Node, message: str) -> None:
+        """Report something odd about a node, and how it is read."""
+        self.report.warn(code, message, node.origin, element=node.element)
+
+    def error(self, code: Code, node: Node, message: str) -> None:
+        """Report something wrong about a node, and what is used instead."""
+        self.report.error(code, message, node.origin, element=node.element)
+
+    def version_of(self, node: Node) -> int:
+        """The minor version of SDF in which the file of a node is written."""
+        return self.versions[node.file]
+
+    # ---- names -----------------------------------------------------------------------------------------------------------
+
+    def own(self, node: Node, kind: str, scope: str) -> Id:
+        """The id of a named child of a model, from which its unread content belongs to it; a missing or repeated name is reported."""
+        name = node.take("name")
+        if not name:
+            self.error(codes.BAD_NAME, node, f"a <{node.tag}> has no name; it is called '{node.tag}'")
+            name = node.tag
+        elif words.SCOPE in name or (name.startswith("__") and name.endswith("__")) or (name == words.WORLD_FRAME and kind != "shape"):
+            self.error(codes.BAD_NAME, node, f"the name '{name}' of a <{node.tag}> is reserved in SDF; it is kept")
+        wanted = words.scoped(scope, name)
+        node.owner = key = self.fresh(kind, wanted, node.origin)
+        if key.name != wanted:
+            message = f"there are two <{node.tag}> called '{name}' ({self.origins[Id(kind, wanted)]}); this one is '{key.name}'"
+            self.error(codes.DUPLICATE_NAME, node, message)
+        return key
+
+    def find(self, scope: str, name: str) -> Id | None:
+        """The element or frame that a name in a model means; None when there is none."""
+        if name == words.WORLD_FRAME:
+            return WORLD
+        return self.named.get(words.scoped(scope, name))
+
+    # ---- values ----------------------------------------------------------------------------------------------------------
+
+    def value(self, node: Node, field: Field, key: Id, prefix: str = "") -> Any:
+        """The value of a field below a node; where it would not be written like this again, its text is noted under ``prefix`` and path."""
+        *steps, last = field.path.split("/")
+        for step in steps:
+            found = next((child for child in node.children if child.tag == step), None)
+            if found is None:
+                return field.default
+            found.taken = True
+            node = found
+        return self.child_value(node, last, field.codec, field.default, key, f"{prefix}{field.path}")
+
+    def child_value(self, node: Node, tag: str, codec: Codec, default: Any, key: Id, path: str) -> Any:
+        """The value of a child element; see :meth:`value`. A text that cannot be read is reported and stays an extra."""
+        child = node.take_child(tag)
+        if child is None:
+            return default
+        text = " ".join((child.text or "").split())
+        try:
+            value = codec.read(text)
+        except BadText as error:
+            node.leave(child)
+            message = f"{node.subject}: <{tag}> is '{text[:60]}', expected {error}; the default is used, and the text is kept as written"
+            self.error(codes.BAD_NUMBER, child, message)
+            return default
+        if "; " in text:
+            node.leave(child)
+            return value
+        child.text = None
+        if value == default or not is_same_text(codec.write(value), text):
+            self.written.setdefault(key, {})[path] = text
+        return value
+
+    # ---- poses -----------------------------------------------------------------------------------------------------------
+
+    def pose(self, node: Node, key: Id) -> tuple[Pose, str | None]:
+        """The pose in a node's <pose>, and the name of the frame that it is relative to (None = the element's default)."""
+        child = node.take_child("pose")
+        if child is None:
+            return IDENTITY, None
+        relative_to = child.take("relative_to" if self.version_of(node) >= 7 else "frame")
+        text = " ".join((child.text or "").split())
+        written = WrittenPose(relative_to or None, child.take("rotation_format"), child.take("degrees"), text)
+        try:
+            pose = read_pose(written)
+        except BadText as error:
+            message = f"{node.subject}: <pose> is '{text[:60]}', expected {error}; the identity is used"
+            self.error(codes.BAD_NUMBER, child, message)
+            return IDENTITY, written.relative_to
+        child.text = None
+        if written.rotation_format == "quat_xyzw" and pose.written is not None and not is_unit(pose.written.numbers):
+            message = f"{node.subject}: the quaternion of <pose> does not have unit length; it is normalised, which libsdformat does not do"
+            self.warn(codes.NOT_UNIT, child, message)
+        self.note(key, notations.POSE, written)
+        return pose, written.relative_to
+
+    def base_of(self, node: Node, scope: str, name: str | None, default: Id) -> Id:
+        """The frame that a pose is relative to; an unknown one is reported."""
+        if name is None:
+            return default
+        found = self.find(scope, name)
+        if found is None:
+            message = f"{node.subject}: <pose> is relative to '{name}', which is not defined; its usual frame is used"
+            self.error(codes.UNDEFINED_REFERENCE, node, message)
+        return found or default
+
+    # ---- finishing -------------------------------------------------------------------------------------------------------
+
+    def finish(self, name: str, around: list[Extra], file: str, version: str) -> Mechanism:
+        """The finished mechanism; ``around`` are the extras from before and after the root element, and ``file`` is its name."""
+        for key, texts in self.written.items():
+            self.note(key, notations.WRITTEN, texts)
+        for key, extras in self.unread.finish().items():
+            self.add_extras(key, *extras)
+        self.add_extras(ROOT, *around)
+        return self.build(name, Provenance(words.FORMAT, version, file))

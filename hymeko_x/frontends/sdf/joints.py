@@ -1,0 +1,215 @@
+"""<joint>: its type, two ends, axes with limits and dynamics, and <mimic> as a coupling."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x import codes
+from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf import notations
+from hymeko_x.formats.sdf.values import DYNAMICS, NUMBER, OLD_PITCH, PITCH, POSITION_LIMITS, STRENGTH_LIMITS, VECTOR, BadText
+from hymeko_x.frontends.sdf.models import body_of
+from hymeko_x.frontends.sdf.sensors import read_joint_sensor
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import WORLD, joint_edge
+from hymeko_x.ir.parts import Coupling, Dof, DofKind, Joint, Limits, World
+from hymeko_x.ir.values import Written, Z, rotate, unit
+
+if TYPE_CHECKING:
+    from hymeko_x.formats.sdf.values import Field
+    from hymeko_x.frontends.sdf.builder import Model, SdfBuilder
+    from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.ir.values import Vec3
+    from hymeko_x.xml.tree import Node
+
+_OLD_DEFAULT = 7
+"""The version from which on an axis is given in the joint's frame and names another one in ``expressed_in``."""
+
+
+def read_joint(node: Node, model: Model, builder: SdfBuilder) -> None:
+    """Add a joint; one without two ends, or of a type that is no joint between two bodies, stays as it was written."""
+    key = node.owner
+    assert key is not None
+    kind = node.attributes.get("type", "")
+    ends = _read_ends(node, model, builder)
+    if kind not in words.JOINT_TYPES or ends is None:
+        if kind not in words.JOINT_TYPES:
+            known = ", ".join(words.JOINT_TYPES)
+            builder.warn(codes.UNKNOWN_WORD, node, f"{node.subject} has type '{kind}', known are {known}; it is kept as written")
+        _keep_as_written(node, key, model, builder)
+        return
+    parent, child = ends
+    node.take("type")
+    dofs = _read_dofs(node, kind, key, model, builder)
+    frames = builder.frames
+    if parent == WORLD:
+        builder.vertices.setdefault(WORLD, World())
+    builder.edges[key] = joint_edge(Joint(dofs), parent, child, frames.relative(key, parent), frames.relative(key, child))
+    if kind != words.default_type(Joint(dofs)):
+        builder.note(key, notations.TYPE, kind)
+    _read_couplings(node, key, model, builder)
+    for sensor in node.take_children("sensor"):
+        read_joint_sensor(sensor, key, model, builder)
+
+
+def _keep_as_written(node: Node, key: Id, model: Model, builder: SdfBuilder) -> None:
+    """Give up the id, so that the whole element is unread."""
+    node.owner = None
+    node.attributes = {"name": words.split_scope(key.name)[1], **node.attributes}
+    model.node.leave(node)
+    for member in node.walk():
+        member.taken = False
+    builder.layout = [other for other in builder.layout if other != key]
+    builder.notations.pop(key, None)
+    builder.written.pop(key, None)
+    builder.joints = {name: other for name, other in builder.joints.items() if other != key}
+
+
+# ---- ends ------------------------------------------------------------------------------------------------------------------------
+
+
+def _read_ends(node: Node, model: Model, builder: SdfBuilder) -> tuple[Id, Id] | None:
+    """The bodies that the joint joins; frames stand for the bodies that they are on."""
+    names, bodies = [], []
+    for tag in ("parent", "child"):
+        child = next((child for child in node.children if child.tag == tag), None)
+        name = "" if child is None else (child.text or "").strip()
+        found = builder.find(model.scope, name) if name else None
+        body = None if found is None else body_of(found, builder)
+        if body is None or (tag == "child" and body == WORLD):
+            problem = f"names '{name}' as its {tag}, which is no link" if name else f"has no <{tag}>"
+            builder.error(codes.UNDEFINED_REFERENCE, node, f"{node.subject} {problem}; it is kept as written, outside of the tree")
+            return None
+        names.append(name)
+        bodies.append(body)
+        if body != found:
+            names[-1] += "*"
+    parent, child_body = bodies
+    if parent == child_body:
+        builder.error(codes.CYCLE, node, f"{node.subject} joins link '{parent.name}' to itself; it is kept as written, outside of the tree")
+        return None
+    for tag in ("parent", "child"):
+        end = node.take_child(tag)
+        assert end is not None
+        end.text = None
+    if any(name.endswith("*") for name in names):
+        assert node.owner is not None
+        builder.note(node.owner, notations.ENDS, " ".join(name if name.endswith("*") else "-" for name in names))
+    return parent, child_body
+
+
+# ---- dofs ------------------------------------------------------------------------------------------------------------------------
+
+
+def _read_dofs(node: Node, kind: str, key: Id, model: Model, builder: SdfBuilder) -> tuple[Dof, ...]:
+    found = words.JOINT_TYPES[kind]
+    return tuple([_read_dof(node, dof, tag, kind, key, model, builder) for dof, tag in zip(found.dofs, words.AXES, strict=False)])
+
+
+def _read_dof(node: Node, kind: DofKind, tag: str, word: str, key: Id, model: Model, builder: SdfBuilder) -> Dof:
+    axis = node.take_child(tag)
+    if kind is DofKind.BALL:
+        damping = 0.0 if axis is None else builder.value(axis, DYNAMICS[0], key, f"{tag}/")
+        return Dof(kind, damping=damping)
+    pitch = _read_pitch(node, key, builder) if kind is DofKind.SCREW else 0.0
+    if axis is None:
+        builder.error(codes.MISSING_PART, node, f"{node.subject} has no <{tag}>; 0 0 1 is used")
+        return Dof(kind, Z, pitch=pitch)
+
+    def values(fields: tuple[Field, ...]) -> dict[str, Any]:
+        return {field.name: builder.value(axis, field, key, f"{tag}/") for field in fields}
+
+    limits = Limits(**(values(POSITION_LIMITS) if words.JOINT_TYPES[word].bounded else {}), **values(STRENGTH_LIMITS))
+    direction, written = _read_axis(axis, tag, key, model, builder)
+    return Dof(kind, direction, limits=limits, **values(DYNAMICS), pitch=pitch, written=written)
+
+
+def _read_pitch(node: Node, key: Id, builder: SdfBuilder) -> float:
+    """The pitch of a screw in m per rad: ``screw_thread_pitch``, or ``thread_pitch`` of old files, which is the inverse, left-handed."""
+    new = builder.child_value(node, "screw_thread_pitch", PITCH, None, key, "screw_thread_pitch")
+    if new is not None:
+        return float(new)
+    old = builder.child_value(node, "thread_pitch", OLD_PITCH, None, key, "thread_pitch")
+    if old is not None:
+        builder.written.setdefault(key, {}).setdefault("thread_pitch", OLD_PITCH.write(old))
+        return float(old)
+    return float(OLD_PITCH.read("1"))  # libsdformat's default
+
+
+def _read_axis(axis: Node, tag: str, key: Id, model: Model, builder: SdfBuilder) -> tuple[Vec3, Written | None]:
+    """The unit axis in the joint's frame, and the numbers as written where they have another length."""
+    xyz = axis.take_child("xyz")
+    if xyz is None:
+        builder.error(codes.MISSING_PART, axis, f"{axis.subject}: <{tag}> has no <xyz>; 0 0 1 is used")
+        return Z, None
+    text = " ".join((xyz.text or "").split())
+    try:
+        numbers = VECTOR.read(text)
+        direction = unit(numbers)
+    except (BadText, ZeroDivisionError):
+        axis.leave(xyz)
+        message = f"{axis.subject}: <xyz> is '{text[:60]}', expected a direction of 3 numbers; 0 0 1 is used, and the text is kept"
+        builder.error(codes.ZERO_AXIS, axis, message)
+        return Z, None
+    xyz.text = None
+    frame = _frame_of_axis(xyz, axis, tag, key, model, builder)
+    if frame is not None:
+        builder.written.setdefault(key, {})[f"{tag}/xyz"] = text
+        return unit(rotate(builder.frames.relative(frame, key).quat, direction)), None
+    return direction, None if direction == numbers else Written("axis", numbers)
+
+
+def _frame_of_axis(xyz: Node, axis: Node, tag: str, key: Id, model: Model, builder: SdfBuilder) -> Id | None:
+    """The frame in which an axis is given, if not that of the joint: named, or the model's in old files."""
+    name = xyz.take("expressed_in")
+    if name:
+        found = builder.find(model.scope, name)
+        if found is None:
+            message = f"{axis.subject}: the axis is expressed in '{name}', which is not defined; the joint's frame is used"
+            builder.error(codes.UNDEFINED_REFERENCE, axis, message)
+            return None
+        builder.written.setdefault(key, {})[f"{tag}/xyz/@expressed_in"] = name
+        return found
+    if builder.version_of(axis) >= _OLD_DEFAULT:
+        return None
+    flag = axis.take_child("use_parent_model_frame")
+    text = None if flag is None else flag.take_text()
+    if text is not None:
+        builder.written.setdefault(key, {})[f"{tag}/use_parent_model_frame"] = text
+    uses_model = builder.version_of(axis) < 5 if text is None else text.lower() in ("true", "1")
+    return model.frame if uses_model else None
+
+
+# ---- mimic -----------------------------------------------------------------------------------------------------------------------
+
+
+def _read_couplings(node: Node, key: Id, model: Model, builder: SdfBuilder) -> None:
+    for number, tag in enumerate(words.AXES):
+        axis = next((child for child in node.children if child.tag == tag), None)
+        mimic = None if axis is None else axis.take_child("mimic")
+        if axis is None or mimic is None:
+            continue
+        leader = builder.joints.get(words.scoped(model.scope, mimic.attributes.get("joint", "")))
+        if leader is None:
+            message = f"{node.subject} mimics joint '{mimic.attributes.get('joint', '')}', which is not defined; this is kept as written"
+            builder.error(codes.UNDEFINED_REFERENCE, mimic, message)
+            axis.leave(mimic)
+            continue
+        _read_mimic(mimic, key, leader, number, builder)
+
+
+def _read_mimic(mimic: Node, follower: Id, leader: Id, number: int, builder: SdfBuilder) -> None:
+    """follower = multiplier * (leader - reference) + offset."""
+    mimic.take("joint")
+    role = {"axis": "", "axis2": "1"}.get(mimic.take("axis") or "axis", "")
+    key = builder.names.take("coupling", follower.name)
+    values = {
+        tag: builder.child_value(mimic, tag, NUMBER, default, key, tag)
+        for tag, default in (("multiplier", 1.0), ("offset", 0.0), ("reference", 0.0))
+    }
+    constant = values["offset"] - values["multiplier"] * values["reference"]
+    if values["reference"]:
+        builder.written.setdefault(key, {}).update({tag: NUMBER.write(value) for tag, value in values.items()})
+    leads: RobotArc = Arc(leader, -1, (constant + 0.0, values["multiplier"]), role)
+    builder.edges[key] = Edge(Coupling(), (Arc(follower, 1, (1.0,), "1" if number else ""), leads))
+    builder.origins[key] = mimic.origin

@@ -1,0 +1,42 @@
+"""<material>: colours and PBR textures of a visual."""
+
+from __future__ import annotations
+
+import posixpath
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.sdf import materials as words
+from hymeko_x.formats.sdf.values import COLOUR, NUMBER
+from hymeko_x.ir.mechanism import layer_edge
+from hymeko_x.ir.parts import Material, Texture
+
+if TYPE_CHECKING:
+    from hymeko_x.frontends.sdf.builder import SdfBuilder
+    from hymeko_x.ir.mechanism import Id
+    from hymeko_x.ir.parts import Rgba
+    from hymeko_x.xml.tree import Node
+
+
+def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | None, Id | None]:
+    """The colour of a visual, or, where it has textures, the material with them. Scripts and further colours stay as written."""
+    node = visual.take_child("material")
+    if node is None:
+        return None, None
+    rgba = builder.child_value(node, "diffuse", COLOUR, None, key, "material/diffuse")
+    pbr = next((child for child in node.children if child.tag == "pbr"), None)
+    metal = None if pbr is None else next((child for child in pbr.children if child.tag == "metal"), None)
+    if pbr is None or metal is None:
+        return rgba, None
+    pbr.taken = metal.taken = True
+    values = {name: builder.child_value(metal, tag, NUMBER, None, key, f"material/pbr/metal/{tag}") for tag, name in words.NUMBERS.items()}
+    material = builder.names.take("material", key.name)
+    builder.vertices[material] = Material(None, rgba, **values)
+    builder.origins[material] = node.origin
+    for tag, use in words.MAPS.items():
+        child = metal.take_child(tag)
+        uri = "" if child is None else child.take_text()
+        if uri:
+            texture = builder.names.take("texture", posixpath.splitext(posixpath.basename(uri))[0] or "texture")
+            builder.vertices[texture] = Texture(uri)
+            builder.edges[builder.names.take("layer", texture.name)] = layer_edge(texture, material, use)
+    return None, material

@@ -1,0 +1,283 @@
+"""<model>: the tree of models, the names and places of everything in them, and which bases stand, float or are open."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from hymeko_x import codes
+from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf import notations
+from hymeko_x.formats.sdf.values import TRUTH
+from hymeko_x.frontends.sdf.builder import Model
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge, mount_edge
+from hymeko_x.ir.names import free_name
+from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.parts import Body, Dof, DofKind, Frame, Joint, Loop, World
+from hymeko_x.ir.values import IDENTITY, compose, inverse
+
+if TYPE_CHECKING:
+    from hymeko_x.frontends.sdf.builder import SdfBuilder
+    from hymeko_x.ir.values import Pose
+    from hymeko_x.xml.tree import Node
+
+
+# ---- names and places ----------------------------------------------------------------------------------------------------------
+
+
+def collect_models(tops: list[Node], builder: SdfBuilder, *, is_alone: bool) -> list[Model]:
+    """All models, those around others first. One that is alone gives its name to the mechanism, and no scope to its content."""
+    found: list[Model] = []
+    stack: list[tuple[Node, Model | None]] = [(node, None) for node in reversed(tops)]
+    while stack:
+        node, around = stack.pop()
+        model = _alone(node, builder) if is_alone and around is None else _in_scope(node, around, builder)
+        found.append(model)
+        nested = [child for child in node.children if child.tag == "model"]
+        for child in nested:
+            child.taken = True
+        stack += [(child, model) for child in reversed(nested)]
+    return found
+
+
+def _alone(node: Node, builder: SdfBuilder) -> Model:
+    frame = Id("frame", words.MODEL_FRAME)
+    builder.named |= {words.MODEL_FRAME: frame, node.attributes.get("name", ""): frame}
+    return Model(node, "", frame, is_static=_is_static(node, None, ROOT, builder))
+
+
+def _in_scope(node: Node, around: Model | None, builder: SdfBuilder) -> Model:
+    outer = "" if around is None else around.scope
+    name = node.take("name") or "model"
+    free = free_name(outer + name, lambda name: name + words.SCOPE + words.MODEL_FRAME in builder.named)
+    if free != outer + name:
+        builder.error(codes.DUPLICATE_NAME, node, f"there are two models called '{name}'; this one is '{free}'")
+    scope = free + words.SCOPE
+    node.owner = frame = builder.fresh("frame", scope + words.MODEL_FRAME, node.origin)
+    builder.vertices[frame] = Frame()
+    builder.named.setdefault(outer + name, frame)
+    builder.named[scope + words.MODEL_FRAME] = frame
+    return Model(node, scope, frame, around, _is_static(node, around, frame, builder))
+
+
+def _is_static(node: Node, around: Model | None, key: Id, builder: SdfBuilder) -> bool:
+    own: bool = builder.child_value(node, "static", TRUTH, False, key, "static")
+    return own or (around is not None and around.is_static)
+
+
+def register_content(model: Model, builder: SdfBuilder) -> None:
+    """Give ids to the links, frames and joints of a model; references may lead to any of them."""
+    kinds = (("link", "body"), ("frame", "frame"), ("joint", "joint"))
+    for tag, kind in kinds:
+        for node in model.node.take_children(tag):
+            name = words.scoped(model.scope, node.attributes.get("name", ""))
+            key = builder.own(node, kind, model.scope)
+            builder.named.setdefault(name, key)
+            if kind == "joint":
+                builder.joints.setdefault(name, key)
+            elif kind == "body":
+                builder.vertices[key] = Body()
+            else:
+                builder.vertices[key] = Frame()
+    builder.layout += [child.owner for child in model.node.children if child.taken and child.owner is not None]
+
+
+def name_from_outside(model: Model, builder: SdfBuilder) -> None:
+    """The world's own frames and joints name the content of its only model with that model's name before it."""
+    name = model.node.attributes.get("name", "")
+    builder.named |= {f"{name}{words.SCOPE}{inner}": key for inner, key in list(builder.named.items())}
+
+
+def place_content(model: Model, builder: SdfBuilder) -> None:
+    """Put the links and frames of a model into the frame graph; joints are given in their children."""
+    for node in model.node.children:
+        if node.owner is None or node.tag not in ("link", "frame", "joint"):
+            continue
+        default = model.frame
+        if node.tag == "frame":
+            default = _attachment(node, model, builder)
+        elif node.tag == "joint":
+            default = _child_end(node, model, builder)
+        pose, name = builder.pose(node, node.owner)
+        builder.frames.put(node.owner, builder.base_of(node, model.scope, name, default), pose)
+
+
+def _attachment(node: Node, model: Model, builder: SdfBuilder) -> Id:
+    """What a frame is attached to; it is given in that."""
+    assert node.owner is not None
+    name = node.take("attached_to")
+    if not name:
+        builder.attached[node.owner] = model.frame
+        return model.frame
+    builder.note(node.owner, notations.ATTACHED, name)
+    found = builder.find(model.scope, name)
+    if found is None:
+        message = f"{node.subject} is attached to '{name}', which is not defined; the model is used"
+        builder.error(codes.UNDEFINED_REFERENCE, node, message)
+    builder.attached[node.owner] = found or model.frame
+    return found or model.frame
+
+
+def _child_end(node: Node, model: Model, builder: SdfBuilder) -> Id:
+    child = next((child for child in node.children if child.tag == "child"), None)
+    found = None if child is None else builder.find(model.scope, (child.text or "").strip())
+    return found or model.frame
+
+
+def place_model(model: Model, builder: SdfBuilder) -> None:
+    """Put the frame of a model into the frame graph; what it contains must be there already.
+
+    The model's pose is that of its placement frame where it names one.
+    """
+    around = WORLD if model.around is None else model.around.frame
+    scope = "" if model.around is None else model.around.scope
+    key = model.frame if model.frame in builder.vertices else ROOT
+    pose, name = builder.pose(model.node, key)
+    base = builder.base_of(model.node, scope, name, around)
+    placed = model.node.attributes.get("placement_frame")
+    if placed:
+        pose = compose(pose, _back_from_placement(placed, model, builder))
+    builder.frames.put(model.frame, base, pose)
+
+
+def _back_from_placement(name: str, model: Model, builder: SdfBuilder) -> Pose:
+    found = builder.find(model.scope, name)
+    inside = None if found is None else builder.frames.inside(found, model.frame)
+    if inside is None:
+        message = f"{model.node.subject}: the placement frame '{name}' is not defined in the model; the model's own frame is used"
+        builder.error(codes.UNDEFINED_REFERENCE, model.node, message)
+        return IDENTITY
+    return inverse(inside)
+
+
+def break_cycles(builder: SdfBuilder) -> None:
+    """Frames that are given in each other have no place: one of them is put into the world, which is reported."""
+    for frame in builder.frames.cycles():
+        message = f"{frame} is given in a frame that is given in {frame}; it is placed at the origin"
+        builder.report.error(codes.CYCLE, message, builder.origins.get(frame), element=str(frame))
+        builder.frames.put(frame, WORLD, IDENTITY)
+
+
+# ---- frames on bodies ------------------------------------------------------------------------------------------------------------
+
+
+def body_of(frame: Id, builder: SdfBuilder) -> Id | None:
+    """The body (or the world) that a link, frame or model moves with; None where frames are attached to each other in a circle."""
+    seen = set()
+    while frame.kind not in ("body", "world"):
+        if frame in seen or frame not in builder.attached:
+            return None
+        seen.add(frame)
+        frame = builder.attached[frame]
+    return frame
+
+
+def attach_models(models: list[Model], builder: SdfBuilder) -> None:
+    """A model moves with its canonical link: the named one, else its first link, else that of its first nested model."""
+    for model in models:
+        name = model.node.attributes.get("canonical_link")
+        found = builder.find(model.scope, name) if name else None
+        if name and found is None:
+            message = f"{model.node.subject}: the canonical link '{name}' is not defined; the first link is used"
+            builder.error(codes.UNDEFINED_REFERENCE, model.node, message)
+        if found is None:
+            found = next(
+                (child.owner for tag in ("link", "model") for child in model.node.children if child.tag == tag and child.owner), None
+            )
+        builder.attached[model.frame] = WORLD if found is None else found
+    for model in models:
+        for node in model.node.children:
+            if node.tag == "joint" and node.owner is not None:  # a frame on a joint moves with the joint's child
+                builder.attached[node.owner] = _child_end(node, model, builder)
+
+
+def mount_frames(models: list[Model], builder: SdfBuilder) -> None:
+    """Every frame, and every model that has one of its own, becomes a frame on its body."""
+    keys = [key for model in models for key in (model.frame, *(node.owner for node in model.node.children if node.tag == "frame"))]
+    for key in keys:
+        if key is not None and key in builder.vertices:
+            mount_frame(key, builder)
+
+
+def mount_frame(key: Id, builder: SdfBuilder) -> None:
+    """Put a frame on the body that it is attached to."""
+    body = body_of(key, builder)
+    if body is None:
+        message = f"{key} is attached to no link; it is attached to the world"
+        builder.report.error(codes.CYCLE, message, builder.origins.get(key), element=str(key))
+        body = WORLD
+    if body == WORLD:
+        builder.vertices.setdefault(WORLD, World())
+    builder.edges[builder.names.take("mount", key.name)] = mount_edge(body, key, builder.frames.relative(key, body))
+
+
+# ---- bases -----------------------------------------------------------------------------------------------------------------------
+
+
+def hold_bases(models: list[Model], builder: SdfBuilder, *, in_world: bool) -> None:
+    """Bodies of static models stand; other bodies without a parent joint float, or are open where nothing says where they are."""
+    children = {edge.arcs[1].target for edge in builder.edges.values() if isinstance(edge.data, Joint)}
+    links = [(model, node.owner) for model in models for node in model.node.children if node.tag == "link" and node.owner]
+    roots = [(model, body) for model, body in links if body not in children]
+    for model, body in roots:
+        pose = builder.frames.in_world(body)
+        if not model.is_static and len(roots) == 1 and pose == IDENTITY and not in_world:
+            return
+        _hold(body, pose, Joint() if model.is_static else Joint((Dof(DofKind.FREE),)), builder)
+
+
+def _hold(body: Id, pose: Pose, joint: Joint, builder: SdfBuilder) -> None:
+    word = "free" if joint.dofs else "static"
+    key = builder.names.take("joint", f"{body.name}_{word}")
+    builder.vertices.setdefault(WORLD, World())
+    builder.edges[key] = joint_edge(joint, WORLD, body, replace(pose, written=None))
+    builder.note(key, notations.IMPLIED, True)
+    builder.note(key, UNNAMED, True)
+    builder.origins[key] = builder.origins[body]
+
+
+def close_cycles(models: list[Model], builder: SdfBuilder) -> None:
+    """Joints that lead to a link which another joint holds close a loop.
+
+    So does the joint above the first link of a cycle of which no link is a root, so that the tree starts there.
+    """
+    above: dict[Id, tuple[Id, Id]] = {}
+    closing: list[Id] = []
+    for key, edge in builder.edges.items():
+        if not isinstance(edge.data, Joint):
+            continue
+        if edge.arcs[1].target in above:
+            closing.append(key)
+        above.setdefault(edge.arcs[1].target, (key, edge.arcs[0].target))
+    done: set[Id] = {WORLD}
+    for start in above:
+        path: dict[Id, None] = {}
+        body = start
+        while body not in done and body in above and body not in path:
+            path[body] = None
+            body = above[body][1]
+        if body in path:
+            members = list(path)
+            cycle = set(members[members.index(body) :])
+            closing.append(above[next(key for key in builder.vertices if key in cycle)][0])
+        done.update(path)
+    owners = {node.owner: node for model in models for node in model.node.children if node.tag == "joint"} if closing else {}
+    for joint in closing:
+        _make_loop(joint, owners[joint], builder)
+
+
+def _make_loop(joint: Id, node: Node, builder: SdfBuilder) -> None:
+    edge = builder.edges.pop(joint)
+    assert isinstance(edge.data, Joint)
+    dofs = edge.data.dofs
+    kind = "joint" if dofs else "weld"
+    if len(dofs) == 1 and dofs[0].kind is DofKind.BALL:
+        kind, dofs = "connect", ()
+    node.owner = key = builder.fresh("loop", joint.name, node.origin)
+    arcs = tuple([replace(arc, sign=0) for arc in edge.arcs])
+    builder.edges[key] = replace(edge, data=Loop(kind, dofs), arcs=arcs)
+    for table in (builder.notations, builder.written):
+        if joint in table:
+            table[key] = table.pop(joint)
+    builder.layout = [key if other == joint else other for other in builder.layout]

@@ -1,0 +1,130 @@
+"""<visual> and <collision>: geometry, appearance and friction of a shape."""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf.values import NUMBER, PAIR, VECTOR, Field
+from hymeko_x.frontends.sdf.materials import read_material
+from hymeko_x.ir.mechanism import file_stem, shape_edge
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Mesh, MeshShape, NoShape, Plane, Role, Shape, Sphere
+from hymeko_x.ir.values import Pose, Z, compose, quat_from_z, unit
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
+
+    from hymeko_x.frontends.sdf.builder import Model, SdfBuilder
+    from hymeko_x.ir.mechanism import Id
+    from hymeko_x.ir.parts import Geometry
+    from hymeko_x.xml.tree import Node
+
+_FRICTION = Field("surface/friction/ode/mu", "friction", NUMBER)
+
+
+def read_shape(node: Node, number: int, role: Role, body: Id, model: Model, builder: SdfBuilder, density: float | None) -> None:
+    """Add a shape, the n-th of its role. ``density`` in kg/m^3 is that of collisions from which the body's inertial comes, else None."""
+    name = node.take("name")
+    node.owner = key = builder.fresh("shape", f"{body.name}/{node.tag}", node.origin)
+    pose, base = builder.pose(node, key)
+    frame = builder.base_of(node, model.scope, base, body)
+    if frame != body:
+        pose = compose(builder.frames.relative(frame, body), pose)
+    geometry, mesh, turn = _read_geometry(node, key, builder)
+    rgba, material = read_material(node, key, builder) if role is Role.VISUAL else (None, None)
+    mu = builder.value(node, _FRICTION, key) if role is Role.COLLISION else None
+    weight = None
+    if density is not None and role is Role.COLLISION:
+        weight = builder.value(node, Field("density", "density", NUMBER, density), key)
+    shape = Shape(geometry, role, None if name == words.shape_name(node.tag, number) else name, rgba, density=weight)
+    if mu is not None:
+        shape = Shape(geometry, role, shape.name, rgba, density=weight, friction=(mu,))
+    builder.edges[key] = shape_edge(shape, body, pose if turn is None else compose(pose, turn), mesh, material)
+
+
+# ---- geometry ----------------------------------------------------------------------------------------------------------------
+
+
+def _read_geometry(shape: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id | None, Pose | None]:
+    """The geometry of a shape, its mesh, and how it is turned in the shape's frame."""
+    node = next((child for child in shape.children if child.tag == "geometry"), None)
+    if node is None:
+        builder.warn(codes.MISSING_PART, shape, f"{shape.subject}: <{shape.tag}> has no <geometry>; the shape has no geometry")
+        return NoShape(), None, None
+    node.taken = True
+    found = next((child for child in node.children if child.tag in _GEOMETRIES), None)
+    if found is None:
+        tags = ", ".join(f"<{child.tag}>" for child in node.unread_children())
+        if not any(child.tag in words.OTHER_GEOMETRIES for child in node.children):
+            message = f"{shape.subject}: <geometry> contains {tags or 'nothing'}, expected one of {', '.join(_GEOMETRIES)}"
+            builder.warn(codes.MISSING_PART, shape, f"{message}; the shape has no geometry")
+        elif not node.has("empty"):
+            message = f"{shape.subject}: {tags} is kept as written, and has no shape in other formats"
+            builder.report.note(codes.UNKNOWN_WORD, message, shape.origin, element=shape.element)
+        return NoShape(), None, None
+    found.taken = True
+    if found.tag == "mesh":
+        return MeshShape(), _read_mesh(found, key, builder), None
+    if found.tag == "plane":
+        return _read_plane(found, key, builder)
+    return _READERS[found.tag](found, key, builder), None, None
+
+
+def _read_plane(node: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id | None, Pose | None]:
+    """A plane with its normal along z; the shape is turned so that it points where the file says."""
+    size = builder.child_value(node, "size", PAIR, (1.0, 1.0), key, "geometry/plane/size")
+    normal = builder.child_value(node, "normal", VECTOR, Z, key, "geometry/plane/normal")
+    try:
+        turn = quat_from_z(unit(normal))
+    except ZeroDivisionError:
+        builder.error(codes.ZERO_AXIS, node, f"{node.subject}: the normal of the plane is zero; 0 0 1 is used")
+        return Plane((size[0] / 2.0, size[1] / 2.0)), None, None
+    if normal != Z:
+        builder.written.setdefault(key, {}).setdefault("geometry/plane/normal", VECTOR.write(normal))
+    return Plane((size[0] / 2.0, size[1] / 2.0)), None, None if normal == Z else Pose(quat=turn)
+
+
+def _read_box(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
+    return Box(builder.child_value(node, "size", VECTOR, (1.0, 1.0, 1.0), key, "geometry/box/size"))
+
+
+def _read_sphere(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
+    return Sphere(builder.child_value(node, "radius", NUMBER, 1.0, key, "geometry/sphere/radius"))
+
+
+def _read_cylinder(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
+    radius = builder.child_value(node, "radius", NUMBER, 1.0, key, "geometry/cylinder/radius")
+    return Cylinder(radius, builder.child_value(node, "length", NUMBER, 1.0, key, "geometry/cylinder/length"))
+
+
+def _read_capsule(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
+    radius = builder.child_value(node, "radius", NUMBER, 0.5, key, "geometry/capsule/radius")
+    return Capsule(radius, builder.child_value(node, "length", NUMBER, 1.0, key, "geometry/capsule/length"))
+
+
+def _read_ellipsoid(node: Node, key: Id, builder: SdfBuilder) -> Geometry:
+    return Ellipsoid(builder.child_value(node, "radii", VECTOR, (1.0, 1.0, 1.0), key, "geometry/ellipsoid/radii"))
+
+
+_READERS: Mapping[str, Callable[[Node, Id, SdfBuilder], Geometry]] = MappingProxyType(
+    {"box": _read_box, "sphere": _read_sphere, "cylinder": _read_cylinder, "capsule": _read_capsule, "ellipsoid": _read_ellipsoid}
+)
+_GEOMETRIES = ("mesh", "plane", *_READERS)
+
+
+def _read_mesh(node: Node, key: Id, builder: SdfBuilder) -> Id:
+    """The mesh vertex of a file and scale; shapes that use the same ones share it. A submesh is kept as written."""
+    child = node.take_child("uri")
+    uri = "" if child is None else child.take_text()
+    if not uri:
+        builder.error(codes.MISSING_ATTRIBUTE, node, f"{node.subject}: <mesh> has no <uri>; it stays empty")
+    scale = builder.child_value(node, "scale", VECTOR, (1.0, 1.0, 1.0), key, "geometry/mesh/scale")
+    known = builder.meshes.get((uri, scale))
+    if known is not None:
+        return known
+    mesh = builder.fresh("mesh", file_stem(uri) or "mesh", node.origin)
+    builder.vertices[mesh] = Mesh(uri or None, scale)
+    builder.meshes[uri, scale] = mesh
+    return mesh
