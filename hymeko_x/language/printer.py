@@ -92,7 +92,8 @@ def print_field(name: str, value: Value | None, type: str = "") -> str:
 
 def print_name(name: str) -> str:
     """A name, in backticks unless it is a plain word (or was quoted by its author)."""
-    if _PLAIN_NAME.fullmatch(name) and name not in _WORDS and not isinstance(name, QuotedName):
+    is_plain = (name.isidentifier() and name.isascii()) or _PLAIN_NAME.fullmatch(name)
+    if is_plain and name not in _WORDS and not isinstance(name, QuotedName):
         return name
     return "`" + name.translate(_ESCAPES).replace("`", "\\`") + "`"
 
@@ -217,7 +218,10 @@ def _filled(items: list[Piece], width: int, following: Piece | None = None) -> l
 def _texts(items: Sequence[Piece], behind: Piece | None = None) -> Iterator[str]:
     """Each item in one line, with the comma that the grammar needs before the next one."""
     for item, following in zip_longest(items, items[1:], fillvalue=behind):
-        yield _text(item) + "," * (following is not None and _needs_comma(item, following))  # type: ignore[arg-type]
+        if isinstance(item, str):
+            yield item
+        else:
+            yield _text(item) + "," * (following is not None and _needs_comma(item, following))  # type: ignore[arg-type]
 
 
 def _joined(items: Sequence[Piece]) -> str:

@@ -15,7 +15,7 @@ import msgspec
 
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import Classes, merge
-from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, Settings, inherited_values, parameter_text, parameter_value
+from hymeko_x.formats.mjcf.codec import POSE, BadAttribute, InheritedValues, Settings, parameter_text, parameter_value
 from hymeko_x.formats.mjcf.notations import frame
 from hymeko_x.formats.mjcf.places import same_value
 from hymeko_x.formats.mjcf.schema import attributes_of
@@ -39,8 +39,6 @@ Attributes = dict[str, str | None]
 """The attributes of an element in the order of printing; None is not printed."""
 
 _EMPTY: Mapping[str, str] = {}
-_REFUSED = object()
-"""Is no value."""
 _SIGNED_ZERO = re.compile(r"(?<!\S)-0(?!\S)")
 _REFERENCES = frozenset(("mesh", "material", "texture"))
 
@@ -56,7 +54,7 @@ class MjcfSheet:
     classes: Classes
     kept: list[tuple[str, Extra]] = field(default_factory=list)
     rank: Mapping[Id, int] = field(default_factory=dict)
-    known: dict[tuple[tuple[Group, ...], int], dict[str, Any]] = field(default_factory=dict)
+    inherited: InheritedValues = field(default_factory=InheritedValues)
 
     # ---- names -----------------------------------------------------------------------------------------------------------
 
@@ -112,11 +110,12 @@ class MjcfSheet:
 
     def kept_attributes(self, key: Id, path: str = "") -> dict[str, str]:
         """The attributes that the IR cannot represent, of the element's node at this path."""
+        extras = self.extras(key)
+        if not extras:
+            return {}
         start = f"{path}/@" if path else "@"
         return {
-            extra.path.removeprefix(start): extra.text
-            for extra in self.extras(key)
-            if extra.format == words.NAME and extra.path.startswith(start)
+            extra.path.removeprefix(start): extra.text for extra in extras if extra.format == words.NAME and extra.path.startswith(start)
         }
 
     def inside(self, key: Id, path: str = "") -> list[str]:
@@ -137,27 +136,22 @@ class MjcfSheet:
     ) -> dict[str, str]:
         """The attributes of these values that the class does not give, as the author wrote them where that still means the same."""
         found: dict[str, str] = {}
-        inherited = self._inherited(groups, base)
         start = f"{prefix}@"
-        written = {name.removeprefix(start): text for name, text in notations.items() if name.startswith(start)}
-        for group in groups:
+        written = {name.removeprefix(start): text for name, text in notations.items() if name.startswith(start)} if notations else {}
+        for group, inherited in self.inherited.of(groups, base, self.settings):
             value = values[group.key]
-            context = {name: text for name in group.needs if (text := found.get(name) or kept.get(name)) is not None} if group.needs else {}
-            below = {**base, **context} if context else base
-            noted = {name: written[name] for name in group.names if name in written} if written else {}
+            depends = not (found.keys().isdisjoint(group.needs) and kept.keys().isdisjoint(group.needs))
+            if not depends and not written and same_value(inherited, value):
+                continue
+            below = {**base, **_chosen(kept, group.needs), **_chosen(found, group.needs)} if depends else base
+            noted = _chosen(written, group.names)
             if noted and self._means(group, merge(below, noted), value):
                 found |= noted
-            elif not (self._means(group, below, value) if context else same_value(inherited.get(group.key, _REFUSED), value)):
-                new = group.write(value, self.settings)
-                found |= {name: self._unsigned(name, text) for name, text in new.items() if base.get(name) != text}
+            elif not (self._means(group, below, value) if depends else same_value(inherited, value)):
+                for name, text in group.write(value, self.settings).items():
+                    if base.get(name) != text:
+                        found[name] = self._unsigned(name, text)
         return found
-
-    def _inherited(self, groups: tuple[Group, ...], base: Mapping[str, str]) -> Mapping[str, Any]:
-        """The values of an element that has no attributes of its own. The classes keep every base alive, and so its identity."""
-        place = groups, id(base) if base else 0
-        if place not in self.known:
-            self.known[place] = inherited_values(groups, base, self.settings)
-        return self.known[place]
 
     def _means(self, group: Group, attributes: Mapping[str, str], value: Any) -> bool:
         try:
@@ -232,6 +226,11 @@ class MjcfSheet:
         for _, extra in items:
             tag = _as_tag(extra)
             self.root.children += [tag] if isinstance(tag, str) else ["", tag]
+
+
+def _chosen(attributes: Mapping[str, str], names: Iterable[str]) -> dict[str, str]:
+    """The attributes of these names that are there."""
+    return {name: attributes[name] for name in names if name in attributes}
 
 
 def open_sheet(mechanism: Mechanism, others: Classes) -> MjcfSheet:

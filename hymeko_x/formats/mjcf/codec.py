@@ -7,7 +7,6 @@ MuJoCo makes of them, so that two texts of the same meaning are distinguished fr
 from __future__ import annotations
 
 import math
-from contextlib import suppress
 from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
@@ -72,13 +71,29 @@ class Group(Struct, frozen=True, eq=False):
     exact: bool = False
 
 
-def inherited_values(groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> dict[str, Any]:
-    """The values of an element to which its class gives ``base`` and that has no attributes itself; without those that MuJoCo refuses."""
-    found: dict[str, Any] = {}
-    for group in groups:
-        with suppress(BadAttribute):
-            found[group.key] = group.read(base, settings)
-    return found
+REFUSED = object()
+"""In place of a value that MuJoCo refuses."""
+
+
+class InheritedValues:
+    """The values of the groups of an element that has no attributes itself, computed once per class. Classes keep each ``base`` alive."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[tuple[Group, ...], int], tuple[tuple[Group, Any], ...]] = {}
+
+    def of(self, groups: tuple[Group, ...], base: Mapping[str, str], settings: Settings) -> tuple[tuple[Group, Any], ...]:
+        """Each group with its value for the attributes ``base`` that the class gives; REFUSED where MuJoCo refuses them."""
+        place = groups, id(base) if base else 0
+        if place not in self._known:
+            self._known[place] = tuple([(group, _value_of(group, base, settings)) for group in groups])
+        return self._known[place]
+
+
+def _value_of(group: Group, base: Mapping[str, str], settings: Settings) -> Any:
+    try:
+        return group.read(base, settings)
+    except BadAttribute:
+        return REFUSED
 
 
 # ---- numbers ---------------------------------------------------------------------------------------------------------------

@@ -60,7 +60,7 @@ from hymeko_x.ir.written import length_of, pose_as_written
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from hymeko_x.ir.parts import Geometry
 
@@ -224,13 +224,16 @@ def same_value(a: Any, b: Any) -> bool:
     """Whether two values are equal, and written in the same way where that is noted."""
     if a != b:
         return False
-    if isinstance(a, Pose):
-        return bool(a.written == b.written)
-    if isinstance(a, Place):
-        return bool(a.pose.written == b.pose.written)
-    if isinstance(a, Inertial):
-        return a.written == b.written and (a.written is None or a.written.frame.written == b.written.frame.written)
-    return True
+    written = _WRITTEN.get(type(a))
+    return written is None or written(a) == written(b)
+
+
+_WRITTEN: dict[type, Callable[[Any], Any]] = {
+    Pose: lambda pose: pose.written,
+    Place: lambda place: place.pose.written,
+    Inertial: lambda inertial: inertial.written and (inertial.written, inertial.written.frame.written),
+}
+"""How the author wrote a value, of the types that record it; equality does not see it."""
 
 
 # ---- things with parameters ---------------------------------------------------------------------------------------------------

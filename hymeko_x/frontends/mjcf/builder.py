@@ -10,7 +10,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import merge
-from hymeko_x.formats.mjcf.codec import BadAttribute
+from hymeko_x.formats.mjcf.codec import REFUSED, BadAttribute, InheritedValues
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.tree import verbatim
 from hymeko_x.ir.builder import Builder
@@ -43,6 +43,7 @@ class MjcfBuilder(Builder):
     files: Files
     named: dict[tuple[str, str], Id] = field(default_factory=dict)
     roles: dict[Id, dict[str, str]] = field(default_factory=dict)
+    inherited: InheritedValues = field(default_factory=InheritedValues)
     place: int = 0
 
     # ---- names -----------------------------------------------------------------------------------------------------------
@@ -112,7 +113,10 @@ class MjcfBuilder(Builder):
         found: Values = {}
         taken: list[str] = []
         try:
-            for group in groups:
+            for group, inherited in self.inherited.of(groups, base, settings):
+                if inherited is not REFUSED and own.keys().isdisjoint(group.names) and own.keys().isdisjoint(group.needs):
+                    found[group.key] = inherited
+                    continue
                 value = found[group.key] = group.read(merged, settings)
                 touched = [name for name in group.names if name in own]
                 taken += touched
