@@ -259,8 +259,8 @@ def _check_mesh(found: _Findings, view: ShapeView, key: Id, files: Files) -> Non
 def _check_files(found: _Findings, files: Files) -> None:
     """Images exist, and the engine of the format that the robot came from reads each file."""
     mechanism = found.mechanism
-    row = next((row for row in formats.FORMATS if row.name == mechanism.source.format and row.refused), None)
-    refused = None if row is None else formats.loaded(row.refused or "")
+    row = formats.of_source(mechanism)
+    refused = None if row is None or row.refused is None else formats.loaded(row.refused)
     for key, part in mechanism.assets():
         if part.uri is None or (isinstance(part, parts.Mesh) and part.vertices):
             continue

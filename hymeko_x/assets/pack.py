@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import posixpath
 import re
+from contextlib import suppress
 from enum import Enum
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Literal
@@ -49,7 +50,8 @@ def pack(
     """
     shelf = Shelf(mode or format.assets, out_dir, within)
     if format.pack is None:
-        packed = keep_references(mechanism, shelf, files, report, Keep.of(format, shelf.mode))
+        read = mechanism if format.is_exact else _with_meshes_of_source(mechanism, files, report)
+        packed = keep_references(read, shelf, files, report, Keep.of(format, shelf.mode))
     else:
         packed = formats.loaded(format.pack)(mechanism, shelf, files, report)
     return packed, shelf.files, shelf.copies
@@ -134,6 +136,27 @@ def package_hint(uri: str) -> str:
         return "its package has no name: the file is looked for in the folder of the robot and in those above; --package =DIR adds one"
     match = re.match(r"(?:package|model):/*([^/]+)", uri, re.IGNORECASE)
     return f"--package {match[1]}=DIR tells where the package is" if match else ""
+
+
+def _with_meshes_of_source(mechanism: Mechanism, files: Files, report: Report) -> Mechanism:
+    """The mechanism with the points of files that the engine of its source reads as another solid than other programs do."""
+    row = formats.of_source(mechanism)
+    if row is None or row.read_otherwise is None:
+        return mechanism
+    from hymeko_x.meshes.submesh import Unreadable, listed
+
+    changed: dict[Id, Mesh] = {}
+    read = formats.loaded(row.read_otherwise)
+    for key, mesh in mechanism.vertices(Mesh):
+        found = None if mesh.uri is None else read_file(files, mesh.uri)
+        if found is None:
+            continue
+        with suppress(Unreadable):
+            other = read(found[1], suffix_of(found[0]))
+            if other is not None:
+                changed[key] = replace(listed(other[0]), scale=mesh.scale, name=mesh.name)
+                report.note(codes.ASSET_CONVERTED, f"{key} {other[1]}", mechanism.origin(key), element=str(key))
+    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 
 # ---- meshes whose files are missing -----------------------------------------------------------------------------------

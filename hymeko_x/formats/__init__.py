@@ -19,9 +19,12 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from hymeko_x.ir.mechanism import Extra, Mechanism
+    from hymeko_x.meshes.submesh import Submesh
+
+    MeshReader = Callable[[bytes, str], Submesh | None]
 
 _XML_TOKENS = "hymeko_x.corpus.lengths:xml_tokens"
 
@@ -67,6 +70,10 @@ class Format(Struct, frozen=True):
     """The function ``(mechanism, shelf, files, report) -> mechanism`` that names its files; None: it refers to any file by its uri."""
     refused: str | None = None
     """The function ``(suffix, data) -> reason or None``: why its engine does not read a file of a type that it reads."""
+    mesh_reader: str | None = None
+    """The function ``(data, suffix) -> Submesh or None``: a mesh file as its engine reads it, where others read it in another way."""
+    read_otherwise: str | None = None
+    """The function ``(data, suffix) -> (Submesh, reason) or None``: such a file where other programs read another solid from it."""
     placing: frozenset[str] = frozenset()
     """The extras of a mesh by which its points are elsewhere than in its file, or are made."""
     keeps_package_uris: bool = False
@@ -177,6 +184,8 @@ MJCF = Format(
     roots=("mujoco", "mujocoinclude"),
     completes="hymeko_x.frontends.mjcf.complete:complete",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
+    mesh_reader="hymeko_x.formats.mjcf.meshes:read_mesh",
+    read_otherwise="hymeko_x.formats.mjcf.meshes:read_otherwise",
     refused="hymeko_x.formats.mjcf.files:refused",
     placing=frozenset({"@refpos", "@refquat", "@builtin", "@params"}),
     inherited="hymeko_x.formats.mjcf.classes:without_inherited",
@@ -265,6 +274,17 @@ def families() -> tuple[Format, ...]:
 def native_format(mechanism: Mechanism) -> Format | None:
     """The format whose engine gives a mechanism more than its parts hold, if it came from there; see :attr:`Format.completes`."""
     return next((format for format in FORMATS if format.completes and format.name == mechanism.source.format), None)
+
+
+def mesh_reader(mechanism: Mechanism) -> MeshReader | None:
+    """How the engine of the format that a mechanism came from reads mesh files, where that is a way of its own."""
+    row = of_source(mechanism)
+    return None if row is None or row.mesh_reader is None else loaded(row.mesh_reader)
+
+
+def of_source(mechanism: Mechanism) -> Format | None:
+    """The format that a mechanism came from; None where a program made it."""
+    return next((row for row in FORMATS if row.name == mechanism.source.format), None)
 
 
 def is_placing(extra: Extra) -> bool:

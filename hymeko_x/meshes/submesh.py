@@ -80,6 +80,13 @@ class LoadedMesh(Mesh, frozen=True, eq=False, kw_only=True):
     loaded: Submesh
 
 
+def listed(part: Submesh) -> Mesh:
+    """The mesh with its points and triangles as lists of its own."""
+    corners = part.faces if part.corners is None else part.corners
+    places = () if part.uv is None else (tuple(part.uv.ravel().tolist()), tuple(corners.ravel().tolist()))
+    return Mesh(None, (1.0, 1.0, 1.0), None, tuple(part.points.ravel().tolist()), tuple(part.faces.ravel().tolist()), *places)
+
+
 # ---- polygons ----------------------------------------------------------------------------------------------------------------------
 
 

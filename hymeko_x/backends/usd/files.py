@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.assets.pack import Keep, keep_references
 from hymeko_x.assets.shelf import read_file
-from hymeko_x.formats import native_format
+from hymeko_x.formats import mesh_reader
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import file_stem, shape_edge, subset_edge, suffix_of
 from hymeko_x.ir.names import names_in_use
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Code, Report
+    from hymeko_x.formats import MeshReader
     from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
     from hymeko_x.ir.parts import Rgba
     from hymeko_x.meshes.submesh import Appearance, ColouredMesh
@@ -45,17 +46,17 @@ class _Packing(Builder, kw_only=True):
 def pack_for_usd(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
     """The mechanism with the points of every mesh that can be read, in the axes and at the unit scale of its file.
 
-    What a file shows in several colours or images becomes a subset for each of them; MuJoCo ignores those of files, and so do we in
-    what came from there.
+    What a file shows in several colours or images becomes a subset for each of them. What came from a format whose engine reads mesh files
+    in its own way, without colours, gets the points and triangles that this engine reads.
     """
     run = _Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
-    users, are_coloured = mechanism.shapes_by_mesh(), native_format(mechanism) is None
+    users, own_reader = mechanism.shapes_by_mesh(), mesh_reader(mechanism)
     textured = {arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0}
     for key, mesh in mechanism.vertices(Mesh):
         if mesh.uri is None or mesh.vertices:
             continue
         is_mapped = any(view.material in textured for view in users.get(key, []))
-        painted = run.known.get((mesh.uri, is_mapped)) or _read(run, key, mesh, are_coloured=are_coloured, is_mapped=is_mapped)
+        painted = run.known.get((mesh.uri, is_mapped)) or _read(run, key, mesh, own_reader, is_mapped=is_mapped)
         if painted is not None:
             run.known[mesh.uri, is_mapped] = painted
             _pack(run, key, mesh, painted, users.get(key, []))
@@ -119,12 +120,12 @@ def _placed_image(run: _Packing, mesh: Id, appearance: Appearance, image: bytes)
     return run.shelf.place("textures", file_stem(appearance.file) or appearance.name or mesh.name, suffix, data)
 
 
-def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: bool) -> ColouredMesh | None:
-    """The triangles of a file; its own appearances do not count unless ``are_coloured``.
+def _read(run: _Packing, key: Id, mesh: Mesh, own_reader: MeshReader | None, *, is_mapped: bool) -> ColouredMesh | None:
+    """The triangles of a file, with its own appearances unless an engine reads it in its own way.
 
     ``is_mapped``: a shape of the mesh shows an image that it does not have from the file.
     """
-    from hymeko_x.meshes.reader import read_colours, read_mapped, read_whole
+    from hymeko_x.meshes.reader import read_colours, read_mapped
     from hymeko_x.meshes.submesh import ColouredMesh, Unreadable
 
     found = read_file(run.files, mesh.uri or "")
@@ -138,10 +139,11 @@ def _read(run: _Packing, key: Id, mesh: Mesh, *, are_coloured: bool, is_mapped: 
         _warn(run, key, codes.ASSET_NOT_FOUND, f"its image '{image}' was not found; it is shown without")
 
     try:
-        painted = read_colours(data, suffix_of(path), fetch, miss=miss) if are_coloured else None
-        if painted is not None and (painted.appearances or not is_mapped):
-            return painted
-        return ColouredMesh((read_mapped if is_mapped else read_whole)(data, suffix_of(path), fetch))
+        own = None if own_reader is None else own_reader(data, suffix_of(path))
+        if own is not None:
+            return ColouredMesh(own)
+        painted = read_colours(data, suffix_of(path), fetch, miss=miss)
+        return ColouredMesh(read_mapped(data, suffix_of(path), fetch)) if is_mapped and not painted.appearances else painted
     except Unreadable as error:
         _warn(run, key, codes.ASSET_UNREADABLE, f"'{mesh.uri}' cannot be read: {error}")
         return None

@@ -1,0 +1,210 @@
+"""Mesh files as MuJoCo reads them: every point of the file in its order, and the triangles that it makes of the faces.
+
+Source: MuJoCo 4.0, proven with its mjModel. Of an OBJ file only the first object or group with faces counts, and of a text that is not
+understood MuJoCo refuses the file. Equal points of STL, which has no others, become one; those of OBJ and MSH stay as many as they are.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from hymeko_x.meshes.numerals import numbers_in
+from hymeko_x.meshes.polygons import cut
+from hymeko_x.meshes.stl import read_stl
+from hymeko_x.meshes.submesh import MOST_FACES, Submesh, Unreadable, fans
+from hymeko_x.meshes.weld import joined
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_SOLID = 3
+_MSH_HEADER = 16
+_POLYGON = re.compile(rb"^[ \t]*f(?:[ \t]+[\d/-]+){4}", re.MULTILINE)
+_OBJECT = re.compile(rb"^[ \t]*[og][ \t]", re.MULTILINE)
+_FLAT = 1e-6
+"""The part of an area that rounding to single precision may change."""
+
+
+def read_mesh(data: bytes, suffix: str) -> Submesh | None:
+    """The points and triangles that MuJoCo reads from a file, with texture coordinates from the lower left; None for other types.
+
+    Raises: Unreadable.
+    """
+    readers = {".obj": _read_obj, ".stl": _read_stl, ".msh": _read_msh}
+    if suffix not in readers:
+        return None
+    part = readers[suffix](data)
+    if not len(part.faces):
+        raise Unreadable("it has no triangles")
+    if len(part.faces) > MOST_FACES:
+        raise Unreadable(f"it has {len(part.faces)} triangles, at most {MOST_FACES} are read")
+    if part.faces.min() < 0 or part.faces.max() >= len(part.points):
+        raise Unreadable("a triangle has a corner that does not exist")
+    if not np.isfinite(part.points).all():
+        raise Unreadable("a coordinate is not a finite number")
+    return part
+
+
+def read_otherwise(data: bytes, suffix: str) -> tuple[Submesh, str] | None:
+    """A file that other programs read as another solid, as MuJoCo reads it, and why; None where they see the same.
+
+    Others take all objects of an OBJ file, and cut polygons that are bent or concave in ways of their own. Raises: Unreadable.
+    """
+    if suffix != ".obj" or not (_POLYGON.search(data) or len(_OBJECT.findall(data)) > 1):
+        return None
+    lines = _lines_of(data)
+    part = read_mesh(data, suffix)
+    if part is not None and lines.has_more:
+        return part, "has several objects, of which MuJoCo reads the first"
+    if part is not None and not _are_flat_and_convex(lines, part.points):
+        return part, "has polygons that are bent or concave; they are cut as MuJoCo cuts them"
+    return None
+
+
+def _are_flat_and_convex(lines: _Obj, points: NDArray[np.float64]) -> bool:
+    """Whether the areas of the triangles of each polygon add up to its own, cut as a fan from its first corner and as MuJoCo does."""
+    sizes, corners, _ = _corners(lines)
+    rows, owners = cut(points.astype(np.float32), sizes, corners)
+    fan = fans(sizes, np.arange(len(corners)))
+    fan_owners = np.repeat(np.arange(len(sizes)), np.maximum(sizes - 2, 0))
+    areas = [_areas(points, corners[table], whose, len(sizes)) for table, whose in ((rows, owners), (fan, fan_owners))]
+    allowed = _FLAT * areas[1][1]
+    return bool(all((np.abs(sums - whole) <= allowed).all() for whole, sums in areas))
+
+
+def _areas(
+    points: NDArray[np.float64], triangles: NDArray[Any], owners: NDArray[np.intp], count: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Of each polygon twice the area that its outline spans, and the sum of twice the areas of its triangles."""
+    a, b, c = (points[triangles[:, corner]] for corner in range(3))
+    crossed = np.cross(b - a, c - a)
+    whole = np.stack([np.bincount(owners, crossed[:, axis], count) for axis in range(3)], axis=1)
+    return np.asarray(np.linalg.norm(whole, axis=1)), np.asarray(np.bincount(owners, np.linalg.norm(crossed, axis=1), count))
+
+
+# ---- STL and MSH -------------------------------------------------------------------------------------------------------------------
+
+
+def _read_stl(data: bytes) -> Submesh:
+    """Points that are equal to the last bit, the sign of zero included, are one."""
+    corners = np.ascontiguousarray(read_stl(data), dtype=np.float32).reshape(-1, 3)
+    first, index = joined(corners.view(np.uint32).astype(np.float64))
+    points = np.ascontiguousarray(first.astype(np.uint32)).view(np.float32)
+    return Submesh(points.astype(np.float64), index.reshape(-1, 3))
+
+
+def _read_msh(data: bytes) -> Submesh:
+    """MuJoCo's own binary format; texture coordinates there count from the upper left."""
+    if len(data) < _MSH_HEADER:
+        raise Unreadable(f"it has {len(data)} bytes, and an MSH file has at least {_MSH_HEADER}")
+    points, normals, uv, faces = np.frombuffer(data, "<i4", 4).tolist()
+    lengths = (3 * points, 3 * normals, 2 * uv, 3 * faces)
+    if min(lengths) < 0 or len(data) != _MSH_HEADER + 4 * sum(lengths):
+        raise Unreadable("its length is another one than its header tells")
+    ends = np.cumsum(lengths)
+    table = np.frombuffer(data, "<f4", int(ends[2]), _MSH_HEADER).astype(np.float64)
+    rows = np.frombuffer(data, "<i4", lengths[3], _MSH_HEADER + 4 * int(ends[2])).astype(np.int64).reshape(-1, 3)
+    places = table[ends[1] : ends[2]].reshape(-1, 2) * (1.0, -1.0) + (0.0, 1.0) if uv == points else None
+    return Submesh(table[: ends[0]].reshape(-1, 3), rows, places)
+
+
+# ---- OBJ ---------------------------------------------------------------------------------------------------------------------------
+
+
+class _Obj(NamedTuple):
+    """The lines of a file by their first word, and the faces of its first object, each with the number of points and places before it."""
+
+    points: list[bytes]
+    places: list[bytes]
+    faces: list[tuple[bytes, int, int]]
+    has_more: bool = False
+    """Whether there are faces of other objects."""
+
+
+def _read_obj(data: bytes) -> Submesh:
+    lines = _lines_of(data)
+    try:
+        points = _table(lines.points, _SOLID)
+        uv = _table(lines.places, 2)
+        sizes, corners, places = _corners(lines)
+    except (ValueError, IndexError) as error:
+        raise Unreadable(f"a line is not understood ({error})") from error
+    if corners.size and (corners.min() < 0 or corners.max() >= len(points)):
+        raise Unreadable("a face has a point that does not exist")
+    if not len(sizes):
+        raise Unreadable("it has no triangles")
+    rows, _ = cut(points.astype(np.float32), sizes, corners)
+    if not places.size or places.min() < 0 or not len(uv) or places.max() >= len(uv):  # then MuJoCo has none for the whole mesh
+        return Submesh(points, corners[rows])
+    return Submesh(points, corners[rows], uv, None, places[rows])
+
+
+def _lines_of(data: bytes) -> _Obj:
+    found = _Obj([], [], [])
+    is_first, has_more = True, False
+    for line in data.replace(b"\r\n", b"\n").replace(b"\r", b"\n").split(b"\n"):
+        word, _, rest = line.lstrip().replace(b"\t", b" ", 1).partition(b" ")
+        if word == b"v":
+            found.points.append(rest)
+        elif word == b"vt":
+            found.places.append(rest)
+        elif word == b"f" and len(rest.split(None, _SOLID)) >= _SOLID:
+            has_more = has_more or not is_first
+            if is_first:
+                found.faces.append((rest, len(found.points), len(found.places)))
+        elif word in (b"o", b"g") and found.faces:
+            is_first = False
+    return found._replace(has_more=has_more)
+
+
+def _table(rows: list[bytes], width: int) -> NDArray[np.float64]:
+    """The first numbers of each row in single precision; missing ones are zero."""
+    counts = {len(row.split()) for row in rows[:1]}
+    numbers = np.zeros((0, width))
+    if counts:
+        count = counts.pop()
+        try:
+            numbers = numbers_in(b" ".join(rows)).reshape(len(rows), count)[:, :width]
+        except ValueError:
+            numbers = np.array([[*map(float, row.split()[:width]), *(0.0,) * width][:width] for row in rows])
+    if numbers.shape[1] < width:
+        numbers = np.hstack([numbers, np.zeros((len(numbers), width - numbers.shape[1]))])
+    with np.errstate(over="ignore"):
+        return np.asarray(numbers.astype(np.float32).astype(np.float64))
+
+
+def _corners(lines: _Obj) -> tuple[NDArray[np.intp], NDArray[np.int64], NDArray[np.int64]]:
+    """The number of corners of each face, their points, and their places, -1 for none."""
+    words = [row.split() for row, _, _ in lines.faces]
+    sizes = np.array([len(row) for row in words], dtype=np.intp)
+    if not len(sizes):
+        return sizes, np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    text = b" ".join([row for row, _, _ in lines.faces])
+    strokes = text.count(b"/")
+    if b"-" not in text and b"//" not in text and strokes % max(int(sizes.sum()), 1) == 0 and _are_alike(words, strokes, sizes):
+        numbers = numbers_in(text.replace(b"/", b" "), np.int64).reshape(int(sizes.sum()), -1) - 1
+        return sizes, numbers[:, 0], numbers[:, 1] if numbers.shape[1] > 1 else np.full(len(numbers), -1)
+    points, places = [], []
+    for row, (_, before, places_before) in zip(words, lines.faces, strict=True):
+        for corner in row:
+            fields = corner.split(b"/")
+            points.append(_index(fields[0], before))
+            places.append(_index(fields[1], places_before) if len(fields) > 1 and fields[1] else -1)
+    return sizes, np.array(points, dtype=np.int64), np.array(places, dtype=np.int64)
+
+
+def _are_alike(words: list[list[bytes]], strokes: int, sizes: NDArray[np.intp]) -> bool:
+    """Whether all corners have the same number of strokes."""
+    each = strokes // max(int(sizes.sum()), 1)
+    return all(corner.count(b"/") == each for row in words for corner in row)
+
+
+def _index(text: bytes, before: int) -> int:
+    """A number from 1 on, or from -1 backwards, as one from 0 on."""
+    number = int(text)
+    if number == 0:
+        raise ValueError("an index is zero")
+    return number - 1 if number > 0 else before + number
