@@ -186,6 +186,11 @@ RESIDUE_UNREADABLE = Code(
     "what is carried cannot be read",
     "The file carries what its format cannot say, but the text is damaged or of a newer version. The file is read as if it carried nothing.",
 )
+EDIT_REWRITTEN = Code(
+    "HX108",
+    "an edit could not be placed in the text",
+    "The author's text does not have the value as it is printed, so that the element was printed anew, or the whole file where that is not enough.",
+)
 NOT_SAID = Code("HX104", "the target has no word for this", "The target cannot say this, and nothing comes near.")
 
 # ---- HX2xx: assets ---------------------------------------------------------------------------------------------------

@@ -55,6 +55,8 @@ class Format(Struct, frozen=True):
     """The name of the format of which it is another container, with the same reader and the same extras (usdc, usdz)."""
     expands_to: str = ""
     """The name of the format that its files expand to (xacro)."""
+    outline: str | None = None
+    """The function ``(source, report) -> outline`` that finds where everything stands in its text."""
     has_arguments: bool = False
     """Whether the user can set values in it (xacro)."""
     has_variants: bool = False
@@ -146,6 +148,7 @@ URDF = Format(
     "hymeko_x.backends.urdf",
     "hymeko_x.backends.urdf.rules",
     roots=("robot",),
+    outline="hymeko_x.frontends.urdf.outline:outline",
     keeps_package_uris=True,
     reference="hymeko_x.verify.readers.urdf",
     engines=MappingProxyType({"pinocchio": "pin", "yourdfpy": "yourdfpy", "pydrake": "drake"}),
@@ -182,6 +185,7 @@ MJCF = Format(
     "hymeko_x.backends.mjcf",
     "hymeko_x.backends.mjcf.rules",
     roots=("mujoco", "mujocoinclude"),
+    outline="hymeko_x.frontends.mjcf.outline:outline",
     completes="hymeko_x.frontends.mjcf.complete:complete",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
     mesh_reader="hymeko_x.formats.mjcf.meshes:read_mesh",

@@ -62,6 +62,16 @@ def _with_included(children: list[Element], source: Source, report: Report, seen
 
 
 def _included(include: Element, source: Source, report: Report, seen: dict[str, Element]) -> Element:
+    path, inner = included_source(include, source)
+    if path in seen:
+        first = seen[path].origin
+        raise refuse(codes.REPEATED, f"the file '{inner.name}' is included twice; the first time in {first}", include.origin)
+    seen[path] = include
+    return parse(inner, report)
+
+
+def included_source(include: Element, source: Source) -> tuple[str, Source]:
+    """The path of the file that an <include> names, and the file. Raises: Refusal when it names none, or one that cannot be read."""
     uri = include.attributes.get("file")
     if not uri:
         raise refuse(codes.MISSING_ATTRIBUTE, "<include> needs a file", include.origin)
@@ -71,15 +81,10 @@ def _included(include: Element, source: Source, report: Report, seen: dict[str, 
     path = source.files.find(uri) or source.files.find(posixpath.join(posixpath.dirname(include.file), uri))
     if path is None:
         raise refuse(codes.CANNOT_READ, f"the included file '{uri}' was not found", include.origin)
-    if path in seen:
-        first = seen[path].origin
-        raise refuse(codes.REPEATED, f"the file '{uri}' is included twice; the first time in {first}", include.origin)
-    seen[path] = include
     try:
-        data = source.files.read(path)
+        return path, replace(source, name=uri, data=source.files.read(path))
     except OSError as error:
         raise refuse(codes.CANNOT_READ, f"the included file '{uri}' cannot be read: {error.strerror}", include.origin) from error
-    return parse(replace(source, name=uri, data=data), report)
 
 
 # ---- expansion by MuJoCo -------------------------------------------------------------------------------------------------------

@@ -1,0 +1,47 @@
+"""The outline of an MJCF file together with the files that it includes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.frontends.mjcf.expand import included_source
+from hymeko_x.outline import Outline, TextFile
+from hymeko_x.xml.outline import STYLE, block_of
+from hymeko_x.xml.parse import parse
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.source import Source
+    from hymeko_x.xml.tree import Node
+
+
+def outline(source: Source, report: Report) -> Outline:
+    """Where everything stands in an MJCF file; what an <include> stands for stands in its place.
+
+    Raises: Refusal when a file is no XML, or an included one cannot be read.
+    """
+    document = parse(source, report, deepest=None)
+    files = {source.name: TextFile(source.name, document.data)}
+    stack = [document.root]
+    while stack:
+        node = stack.pop()
+        node.children = [inner for child in node.children for inner in _included(child, source, report, files)]
+        stack += node.children
+    datas = {name: file.data for name, file in files.items()}
+    return Outline(block_of(document.root, document.data, datas), files, source.name, STYLE)
+
+
+def _included(node: Node, source: Source, report: Report, files: dict[str, TextFile]) -> list[Node]:
+    """What an element stands for: itself, or the content of the file that it includes, nested includes as well."""
+    found: list[Node] = []
+    queue = [node]
+    while queue:
+        child = queue.pop()
+        if child.tag != "include" or not child.attributes.get("file"):
+            found.append(child)
+            continue
+        path, inner = included_source(child, source)
+        document = parse(inner, report, deepest=None)
+        files[inner.name] = TextFile(path, document.data)
+        queue += reversed(document.root.children)
+    return found

@@ -1,0 +1,89 @@
+"""The outline of a text: where its elements and their values stand in the bytes, so that one value can be changed and nothing else.
+
+Every format that is text has a function ``outline(source, report) -> Outline`` in its frontend's room; the rest of the program knows
+blocks and fields only.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+
+class Field(Struct, frozen=True):
+    """A named value of a block: its text as it stands, between ``value_start`` and ``value_end``.
+
+    ``start`` and ``end`` are the whole of it, with the white space before it and its name: what goes when it is removed.
+    """
+
+    text: str
+    start: int
+    end: int
+    value_start: int
+    value_end: int
+
+
+class Block(Struct, eq=False):
+    """An element of a text with its own fields and the blocks in it.
+
+    ``file`` is the name of the file that it stands in, ``start`` and ``end`` its bytes there, ``inside`` where the blocks in it begin and
+    end; None for a block that is written without a content, whose head ends at ``head``. Its fields begin at ``first``.
+    """
+
+    tag: str
+    name: str
+    file: str
+    start: int
+    end: int
+    first: int
+    head: int
+    inside: tuple[int, int] | None
+    fields: dict[str, Field] = field(default_factory=dict)
+    children: list[Block] = field(default_factory=list)
+    parent: Block | None = None
+
+    def add(self, child: Block) -> None:
+        """Put a block into this one."""
+        child.parent = self
+        self.children.append(child)
+
+    def walk(self) -> Iterator[Block]:
+        """The block and every block in it, in the order of the text."""
+        stack = [self]
+        while stack:
+            block = stack.pop()
+            yield block
+            stack.extend(reversed(block.children))
+
+
+class TextFile(Struct, frozen=True):
+    """A file of an outline: the path that its ``Files`` found, and its bytes as the offsets count them."""
+
+    path: str
+    data: bytes
+
+
+class Style(Struct, frozen=True):
+    """How a format writes around its blocks.
+
+    ``opening`` and ``closing`` (with ``{tag}``) go around the content of a block that had none; ``trailing`` is the pattern of what may
+    follow a block on its line and belongs to it: blanks and a comment. ``escapes``: how a quotation mark is written between two of them.
+    """
+
+    opening: str
+    closing: str
+    trailing: bytes
+    escapes: Mapping[bytes, bytes] = field(default_factory=dict)
+
+
+class Outline(Struct, frozen=True):
+    """The blocks of a text with the files that it includes, by the names that the blocks have for them; ``main`` names the first one."""
+
+    root: Block
+    files: Mapping[str, TextFile]
+    main: str
+    style: Style

@@ -1,0 +1,57 @@
+"""The fields of one block: what differs between two prints of it, carried over to the author's text."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hymeko_x.outline import Block, Field
+    from hymeko_x.update.splicing import Splices
+
+_WORD = re.compile(rb"[^\s,()\[\]]+")
+
+
+def edit_fields(splices: Splices, own: Block, before: Block, after: Block, print: bytes) -> None:
+    """Carry the fields over that differ between ``before`` and ``after``; ``print`` are the bytes of ``after``."""
+    for name, field in after.fields.items():
+        earlier, mine = before.fields.get(name), own.fields.get(name)
+        if earlier is not None and earlier.text == field.text:
+            continue
+        if mine is not None:
+            _change(splices, mine, earlier, field, print)
+        else:
+            _add(splices, own, after, name, print)
+    for name in before.fields:
+        if name not in after.fields and name in own.fields:
+            gone = own.fields[name]
+            splices.put(gone.start, gone.end, b"")
+
+
+def _change(splices: Splices, mine: Field, earlier: Field | None, field: Field, print: bytes) -> None:
+    """Replace a value: where it is a row of words, only those that differ."""
+    new = print[field.value_start : field.value_end]
+    escape = splices.style.escapes.get(splices.data[mine.value_start - 1 : mine.value_start])
+    if escape is not None:
+        new = new.replace(splices.data[mine.value_start - 1 : mine.value_start], escape)
+    words = [found.span() for found in _WORD.finditer(splices.data, mine.value_start, mine.value_end)]
+    wanted, had = _WORD.findall(new), [] if earlier is None else _WORD.findall(earlier.text.encode())
+    if not len(words) == len(wanted) == len(had) > 1:
+        splices.put(mine.value_start, mine.value_end, new)
+        return
+    for (start, end), word, old in zip(words, wanted, had, strict=True):
+        if word != old:
+            splices.put(start, end, word)
+
+
+def _add(splices: Splices, own: Block, after: Block, name: str, print: bytes) -> None:
+    """Write a field that the author does not have behind the one that precedes it in the print."""
+    names = [*after.fields]
+    behind = next((own.fields[other] for other in reversed(names[: names.index(name)]) if other in own.fields), None)
+    text = print[after.fields[name].start : after.fields[name].end]
+    if behind is None:
+        splices.put(own.first, own.first, text)
+        return
+    blanks = splices.data[behind.start : behind.end]
+    blanks = blanks[: len(blanks) - len(blanks.lstrip())]
+    splices.put(behind.end, behind.end, (blanks or b" ") + text.lstrip())

@@ -1,0 +1,110 @@
+"""Which block of one outline is which of another one: by name, by content, and by what stands around them."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from hymeko_x.xml.tree import read_numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Hashable, Iterable
+
+    from hymeko_x.outline import Block
+
+Pairs = dict["Block", "Block"]
+"""The block of the other outline, for each block that it has."""
+
+
+def match(first: Block, second: Block) -> Pairs:
+    """The blocks of ``second`` by those of ``first`` that they are. Linear but for sorting.
+
+    Blocks in matched blocks are matched by their names; then those that stand elsewhere now, whose name is unique; then what has the
+    same content, with another name; and what is left in its order.
+    """
+    matching = _Matching(first, second)
+    matching.pair(first, second)
+    matching.descend()
+    matching.match_moved(first, second)
+    matching.match_rest()
+    return matching.pairs
+
+
+class _Matching:
+    """The pairs so far, and those whose inner blocks have not been looked at."""
+
+    def __init__(self, first: Block, second: Block) -> None:
+        self.pairs: Pairs = {}
+        self.taken: set[Block] = set()
+        self._contents = {**_contents(first), **_contents(second)}
+        self._waiting: list[tuple[Block, Block]] = []
+        self._open: list[tuple[Block, Block]] = []
+
+    def pair(self, first: Block, second: Block) -> None:
+        """They are the same from now on."""
+        self.pairs[first] = second
+        self.taken.add(second)
+        self._waiting.append((first, second))
+
+    def descend(self) -> None:
+        """Match the named blocks inside of matched ones."""
+        while self._waiting:
+            first, second = self._waiting.pop()
+            self._open.append((first, second))
+            self._match(first, second, lambda block: (block.tag, block.name) if block.name else None)
+
+    def match_moved(self, first: Block, second: Block) -> None:
+        """Match blocks with a name that is unique in both, wherever they stand."""
+        mine, theirs = (_unique(block for block in root.walk() if not self._is_matched(block)) for root in (first, second))
+        for key, block in mine.items():
+            other = theirs.get(key)
+            if other is not None:
+                self.pair(block, other)
+        self.descend()
+
+    def match_rest(self) -> None:
+        """Match what has the same content, and then what has the same tag, inside of matched blocks."""
+        while self._open:
+            first, second = self._open.pop()
+            self._match(first, second, lambda block: self._contents[block])
+            self._match(first, second, lambda block: block.tag)
+            self.descend()
+
+    def _is_matched(self, block: Block) -> bool:
+        return block in self.pairs or block in self.taken
+
+    def _match(self, first: Block, second: Block, key: Callable[[Block], Hashable]) -> None:
+        waiting: dict[Hashable, list[Block]] = defaultdict(list)
+        for block in reversed(second.children):
+            if block not in self.taken:
+                waiting[key(block)].append(block)
+        waiting.pop(None, None)
+        if not waiting:
+            return
+        for block in first.children:
+            if block not in self.pairs and (found := waiting.get(key(block))):
+                self.pair(block, found.pop())
+
+
+def _unique(blocks: Iterable[Block]) -> dict[tuple[str, str], Block]:
+    """The blocks by tag and name, as far as no other one has both."""
+    found: dict[tuple[str, str], list[Block]] = defaultdict(list)
+    for block in blocks:
+        if block.name:
+            found[block.tag, block.name].append(block)
+    return {key: same[0] for key, same in found.items() if len(same) == 1}
+
+
+def _contents(root: Block) -> dict[Block, int]:
+    """A hash of each block's content: its tag, its fields but for its name, and what is in it, with numbers as numbers."""
+    hashes: dict[Block, int] = {}
+    for block in reversed(list(root.walk())):
+        fields = sorted((name, value_of(field.text)) for name, field in block.fields.items() if name != "name")
+        hashes[block] = hash((block.tag, tuple(fields), tuple(hashes[child] for child in block.children)))
+    return hashes
+
+
+def value_of(text: str) -> str:
+    """The value of a field, the same for every spelling of the same numbers."""
+    numbers = read_numbers(text)
+    return text if numbers is None else " ".join(map(repr, numbers))

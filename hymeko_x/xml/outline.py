@@ -1,0 +1,65 @@
+"""The outline of XML: every element with its attributes, and the text of those that have nothing else in them."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from hymeko_x.outline import Block, Field, Outline, Style, TextFile
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.xml.tree import Document, Node
+
+STYLE = Style(">", "</{tag}>", rb"[ \t]*(?:<!--[^\n]*?-->[ \t]*)*", {b"'": b"&apos;"})
+TEXT = "text()"
+"""The name of the field that is an element's text."""
+
+_ATTRIBUTE = re.compile(rb"""\s+([^\s=<>"'/]+)\s*=\s*("[^"]*"|'[^']*')""")
+_NAME = re.compile(rb"<[^\s/>]+")
+
+
+def outline_of(document: Document, path: str) -> Outline:
+    """The outline of a document without other files, which was read from this path."""
+    root = block_of(document.root, document.data)
+    return Outline(root, {root.file: TextFile(path, document.data)}, root.file, STYLE)
+
+
+def block_of(root: Node, data: bytes, others: Mapping[str, bytes] | None = None) -> Block:
+    """The block of an element, with all that is in it. ``others`` are the bytes of elements from other files, by their names."""
+    texts = others or {}
+    top = _bare(root, texts.get(root.file, data))
+    stack = [(root, top)]
+    while stack:
+        node, block = stack.pop()
+        for child in node.children:
+            if child.is_element:
+                inner = _bare(child, texts.get(child.file, data))
+                block.add(inner)
+                stack.append((child, inner))
+    return top
+
+
+def _bare(node: Node, data: bytes) -> Block:
+    """The block of an element without the blocks in it."""
+    name = _NAME.match(data, node.start)
+    assert name is not None, f"no element starts at {node.file}:{node.line}"
+    at = first = name.end()
+    fields: dict[str, Field] = {}
+    while found := _ATTRIBUTE.match(data, at):
+        attribute = found[1].decode()
+        fields[attribute] = Field(node.attributes.get(attribute, ""), found.start(), found.end(), found.start(2) + 1, found.end(2) - 1)
+        at = found.end()
+    head = data.index(b">", at)
+    if data[head - 1 : head] == b"/":
+        return Block(node.tag, node.attributes.get("name", ""), node.file, node.start, head + 1, first, head - 1, None, fields)
+    end = data.index(b">", node.end) + 1
+    if not node.children and node.text is not None and b"<" not in data[head + 1 : node.end]:
+        fields[TEXT] = Field(node.text.strip(), head + 1, node.end, *_stripped(data, head + 1, node.end))
+    return Block(node.tag, node.attributes.get("name", ""), node.file, node.start, end, first, head, (head + 1, node.end), fields)
+
+
+def _stripped(data: bytes, start: int, end: int) -> tuple[int, int]:
+    text = data[start:end]
+    return start + len(text) - len(text.lstrip()), end - len(text) + len(text.rstrip())
