@@ -17,16 +17,31 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hymeko_x.api import convert, dump, dumps, load, loads
+    from hymeko_x.api import convert, dump, dumps, load, loads, update
     from hymeko_x.compare.diff import diff
     from hymeko_x.diagnostics import Diagnostic, Refusal, Report, Severity
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.verify import verify
 
-__all__ = ["Diagnostic", "Id", "Mechanism", "Refusal", "Report", "Severity", "convert", "diff", "dump", "dumps", "load", "loads", "verify"]
+__all__ = [
+    "Diagnostic",
+    "Id",
+    "Mechanism",
+    "Refusal",
+    "Report",
+    "Severity",
+    "convert",
+    "diff",
+    "dump",
+    "dumps",
+    "load",
+    "loads",
+    "update",
+    "verify",
+]
 
 _HOMES = {
-    **dict.fromkeys(("convert", "dump", "dumps", "load", "loads"), "hymeko_x.api"),
+    **dict.fromkeys(("convert", "dump", "dumps", "load", "loads", "update"), "hymeko_x.api"),
     **dict.fromkeys(("Diagnostic", "Refusal", "Report", "Severity"), "hymeko_x.diagnostics"),
     "diff": "hymeko_x.compare.diff",
     "verify": "hymeko_x.verify",

@@ -1,4 +1,7 @@
-"""The public functions, on files and on bytes: load, loads, dump, dumps, convert. Every option of the command line is an argument here."""
+"""The public functions, on files and on bytes: load, loads, dump, dumps, convert, update.
+
+Every option of the command line is an argument here.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,7 @@ from hymeko_x.source import NoFiles, Source
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from hymeko_x.edits.updating import Updated
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files
 
@@ -164,6 +168,36 @@ def convert(
     result = delivery.convert(report)
     delivery.put(result)
     return result
+
+
+def update(
+    original: Place,
+    edited: Place,
+    output: Place | None = None,
+    *,
+    dry_run: bool = False,
+    from_format: str | None = None,
+    edited_format: str | None = None,
+    base: Literal["fixed", "free"] | None = None,
+    actuators: Literal["none", "motor", "position", "velocity"] | None = None,
+    **reading: Unpack[Reading],
+) -> Updated:
+    """Bring the edits in ``edited``, which was once converted from ``original``, into the text of that, or into ``output``.
+
+    ``base`` and ``actuators`` are those of the conversion, found out where they are not given. With ``dry_run`` nothing is written.
+    The result has the edits, the differences of the texts, and the diagnostics.
+
+    Raises: Refusal when a file cannot be read or written; then nothing was changed.
+    """
+    from hymeko_x.edits import updating
+
+    given, changed = _source(original, **reading), _source(edited, **reading)
+    report = Report()
+    options = Options(base, actuators, beside=Path(edited).stem)
+    found = updating.update(given, _input_format(given, from_format), changed, _input_format(changed, edited_format), options, report)
+    if not dry_run:
+        disk.write_files(found.files(given.name, None if output is None else os.fspath(output)))
+    return found
 
 
 def _source(

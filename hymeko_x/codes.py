@@ -191,6 +191,11 @@ EDIT_REWRITTEN = Code(
     "an edit could not be placed in the text",
     "The author's text does not have the value as it is printed, so that the element was printed anew, or the whole file where that is not enough.",
 )
+OPTIONS_FOUND = Code(
+    "HX109",
+    "the options of an earlier conversion were found out",
+    "The edited file differs least from what its original gives with these options. Give them to update if others were used.",
+)
 NOT_SAID = Code("HX104", "the target has no word for this", "The target cannot say this, and nothing comes near.")
 
 # ---- HX2xx: assets ---------------------------------------------------------------------------------------------------

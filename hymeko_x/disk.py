@@ -99,6 +99,21 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
         assets.clean()
 
 
+def write_files(contents: Mapping[str, bytes]) -> None:
+    """Write some files, all or none. Raises: Refusal HX002."""
+    staging = Staging()
+    path = ""
+    try:
+        for path, data in contents.items():
+            staging.make_folders(Path(path).parent)
+            staging.add(Path(path), data)
+        staging.put()
+    except (OSError, ValueError) as error:
+        raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
+    finally:
+        staging.clean()
+
+
 def in_the_way(package: Package, path: str, folder: str, files: Files) -> str | None:
     """An asset that would overwrite what another output beside this one refers to; None when there is none.
 

@@ -136,7 +136,7 @@ def convert(
 def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
     """Rewritten, with its files placed, and printed."""
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
-    complete = _completed(with_stand_ins(mechanism, format, files, report), format, files, report)
+    complete = completed(with_stand_ins(mechanism, format, files, report), format, files, report)
     legal = legalize(complete, format.name, options, report)
     printed = _placed_and_printed(legal, format, options, files, report, place)
     folder = f"{safe_name(options.beside)}/"
@@ -204,7 +204,7 @@ def restored(image: Mechanism, carried: str, origin: Origin, report: Report) -> 
     return restore(image, residue, report)
 
 
-def _completed(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
+def completed(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
     """The mechanism with what only the engine of the format that it came from computes, where it goes to another format."""
     native = formats.native_format(mechanism)
     if native is None or native.completes is None or native is format or format.is_exact:

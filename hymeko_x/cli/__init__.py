@@ -18,6 +18,7 @@ VERBS = {
     "import": ("hymeko_x.cli.convert", "read any format, print HyMeKo"),
     "export": ("hymeko_x.cli.convert", "read HyMeKo (standard input by default), write another format"),
     "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
+    "update": ("hymeko_x.cli.update", "bring the edits of a converted file home into the text of its original"),
     "diff": ("hymeko_x.cli.compare", "what differs between two robots, element by element"),
     "verify": ("hymeko_x.cli.compare", "whether two files are the same robot, by the formats' own engines"),
     "roundtrip": ("hymeko_x.cli.compare", "through other formats and back, every leg verified"),

@@ -47,7 +47,7 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report) -> Input:
 
     Raises: Refusal when it cannot be read.
     """
-    source = _standard_input(chosen) if path == "-" else _file(path, chosen)
+    source = _standard_input(chosen) if path == "-" else source_of(path, chosen)
     format = formats.by_name(chosen.from_format) if chosen.from_format else formats.of_input(source.name, source.data)
     if (chosen.arg or chosen.env) and not format.has_arguments:
         option = "--arg" if chosen.arg else "--env"
@@ -58,7 +58,8 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report) -> Input:
     return Input(pipeline.read(source, format, report), format, source)
 
 
-def _file(path: str, chosen: argparse.Namespace) -> Source:
+def source_of(path: str, chosen: argparse.Namespace) -> Source:
+    """A file with the files around it. Raises: Refusal when it cannot be read."""
     return disk.open_source(path, packages=dict(chosen.package), search_path=search_path(os.environ), confine=chosen.confine)
 
 

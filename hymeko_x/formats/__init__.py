@@ -148,7 +148,7 @@ URDF = Format(
     "hymeko_x.backends.urdf",
     "hymeko_x.backends.urdf.rules",
     roots=("robot",),
-    outline="hymeko_x.frontends.urdf.outline:outline",
+    outline="hymeko_x.xml.outline:outline",
     keeps_package_uris=True,
     reference="hymeko_x.verify.readers.urdf",
     engines=MappingProxyType({"pinocchio": "pin", "yourdfpy": "yourdfpy", "pydrake": "drake"}),

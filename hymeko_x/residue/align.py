@@ -29,7 +29,7 @@ _SCALAR = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 
 def align(image: Mechanism, source: Mechanism) -> tuple[Alignment, Mechanism]:
     """The alignment that leads from the image to the source, and the aligned image. Linear in both."""
-    names = _other_names(image, source)
+    names = other_names(image, source)
     renamed = realign(image, Alignment(tuple(names.items())))
     folds = tuple(_folds(renamed, source))
     folded = fold_chains(renamed, folds)
@@ -42,7 +42,7 @@ def align(image: Mechanism, source: Mechanism) -> tuple[Alignment, Mechanism]:
 # ---- names -----------------------------------------------------------------------------------------------------------------
 
 
-def _other_names(image: Mechanism, source: Mechanism) -> dict[Id, Id]:
+def other_names(image: Mechanism, source: Mechanism) -> dict[Id, Id]:
     """The source's id of every element of the image that goes by another one."""
     pairs = _Pairs(image.graph, source.graph)
     pairs.match_world()

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.residue import Alignment, Run
 
-_NAMED = frozenset({"body", "joint", "frame", "material", "actuator", "sensor", "camera", "light", "tendon"})
+NAMED = frozenset({"body", "joint", "frame", "material", "actuator", "sensor", "camera", "light", "tendon"})
 """Kinds of elements that people give names to."""
 
 
@@ -111,13 +111,13 @@ def _layout(image: Mechanism, source: Mechanism) -> tuple[tuple[Id, ...] | None,
 def _known(image: Mechanism, residue: Residue, digests: Digests) -> Iterator[tuple[Id, str]]:
     """The elements of the image with names of their own that the residue speaks of, with their digests."""
     names = {new: old for old, new in residue.alignment.names}
-    spoken = dict.fromkeys(names.get(key, key) for key in map(_named, _spoken_of(residue)) if key.kind in _NAMED)
+    spoken = dict.fromkeys(names.get(key, key) for key in map(_named, _spoken_of(residue)) if key.kind in NAMED)
     yield from ((key, digests.of(key)) for key in spoken if key in image.graph)
 
 
 def _named(key: Id) -> Id:
     """The element itself, or the body that it is called after."""
-    if key.kind in _NAMED:
+    if key.kind in NAMED:
         return key
     body, stroke, _ = key.name.partition("/")
     return Id("body", body) if stroke else key

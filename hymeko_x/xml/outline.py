@@ -6,11 +6,14 @@ import re
 from typing import TYPE_CHECKING
 
 from hymeko_x.outline import Block, Field, Outline, Style, TextFile
+from hymeko_x.xml.parse import parse
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.xml.tree import Document, Node
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.source import Source
+    from hymeko_x.xml.tree import Node
 
 STYLE = Style(">", "</{tag}>", rb"[ \t]*(?:<!--[^\n]*?-->[ \t]*)*", {b"'": b"&apos;"})
 TEXT = "text()"
@@ -20,10 +23,11 @@ _ATTRIBUTE = re.compile(rb"""\s+([^\s=<>"'/]+)\s*=\s*("[^"]*"|'[^']*')""")
 _NAME = re.compile(rb"<[^\s/>]+")
 
 
-def outline_of(document: Document, path: str) -> Outline:
-    """The outline of a document without other files, which was read from this path."""
+def outline(source: Source, report: Report) -> Outline:
+    """Where everything stands in an XML file that is all of its text. Raises: Refusal when it is no XML."""
+    document = parse(source, report)
     root = block_of(document.root, document.data)
-    return Outline(root, {root.file: TextFile(path, document.data)}, root.file, STYLE)
+    return Outline(root, {root.file: TextFile(source.name, document.data)}, root.file, STYLE)
 
 
 def block_of(root: Node, data: bytes, others: Mapping[str, bytes] | None = None) -> Block:

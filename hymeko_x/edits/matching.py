@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from typing import TYPE_CHECKING
+from operator import attrgetter
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.xml.tree import read_numbers
 
@@ -66,9 +67,21 @@ class _Matching:
         """Match what has the same content, and then what has the same tag, inside of matched blocks."""
         while self._open:
             first, second = self._open.pop()
-            self._match(first, second, lambda block: self._contents[block])
+            self._match_by_children(first, second)
+            for key in _KEYS:
+                self._match(first, second, lambda block, key=key: key(self._contents[block]))  # type: ignore[misc]
             self._match(first, second, lambda block: block.tag)
             self.descend()
+
+    def _match_by_children(self, first: Block, second: Block) -> None:
+        """Match what has a child that is matched already."""
+        for block in first.children:
+            if block in self.pairs:
+                continue
+            others = (self.pairs[child].parent for child in block.children if child in self.pairs)
+            other = next((parent for parent in others if parent is not None and parent.parent is second), None)
+            if other is not None and other not in self.taken and other.tag == block.tag:
+                self.pair(block, other)
 
     def _is_matched(self, block: Block) -> bool:
         return block in self.pairs or block in self.taken
@@ -95,12 +108,23 @@ def _unique(blocks: Iterable[Block]) -> dict[tuple[str, str], Block]:
     return {key: same[0] for key, same in found.items() if len(same) == 1}
 
 
-def _contents(root: Block) -> dict[Block, int]:
-    """A hash of each block's content: its tag, its fields but for its name, and what is in it, with numbers as numbers."""
-    hashes: dict[Block, int] = {}
+class _Content(NamedTuple):
+    """Hashes of a block with everything in it: with its own name, and without it."""
+
+    named: int
+    nameless: int
+
+
+_KEYS = (attrgetter("named"), attrgetter("nameless"))
+
+
+def _contents(root: Block) -> dict[Block, _Content]:
+    """A hash of each block's content: its tag, its fields, and what is in it, with numbers as numbers."""
+    hashes: dict[Block, _Content] = {}
     for block in reversed(list(root.walk())):
-        fields = sorted((name, value_of(field.text)) for name, field in block.fields.items() if name != "name")
-        hashes[block] = hash((block.tag, tuple(fields), tuple(hashes[child] for child in block.children)))
+        fields = sorted((name, value_of(field.text)) for name, field in block.fields.items() if field.text != block.name)
+        nameless = hash((block.tag, tuple(fields), tuple(hashes[child].named for child in block.children)))
+        hashes[block] = _Content(hash((block.name, nameless)), nameless)
     return hashes
 
 

@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from hymeko_x.edits.splicing import Splices
     from hymeko_x.outline import Block, Field
-    from hymeko_x.update.splicing import Splices
 
 _WORD = re.compile(rb"[^\s,()\[\]]+")
 

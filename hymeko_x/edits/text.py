@@ -1,8 +1,8 @@
-"""The way home of edits: the text of a robot with the edits of its mechanism, and nothing else changed."""
+"""The text of a robot with the edits of its mechanism, and nothing else changed."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -11,21 +11,30 @@ from hymeko_x import codes, formats, pipeline
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Refusal, Report
+from hymeko_x.edits.merging import merged
+from hymeko_x.edits.splicing import Lines
 from hymeko_x.rewrite import Options, legalize
-from hymeko_x.source import NoFiles, Source
-from hymeko_x.update.merging import merged
-from hymeko_x.update.splicing import Lines
+from hymeko_x.source import Source
+from hymeko_x.xml.unread import COMMENT
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
+    from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.outline import Block, Outline
-    from hymeko_x.source import Files
+    from hymeko_x.source import Files, Package
 
 _MOST_TRIES = 3
 """How often elements are replaced by their print before the whole text is."""
+
+
+class Texts(NamedTuple):
+    """Texts that changed, by their paths, the main one by the name of its source; and new files beside the main one."""
+
+    changed: dict[str, bytes]
+    beside: Mapping[str, bytes]
 
 
 class EditedFiles(Struct, frozen=True):
@@ -43,8 +52,8 @@ class EditedFiles(Struct, frozen=True):
         return self.changed[path] if path in self.changed else self.behind.read(path)
 
 
-def text_with_edits(source: Source, format: Format, before: Mechanism, after: Mechanism, report: Report) -> dict[str, bytes]:
-    """The files of a source that change when its mechanism ``before`` becomes ``after``, by their paths; its own under its name.
+def text_with_edits(source: Source, format: Format, before: Mechanism, after: Mechanism, report: Report) -> Texts:
+    """The files of a source that change when its mechanism ``before`` becomes ``after``.
 
     What was written is read again and compared. Where it is not what was meant, the elements in question are replaced by their print, and
     at last the whole text; both are reported.
@@ -58,13 +67,13 @@ def text_with_edits(source: Source, format: Format, before: Mechanism, after: Me
         wrong = attempt.wrong(files)
         if wrong is None:
             _report_replaced(replaced.values(), source, report)
-            return files
+            return Texts(files, attempt.beside)
         more = None if wrong is _UNREADABLE else attempt.blocks_of(wrong)
         if more is None or more.keys() <= replaced.keys():
             break
         replaced |= more
     report.warn(codes.EDIT_REWRITTEN, f"the edits could not be placed in the text of '{source.name}', which is printed anew as a whole")
-    return {source.name: attempt.whole}
+    return Texts({source.name: attempt.whole}, attempt.beside)
 
 
 def _report_replaced(elements: Iterable[Id], source: Source, report: Report) -> None:
@@ -83,10 +92,12 @@ class _Attempt:
         printing = formats.by_name(format.expands_to) if format.expands_to else format
         outline = formats.loaded(printing.outline or "")
         self.own: Outline = formats.loaded(format.outline or "")(source, Report())
-        self.whole = printed(after, printing, report)
-        sources = [Source("<print>", text, source.files) for text in (printed(before, printing, Report()), self.whole)]
+        package = printed(after, printing, report)
+        self.whole, self.beside = package.main, package.files
+        sources = [Source(source.name, text, source.files) for text in (printed(before, printing, Report()).main, self.whole)]
         self.before, self.after = (outline(print, Report()) for print in sources)
-        self.goal = pipeline.reader(printing)(sources[1], Report()).mechanism
+        image, self.goal = (pipeline.reader(printing)(print, Report()).mechanism for print in sources)
+        self.unprinted = {(difference.element, difference.field) for difference in diff(before, image, TOLERANCE)}
 
     def files(self, replaced: Mapping[Block, Id]) -> dict[str, bytes]:
         """The files that change."""
@@ -101,7 +112,12 @@ class _Attempt:
             found = pipeline.reader(self.format)(edited, Report()).mechanism
         except Refusal:
             return _UNREADABLE
-        return frozenset(difference.element for difference in diff(self.goal, found, TOLERANCE)) or None
+        return frozenset(difference.element for difference in diff(self.goal, found, TOLERANCE) if self._counts(difference)) or None
+
+    def _counts(self, difference: Difference) -> bool:
+        """Whether a difference is none of comments, nor one that printing makes without any edit."""
+        is_comment = difference.field.startswith(f"{COMMENT} ")
+        return not is_comment and (difference.element, difference.field) not in self.unprinted
 
     def blocks_of(self, elements: Iterable[Id]) -> dict[Block, Id] | None:
         """The blocks of the later print that elements stand in; None where one has none."""
@@ -127,7 +143,7 @@ class _Attempt:
         return [origin.line for origin in origins if origin is not None and origin.line is not None]
 
 
-def printed(mechanism: Mechanism, format: Format, report: Report) -> bytes:
+def printed(mechanism: Mechanism, format: Format, report: Report) -> Package:
     """The text of a mechanism in a format, which refers to every file where it is."""
     legal = legalize(mechanism, format.name, Options(), report)
-    return pipeline.writer(format)(legal, Options(), report).main
+    return pipeline.writer(format)(legal, Options(), report)

@@ -9,15 +9,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.update.fields import edit_fields
-from hymeko_x.update.matching import match
-from hymeko_x.update.splicing import Splices, reindented, unit_of
+from hymeko_x.edits.fields import edit_fields
+from hymeko_x.edits.matching import match
+from hymeko_x.edits.splicing import Splices, reindented, unit_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Set
 
+    from hymeko_x.edits.matching import Pairs
     from hymeko_x.outline import Block, Outline
-    from hymeko_x.update.matching import Pairs
 
 
 def merged(own: Outline, before: Outline, after: Outline, replaced: Set[int] = frozenset()) -> dict[str, bytes]:
@@ -48,7 +48,9 @@ class _Merge:
         self.since: Pairs = match(after.root, before.root)
         self.mine: Pairs = match(before.root, own.root)
         self.replaced = {block for block in after.root.walk() if block.start in replaced}
-        self.kept = {block: place for block in after.root.walk() if (place := self._place(block)) is not None and block not in self.replaced}
+        self.kept = {
+            block: place for block in after.root.walk() if (place := self._place(block)) is not None and block not in self.replaced
+        }
         self.moved = {block for block in self.kept if self._is_moved(block)}
         self.texts: dict[Block, bytes] = {}
 

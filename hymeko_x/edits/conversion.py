@@ -1,0 +1,132 @@
+"""The edits in a file that was converted from another one: found by converting that one again, and applied to its mechanism."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, NamedTuple
+
+from msgspec.structs import replace
+
+from hymeko_x import codes, formats, pipeline
+from hymeko_x.compare.diff import diff
+from hymeko_x.compare.ledger import TOLERANCE
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
+from hymeko_x.residue.align import other_names
+from hymeko_x.residue.delta import NAMED, residue_of
+from hymeko_x.residue.merge import restore
+from hymeko_x.residue.realign import with_new_names, with_old_names
+from hymeko_x.source import PackageFiles
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.formats import Format
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.rewrite import Options
+    from hymeko_x.source import Source
+
+_BASES = ("fixed", "free")
+_ACTUATORS = ("none", "motor", "position", "velocity")
+_ASSETS = ("copy", "reference")
+
+
+class Guess(NamedTuple):
+    """How the first conversion may have been made, and what it gives."""
+
+    options: Options
+    place: pipeline.Place
+    image: Mechanism
+    distance: int
+
+
+class Conversion:
+    """The conversion of ORIGINAL into the format of EDITED, made again."""
+
+    def __init__(self, mechanism: Mechanism, source: Source, edited: Source, format: Format, home: Format, report: Report) -> None:
+        self.mechanism, self.source, self.format, self.report = mechanism, source, format, report
+        self.edited = pipeline.reader(format)(edited, report).mechanism
+        self.files, self.home = edited.files, home
+        self.folder = os.path.dirname(edited.name) or "."
+
+    def edited_mechanism(self, options: Options) -> Mechanism:
+        """The mechanism of ORIGINAL with the edits; options that are not given are found out.
+
+        Raises: Refusal when ORIGINAL cannot be written in the format.
+        """
+        guess = self._found_out(self._guess(options, pipeline.Place(self.folder)))
+        self._report_found(options, guess)
+        residue = residue_of(self.mechanism, guess.image)
+        names = renames(self.edited, guess.image)
+        restored = restore(with_old_names(self._with_inertials(guess.image), names), residue, self.report)
+        ours = dict(residue.alignment.names)
+        return with_new_names(restored, {new: ours.get(old, old) for new, old in names.items()})
+
+    def _with_inertials(self, image: Mechanism) -> Mechanism:
+        """The edited robot; a body without an inertial, where the image has one or has no such body, has what the engine computes."""
+        mine = image.graph.vertices
+        bare = [key for key, body in self.edited.vertices(Body) if body.inertial is None and mine.get(key) != body]
+        if not bare or formats.native_format(self.mechanism) is self.format:
+            return self.edited
+        complete = pipeline.completed(self.edited, self.home, self.files, Report())
+        return self.edited.with_graph(self.edited.graph.replace(vertices={key: complete.graph.vertices[key] for key in bare}))
+
+    def _guess(self, options: Options, place: pipeline.Place) -> Guess:
+        files = self.source.files
+        package = pipeline.write(self.mechanism, self.format, options, files, Report(), place)
+        image = pipeline.read_back(package, self.format, PackageFiles(package, files))
+        return Guess(options, place, image, len(diff(image, with_old_names(self.edited, renames(self.edited, image)), TOLERANCE)))
+
+    def _found_out(self, first: Guess) -> Guess:
+        """The guess with the fewest differences, one option after the other; only those that may explain some are tried."""
+        best = first
+        for others in (self._other_files, self._other_bases, self._other_actuators):
+            for options, place in others(best):
+                guess = self._guess(options, place)
+                if guess.distance < best.distance:
+                    best = guess
+        return best
+
+    def _other_files(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
+        """Where files are called otherwise: beside the output or where they are, and in a folder of the output's name."""
+        mine, theirs = ({part.uri for _, part in robot.assets() if part.uri} for robot in (guess.image, self.edited))
+        if theirs <= mine:
+            return
+        for assets in _ASSETS:
+            yield guess.options, replace(guess.place, assets=assets)
+        first = next(iter(sorted(theirs - mine))).partition("/")[0]
+        yield replace(guess.options, within=f"{first}/"), replace(guess.place, assets="copy")
+
+    def _other_bases(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
+        """Where a body is joined to the world in one of the two only."""
+        mine, theirs = ({view.child for view in robot.children.get(WORLD, ())} for robot in (guess.image, self.edited))
+        kinds = [[view.joint.dofs for view in robot.children.get(WORLD, ())] for robot in (guess.image, self.edited)]
+        if guess.options.base is None and (mine != theirs or kinds[0] != kinds[1]):
+            yield from ((replace(guess.options, base=base), guess.place) for base in _BASES)
+
+    def _other_actuators(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
+        """Where one of the two has actuators that the other one does not have."""
+        mine, theirs = ({(key, part.kind) for key, part in robot.vertices(Actuator)} for robot in (guess.image, self.edited))
+        if guess.options.actuators is None and mine != theirs:
+            yield from ((replace(guess.options, actuators=kind), guess.place) for kind in _ACTUATORS)
+
+    def _report_found(self, options: Options, guess: Guess) -> None:
+        names = {"base": guess.options.base, "actuators": guess.options.actuators, "assets": guess.place.assets}
+        given = {"base": options.base, "actuators": options.actuators, "assets": None}
+        found = [f"--{name} {value}" for name, value in names.items() if value != given[name]]
+        if found:
+            self.report.note(codes.OPTIONS_FOUND, f"the file was converted with {' '.join(found)}, as far as can be seen")
+
+
+def renames(edited: Mechanism, image: Mechanism) -> dict[Id, Id]:
+    """The old ids of renamed elements by their new ones, as far as the elements around them tell."""
+    return {new: old for new, old in other_names(edited, image).items() if old.kind in NAMED and new.kind == old.kind}
+
+
+def new_assets(before: Mechanism, after: Mechanism) -> Iterator[str]:
+    """The uris of meshes and images that only the edited mechanism refers to."""
+    known = {part.uri for _, part in before.assets()}
+    for _, part in after.assets():
+        if isinstance(part, Mesh | Texture) and part.uri and part.uri not in known:
+            yield part.uri

@@ -1,0 +1,111 @@
+"""`update`: the edits of a converted file in the text of its original."""
+
+from __future__ import annotations
+
+import os
+import posixpath
+from contextlib import suppress
+from difflib import unified_diff
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from hymeko_x import codes, pipeline
+from hymeko_x.compare.diff import diff
+from hymeko_x.compare.ledger import TOLERANCE
+from hymeko_x.diagnostics import Origin, Report, refuse
+from hymeko_x.edits.conversion import Conversion, new_assets
+from hymeko_x.edits.text import text_with_edits
+from hymeko_x.ir.parts import Mesh, Texture
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.compare.diff import Difference
+    from hymeko_x.formats import Format
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.rewrite import Options
+    from hymeko_x.source import Source
+
+_ASSETS = "meshes"
+
+
+class Updated(Struct, frozen=True):
+    """What an update gives: the robot with the edits, these as differences, and the files.
+
+    ``source`` is the text of the original, ``changed`` the new texts of its files by their paths, ``before`` their old ones; ``beside`` are
+    new files by their paths beside the original.
+    """
+
+    mechanism: Mechanism
+    edits: tuple[Difference, ...]
+    source: bytes
+    changed: Mapping[str, bytes]
+    before: Mapping[str, bytes]
+    beside: Mapping[str, bytes]
+    report: Report
+
+    def files(self, original: str, output: str | None = None) -> dict[str, bytes]:
+        """What is to be written, by path: into the original's own files, or to ``output`` and the folder around it."""
+        target = output or original
+        folder, home = os.path.dirname(target), os.path.dirname(original)
+        found = {os.path.join(folder, name): data for name, data in self.beside.items()}
+        for path, data in self.changed.items():
+            away = os.path.abspath(folder) != os.path.abspath(home)
+            found[target if path == original else os.path.join(folder, os.path.relpath(path, home or ".")) if away else path] = data
+        if output is not None and original not in self.changed:
+            found[output] = self.source
+        return found
+
+    @property
+    def diff(self) -> str:
+        """What changes in the texts, as `diff -u` shows it."""
+        return "".join(line for path in self.changed for line in self._lines(path))
+
+    def _lines(self, path: str) -> Iterator[str]:
+        old, new = (data.decode("utf-8", "replace").splitlines(keepends=True) for data in (self.before[path], self.changed[path]))
+        for line in unified_diff(old, new, path, path):
+            yield line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n"
+
+
+def update(original: Source, format: Format, edited: Source, edited_format: Format, options: Options, report: Report) -> Updated:
+    """The edits in ``edited``, which was once converted from ``original``, in the text of that. ``options``: those of the conversion.
+
+    Raises: Refusal when a file cannot be read or ``original`` cannot be converted; HX003 where the text of the format cannot be edited.
+    """
+    if format.outline is None:
+        raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} is no text in which edits could be placed", Origin(original.name))
+    before = pipeline.read(original, format, Report())
+    conversion = Conversion(before, original, edited, edited_format, format, report)
+    after, beside = _with_new_assets(before, conversion.edited_mechanism(options), edited)
+    edits = diff(before, after, TOLERANCE)
+    if not edits:
+        return Updated(before, (), original.data, {}, {}, {}, report)
+    texts = text_with_edits(original, format, before, after, report)
+    old = {path: original.data if path == original.name else original.files.read(path) for path in texts.changed}
+    return Updated(replace(after, origins=before.origins), edits, original.data, texts.changed, old, {**beside, **texts.beside}, report)
+
+
+def _with_new_assets(before: Mechanism, after: Mechanism, edited: Source) -> tuple[Mechanism, dict[str, bytes]]:
+    """The mechanism with the paths that files get beside the original which only the edited robot has, and their contents."""
+    folder = next((posixpath.dirname(part.uri) for _, part in before.vertices(Mesh) if part.uri and _is_below(part.uri)), _ASSETS)
+    names: dict[str, str] = {}
+    contents: dict[str, bytes] = {}
+    for uri in new_assets(before, after):
+        path = edited.files.find(uri) if _is_below(uri) else None
+        with suppress(OSError):
+            if path is not None:
+                names[uri] = posixpath.join(folder, posixpath.basename(uri))
+                contents[names[uri]] = edited.files.read(path)
+    changed: dict[Id, VertexPart] = {}
+    for key, part in after.assets():
+        if isinstance(part, Mesh | Texture) and part.uri in names:
+            changed[key] = replace(part, uri=names[part.uri])
+    return (after.with_graph(after.graph.replace(vertices=changed)) if changed else after), contents
+
+
+def _is_below(uri: str) -> bool:
+    """Whether a uri is a relative path that stays below its folder."""
+    return "://" not in uri and not os.path.isabs(uri) and ".." not in uri.split("/")

@@ -1,0 +1,207 @@
+"""Edits of a converted file become edits of the text that it was converted from, and of nothing else in it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import hymeko_x as hx
+from hymeko_x.cli import main
+from tests.residue.samples import MJCF
+
+ARM = """<?xml version="1.0"?>
+<!-- made by hand -->
+<robot name="arm">
+  <material name="steel"><color rgba="0.7 0.70 0.7 1.0"/></material>
+  <link name="base"><visual name="plate">
+    <geometry><box size="0.20 0.2 0.05"/></geometry><material name="steel"/></visual></link>
+  <link name='upper'>   <!-- the upper arm -->
+    <inertial>
+      <mass value="1.50"/> <!-- weighed -->
+      <origin rpy="0 0.1 0" xyz="0 0 0.150"/>
+      <inertia ixx="0.010" ixy="0" ixz="0" iyy="0.011" iyz="0" izz="0.002"/>
+    </inertial>
+    <visual><geometry><cylinder radius="0.04" length="0.30"/></geometry></visual>
+  </link>
+  <joint name="shoulder" type="revolute">
+    <parent link="base"/>
+    <child link="upper"/>
+    <origin xyz="0 0 0.050" rpy="0 0 1.570"/>
+    <axis xyz="0 0 2"/>
+    <limit lower="-1.5" upper="1.50" effort="20" velocity="3.14"/>
+  </joint>
+  <link name="tool"/>
+  <joint name="mount" type="fixed">
+    <parent link="upper"/> <child link="tool"/>
+  </joint>
+</robot>
+"""
+SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "usd": ".usda", "hymeko": ".hymeko", "xacro": ".xacro"}
+
+
+def edited(text: str, target: str, edit: tuple[str, str], folder: Path, source: str = "urdf", **options: object) -> str:
+    """The text after its conversion to the target was edited by a substitution, and that was brought home."""
+    original, there = folder / f"arm{SUFFIXES[source]}", folder / f"there{SUFFIXES[target]}"
+    original.write_bytes(text.encode())
+    hx.convert(original, there, **options)  # type: ignore[arg-type]
+    pattern, new = edit
+    content, count = re.subn(pattern, new, there.read_text(), count=1, flags=re.DOTALL)
+    assert count == 1, there.read_text()
+    there.write_text(content)
+    found = hx.update(original, there)
+    assert [str(diagnostic) for diagnostic in found.report if diagnostic.code.id == "HX108"] == []
+    return original.read_bytes().decode()
+
+
+def changed_lines(before: str, after: str) -> list[tuple[str, str]]:
+    """The lines that differ between two texts of as many lines."""
+    rows = list(zip(before.split("\n"), after.split("\n"), strict=True))
+    return [(a.strip(), b.strip()) for a, b in rows if a != b]
+
+
+MASS = {
+    "mjcf": ('mass="1.5"', 'mass="2.25"'),
+    "hymeko": (r"mass 1\.5", "mass 2.25"),
+    "usd": (r"physics:mass = 1\.5", "physics:mass = 2.25"),
+    "xacro": ('<mass value="1.5"/>', '<mass value="2.25"/>'),
+}
+
+
+@pytest.mark.parametrize("target", MASS)
+def test_a_mass_changes_one_number_of_one_line(target: str, tmp_path: Path) -> None:
+    after = edited(ARM, target, MASS[target], tmp_path)
+    assert changed_lines(ARM, after) == [('<mass value="1.50"/> <!-- weighed -->', '<mass value="2.25"/> <!-- weighed -->')]
+
+
+@pytest.mark.parametrize("target", MASS)
+def test_what_was_not_edited_changes_nothing(target: str, tmp_path: Path) -> None:
+    original, there = tmp_path / "arm.urdf", tmp_path / f"there{SUFFIXES[target]}"
+    original.write_text(ARM)
+    hx.convert(original, there)
+    found = hx.update(original, there)
+    assert (found.edits, found.changed, original.read_text()) == ((), {}, ARM)
+
+
+def test_of_a_row_of_numbers_only_those_that_were_edited_change(tmp_path: Path) -> None:
+    after = edited(ARM, "mjcf", (r'(name="upper" pos=)"0 0 0.05"', r'\1"0 0.1 0.05"'), tmp_path)
+    assert changed_lines(ARM, after) == [('<origin xyz="0 0 0.050" rpy="0 0 1.570"/>', '<origin xyz="0 0.1 0.050" rpy="0 0 1.570"/>')]
+
+
+def test_a_renamed_link_is_renamed_where_it_is_named(tmp_path: Path) -> None:
+    after = edited(ARM, "mjcf", ('body name="upper"', 'body name="humerus"'), tmp_path)
+    assert after == ARM.replace("'upper'", "'humerus'").replace('"upper"', '"humerus"')
+
+
+def test_line_ends_stay_what_they_are(tmp_path: Path) -> None:
+    text = ARM.replace("\n", "\r\n")
+    new = '<body name="upper"\\1<body name="pen" pos="0 0 0.3"><geom type="sphere" size="0.01" mass="0.1"/></body></body>'
+    after = edited(text, "mjcf", (r'<body name="upper"(.*?)</body>', new), tmp_path)
+    assert "\n" not in after.replace("\r\n", "")
+    assert after.startswith(text[: text.index('  <link name="tool"/>')])
+
+
+def test_a_body_that_is_added_is_inserted_with_the_indentation_around_it(tmp_path: Path) -> None:
+    body = '<body name="pen" pos="0 0 0.3"><geom name="tip" type="sphere" size="0.01" mass="0.1"/></body>'
+    after = edited(ARM, "mjcf", (r'(<body name="tool".*?>)', rf"\1{body}"), tmp_path)
+    assert all(line in after for line in ARM.splitlines())
+    assert '  <link name="pen">\n    <inertial>\n' in after
+    assert '  <joint name="pen" type="fixed">\n' in after
+
+
+def test_a_body_that_is_removed_leaves_nothing_behind(tmp_path: Path) -> None:
+    after = edited(ARM, "mjcf", (r'\s*<body name="tool".*?</body>', ""), tmp_path)
+    assert after == ARM.replace('  <link name="tool"/>\n', "").replace(
+        '  <joint name="mount" type="fixed">\n    <parent link="upper"/> <child link="tool"/>\n  </joint>\n', ""
+    )
+
+
+def test_a_value_of_a_default_class_becomes_one_of_the_joint(tmp_path: Path) -> None:
+    pattern = r'(<joint name="left_hip_y".*?upper=)"[^"]*"'
+    after = edited(MJCF, "urdf", (pattern, r'\1"1.5"'), tmp_path, "mjcf")
+    rows = changed_lines(MJCF, after)
+    assert rows == [
+        (
+            '<joint name="left_hip_y" axis="0 1 0" range="-20 110" ref="10"/>',
+            '<joint name="left_hip_y" axis="0 1 0" range="-20 85.94366926962348" ref="10"/>',
+        )
+    ]
+
+
+def test_a_body_moves_with_the_text_of_its_author(tmp_path: Path) -> None:
+    text = """<mujoco model="m">
+  <worldbody>
+    <body name="a">
+      <geom type="box" size="0.10 0.1 0.1"/>
+      <body name="b" pos="0 0 1.0">  <!-- stays with it -->
+        <geom type="sphere" size="0.050"/>
+      </body>
+    </body>
+    <body name="c">
+      <geom type="box" size="0.10 0.1 0.1"/>
+      <body name="d"><geom type="sphere" size="0.1"/></body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+    after = edited(text, "urdf", (r'(<joint name="b".*?<parent link=)"a"', r'\1"c"'), tmp_path, "mjcf")
+    inner = """      <body name="b" pos="0 0 1.0">  <!-- stays with it -->
+        <geom type="sphere" size="0.050"/>
+      </body>
+"""
+    d = '      <body name="d"><geom type="sphere" size="0.1"/></body>\n'
+    assert after in (text.replace(inner, "").replace(d, d + inner), text.replace(inner, "").replace(d, inner + d))
+
+
+def test_an_included_file_gets_the_edits_of_what_stands_in_it(tmp_path: Path) -> None:
+    main_text = '<mujoco model="m">\n  <include file="parts/arm.xml"/>\n</mujoco>\n'
+    part = """<mujoco>
+  <worldbody>
+    <body name="a">
+      <inertial pos="0 0 0" mass="2.0" diaginertia="0.01 0.01 0.01"/>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts/arm.xml").write_text(part)
+    assert edited(main_text, "urdf", ('<mass value="2"/>', '<mass value="3"/>'), tmp_path, "mjcf") == main_text
+    assert (tmp_path / "parts/arm.xml").read_text() == part.replace('"2.0"', '"3"')
+
+
+def test_options_of_the_conversion_are_found_out(tmp_path: Path) -> None:
+    original, there = tmp_path / "arm.urdf", tmp_path / "there.xml"
+    original.write_text(ARM)
+    hx.convert(original, there, base="free", actuators="position")
+    there.write_text(there.read_text().replace('mass="1.5"', 'mass="2.25"'))
+    found = hx.update(original, there, dry_run=True)
+    assert list(map(str, found.edits)) == ["body 'upper' inertial.mass: 1.5 -> 2.25"]
+    assert [str(diagnostic) for diagnostic in found.report] == [
+        "note[HX109]: the file was converted with --base free --actuators position, as far as can be seen"
+    ]
+
+
+def test_a_rehearsal_prints_the_difference_and_writes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    original, there = tmp_path / "arm.urdf", tmp_path / "there.xml"
+    original.write_text(ARM)
+    hx.convert(original, there)
+    there.write_text(there.read_text().replace('mass="1.5"', 'mass="2.25"'))
+    capsys.readouterr()
+    assert main(["update", str(original), str(there), "--dry-run"]) == 0
+    printed = capsys.readouterr()
+    assert [line for line in printed.out.splitlines() if line[:1] in "+-"][2:] == [
+        '-      <mass value="1.50"/> <!-- weighed -->',
+        '+      <mass value="2.25"/> <!-- weighed -->',
+    ]
+    assert printed.err == f"{original}:7: edit: body 'upper' inertial.mass: 1.5 -> 2.25\n"
+    assert original.read_text() == ARM
+
+
+def test_another_output_leaves_the_original_alone(tmp_path: Path) -> None:
+    original, there, out = tmp_path / "arm.urdf", tmp_path / "there.xml", tmp_path / "out.urdf"
+    original.write_text(ARM)
+    hx.convert(original, there)
+    there.write_text(there.read_text().replace('mass="1.5"', 'mass="2.25"'))
+    hx.update(original, there, out)
+    assert (original.read_text(), out.read_text()) == (ARM, ARM.replace('"1.50"/> <!', '"2.25"/> <!'))
