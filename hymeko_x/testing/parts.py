@@ -90,10 +90,10 @@ MOUNTED = st.one_of(
     st.builds(parts.Light, TEXTS, maybe(VECTORS), PARAMETERS),
 )
 LUMPED = st.one_of(
-    st.builds(parts.Spring, NUMBERS, NUMBERS),
-    st.builds(parts.Damper, NUMBERS),
-    st.builds(parts.Mass, NUMBERS),
-    st.builds(parts.Port, TEXTS, NUMBERS),
+    st.builds(parts.Spring, NUMBERS, NUMBERS, TEXTS, TEXTS),
+    st.builds(parts.Damper, NUMBERS, TEXTS, TEXTS),
+    st.builds(parts.Mass, NUMBERS, TEXTS),
+    st.builds(parts.Port, TEXTS, NUMBERS, TEXTS, PARAMETERS),
 )
 ACTUATORS = st.builds(parts.Actuator, TEXTS, PARAMETERS)
 POSE_SETS = st.builds(parts.PoseSet, maybe(TEXTS), maybe(NUMBERS), PARAMETERS)

@@ -61,6 +61,8 @@ _SCALE = Word("scale", "scale", "vec3")
 _ACTIVE = Word("active", "active", "flag")
 _FACES = Word("faces", "faces", "integers")
 _MASS = _number("mass", "mass")
+_LAW = Word("law", "law", "text")
+_DOMAIN = Word("domain", "domain", "text")
 _POINTS = (Word("vertices", "vertices", "numbers", "length"), _FACES)
 _TEXTURING = (Word("texcoords", "texcoords", "numbers"), Word("texfaces", "texfaces", "integers"))
 _SURFACE = _numbers("specular shininess reflectance emission metallic roughness")
@@ -76,10 +78,10 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
         "camera": PartWords(parts.Camera, (_number("fovy", "angle"), Word("resolution", "resolution", "pixels")), open=True),
         "light": PartWords(parts.Light, (_TYPE, Word("diffuse", "diffuse", "vec3")), open=True),
         "pose": PartWords(parts.PoseSet, (Word("group", "group", "text"), _number("time", "time")), open=True),
-        "spring": PartWords(parts.Spring, _numbers("stiffness rest")),
-        "damper": PartWords(parts.Damper, _numbers("damping")),
-        "mass": PartWords(parts.Mass, (_MASS,)),
-        "port": PartWords(parts.Port, (_TYPE, _number("value"))),
+        "spring": PartWords(parts.Spring, (*_numbers("stiffness rest"), _LAW, _DOMAIN)),
+        "damper": PartWords(parts.Damper, (*_numbers("damping"), _LAW, _DOMAIN)),
+        "mass": PartWords(parts.Mass, (_MASS, _DOMAIN)),
+        "port": PartWords(parts.Port, (_TYPE, _number("value"), _DOMAIN), open=True),
         "datum": PartWords(parts.Datum, (), open=True),
         "mount": PartWords(parts.Mount, ()),
         "layer": PartWords(parts.Layer, (Word("use", "use", "text"),)),
@@ -115,11 +117,20 @@ ATTACHED: Mapping[str, str] = MappingProxyType(
 
 For a body that is a joint without freedom: ``hand { [0 0 1] + arm mass 2 }``."""
 
+LUMPED_UNITS: Mapping[str, tuple[str, str, str]] = MappingProxyType(
+    {"spring": ("stiffness", "N/m", "Nm/rad"), "damper": ("damping", "N*s/m", "Nm*s/rad"), "mass": ("mass", "kg", "kg*m^2")}
+)
+"""The field of a lumped element whose unit tells its domain, and its units in translation and in rotation."""
+
 SHORT_TYPES: Mapping[tuple[str, str], str] = MappingProxyType(
     {
         ("actuator", "motor"): "motor",
         ("actuator", "position"): "servo",
         ("port", "ground"): "ground",
+        ("port", "effort"): "force",
+        ("port", "position"): "motion",
+        ("port", "pid"): "pid",
+        ("port", "feedback"): "feedback",
         ("loop", "connect"): "connect",
         ("loop", "weld"): "weld",
         ("contact", "exclude"): "exclude",
@@ -241,14 +252,14 @@ TARGETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "mount": ("body", "world", "frame", "camera", "light", "sensor"),
         "layer": ("texture", "material"),
         "subset": ("shape", "material"),
-        "coupling": ("joint", "tendon"),
+        "coupling": ("joint", "tendon", "mass"),
         "loop": ("body", "frame", "world"),
         "tendon": ("frame", "joint", "shape", "tendon"),
         "drive": ("actuator", "joint", "tendon", "frame", "body"),
-        "sense": ("sensor", "body", "frame", "joint", "tendon", "actuator", "shape", "camera", "world"),
+        "sense": ("sensor", "body", "frame", "joint", "tendon", "actuator", "shape", "camera", "world", "mass", "constitutive"),
         "stance": ("pose", "joint"),
         "contact": ("shape", "body", "world"),
-        "constitutive": ("body", "spring", "damper", "mass", "port"),
+        "constitutive": ("body", "spring", "damper", "mass", "port", "world"),
         "relation": (),
     }
 )
@@ -338,6 +349,38 @@ def unit_factor(unit: str) -> float | None:
         factor *= _FACTORS[name] ** (sign * int(power or "1"))
         sign = 1
     return factor
+
+
+_EXPONENTS: Mapping[str, tuple[int, int, int, int]] = MappingProxyType(
+    {
+        **dict.fromkeys(_LENGTH, (1, 0, 0, 0)),
+        **dict.fromkeys(_MASSES, (0, 1, 0, 0)),
+        **dict.fromkeys(_TIME, (0, 0, 1, 0)),
+        **dict.fromkeys(_ANGLE, (0, 0, 0, 1)),
+        **dict.fromkeys(_FORCE, (1, 1, -2, 0)),
+        **dict.fromkeys(("Nm", "Nmm"), (2, 1, -2, 0)),
+        **dict.fromkeys(("Hz", "kHz"), (0, 0, -1, 0)),
+        "rpm": (0, 0, -1, 1),
+    }
+)
+"""The exponents of length, mass, time and angle in the mechanical units."""
+
+
+def unit_exponents(unit: str) -> tuple[int, int, int, int] | None:
+    """The exponents of length, mass, time and angle in a unit: (0, 1, -2, 0) for ``N/m``. None where it is not mechanical."""
+    total = [0, 0, 0, 0]
+    sign = 1
+    for part in unit.replace("/", " / ").replace("*", " ").replace("·", " ").replace("-", " ").split():
+        if part == "/":
+            sign = -1
+            continue
+        name, _, power = part.partition("^")
+        if name not in _EXPONENTS:
+            return None
+        total = [old + sign * int(power or "1") * new for old, new in zip(total, _EXPONENTS[name], strict=True)]
+        sign = 1
+    length, mass, time, angle = total
+    return (length, mass, time, angle)
 
 
 def unit_dimension(unit: str) -> str:

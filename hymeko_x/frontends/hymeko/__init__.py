@@ -19,6 +19,7 @@ from hymeko_x.frontends.hymeko.builder import HymekoBuilder
 from hymeko_x.frontends.hymeko.extras import is_foreign, read_extra, read_foreign
 from hymeko_x.frontends.hymeko.joints import read_joint, unit_axis
 from hymeko_x.frontends.hymeko.kinds import infer_kinds
+from hymeko_x.frontends.hymeko.lumped import remove_folded
 from hymeko_x.frontends.hymeko.parts import has_attached, read_part
 from hymeko_x.frontends.hymeko.values import ValueReader, read_units
 from hymeko_x.ir import parts
@@ -41,7 +42,8 @@ if TYPE_CHECKING:
 
 MAX_BYTES = 2**28
 
-_WITH_SHAPES = frozenset({"body", "world"})  # read first: their shapes have no declaration of their own
+_WITH_SHAPES = frozenset({"body", "world"})
+_FIRST = _WITH_SHAPES | {"spring", "damper"}  # shapes have no declaration of their own, and joints take up springs and dampers
 
 
 def read(source: Source, report: Report) -> Reading:
@@ -78,8 +80,9 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder) -> Mechanism:
     _read_root(builder, expanded, kinds)
     builder.source = take_provenance(builder.notations, FOREIGN, Provenance("hymeko", file=builder.reader.file))
     declared = _declare(builder, expanded, kinds)
-    for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _WITH_SHAPES):
+    for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _FIRST):
         _read_element(builder, key, element)
+    remove_folded(builder)
     if expanded.root and expanded.root != expanded.name:
         builder.note(ROOT, ROOT_NAME, expanded.root)
     return builder.build(expanded.name, builder.source)

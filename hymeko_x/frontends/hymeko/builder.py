@@ -37,6 +37,7 @@ class HymekoBuilder(Builder):
     files: str = ""
     kinds: dict[str, list[str]] = field(default_factory=dict)
     directions: dict[str, Vec3] = field(default_factory=dict)
+    folded: set[Id] = field(default_factory=set)
 
     def declare(self, kind: str, element: Element) -> Id:
         """Reserve the id of an element, so that references find it.

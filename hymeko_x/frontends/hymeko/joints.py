@@ -11,6 +11,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import hymeko as words
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.builder import sign_of
+from hymeko_x.frontends.hymeko.lumped import take_compliant, with_compliance
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Vec3, Written, numbers_text, rotate, scaled, unit
@@ -45,10 +46,12 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
     axis_arc = _take_axis_arc(builder, block, scope)
     if _has_own_child(builder, key, block):
         block.arcs.append(ArcItem(Ref(("body", key.name), "-"), line=element.node.line, column=element.node.column))
+    compliant = take_compliant(builder, block, scope)
     parent, child = _ends(builder, key, block, element.node)
     pose, child_pose = _poses(builder.reader, parent, child, key)
     target = builder.target(child.ref, scope, _BODIES, child)
     dofs = _dofs(builder, block, scope, words.ROLE_MOVES.get(child.role.upper()) or moves, axis_arc)
+    dofs = with_compliance(builder, key, compliant, dofs)
     builder.edges[key] = joint_edge(parts.Joint(dofs), builder.target(parent.ref, scope, _BODIES, parent), target, pose, child_pose)
     if mimic:
         targets = [builder.target(arc.ref, scope, words.TARGETS["coupling"], arc) for arc in mimic]

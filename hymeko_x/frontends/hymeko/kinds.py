@@ -15,6 +15,7 @@ _EDGES = {"+": 1, "<-": 1, "-": -1, "->": -1}
 _SPRING = frozenset({"spring_constant", "stiffness", "k"})
 _DAMPER = frozenset({"damping_const", "damping", "c"})
 _BODY_WORDS = frozenset({"mass", "com", "inertia", "visual", "collision", "geometry", "shape", "translation"})
+_COMPLIANT = frozenset({"spring", "damper", "port"})
 _ALL = frozenset(KINDS.values()) | {"axis"}
 
 
@@ -66,20 +67,19 @@ def _infer_from_edges(elements: list[Element], kinds: list[str], by_name: dict[s
         if not element.node.edge or kinds[number]:
             continue
         ends = [(arc, _target(arc, element, by_name)) for arc in element.node.items if isinstance(arc, ArcItem)]
-        lumped = any(end is not None and _lumped(elements[end]) in ("spring", "damper") for _, end in ends)
+        lumped = any(end is not None and (kinds[end] or _lumped(elements[end])) in _COMPLIANT for _, end in ends)
         if lumped:
             kinds[number] = "constitutive"
             for _, end in ends:
                 if end is not None and not kinds[end]:
-                    kinds[end] = _lumped(elements[end]) or "port"
+                    kinds[end] = _lumped(elements[end]) or ("body" if _fields(elements[end]) & _BODY_WORDS else "port")
         elif _is_joint(ends, elements):
             kinds[number] = "joint"
             for _, end in ends:
                 if end is not None and not kinds[end] and not is_direction(elements[end]):
                     kinds[end] = "body"
     for number, element in enumerate(elements):
-        fields = {getattr(item, "name", "") for item in element.node.items}
-        if not kinds[number] and not element.node.edge and fields & _BODY_WORDS:
+        if not kinds[number] and not element.node.edge and _fields(element) & _BODY_WORDS:
             kinds[number] = "body"
 
 
@@ -97,6 +97,10 @@ def _is_joint(ends: list[tuple[ArcItem, int | None]], elements: list[Element]) -
         if not names_axis and arc.role not in ("axis", "mimic"):
             signs.append(_EDGES.get(arc.ref.direction, 0))
     return sorted(signs) == [-1, 1]
+
+
+def _fields(element: Element) -> set[str]:
+    return {getattr(item, "name", "") for item in element.node.items}
 
 
 def _lumped(element: Element) -> str:

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.formats.hymeko import ALIASES, ATTACHED, NAMED_AFTER_ID, PARTS, TARGETS, TEXTURE, attached_edge, attached_key
+from msgspec.structs import fields
+
+from hymeko_x.formats.hymeko import ALIASES, ATTACHED, LUMPED_UNITS, NAMED_AFTER_ID, PARTS, TARGETS, TEXTURE, attached_edge, attached_key
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.joints import read_dofs, read_limits
+from hymeko_x.frontends.hymeko.lumped import set_domain
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_field
 
@@ -38,12 +41,15 @@ def read_part(builder: HymekoBuilder, key: Id, element: Element) -> None:
         values["limits"] = read_limits(block, "length")
     if key.kind == "loop":
         values["dofs"] = read_dofs(builder, block, element.scope)
+    if key.kind in LUMPED_UNITS:
+        set_domain(builder, key.kind, element, values)
     if words.open:
         values["parameters"] = (*block.take_rest(builder.reader.parameter), *_nested_parameters(builder, block))
     try:
         part = words.part(**values)
     except TypeError as error:
-        missing = ", ".join(f"'{word.word}'" for word in words.words if word.attribute not in values)
+        required = {found.name for found in fields(words.part) if found.required}
+        missing = ", ".join(f"'{word.word}'" for word in words.words if word.attribute in required - values.keys())
         raise builder.reader.refuse(element.node, f"{key} needs {missing}") from error
     if key.kind in TARGETS:
         builder.edges[key] = Edge(part, tuple(builder.arc(key.kind, arc, element.scope) for arc in block.arcs))
