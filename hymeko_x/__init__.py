@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from hymeko_x.api import convert, dump, dumps, load, loads, update
     from hymeko_x.compare.diff import diff
     from hymeko_x.diagnostics import Diagnostic, Refusal, Report, Severity
+    from hymeko_x.dynamics import dynamics
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.verify import verify
 
@@ -34,6 +35,7 @@ __all__ = [
     "diff",
     "dump",
     "dumps",
+    "dynamics",
     "load",
     "loads",
     "update",
@@ -44,6 +46,7 @@ _HOMES = {
     **dict.fromkeys(("convert", "dump", "dumps", "load", "loads", "update"), "hymeko_x.api"),
     **dict.fromkeys(("Diagnostic", "Refusal", "Report", "Severity"), "hymeko_x.diagnostics"),
     "diff": "hymeko_x.compare.diff",
+    "dynamics": "hymeko_x.dynamics",
     "verify": "hymeko_x.verify",
     **dict.fromkeys(("Id", "Mechanism"), "hymeko_x.ir.mechanism"),
 }

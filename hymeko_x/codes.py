@@ -274,6 +274,42 @@ NO_VISUAL = Code("HX317", "a link cannot be seen", "The link has a mass and no v
 NO_COLLISION = Code("HX318", "a link cannot be touched", "The link has a mass and no collision shape.")
 BAD_SIZE = Code("HX319", "a shape has an impossible size", "Sizes and scales are finite and not zero, and a robot is not a kilometre large.")
 
+# ---- HX4xx: dynamics -------------------------------------------------------------------------------------------------
+NO_DYNAMICS = Code(
+    "HX400",
+    "there is nothing that moves",
+    "Equations of motion need masses: a lumped network with masses and constitutive edges, or bodies with inertia and joints that move.",
+)
+BAD_UNITS = Code(
+    "HX401",
+    "units of a network do not agree",
+    "A spring in Nm/rad acts on rotations and one in N/m on translations. Neighbours are of one domain, unless the weight of an arc is a ratio that leads from one to the other.",
+)
+MASSLESS = Code("HX402", "a moving element has no mass", "Its acceleration is force divided by mass, so that its mass must be positive.")
+ALGEBRAIC_LOOP = Code(
+    "HX403",
+    "equations form an algebraic loop",
+    "Elements determine each other without a state between them: couplings in a circle, or controllers that measure each other.",
+)
+SINGULAR_MASS = Code(
+    "HX404",
+    "the mass matrix is singular",
+    "Some motion of the joints moves no mass, so that its acceleration is not determined. The message names the joint.",
+)
+UNSTABLE_INPUT = Code(
+    "HX405",
+    "an input excites an unstable motion",
+    "The linear system has a pole with a positive real part that this input reaches: the response grows without bounds unless a controller stabilises it.",
+)
+BAD_NETWORK = Code(
+    "HX406", "an edge or a port describes no network", "docs/dynamics.md lists what constitutive edges, ports, laws and couplings are made of."
+)
+BAD_SIGNAL = Code("HX407", "an input signal cannot be used", "docs/dynamics.md lists the signals, their parameters, and the form of CSV files.")
+NO_FORM = Code("HX408", "the system has no such form", "The message says which property the form needs and which element lacks it.")
+SIMULATION_FAILED = Code(
+    "HX409", "the simulation stopped", "The solver could not go on: the solution grows without bounds, or the equations have no solution there."
+)
+
 # ---- HX9xx: our bugs -------------------------------------------------------------------------------------------------
 BUG = Code(
     "HX901", "this is a bug in hymeko-x", "Something happened that should be impossible. Please report it with the input and the message."

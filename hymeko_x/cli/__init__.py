@@ -24,6 +24,8 @@ VERBS = {
     "roundtrip": ("hymeko_x.cli.compare", "through other formats and back, every leg verified"),
     "check": ("hymeko_x.cli.info", "is a robot complete and sane? for people and for repair loops"),
     "dh": ("hymeko_x.cli.dh", "Denavit-Hartenberg tables: standard, modified, Hayati-Roberts"),
+    "dynamics": ("hymeko_x.cli.dynamics", "the equations of motion: state space, transfer functions, energies"),
+    "simulate": ("hymeko_x.cli.dynamics", "the response over time to steps, pulses, sines, noise or a table"),
     "info": ("hymeko_x.cli.info", "what is in a file"),
     "formats": ("hymeko_x.cli.info", "the formats that can be read and written"),
     "explain": ("hymeko_x.cli.info", "what a code such as HX044 means"),

@@ -1,0 +1,117 @@
+"""`hymeko-x dynamics` and `simulate`: the equations of a file, and its response over time."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hymeko_x.cli import exits
+from hymeko_x.cli.exits import UsageError
+from hymeko_x.cli.inputs import input_arguments, read_input
+from hymeko_x.cli.terminal import show
+from hymeko_x.diagnostics import Report
+
+if TYPE_CHECKING:
+    import argparse
+
+    from hymeko_x.dynamics.lumped import Lumped
+    from hymeko_x.dynamics.signals import Signal
+
+_FORMS = ("state-space", "second-order", "port-hamiltonian", "transfer-function")
+_STYLES = ("text", "json", "latex", "markdown")
+
+
+def dynamics_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `dynamics`."""
+    parser.add_argument("input", metavar="FILE", help="a robot or a lumped network in any format; - is standard input")
+    parser.add_argument("--form", choices=_FORMS, default=_FORMS[0], help="the form of the equations (default state-space)")
+    parser.add_argument("--symbolic", action="store_true", help="formulas in the parameters instead of numbers")
+    parser.add_argument("--style", choices=_STYLES, default="text", help="how to print them (default text)")
+    parser.add_argument("--json", action="store_const", dest="style", const="json", help="the same as --style json")
+    input_arguments(parser)
+
+
+def run_dynamics(chosen: argparse.Namespace) -> int:
+    """Print the equations of motion."""
+    from hymeko_x.dynamics.linear import report_unstable
+    from hymeko_x.dynamics.pages import page_of, printed
+
+    report = Report()
+    found = _dynamics(chosen, report)
+    text = printed(page_of(found, chosen.form, symbolic=chosen.symbolic), chosen.style)
+    report_unstable(found.state_space(), report)
+    show(report)
+    print(text, end="")
+    return exits.DONE
+
+
+def _dynamics(chosen: argparse.Namespace, report: Report) -> Lumped:
+    import hymeko_x as hx
+
+    given = read_input(chosen.input, chosen, report)
+    return hx.dynamics(given.mechanism)
+
+
+# ---- simulate ------------------------------------------------------------------------------------------------------------
+
+
+def simulate_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `simulate`."""
+    parser.add_argument("input", metavar="FILE", help="a robot or a lumped network in any format; - is standard input")
+    parser.add_argument("--time", type=float, default=2.0, metavar="S", help="how long, in s (default 2)")
+    parser.add_argument("--step", type=float, metavar="S", help="time between rows in s (default a thousandth of --time)")
+    what = "a signal for an input, instead of the file's: pulse,period=2,duty=0.05 or table.csv:COLUMN (repeatable)"
+    parser.add_argument("--input", dest="signals", action="append", default=[], metavar="NAME=SIGNAL", help=what)
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="OUT", help="write the table to OUT.csv or OUT.parquet (else CSV to standard output)"
+    )
+    parser.add_argument("--figure", type=Path, metavar="OUT", help="draw inputs and outputs into OUT.png, .svg or .pdf")
+    input_arguments(parser)
+
+
+def run_simulate(chosen: argparse.Namespace) -> int:
+    """Write the response over time."""
+    from hymeko_x.dynamics.tables import csv_text, draw, write_table
+
+    report = Report()
+    found = _dynamics(chosen, report)
+    step = chosen.time / 1000 if chosen.step is None else chosen.step
+    signals = dict(_signal(text, chosen.time) for text in chosen.signals)
+    response = found.simulate(chosen.time, step, signals)
+    show(report)
+    if chosen.output is None:
+        print(csv_text(response), end="")
+    else:
+        write_table(response, chosen.output)
+    if chosen.figure is not None:
+        draw(response, found.network.name, chosen.figure)
+    return exits.DONE
+
+
+def _signal(text: str, until: float) -> tuple[str, Signal]:
+    """``NAME=KIND,key=value,...`` or ``NAME=FILE.csv:COLUMN``."""
+    from hymeko_x.dynamics.signals import constant, signal_of
+    from hymeko_x.dynamics.tables import read_signal
+
+    name, equals, words = text.partition("=")
+    if not (name and equals and words):
+        raise UsageError(f"expected --input NAME=SIGNAL, found '{text}'")
+    file, colon, column = words.rpartition(":")
+    if colon and "," not in file:
+        return name, read_signal(Path(file), column)
+    kind, *pairs = words.split(",")
+    try:
+        if not pairs and _is_number(kind):
+            return name, constant(float(kind))
+        values = [(key, float(value)) for key, _, value in (pair.partition("=") for pair in pairs)]
+    except ValueError as error:
+        raise UsageError(f"'{words}' is no signal; pulse,period=2,duty=0.05 is one") from error
+    return name, signal_of((("signal", kind), *values), until, name)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True

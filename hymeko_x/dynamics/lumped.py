@@ -1,0 +1,89 @@
+"""The dynamics of a lumped network: its system, its forms, its poles, its response."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.dynamics import forms
+from hymeko_x.dynamics.equations import system_of
+from hymeko_x.dynamics.linear import StateSpace, is_linear, linearize
+from hymeko_x.dynamics.signals import constant, signal_of, total
+from hymeko_x.dynamics.simulation import Response, simulate
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.dynamics.network import Network
+    from hymeko_x.dynamics.signals import Signal
+    from hymeko_x.dynamics.system import System, Variable
+
+
+class Lumped(Struct, frozen=True, dict=True):
+    """The dynamics of a lumped network. Positions count from where the file has them; SI units and rad."""
+
+    network: Network
+
+    @cached_property
+    def system(self) -> System:
+        """The equations x' = f(x, u, p), y = g(x, u, p) on any number type."""
+        return system_of(self.network)
+
+    @cached_property
+    def is_linear(self) -> bool:
+        """Whether no element has a law that is not linear."""
+        return is_linear(self.system)
+
+    def state_space(self, *, symbolic: bool = False) -> StateSpace:
+        """A, B, C, D, exact or in symbols, at the initial state: rest."""
+        return linearize(self.system, symbolic=symbolic)
+
+    def second_order(self, *, symbolic: bool = False) -> forms.SecondOrder:
+        """M, C, K, F.
+
+        Raises: Refusal (HX408) where there are states of first order.
+        """
+        return forms.second_order(self.network, symbolic=symbolic)
+
+    def port_hamiltonian(self, *, symbolic: bool = False) -> forms.PortHamiltonian:
+        """J, R, G, the energy and its gradient.
+
+        Raises: Refusal (HX408) for elements whose energy is not known.
+        """
+        return forms.port_hamiltonian(self.network, symbolic=symbolic)
+
+    def input(self, name: str) -> Variable:
+        """The input of this name, or the first one of the element of this name.
+
+        Raises: Refusal (HX407) when there is none.
+        """
+        for variable in self.system.inputs:
+            if name in (variable.name, variable.name.rpartition(".")[0]):
+                return variable
+        known = ", ".join(variable.name for variable in self.system.inputs) or "none"
+        raise refuse(codes.BAD_SIGNAL, f"there is no input '{name}'; there are {known}")
+
+    def simulate(self, duration: float, step: float, inputs: Mapping[str, Signal] | None = None) -> Response:
+        """The response from rest to the signals of the file, or to these instead, by the name of their input or its element.
+
+        Raises: Refusal (HX407) for signals and names, HX409 when the solution cannot be continued.
+        """
+        signals = {}
+        for variable in self.system.inputs:
+            port = next((port for port in self._ports() if str(port[0]) == variable.element), None)
+            own = signal_of(port[1], duration, variable.element) if port and not variable.rate_of else constant(0.0)
+            signals[variable.name] = total([constant(variable.value), own])
+        for name, signal in (inputs or {}).items():
+            variable = self.input(name)
+            signals[variable.name] = total([constant(variable.value), signal])
+        return simulate(self.system, signals, duration, step)
+
+    def _ports(self) -> list[tuple[object, tuple[tuple[str, float | str | tuple[float, ...]], ...]]]:
+        """Every port with the parameters of its signal: all that are no gains."""
+        moved = [(key, port.parameters) for key, port in self.network.moved.items()]
+        pushing = [(element.id, element.part.parameters) for _, element in self.network.ports]  # type: ignore[union-attr]
+        return [(key, tuple(item for item in parameters if item[0] not in ("p", "i", "d"))) for key, parameters in moved + pushing]

@@ -1,0 +1,232 @@
+"""Equations on paper: the sections of each form, and how they are printed as text, JSON, LaTeX and Markdown."""
+
+from __future__ import annotations
+
+import json
+from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
+
+from hymeko_x.dynamics.linear import complex_text
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+    from hymeko_x.dynamics.forms import PortHamiltonian, SecondOrder
+    from hymeko_x.dynamics.linear import Pole, StateSpace
+    from hymeko_x.dynamics.lumped import Lumped
+    from hymeko_x.dynamics.system import Variable
+
+FORMS = ("state-space", "second-order", "port-hamiltonian", "transfer-function")
+STYLES = ("text", "json", "latex", "markdown")
+
+
+class Block(Struct, frozen=True):
+    """A matrix or a scalar with its name and the names of its rows and columns."""
+
+    name: str
+    value: Any
+    rows: tuple[Variable, ...] = ()
+    columns: tuple[Variable, ...] = ()
+
+
+class Page(Struct, frozen=True):
+    """A form of the equations: a sentence of formula, its variables, its blocks, and facts that follow."""
+
+    name: str
+    form: str
+    formula: str
+    variables: Mapping[str, tuple[Variable, ...]]
+    blocks: tuple[Block, ...]
+    facts: Mapping[str, Any]
+
+
+def page_of(dynamics: Lumped, form: str, *, symbolic: bool = False) -> Page:
+    """The equations of a network in one form.
+
+    Raises: Refusal (HX408) when there is no such form.
+    """
+    make: Mapping[str, Callable[[], tuple[str, Mapping[str, tuple[Variable, ...]], tuple[Block, ...], Mapping[str, Any]]]] = {
+        "state-space": lambda: _state_space(dynamics.state_space(symbolic=symbolic), dynamics.state_space() if symbolic else None),
+        "second-order": lambda: _second_order(dynamics.second_order(symbolic=symbolic)),
+        "port-hamiltonian": lambda: _port_hamiltonian(dynamics.port_hamiltonian(symbolic=symbolic)),
+        "transfer-function": lambda: _transfer(dynamics.state_space(symbolic=symbolic)),
+    }
+    formula, variables, blocks, facts = make[form]()
+    linear = {} if dynamics.is_linear else {"linearised at": "the initial state"}
+    used = {"parameters": dynamics.system.parameters}
+    return Page(dynamics.network.name, form, formula, {**variables, **used}, blocks, {**linear, **facts})
+
+
+def _state_space(space: StateSpace, exact: StateSpace | None) -> Any:
+    blocks = [
+        Block("A", space.A, space.states, space.states),
+        Block("B", space.B, space.states, space.inputs),
+        Block("C", space.C, space.outputs, space.states),
+        Block("D", space.D, space.outputs, space.inputs),
+    ]
+    if any(space.offset):
+        blocks.append(Block("offset", space.offset, space.states))
+    numbers = exact or space
+    n = len(space.states)
+    facts = {
+        "poles": numbers.poles,
+        "controllable": f"{numbers.controllable} of {n}",
+        "observable": f"{numbers.observable} of {n}",
+    }
+    names = {"states": space.states, "inputs": space.inputs, "outputs": space.outputs}
+    formula = "x' = A x + B u" + (" + offset" if any(space.offset) else "") + ", y = C x + D u"
+    return formula, names, tuple(blocks), facts
+
+
+def _second_order(form: SecondOrder) -> Any:
+    blocks = [
+        Block("M", form.M, form.coordinates, form.coordinates),
+        Block("C", form.C, form.coordinates, form.coordinates),
+        Block("K", form.K, form.coordinates, form.coordinates),
+        Block("F", form.F, form.coordinates, form.inputs),
+    ]
+    if any(form.offset):
+        blocks.append(Block("offset", form.offset, form.coordinates))
+    formula = "M q'' + C q' + K q = F u" + (" + offset" if any(form.offset) else "")
+    return formula, {"coordinates": form.coordinates, "inputs": form.inputs}, tuple(blocks), {}
+
+
+def _port_hamiltonian(form: PortHamiltonian) -> Any:
+    blocks = [Block("H", form.energy), Block("dH/dx", form.gradient, form.states), Block("J", form.J, form.states, form.states)]
+    blocks += [Block("R", form.R, form.states, form.states), Block("G", form.G, form.states, form.inputs)]
+    passed = any(form.P) or any(form.S)
+    if passed:
+        blocks += [Block("P", form.P, form.states, form.inputs), Block("S", form.S, form.outputs, form.inputs)]
+    formula = "x' = (J - R) dH/dx + (G - P) u, y = (G + P)' dH/dx + S u" if passed else "x' = (J - R) dH/dx + G u, y = G' dH/dx"
+    return formula, {"states": form.states, "inputs": form.inputs, "outputs": form.outputs}, tuple(blocks), {}
+
+
+def _transfer(space: StateSpace) -> Any:
+    functions = space.transfer()
+    blocks = [
+        Block(f"{output.name} / {source.name}", functions[row][column])
+        for row, output in enumerate(space.outputs)
+        for column, source in enumerate(space.free_inputs)
+    ]
+    return "y(s) = G(s) u(s)", {"inputs": tuple(space.free_inputs), "outputs": space.outputs}, tuple(blocks), {}
+
+
+# ---- printing ------------------------------------------------------------------------------------------------------------
+
+
+def printed(page: Page, style: str) -> str:
+    """The page in one style, ending with a line break."""
+    return {"text": _text, "json": _json, "latex": _latex, "markdown": _markdown}[style](page)
+
+
+def _text(page: Page) -> str:
+    lines = [f"{page.name}: {page.formula}"]
+    for title, variables in page.variables.items():
+        lines += ["", title]
+        valued = title == "parameters"
+        width = max((len(variable.name) for variable in variables), default=0)
+        lines += [f"  {v.name:<{width}}  " + (f"{v.value:.10g} {v.unit}".rstrip() if valued else v.unit) for v in variables] or ["  none"]
+    for block in page.blocks:
+        lines += ["", *_block_lines(block)]
+    for name, value in page.facts.items():
+        lines += ["", *(_pole_lines(value) if name == "poles" else [f"{name}: {value}"])]
+    return "\n".join(lines) + "\n"
+
+
+def _block_lines(block: Block) -> list[str]:
+    if not _is_matrix(block.value):
+        return [f"{block.name} = {block.value}"]
+    if not block.value.cols or not block.value.rows:
+        return [f"{block.name} = []"]
+    rows = [[str(entry) for entry in block.value.row(i)] for i in range(block.value.rows)]
+    widths = [max(len(row[j]) for row in rows) for j in range(block.value.cols)]
+    lines = ["[" + "  ".join(f"{entry:>{width}}" for entry, width in zip(row, widths, strict=True)) + "]" for row in rows]
+    indent = " " * (len(block.name) + 3)
+    return [f"{block.name} = {lines[0]}", *[indent + line for line in lines[1:]]]
+
+
+def _pole_lines(poles: Sequence[Pole]) -> list[str]:
+    lines = ["poles (1/s)             natural frequency (rad/s)  damping ratio"]
+    return lines + [f"  {complex_text(pole.value):<22}{pole.frequency:<27.6g}{pole.damping:.6g}" for pole in poles]
+
+
+def _is_matrix(value: Any) -> bool:
+    return hasattr(value, "rows")
+
+
+def _json(page: Page) -> str:
+    def entry(value: Any) -> Any:
+        return float(value) if getattr(value, "is_number", False) else str(value)
+
+    def block(value: Any) -> Any:
+        return [[entry(cell) for cell in value.row(i)] for i in range(value.rows)] if _is_matrix(value) else entry(value)
+
+    def fact(name: str, value: Any) -> Any:
+        if name != "poles":
+            return value
+        keys = ("real", "imaginary", "frequency", "damping")
+        return [dict(zip(keys, (p.value.real, p.value.imag, p.frequency, p.damping), strict=True)) for p in value]
+
+    found = {
+        "name": page.name,
+        "form": page.form,
+        "formula": page.formula,
+        **{
+            title: [
+                {"name": v.name, "unit": v.unit, "element": v.element, **({"value": v.value} if title in ("parameters", "inputs") else {})}
+                for v in variables
+            ]
+            for title, variables in page.variables.items()
+        },
+        "matrices": {item.name: block(item.value) for item in page.blocks},
+        **{name: fact(name, value) for name, value in page.facts.items()},
+    }
+    return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
+
+
+def _latex(page: Page) -> str:
+    lines = [f"% {page.name}: {page.formula}"]
+    for title, variables in page.variables.items():
+        if title != "parameters":
+            lines.append(rf"% {title}: " + ", ".join(f"{v.name} in {v.unit}" for v in variables))
+            lines.append(rf"\[ {_letter(title)} = \begin{{pmatrix}} " + r" \\ ".join(v.symbol for v in variables) + r" \end{pmatrix} \]")
+    lines += [rf"\[ {_tex_name(block.name)} = {_tex(block.value, page)} \]" for block in page.blocks]
+    return "\n".join(lines) + "\n"
+
+
+def _letter(title: str) -> str:
+    return {"states": "x", "inputs": "u", "outputs": "y", "coordinates": "q"}.get(title, title)
+
+
+def _tex_name(name: str) -> str:
+    if name == "dH/dx":
+        return r"\frac{\partial H}{\partial x}"
+    return rf"\mathrm{{{name}}}".replace("_", r"\_") if len(name) > 1 else name
+
+
+def _tex(value: Any, page: Page) -> str:
+    import sympy
+
+    names = {sympy.Symbol(v.name): v.symbol for group in page.variables.values() for v in group}
+    free = value.free_symbols if hasattr(value, "free_symbols") else set()
+    shown = {symbol: names[sympy.Symbol(symbol.name)] for symbol in free if sympy.Symbol(symbol.name) in names}
+    text: str = sympy.latex(value, symbol_names=shown, mat_delim="(", mat_str="matrix")
+    return text
+
+
+def _markdown(page: Page) -> str:
+    lines = [f"# {page.name}", "", f"`{page.formula}`"]
+    for title, variables in page.variables.items():
+        valued = title == "parameters"
+        lines += ["", f"| {title} | unit |{' value |' if valued else ''}", f"|---|---|{'---|' if valued else ''}"]
+        lines += [f"| `{v.name}` | {v.unit} |{f' {v.value:.10g} |' if valued else ''}" for v in variables]
+    for block in page.blocks:
+        lines += ["", f"$${_tex_name(block.name)} = {_tex(block.value, page)}$$"]
+    for name, value in page.facts.items():
+        if name == "poles":
+            lines += ["", "| pole (1/s) | natural frequency (rad/s) | damping ratio |", "|---|---|---|"]
+            lines += [f"| {complex_text(p.value)} | {p.frequency:.6g} | {p.damping:.6g} |" for p in value]
+        else:
+            lines += ["", f"{name}: {value}"]
+    return "\n".join(lines) + "\n"
