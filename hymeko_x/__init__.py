@@ -53,6 +53,10 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("hymeko-x")
     if name not in _HOMES:
         raise AttributeError(f"module 'hymeko_x' has no attribute '{name}'")
     return getattr(import_module(_HOMES[name]), name)

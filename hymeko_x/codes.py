@@ -97,6 +97,13 @@ REPEATED = Code(
     "The first one counts, as in urdfdom; the others are kept as they are and written back. MuJoCo refuses such files.",
 )
 
+# ---- HX01x: the installation ------------------------------------------------------------------------------------------
+LIBRARY_MISSING = Code(
+    "HX011",
+    "an optional library is not installed",
+    "The core reads and writes the text formats. Other formats, meshes, the verifier and the corpus need libraries of their own, which come with an extra of the distribution. The hint is the command that installs it; 'hymeko-x[all]' brings all of them.",
+)
+
 # ---- HX05x: xacro ----------------------------------------------------------------------------------------------------
 EXPANSION_FAILED = Code(
     "HX050",

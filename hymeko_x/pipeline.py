@@ -166,6 +166,8 @@ def read_back(package: Package, format: Format, files: Files) -> Mechanism:
     try:
         return reader(format)(result, Report()).mechanism
     except Refusal as error:
+        if error.diagnostic.code == codes.LIBRARY_MISSING:
+            raise
         raise refuse(codes.BUG, f"what was written as {format.name} cannot be read back: {error}") from error
 
 

@@ -20,7 +20,7 @@ LAYERS = (
     ("source", "outline"),
     ("xml", "meshes"),
     ("formats",),
-    ("rewrite", "compare", "language", "factor"),
+    ("rewrite", "compare", "language", "factor", "extras"),
     ("residue", "assets", "reporting"),
     ("frontends", "backends"),
     ("pipeline", "disk", "verify", "validation", "corpus", "dynamics"),

@@ -18,6 +18,7 @@ from hymeko_x.corpus import cache, catalog
 from hymeko_x.corpus.plan import Limits, Plan, pairs_of
 from hymeko_x.corpus.rows import CRASHED, FAILED, OUT_OF_MEMORY, TIMED_OUT
 from hymeko_x.diagnostics import Refusal, refuse
+from hymeko_x.extras import install_command
 from hymeko_x.source import NoFiles, Package
 
 if TYPE_CHECKING:
@@ -62,7 +63,7 @@ def _needs_extra() -> None:
     """Raises: Refusal HX301 when the libraries of the extra `corpus` are not installed."""
     missing = [name for name in EXTRA if find_spec(name) is None]
     if missing:
-        raise refuse(codes.ENGINE_MISSING, f"{', '.join(missing)} is not installed", hint="pip install 'hymeko-x[corpus]'")
+        raise refuse(codes.ENGINE_MISSING, f"{', '.join(missing)} is not installed", hint=install_command("corpus"))
 
 
 def _list(root: Path) -> int:

@@ -48,16 +48,27 @@ def guarded(verb: str, body: Callable[[], int]) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except Exception as error:
-        if os.environ.get("HYMEKO_X_DEBUG"):
+        missing = _missing_library(error)
+        if missing is None and os.environ.get("HYMEKO_X_DEBUG"):
             raise
-        show([_bug(error)])
-        return BUG
+        show([missing or _bug(error)])
+        return BUG if missing is None else FAILED
 
 
 def _reader_left() -> int:
     """The program that read our output has closed the pipe, which is no failure. Python must not flush into it at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return DONE
+
+
+def _missing_library(error: Exception) -> Diagnostic | None:
+    """The advice to install an optional library; None for every other error."""
+    if not isinstance(error, ModuleNotFoundError):
+        return None
+    from hymeko_x.extras import missing_library
+
+    refusal = missing_library(error)
+    return None if refusal is None else refusal.diagnostic
 
 
 def _bug(error: Exception) -> Diagnostic:

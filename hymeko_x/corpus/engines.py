@@ -15,6 +15,7 @@ from hymeko_x.corpus.store import missing, save
 from hymeko_x.corpus.supervise import Processes, supervise
 from hymeko_x.corpus.work import work
 from hymeko_x.diagnostics import refuse
+from hymeko_x.extras import install_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
@@ -102,7 +103,7 @@ def _connected(address: str | None) -> Any:
     try:
         import ray
     except ImportError as error:
-        raise refuse(codes.ENGINE_MISSING, "ray is not installed", hint="pip install 'hymeko-x[ray]'") from error
+        raise refuse(codes.ENGINE_MISSING, "ray is not installed", hint=install_command("ray")) from error
     _knock(address)
     try:
         ray.init(address=address or "auto", log_to_driver=False, logging_level=_ERRORS)

@@ -98,8 +98,8 @@ class Format(Struct, frozen=True):
     # ---- what the verifier asks
     reference: str | None = None
     """The module with ``read(path, places)`` that loads a file with the engine whose reading is authoritative."""
-    engines: Mapping[str, str] = field(default_factory=dict)
-    """The libraries that the reference reader imports, with the package that installs each."""
+    libraries: Mapping[str, str] = field(default_factory=dict)
+    """The libraries that its reader, its writer and its reference reader import, with the extra of the distribution that brings each."""
     names_are_identifiers: bool = False
     """Whether a name may hold letters, digits and underscores only, so that others are spelled differently (USD)."""
     has_single_dof_joints: bool = False
@@ -151,7 +151,7 @@ URDF = Format(
     outline="hymeko_x.xml.outline:outline",
     keeps_package_uris=True,
     reference="hymeko_x.verify.readers.urdf",
-    engines=MappingProxyType({"pinocchio": "pin", "yourdfpy": "yourdfpy", "pydrake": "drake"}),
+    libraries=MappingProxyType({"pinocchio": "verify", "yourdfpy": "verify", "pydrake": "sdf"}),
     tokens=_XML_TOKENS,
     has_single_dof_joints=True,
     missing_shapes=frozenset({"plane", "hfield", "ellipsoid"}),
@@ -170,7 +170,7 @@ XACRO = Format(
     keeps_package_uris=True,
     boilerplate=frozenset({"urdf @xmlns:xacro"}),  # each file declares its own prefix, and no expansion does
     reference="hymeko_x.verify.readers.xacro",
-    engines=MappingProxyType({**URDF.engines, "xacro": "xacro"}),
+    libraries=MappingProxyType({**URDF.libraries, "xacro": "xacro", "yaml": "xacro"}),
     tokens=_XML_TOKENS,
     has_single_dof_joints=True,
     missing_shapes=URDF.missing_shapes,
@@ -196,7 +196,7 @@ MJCF = Format(
     shapes_have_weight="hymeko_x.formats.mjcf.words:shapes_have_weight",
     has_compact_extras=True,
     reference="hymeko_x.verify.readers.mjcf",
-    engines=MappingProxyType({"mujoco": "mujoco"}),
+    libraries=MappingProxyType({"mujoco": "mujoco"}),
     tokens=_XML_TOKENS,
     requires_mass=True,
     includes=rb"<include\b",
@@ -214,7 +214,7 @@ USD = Format(
     has_variants=True,
     pack="hymeko_x.backends.usd.files:pack_for_usd",
     reference="hymeko_x.verify.readers.usd",
-    engines=MappingProxyType({"pxr": "usd-core"}),
+    libraries=MappingProxyType({"pxr": "usd"}),
     stated_notations=MappingProxyType({"pose on the stage": "usd.pose"}),
     names_are_identifiers=True,
     precision=1e-6,  # eight roundings of single precision: numbers are converted between units and frames on the way
@@ -249,7 +249,7 @@ SDF = Format(
     roots=("sdf",),
     tokens=_XML_TOKENS,
     reference="hymeko_x.verify.readers.sdf",
-    engines=MappingProxyType({"pydrake": "drake"}),
+    libraries=MappingProxyType({"pydrake": "sdf"}),
 )
 
 FORMATS: tuple[Format, ...] = (HYMEKO, URDF, XACRO, MJCF, USD, USDC, USDZ, SDF)

@@ -117,7 +117,7 @@ def test_a_missing_engine_is_named_with_its_package(written: Write, monkeypatch:
     with pytest.raises(Refusal) as caught:
         hx.verify(file, file)
     assert caught.value.diagnostic.code == codes.ENGINE_MISSING
-    assert caught.value.diagnostic.hint == "pip install mujoco"
+    assert caught.value.diagnostic.hint == "pip install 'hymeko-x[mujoco]'"
 
 
 def test_sdf_without_drake_names_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -129,7 +129,7 @@ def test_sdf_without_drake_names_the_package(tmp_path: Path, monkeypatch: pytest
     with pytest.raises(Refusal) as caught:
         hx.verify(file, file)
     assert caught.value.diagnostic.message == "sdf is verified with pydrake, which is not installed"
-    assert caught.value.diagnostic.hint == "pip install drake"
+    assert caught.value.diagnostic.hint == "pip install 'hymeko-x[sdf]'"
 
 
 def test_a_file_that_is_not_there_is_refused_in_one_line(arm: str, capsys: pytest.CaptureFixture[str]) -> None:

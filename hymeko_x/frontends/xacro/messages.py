@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, cast
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Code, Diagnostic, Origin, Refusal, Severity, refuse
+from hymeko_x.extras import install_command
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -50,7 +51,7 @@ def _reason(failed: Message, limits: ExpansionLimits) -> tuple[Code, str, str]:
         case "limit":
             return codes.EXPANSION_LIMIT, *_limit(str(failed["what"]), limits)
         case "import":
-            return codes.EXPANSION_FAILED, f"the xacro library cannot be loaded: {_short(failed['text'])}", "install it: pip install xacro"
+            return codes.LIBRARY_MISSING, f"the xacro library cannot be loaded: {_short(failed['text'])}", install_command("xacro")
         case _:
             return codes.EXPANSION_FAILED, f"xacro: {_short(failed['text'])}", ""
 

@@ -16,6 +16,7 @@ from msgspec import Struct, field
 from hymeko_x import codes, formats
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.extras import install_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -59,11 +60,11 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
         found: KinematicModel = formats.loaded(format.reference).read(path, lookup)
     except ModuleNotFoundError as error:
         engine = (error.name or "").partition(".")[0]
-        package = format.engines.get(engine)
-        if package is None:
+        extra = format.libraries.get(engine)
+        if extra is None:
             raise
         message = f"{format.name} is verified with {engine}, which is not installed"
-        raise refuse(codes.ENGINE_MISSING, message, Origin(str(path)), hint=f"pip install {package}") from error
+        raise refuse(codes.ENGINE_MISSING, message, Origin(str(path)), hint=install_command(extra)) from error
     return found
 
 

@@ -1,0 +1,86 @@
+"""What works with the three libraries of the core alone, and the advice where an optional one is missing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from hymeko_x import extras
+
+ROOT = Path(__file__).parents[1]
+CORE = ("lark", "lxml", "msgspec")
+ROBOT = """<robot name="arm"><link name="base"/><link name="tip"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial><visual><geometry><box size="1 1 1"/></geometry></visual></link>
+  <joint name="j" type="revolute"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/>
+  <limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
+
+ALONE = """
+import sys
+from importlib.abc import MetaPathFinder
+
+class OnlyTheCore(MetaPathFinder):
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {optional!r}:
+            raise ModuleNotFoundError(f"No module named {{name!r}}", name=name)
+
+sys.meta_path.insert(0, OnlyTheCore())
+from hymeko_x.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+"""Runs a command as in an environment without the optional libraries."""
+
+
+def run(folder: Path, *words: str, installed: tuple[str, ...] = ()) -> subprocess.CompletedProcess[str]:
+    optional = sorted({*extras.OF_LIBRARIES} - {*installed})
+    program = ALONE.format(optional=optional)
+    return subprocess.run([sys.executable, "-c", program, *words], cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "arm.urdf").write_text(ROBOT)
+    return tmp_path
+
+
+def test_text_formats_need_the_core_alone(folder: Path) -> None:
+    for words in (
+        ("convert", "arm.urdf", "arm.xml"),
+        ("convert", "arm.xml", "arm.hymeko"),
+        ("convert", "arm.hymeko", "again.urdf"),
+        ("check", "again.urdf"),
+        ("info", "again.urdf"),
+        ("diff", "arm.urdf", "again.urdf"),
+    ):
+        done = run(folder, *words)
+        assert done.returncode in (0, 4), (words, done.stderr)
+        assert "HX901" not in done.stderr
+        assert "HX011" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "extra"),
+    [
+        (("convert", "arm.urdf", "arm.usda"), "usd"),
+        (("convert", "arm.urdf", "arm.xacro"), "xacro"),
+        (("verify", "arm.urdf", "arm.urdf"), "verify"),
+        (("roundtrip", "arm.urdf"), "verify"),
+        (("dh", "arm.urdf"), "verify"),
+        (("corpus", "list"), "corpus"),
+    ],
+)
+def test_a_verb_without_its_libraries_names_the_extra(folder: Path, words: tuple[str, ...], extra: str) -> None:
+    done = run(folder, *words)
+    assert done.returncode == 1
+    assert "HX011" in done.stderr
+    assert f"pip install 'hymeko-x[{extra}]'" in done.stderr
+    assert "HX901" not in done.stderr
+
+
+def test_every_extra_that_is_named_exists() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert [line.partition(">")[0] for line in project["dependencies"]] == list(CORE)
+    assert {*extras.OF_LIBRARIES.values(), *extras.OF_ROOMS.values()} <= {*project["optional-dependencies"]}
