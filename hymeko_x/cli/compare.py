@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import sys
 import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,7 +14,8 @@ from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, read_input
-from hymeko_x.cli.terminal import is_coloured, paint, show
+from hymeko_x.cli.terminal import show
+from hymeko_x.cli.verdicts import exit_code, verdict_lines
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
 
@@ -26,11 +26,7 @@ if TYPE_CHECKING:
     from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
-    from hymeko_x.verify.verdict import Check, Verdict
-
-CODES = {"same": exits.DONE, "different": exits.DIFFERENT, "not comparable": exits.FAILED}
-"""The exit code of each verdict."""
-_COLOURS = {"same": "32", "different": "31", "not comparable": "33"}
+    from hymeko_x.verify.verdict import Verdict
 
 # ---- diff --------------------------------------------------------------------------------------------------------------
 
@@ -74,6 +70,8 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("a", metavar="A", help="a robot in any format")
     parser.add_argument("b", metavar="B", help="the robot to compare it with")
     engine_arguments(parser)
+    parser.add_argument("--strict", action="store_true", help="exit 4 as well where a format cannot say what the other robot has")
+    parser.add_argument("-v", "--verbose", action="store_true", help="print the table of all checks, and what was not compared")
     parser.add_argument("--match", choices=("name", "structure"), default="name", help="how to find each body's counterpart (default name)")
     parser.add_argument("--json", action="store_true", help="print JSON")
     input_arguments(parser)
@@ -87,10 +85,14 @@ def engine_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run_verify(chosen: argparse.Namespace) -> int:
-    """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared."""
+    """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared, as :func:`exit_code` says."""
     verdict = verdict_of(chosen.a, chosen.b, chosen, structure=chosen.match == "structure")
-    print(json.dumps(verdict.as_json(), indent=2, ensure_ascii=False) if chosen.json else "\n".join(verdict_lines(verdict)))
-    return CODES[verdict.verdict]
+    print(
+        json.dumps(verdict.as_json(), indent=2, ensure_ascii=False)
+        if chosen.json
+        else "\n".join(verdict_lines(verdict, verbose=chosen.verbose))
+    )
+    return exit_code(verdict, strict=chosen.strict)
 
 
 def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = False) -> Verdict:
@@ -109,28 +111,6 @@ def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = 
         arguments=dict(chosen.arg),
         variants=dict(chosen.variant),
     )
-
-
-def verdict_lines(verdict: Verdict, *, coloured: bool | None = None, brief: bool = False) -> Iterator[str]:
-    """The verdict as text: the answer, a table of the checks (of those that failed, if ``brief``), and what was not compared."""
-    colour = is_coloured(sys.stdout) if coloured is None else coloured
-    yield _painted(_COLOURS[verdict.verdict], verdict.verdict, colour) + (f": {verdict.reason}" if verdict.reason else "")
-    if verdict.failed if brief else verdict.checks:
-        yield f"  {verdict.engines[0]}  |  {verdict.engines[1]}"
-        yield f"  {'':4} {'quantity':<32} {'worst':>9} {'allowed':>9} {'unit':<10} at"
-    for check in verdict.failed if brief else verdict.checks:
-        yield _line(check, colour)
-    for note in () if brief else verdict.not_compared:
-        yield f"  note: {note}"
-
-
-def _line(check: Check, colour: bool) -> str:
-    mark = _painted("32", "ok  ", colour) if check.passed else _painted("31", "FAIL", colour)
-    return f"  {mark} {check.quantity:<32} {check.worst:>9.3g} {check.allowed:>9.3g} {check.unit:<10} {check.at}".rstrip()
-
-
-def _painted(style: str, text: str, colour: bool) -> str:
-    return paint(style, text) if colour else text
 
 
 def _samples(text: str) -> int:
@@ -179,10 +159,7 @@ def run_roundtrip(chosen: argparse.Namespace) -> int:
         print(json.dumps(_legs_json(chosen.input, given.format.name, size, legs), indent=2, ensure_ascii=False))
     else:
         print("\n".join(leg_lines(chosen.input, given.format.name, size, legs)))
-    verdicts = {leg.verdict.verdict for leg in legs}
-    if "different" in verdicts:
-        return exits.DIFFERENT
-    return exits.FAILED if "not comparable" in verdicts else exits.DONE
+    return max((exit_code(leg.verdict) for leg in legs), default=exits.DONE)
 
 
 def _stops(words: str, own: Format) -> list[Format]:

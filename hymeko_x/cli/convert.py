@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.cli import exits
-from hymeko_x.cli.compare import CODES, engine_arguments, verdict_lines, verdict_of
+from hymeko_x.cli.compare import engine_arguments, verdict_of
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, read_input
 from hymeko_x.cli.report import report_arguments, show_report, written_line
+from hymeko_x.cli.terminal import is_coloured
+from hymeko_x.cli.verdicts import exit_code, verdict_lines
 from hymeko_x.delivery import Delivery, report_unwritten
 from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.reporting.document import document
@@ -101,8 +103,9 @@ def run_convert(chosen: argparse.Namespace) -> int:
 def _verified(before: str, after: str, chosen: argparse.Namespace) -> int:
     """Say what the formats' own engines think of source and result; exit 4 when they see different robots."""
     verdict = verdict_of(before, after, chosen)
-    print("\n".join(verdict_lines(verdict, coloured=False, brief=True)), file=sys.stderr)
-    return CODES[verdict.verdict]
+    if not chosen.quiet or not verdict.is_same:
+        print("\n".join(verdict_lines(verdict, coloured=is_coloured(sys.stderr), verbose=chosen.verbose)), file=sys.stderr)
+    return exit_code(verdict)
 
 
 # ---- writing -----------------------------------------------------------------------------------------------------------

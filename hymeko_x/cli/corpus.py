@@ -182,7 +182,7 @@ def _summary(tables: Tables) -> Iterator[str]:
     yield f"{len(robots)} files, {len(robots.filter(robots['status'] == 'done'))} read"
     for (source, target), legs in sorted(tables.legs.group_by("source", "target")):
         done = legs.filter(legs["status"] == "done")
-        verdicts = {word: len(done.filter(done["verdict"] == word)) for word in ("same", "different", "not comparable")}
+        verdicts = {word: len(done.filter(done["verdict"].str.starts_with(word))) for word in ("same", "different", "not comparable")}
         counts = ", ".join(f"{count} {word}" for word, count in verdicts.items() if count)
         yield f"  {source} -> {target}: {len(done)} of {len(legs)} converted" + (f"; {counts}" if counts else "")
     for status in _ENDED:

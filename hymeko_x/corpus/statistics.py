@@ -172,6 +172,13 @@ def percentage(part: int, whole: int) -> str:
     return f"{1000 * part // whole / 10.0:.1f} %"
 
 
+def _is_same() -> pl.Expr:
+    """Whether the verdict is that the robots are the same, at least as far as a format can say."""
+    import polars as pl
+
+    return pl.col("verdict").str.starts_with("same")
+
+
 def pair_rows(tables: Tables) -> tuple[PairRow, ...]:
     """One row for every pair of formats of the run, in order."""
     import polars as pl
@@ -182,8 +189,8 @@ def pair_rows(tables: Tables) -> tuple[PairRow, ...]:
     for (source, target), all_legs in sorted(legs.group_by("source", "target")):
         accepted = all_legs.filter(pl.col("engine") == "done")
         done = accepted.filter(pl.col("status") == "done")
-        same, different, unknown = (len(done.filter(pl.col("verdict") == word)) for word in ("same", "different", "not comparable"))
-        alike = done.filter(pl.col("verdict") == "same")
+        alike = done.filter(_is_same())
+        same, different, unknown = len(alike), *(len(done.filter(pl.col("verdict") == word)) for word in ("different", "not comparable"))
         exact, complete = len(alike.filter(pl.col("losses") == 0)), len(alike.filter(pl.col("losses") == pl.col("carried")))
         median = float(np.median(done["losses"].drop_nulls().to_numpy())) if done["losses"].drop_nulls().len() else 0.0
         counts = (len(all_legs), len(accepted), len(done), same, different, unknown, exact, complete)
@@ -207,7 +214,7 @@ def failures(tables: Tables) -> pl.DataFrame:
 
     engines = tables.robots.select("key", "engine")
     legs = tables.legs.join(engines, on="key", how="left").filter(pl.col("engine") == "done")
-    bad = legs.filter((pl.col("status") != "done") | ((pl.col("verdict") != "same") & (pl.col("verdict") != "")))
+    bad = legs.filter((pl.col("status") != "done") | (~_is_same() & (pl.col("verdict") != "")))
     place = pl.element().struct.field("name") + " (" + pl.element().struct.field("value").str.slice(0, _LONGEST_PLACE) + ")"
     failed = pl.col("failed").list.eval(place).list.join("; ")
     ended = pl.col("status") + ": " + pl.col("reason")

@@ -74,6 +74,7 @@ class Feature(Enum):
     COLLISIONS = "collision shapes"
     FIXED_JOINT_NAMES = "names of fixed joints"
     ACTUATORS = "actuators"
+    SENSORS = "sensors"
     TENDONS = "tendons"
     TIED_TENDONS = "couplings of tendons"
     LOOPS = "loops"
@@ -276,7 +277,10 @@ class Tendon(Struct, frozen=True):
 
 
 class Record(Struct, frozen=True):
-    """Words and numbers that are compared one by one: an actuator with its target, or a coupling of tendons."""
+    """Words and numbers that are compared one by one: an actuator with its target, a sensor, or a coupling of tendons.
+
+    A reader that only knows that there is one leaves both empty.
+    """
 
     name: str | None
     words: tuple[str, ...]
@@ -298,6 +302,7 @@ class KinematicModel(Struct, frozen=True, eq=False, dict=True):
     couplings: tuple[Coupling, ...] = ()
     loops: tuple[Loop, ...] = ()
     actuators: tuple[Record, ...] = ()
+    sensors: tuple[Record, ...] = ()
     tendons: tuple[Tendon, ...] = ()
     tied_tendons: tuple[Record, ...] = ()
     features: frozenset[Feature] = frozenset(Feature)

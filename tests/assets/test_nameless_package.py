@@ -33,7 +33,7 @@ def test_its_meshes_arrive(target: str, tmp_path: Path) -> None:
     result = hx.convert(source, tmp_path / "away" / f"robot.{target}")
     assert [diagnostic for diagnostic in result.report if diagnostic.code.id.startswith("HX2")] == []
     verdict = hx.verify(source, tmp_path / "away" / f"robot.{target}")
-    assert (verdict.verdict, [note for note in verdict.not_compared if "mesh" in note]) == ("same", [])
+    assert (verdict.is_same, [note for note in verdict.not_compared if "mesh" in note]) == (True, [])
 
 
 def test_the_hint_works_when_it_is_followed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -142,4 +142,4 @@ def test_a_file_of_mujocos_own_type_becomes_one_that_every_tool_reads(tmp_path: 
     source.write_text(f'<mujoco><asset><mesh file="part.msh"/></asset><worldbody>{geom}</worldbody></mujoco>')
     hx.convert(source, target)
     assert b'<mesh filename="shapes/part.obj"/>' in target.read_bytes()
-    assert hx.verify(source, target, samples=2).verdict == "same"
+    assert hx.verify(source, target, samples=2).is_same

@@ -184,4 +184,4 @@ def test_a_file_that_other_programs_read_otherwise_is_written_as_mujoco_reads_it
     (mesh,) = (tmp_path / "away").rglob("*.obj")
     assert (mesh.read_text() != text) == is_converted
     assert any(item.code.id == "HX202" for item in result.report) == is_converted
-    assert hx.verify(tmp_path / "home" / "r.xml", tmp_path / "away" / "r.urdf").verdict == "same"
+    assert hx.verify(tmp_path / "home" / "r.xml", tmp_path / "away" / "r.urdf").is_same

@@ -26,7 +26,7 @@ def assert_same_in_urdf(robot: Path, folder: Path, *, meshes: bool) -> None:
     assert both.worst_inertia_error() < INERTIAS
     verdict = hx.verify(robot, target, samples=20, meshes=meshes)
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
-    assert verdict.verdict == "same"
+    assert verdict.is_same
 
 
 @pytest.mark.parametrize("robot", FEW, ids=lambda file: file.id, indirect=True)

@@ -53,7 +53,7 @@ def assert_same(one: bytes, other: bytes, format: str, folder: Path, tolerance: 
         assert [str(line) for line in diff(before, after, tolerance)] == []
     verdict = compare(*map(model_of, names), samples=4)
     assert [f"{check.quantity} at {check.at}: {check.worst}" for check in verdict.failed] == []
-    assert verdict.verdict == "same"
+    assert verdict.is_same
 
 
 def read(data: bytes, format: str) -> Mechanism:

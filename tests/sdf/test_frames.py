@@ -20,4 +20,4 @@ def test_random_frame_graphs_are_read_as_drake_reads_them(tmp_path_factory: pyte
     file: Path = tmp_path_factory.mktemp("graph") / "m.sdf"
     file.write_text(text, "utf-8")
     verdict = hx.verify(str(file), hx.load(str(file)), samples=5)
-    assert verdict.verdict == "same", f"{[check for check in verdict.checks if not check.passed]} {verdict.reason}\n{text}"
+    assert verdict.is_same, f"{[check for check in verdict.checks if not check.passed]} {verdict.reason}\n{text}"

@@ -57,7 +57,7 @@ def test_the_robot_comes_back_with_the_one_visual_that_it_had(tmp_path: Path) ->
         converted(tmp_path, dae(), collision)
         hx.convert(tmp_path / "r.usdc", tmp_path / "back.urdf")
         assert hx.diff(hx.load(tmp_path / "r.urdf"), hx.load(tmp_path / "back.urdf")) == ()
-        assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.usdc").verdict == "same"
+        assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.usdc").is_same
 
 
 def test_the_colours_reach_mjcf_too(tmp_path: Path) -> None:

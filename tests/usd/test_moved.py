@@ -37,7 +37,7 @@ def test_what_the_stage_has_of_a_mesh_stands_in_for_its_file(target: str, tmp_pa
     result = hx.convert(stage, tmp_path / "away" / target)
     assert [item.code.id for item in result.report if "becomes the points" in item.message] == ["HX201", "HX201"]
     verdict = hx.verify(source, tmp_path / "away" / target)
-    assert (verdict.verdict, [note for note in verdict.not_compared if "not found" in note]) == ("same", [])
+    assert (verdict.is_same, [note for note in verdict.not_compared if "not found" in note]) == (True, [])
 
 
 def test_the_points_are_those_of_the_file_in_single_precision(tmp_path: Path) -> None:

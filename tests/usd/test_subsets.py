@@ -230,7 +230,7 @@ def test_other_formats_give_the_stage_back(tmp_path: Path, target: str, apis: st
     hx.convert(source, tmp_path / target)
     hx.convert(tmp_path / target, tmp_path / "back.usda")
     assert hx.diff(hx.load(source), hx.load(tmp_path / "back.usda")) == ()
-    assert hx.verify(source, tmp_path / target).verdict == "same"
+    assert hx.verify(source, tmp_path / target).is_same
 
 
 OBJ = """usemtl grey
@@ -320,4 +320,4 @@ def test_a_real_robot_has_one_mesh_for_each_file(robot: Path, tmp_path: Path) ->
     assert set(families(out)) >= {"nonOverlapping"}
     assert complaints(tmp_path / "r.usdc") == []
     assert hx.diff(source, hx.load(tmp_path / "r.usdc")) == ()
-    assert hx.verify(robot, tmp_path / "r.usdc", samples=5).verdict == "same"
+    assert hx.verify(robot, tmp_path / "r.usdc", samples=5).is_same

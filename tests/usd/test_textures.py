@@ -119,7 +119,7 @@ def test_the_robot_is_the_same_and_comes_back_as_it_was(tmp_path: Path) -> None:
     hx.convert(lay_obj(tmp_path), tmp_path / "r.usda")
     hx.convert(tmp_path / "r.usda", tmp_path / "back.urdf")
     assert hx.diff(hx.load(tmp_path / "r.urdf"), hx.load(tmp_path / "back.urdf")) == ()
-    assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.usda").verdict == "same"
+    assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.usda").is_same
 
 
 def test_a_stage_of_others_leaves_as_obj_with_its_image(tmp_path: Path) -> None:
@@ -130,7 +130,7 @@ def test_a_stage_of_others_leaves_as_obj_with_its_image(tmp_path: Path) -> None:
     part, ((appearance, rows),) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
     assert corners_of(part) == EXPECTED
     assert (appearance.image, len(rows)) == (image(), len(part.faces))
-    assert hx.verify(tmp_path / "r.usda", tmp_path / "out" / "r.urdf").verdict == "same"
+    assert hx.verify(tmp_path / "r.usda", tmp_path / "out" / "r.urdf").is_same
     (tmp_path / "again").mkdir()
     hx.convert(tmp_path / "out" / "r.urdf", tmp_path / "again" / "r.usda")
     stage = Usd.Stage.Open(str(tmp_path / "again" / "r.usda"))
@@ -390,6 +390,6 @@ def test_a_look_of_one_triangle_stays_that_surface_in_mjcf(faces: str, tmp_path:
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "there.xml"))
     assert sorted(zip(model.mesh_vertnum.tolist(), model.mesh_facenum.tolist(), strict=True)) == [(4, 1), (4, 2)]
     assert model.body_mass[1] == 1
-    assert hx.verify(source, tmp_path / "there.xml").verdict == "same"
+    assert hx.verify(source, tmp_path / "there.xml").is_same
     hx.convert(tmp_path / "there.xml", tmp_path / "home.urdf")
     assert hx.diff(hx.load(source), hx.load(tmp_path / "home.urdf")) == ()

@@ -352,7 +352,7 @@ def test_a_robot_is_the_same_as(change: Callable[[str], str], robot: str, writte
     format, text = ROBOTS[robot]
     verdict = verify(written(format, text), written(format, change(text)))
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
-    assert verdict.verdict == "same"
+    assert verdict.is_same
 
 
 @pytest.mark.parametrize("order", [1, -1], ids=["urdf to mjcf", "mjcf to urdf"])
@@ -360,5 +360,5 @@ def test_a_robot_is_the_same_in_two_formats(order: int, written: Write) -> None:
     files = [written("urdf", ARM_URDF), written("mjcf", ARM_MJCF)][::order]
     verdict = verify(*files)
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
-    assert verdict.verdict == "same"
+    assert verdict.is_same
     assert max(check.worst for check in verdict.checks if check.quantity in (POSITION, ROTATION)) < 1e-14

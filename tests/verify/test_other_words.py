@@ -39,7 +39,7 @@ def test_a_ball_is_three_hinges_in_urdf_and_a_capsule_is_three_shapes(written: W
     original = written("mjcf", BALL_MJCF)
     verdict = hx.verify(original, as_urdf(written, tmp_path, BALL_MJCF))
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
-    assert verdict.verdict == "same"
+    assert verdict.is_same
 
 
 def test_a_ball_elsewhere_is_found_through_its_hinges(written: Write, tmp_path: Path) -> None:
@@ -77,7 +77,7 @@ FLOATING = """r : robot {
 def test_what_floats_below_another_body_has_three_slides_and_a_ball_in_mjcf(written: Write, tmp_path: Path) -> None:
     target = tmp_path / "robot.xml"
     hx.convert(written("hymeko", FLOATING), target)
-    assert hx.verify(written("hymeko", FLOATING), target).verdict == "same"
+    assert hx.verify(written("hymeko", FLOATING), target).is_same
     damped = target.with_name("damped.xml")
     damped.write_text(target.read_text().replace('type="ball"', 'type="ball" damping="1"'))
     assert damped.read_text() != target.read_text()

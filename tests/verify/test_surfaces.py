@@ -94,5 +94,5 @@ def test_faces_that_each_reader_splits_otherwise_are_the_same_mesh_and_a_moved_c
     ):
         (tmp_path / f"{name}.obj").write_text(text)
         (tmp_path / f"{name}.urdf").write_text(link.format(name))
-    assert hx.verify(tmp_path / "a.urdf", tmp_path / "b.urdf").verdict == "same"
+    assert hx.verify(tmp_path / "a.urdf", tmp_path / "b.urdf").is_same
     assert [check.quantity for check in hx.verify(tmp_path / "a.urdf", tmp_path / "c.urdf").failed] == ["visual meshes"]

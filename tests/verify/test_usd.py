@@ -117,7 +117,7 @@ def test_another_unit_of_length_is_another_robot(arm: KinematicModel, written: W
 def test_an_arm_is_the_same_in_usd_in_any_units(metres: float, kilograms: float, arm: KinematicModel, written: Write) -> None:
     verdict = verify(arm, written("usd", usd_of(arm, metres=metres, kilograms=kilograms)))
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
-    assert verdict.verdict == "same"
+    assert verdict.is_same
 
 
 def test_a_fixed_base_and_a_falling_one_are_different(arm: KinematicModel, written: Write) -> None:
@@ -133,7 +133,7 @@ def test_a_robot_with_renamed_elements_is_the_same_by_structure(written: Write) 
         renamed = renamed.replace(f'"{name}"', f'"x_{name}"')
     files = written("urdf", ARM_URDF), written("urdf", renamed)
     assert verify(*files).verdict == "different"
-    assert verify(*files, structure=True).verdict == "same"
+    assert verify(*files, structure=True).is_same
 
 
 def test_structure_finds_the_change_in_a_renamed_robot(written: Write) -> None:

@@ -14,7 +14,9 @@ import hymeko_x as hx
 from hymeko_x import codes
 from hymeko_x.cli import exits, main
 from hymeko_x.diagnostics import Refusal
+from hymeko_x.verify.checks import QUANTITIES
 from hymeko_x.verify.verdict import Check
+from tests.reporting.robots import biped
 from tests.verify.robots import ARM_MJCF, ARM_URDF, RIG_MJCF
 
 Write = Callable[[str, str], Path]
@@ -34,36 +36,96 @@ def longer_arm(written: Write) -> str:
 
 
 def test_verify_prints_a_table_and_ends_with_0(arm: str, written: Write, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["verify", arm, str(written("mjcf", ARM_MJCF)), "--samples", "5"]) == exits.DONE
+    assert main(["verify", arm, arm, "--samples", "5", "-v"]) == exits.DONE
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "same"
     assert lines[1].strip().startswith("urdfdom in Pinocchio ")
-    assert all(line.startswith(("  ok   ", "  note: ")) for line in lines[3:])
+    assert all(line.startswith(("  ok   ", "  -    ", "  note: ")) for line in lines[3:-1])
+    assert {"  -    loops", "  -    actuators", "  -    armature"} < {*lines}
     assert "\x1b" not in "".join(lines)
+
+
+def test_verify_says_what_a_format_cannot_say(arm: str, written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    mjcf = str(written("mjcf", ARM_MJCF))
+    assert main(["verify", arm, mjcf, "--samples", "5"]) == exits.DONE
+    assert capsys.readouterr().out.splitlines() == [
+        "same as far as mjcf can say",
+        "  mjcf cannot say velocity limits: 6 (joint 'shoulder', joint 'elbow', ...)",
+        "22 checks passed, 1 note; -v has the table",
+    ]
+    assert main(["verify", arm, mjcf, "--samples", "5", "--strict"]) == exits.DIFFERENT
+    capsys.readouterr()
+    assert main(["verify", arm, mjcf, "--samples", "5", "--json"]) == exits.DONE
+    document = json.loads(capsys.readouterr().out)
+    assert document["verdict"] == "same as far as mjcf can say"
+    gap = {"format": "mjcf", "quantity": "velocity limits", "count": 6, "names": ["joint 'shoulder'", "joint 'elbow'"]}
+    assert document["cannot_say"] == [gap]
+
+
+def test_a_walker_without_its_loops_springs_and_motors_is_not_plainly_the_same(
+    written: Write, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    source, target = str(written("mjcf", biped())), str(tmp_path / "biped.urdf")
+    assert main(["convert", source, target, "-q"]) == exits.DONE
+    assert main(["verify", source, target, "--samples", "5"]) == exits.DONE
+    assert capsys.readouterr().out.splitlines() == [
+        "same as far as urdf can say",
+        "  urdf cannot say loops: 4 ('left-rod', 'left-plantar', ...)",
+        "  urdf cannot say armature: 10 (joint 'left-hip-roll', joint 'left-hip-yaw', ...)",
+        "  urdf cannot say springs: 4 (joint 'left-spring', joint 'left-heel-spring', ...)",
+        "  urdf cannot say actuators: 10 ('left-hip-roll', 'left-hip-yaw', ...)",
+        "17 checks passed, 2 notes; -v has the table",
+    ]
+
+
+def test_what_nothing_can_be_compared_of_is_not_the_same(written: Write) -> None:
+    nothing = written("mjcf", "<mujoco/>")
+    assert hx.verify(nothing, nothing).verdict == "not comparable"
+
+
+def test_every_quantity_of_a_check_is_in_the_list(written: Write, arm: str) -> None:
+    for one, other in ((arm, written("mjcf", ARM_MJCF)), (written("mjcf", biped()), written("mjcf", biped()))):
+        verdict = hx.verify(one, other, samples=2)
+        assert [*dict.fromkeys(check.quantity for check in verdict.checks)] == [q for q in QUANTITIES if q not in verdict.nothing]
 
 
 def test_a_quantity_of_which_nothing_was_compared_has_no_row(written: Write) -> None:
     path = written("urdf", '<robot name="r"><link name="a"/></robot>')
-    compared = {"forward kinematics, position", "forward kinematics, rotation", "mass", "inertia tensor"}
-    assert {check.quantity for check in hx.verify(path, path, samples=2).checks} == {"bodies", "joints", "base"} | compared
-    nothing = written("mjcf", "<mujoco/>")
-    assert {check.quantity for check in hx.verify(nothing, nothing, samples=2).checks} == {"bodies", "joints", "base"}
+    compared = {"bodies", "joints", "base", "forward kinematics, position", "forward kinematics, rotation"}
+    assert {check.quantity for check in hx.verify(path, path, samples=2).checks} == compared
 
 
 def test_verify_ends_with_4_when_the_robots_differ(arm: str, longer_arm: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", arm, longer_arm, "--samples", "5"]) == exits.DIFFERENT
     out = capsys.readouterr().out
     assert out.startswith("different\n")
-    assert "  FAIL forward kinematics, position           0.1     1e-09 m          body 'fore' " in out
+    assert out.splitlines()[1:] == [
+        "  FAIL forward kinematics, position, body 'fore' in the zero pose, worst at body 'left':"
+        " [0.0572523 0.0176056 0.395486] and [0.0790874 0.0139099 0.493003] m (0.1 m off, 1e-09 allowed)",
+        "22 checks passed; -v has the table",
+    ]
+
+
+def test_a_check_that_failed_shows_both_values_with_their_unit(arm: str, written: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    other = written("urdf", ARM_URDF.replace('effort="80"', 'effort="70"').replace('<mass value="2"/>', '<mass value="2.5"/>'))
+    assert main(["verify", arm, str(other), "--samples", "5"]) == exits.DIFFERENT
+    assert capsys.readouterr().out.splitlines() == [
+        "different",
+        "  FAIL effort limits, joint 'shoulder': [-80 80] and [-70 70] N m or N (10 N m or N off, 8e-08 allowed)",
+        "  FAIL mass, body 'upper': 2 and 2.5 kg (0.5 kg off, 2e-09 allowed)",
+        "  FAIL mass matrix, joint 'shoulder' at all lower limits: 0.00599 relative off, 1e-08 allowed",
+        "  FAIL gravity torque, joint 'shoulder' in the zero pose: 0.0243 N m or N off, 1.61e-09 allowed",
+        "19 checks passed; -v has the table",
+    ]
 
 
 def test_verify_prints_json_with_the_keys_of_the_contract(arm: str, longer_arm: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", arm, longer_arm, "--json", "--samples", "5"]) == exits.DIFFERENT
     document = json.loads(capsys.readouterr().out)
-    assert document.keys() == {"verdict", "engines", "checks", "not_compared"}
+    assert document.keys() == {"verdict", "engines", "checks", "nothing_to_compare", "cannot_say", "not_compared"}
     assert document["verdict"] == "different"
     assert len(document["engines"]) == 2
-    assert all(check.keys() == {"quantity", "unit", "worst", "at", "allowed", "passed"} for check in document["checks"])
+    assert all(check.keys() == {"quantity", "unit", "worst", "at", "allowed", "passed", "values"} for check in document["checks"])
     assert [check["quantity"] for check in document["checks"] if not check["passed"]][:1] == ["forward kinematics, position"]
 
 
@@ -166,7 +228,10 @@ def test_verify_is_a_function_and_a_package() -> None:
 
 def test_convert_verifies_what_it_wrote(arm: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["convert", arm, str(tmp_path / "out.xml"), "--verify", "--samples", "5"]) == exits.DONE
-    assert capsys.readouterr().err.splitlines()[-1] == "same"
+    assert capsys.readouterr().err.splitlines()[-3:-1] == [
+        "same as far as mjcf can say",
+        "  mjcf cannot say velocity limits: 6 (joint 'shoulder', joint 'elbow', ...)",
+    ]
 
 
 def test_convert_ends_with_4_when_the_result_is_another_robot(

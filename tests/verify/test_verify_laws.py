@@ -57,7 +57,7 @@ def seen(robot: Mechanism, wanted: Iterable[str], folder: Path) -> dict[str, Kin
 @given(robot=arms())
 def test_a_robot_is_the_same_in_every_two_formats(robot: Mechanism, folder: Path) -> None:
     models = seen(robot, FILES, folder)
-    apart = {(a, b): verdict for a, b in PAIRS if (verdict := compare(models[a], models[b], samples=SAMPLES)).verdict != "same"}
+    apart = {(a, b): verdict for a, b in PAIRS if not (verdict := compare(models[a], models[b], samples=SAMPLES)).is_same}
     assert apart == {}
 
 
@@ -78,7 +78,7 @@ def test_one_change_makes_another_robot_in_every_two_formats(planted: str, data:
 def test_tendons_are_the_same_in_every_two_formats_that_have_them(robot: Mechanism, folder: Path) -> None:
     models = seen(robot, {a for a, _ in OF_TENDONS}, folder)
     verdicts = {(a, b): compare(models[a], models[b], samples=SAMPLES) for a, b in OF_TENDONS}
-    assert {pair: verdict for pair, verdict in verdicts.items() if verdict.verdict != "same"} == {}
+    assert {pair: verdict for pair, verdict in verdicts.items() if not verdict.is_same} == {}
     assert all(Feature.TENDONS.value in {check.quantity for check in verdict.checks} for verdict in verdicts.values())
 
 

@@ -27,7 +27,7 @@ def assert_same_in_mjcf(robot: Path, folder: Path, *, meshes: bool) -> None:
     hx.convert(robot, target)
     verdict = hx.verify(robot, target, samples=20, meshes=meshes)
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
-    assert verdict.verdict == "same"
+    assert verdict.is_same
 
 
 @pytest.mark.parametrize("robot", FEW, ids=lambda file: file.id, indirect=True)
@@ -44,13 +44,13 @@ def test_every_real_robot_is_the_same_in_mjcf(robot: Path, tmp_path: Path) -> No
 @pytest.mark.slow
 @pytest.mark.robots("mjcf", every=3)
 def test_a_real_mjcf_is_the_same_as_itself(robot: Path) -> None:
-    assert hx.verify(robot, robot, samples=2, meshes=False).verdict == "same"
+    assert hx.verify(robot, robot, samples=2, meshes=False).is_same
 
 
 @pytest.mark.slow
 @pytest.mark.robots("usd")
 def test_a_real_stage_is_the_same_as_itself(robot: Path) -> None:
-    assert hx.verify(robot, robot, samples=2, meshes=False).verdict == "same"
+    assert hx.verify(robot, robot, samples=2, meshes=False).is_same
 
 
 @pytest.mark.robots("urdf")

@@ -17,21 +17,23 @@ from hymeko_x.verify.checks.dynamics import check_dynamics, disagreement
 from hymeko_x.verify.checks.inertia import check_inertia
 from hymeko_x.verify.checks.kinematics import check_kinematics
 from hymeko_x.verify.checks.loops import check_loops
-from hymeko_x.verify.checks.pair import Pair, counted, pair_up
+from hymeko_x.verify.checks.pair import MOST_SHOWN, Pair, counted, pair_up
 from hymeko_x.verify.checks.shapes import check_shapes
 from hymeko_x.verify.checks.tendons import check_tendons
 from hymeko_x.verify.matching import BASE, BODIES, JOINTS, match
 from hymeko_x.verify.meshes import Meshes
-from hymeko_x.verify.verdict import Check, Verdict
+from hymeko_x.verify.verdict import Check, Gap, Verdict
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from hymeko_x.verify.model import KinematicModel
 
 
 def check_matching(pair: Pair) -> Iterator[Check]:
     """Bodies, joints and bases without a counterpart, or joined differently. Allowed: none."""
+    if max(len(pair.a.bodies), len(pair.b.bodies)) < 2:
+        return
     for quantity in (BODIES, JOINTS, BASE):
         yield counted(quantity, [finding.words for finding in pair.match.findings if finding.quantity == quantity])
 
@@ -48,6 +50,48 @@ CHECKS: tuple[Callable[[Pair], Iterator[Check]], ...] = (
     check_actuators,
     check_tendons,
 )
+
+QUANTITIES = (
+    BODIES,
+    JOINTS,
+    BASE,
+    "forward kinematics, position",
+    "forward kinematics, rotation",
+    "loops",
+    "loop closure, position",
+    "loop closure, rotation",
+    "DH parameters, lengths",
+    "DH parameters, angles",
+    "position limits",
+    "velocity limits",
+    "effort limits",
+    "damping",
+    "friction",
+    "armature",
+    "stiffness",
+    "spring reference",
+    "nonlinear damping and stiffness",
+    "coordinate references",
+    "couplings",
+    "coupled coordinates",
+    "mass",
+    "centre of mass",
+    "inertia tensor",
+    "mass matrix",
+    "gravity torque",
+    "collision shapes",
+    "collision shapes, size and pose",
+    "collision meshes",
+    "visual shapes",
+    "visual shapes, size and pose",
+    "visual meshes",
+    "actuators",
+    "actuators, numbers",
+    "sensors",
+    "couplings of tendons",
+    "tendons",
+)
+"""What the checks compare, in their order; those of which a pair of robots has nothing have no row in its verdict."""
 
 _CONFIRMED = 2
 """The number of configurations, the last ones, at which Pinocchio confirms the batched kinematics of each robot."""
@@ -73,11 +117,26 @@ def compare(
         if difference:
             return Verdict(engines, reason=f"Pinocchio and the batched kinematics disagree about the {model.format} side: {difference}")
     checks = tuple(found for check in CHECKS for found in check(pair))
+    if not checks:
+        return Verdict(engines, reason="there is nothing to compare: neither robot has bodies or shapes")
+    done = {check.quantity for check in checks}
+    nothing = tuple(quantity for quantity in QUANTITIES if quantity not in done)
     trust = [
         f"trust: the {m.format} side was read by hymeko-x itself, not by an independent engine" for m in (a, b) if not m.is_independent
     ]
     notes = (*trust, *pair.notes, *(f"{model.format}: {note}" for model in (a, b) for note in model.notes))
-    return Verdict(engines, checks, tuple(dict.fromkeys(notes)))
+    return Verdict(engines, checks, tuple(dict.fromkeys(notes)), gaps=merged(pair.gaps), nothing=nothing)
+
+
+def merged(gaps: Iterable[Gap]) -> tuple[Gap, ...]:
+    """Gaps of one format and quantity as one."""
+    found: dict[tuple[str, str], Gap] = {}
+    for gap in gaps:
+        before = found.get((gap.format, gap.quantity))
+        if before is not None:
+            gap = Gap(gap.format, gap.quantity, before.count + gap.count, (*before.names, *gap.names)[:MOST_SHOWN])
+        found[gap.format, gap.quantity] = gap
+    return tuple(found.values())
 
 
 def _unusable(model: KinematicModel) -> str:

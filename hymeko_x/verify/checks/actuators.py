@@ -1,4 +1,4 @@
-"""Actuators and couplings of tendons: their targets and laws, and their numbers.
+"""Actuators, sensors and couplings of tendons: what they act on or measure, their laws, and their numbers.
 
 Compared: the words of each, and its numbers in SI units. Allowed: 1e-9 of the largest number.
 """
@@ -23,22 +23,25 @@ _TINY = 1e-12
 
 
 def check_actuators(pair: Pair) -> Iterator[Check]:
-    """Every actuator and coupling of tendons of the first robot in the second, and no new ones."""
+    """Every actuator, sensor and coupling of tendons of the first robot in the second, and no new ones."""
     yield from _check(pair, Feature.ACTUATORS, lambda model: model.actuators)
+    yield from _check(pair, Feature.SENSORS, lambda model: model.sensors)
     yield from _check(pair, Feature.TIED_TENDONS, lambda model: model.tied_tendons)
 
 
 def _check(pair: Pair, feature: Feature, records: Callable[[KinematicModel], Sequence[Record]]) -> Iterator[Check]:
     if not pair.both_represent(feature):
-        pair.note_unrepresented(feature, lambda model: len(records(model)))
+        pair.add_unrepresented(feature, lambda model: [_label(record) for record in records(model)])
     elif records(pair.a) or records(pair.b):
         pairs, findings = _pair_records(records(pair.a), records(pair.b))
         found = Differences(f"{feature.value}, numbers", "SI")
         for x, y in pairs:
-            if x.words != y.words:
+            if x.words and y.words and x.words != y.words:
                 findings.append(f"{_label(x)} is '{' '.join(x.words)}', and '{' '.join(y.words)}' in the other")
-            elif len(x.numbers) == len(y.numbers):
-                found.add(float(np.abs(np.subtract(x.numbers, y.numbers)).max(initial=0.0)), pair.relative(_TINY, *x.numbers), _label(x))
+            elif len(x.numbers) == len(y.numbers) and x.numbers:
+                worst = int(np.abs(np.subtract(x.numbers, y.numbers)).argmax())
+                ours, theirs = x.numbers[worst], y.numbers[worst]
+                found.add(abs(ours - theirs), pair.relative(_TINY, *x.numbers), _label(x), ours, theirs)
         yield counted(feature.value, findings)
         yield from found.checks()
 

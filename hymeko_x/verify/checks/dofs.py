@@ -27,8 +27,6 @@ LIMIT = 2e-9
 TINY = 1e-12
 """In SI units: mechanics below it are zero."""
 
-_MOST_LISTED = 5  # coordinates named in a note
-
 _MECHANICS: dict[Feature, tuple[str, str, Callable[[Dof], float]]] = {
     Feature.DAMPING: ("damping", "N m s/rad", lambda dof: dof.damping),
     Feature.FRICTION: ("friction", "N m", lambda dof: dof.friction),
@@ -60,7 +58,10 @@ def _check_limits(pair: Pair) -> Iterator[Check]:
         lower = _distance(_bound(ours.lower), _bound(theirs.lower, shift))
         upper = _distance(_bound(ours.upper), _bound(theirs.upper, shift))
         difference = 0.0 if _is_contradictory(pair, d, e) else max(lower, upper)
-        found.add(difference, pair.relative(LIMIT, *(x for x in (ours.lower, ours.upper) if abs(x) < FAR)), pair.a.dof_label(d))
+        if _is_unlimited(ours) and _is_unlimited(theirs):
+            continue
+        allowed = pair.relative(LIMIT, *(x for x in (ours.lower, ours.upper) if abs(x) < FAR))
+        found.add(difference, allowed, pair.a.dof_label(d), (ours.lower, ours.upper), (theirs.lower - shift, theirs.upper - shift))
     yield from found.checks()
 
 
@@ -85,13 +86,15 @@ def _or_none(value: float) -> float:
 
 
 def _check_bounds(pair: Pair, feature: Feature, name: str, unit: str, bounds: Callable[[Dof], tuple[float, float]]) -> Iterator[Check]:
-    _note_unrepresented(pair, feature, lambda dof: bounds(dof) != (-INF, INF))
+    _add_unrepresented(pair, feature, lambda dof: bounds(dof) != (-INF, INF))
     found = Differences(name, unit)
     for d, e in pair.match.dofs:
         if pair.a.dofs[d].kind is not Kind.FREE and _both_represent(pair, feature, d, e):
             ours, theirs = bounds(pair.a.dofs[d]), bounds(pair.b.dofs[e])
             difference = max(map(_distance, ours, theirs))
-            found.add(difference, pair.relative(RELATIVE, *(x for x in ours if abs(x) < INF)), pair.a.dof_label(d))
+            if ours != (-INF, INF) or theirs != (-INF, INF):
+                allowed = pair.relative(RELATIVE, *(x for x in ours if abs(x) < INF))
+                found.add(difference, allowed, pair.a.dof_label(d), ours, theirs)
     yield from found.checks()
 
 
@@ -117,18 +120,19 @@ def _is_unlimited(dof: Dof) -> bool:
 
 def _check_mechanics(pair: Pair, feature: Feature, name: str, unit: str, value: Callable[[Dof], float]) -> Iterator[Check]:
     """One number of every dof. Of a ball that is three hinges in the other robot, it is that of each of them."""
-    _note_unrepresented(pair, feature, lambda dof: value(dof) != 0.0)
+    _add_unrepresented(pair, feature, lambda dof: value(dof) != 0.0)
     found = Differences(name, unit)
     hinges = ((d, e) for item in pair.match.balls for d in item.dofs_a for e in item.dofs_b)
     for d, e in (*pair.match.dofs, *hinges):
         if _both_represent(pair, feature, d, e):
             ours, theirs = value(pair.a.dofs[d]), value(pair.b.dofs[e])
-            found.add(abs(theirs - ours), pair.relative(TINY, ours), pair.a.dof_label(d))
+            if ours or theirs:
+                found.add(abs(theirs - ours), pair.relative(TINY, ours), pair.a.dof_label(d), ours, theirs)
     yield from found.checks()
 
 
 def _check_springs(pair: Pair) -> Iterator[Check]:
-    _note_unrepresented(pair, Feature.SPRINGS, lambda dof: dof.stiffness != 0.0 or bool(dof.nonlinear))
+    _add_unrepresented(pair, Feature.SPRINGS, lambda dof: dof.stiffness != 0.0 or bool(dof.nonlinear))
     if not pair.both_represent(Feature.SPRINGS):
         return
     stiffness, reference = Differences("stiffness", "N m/rad"), Differences("spring reference", "rad or m")
@@ -136,9 +140,12 @@ def _check_springs(pair: Pair) -> Iterator[Check]:
     dofs = [(d, pair.a.dofs[d], pair.b.dofs[e], shift) for (d, e), shift in zip(pair.match.dofs, pair.shifts, strict=True)]
     for d, ours, theirs, shift in dofs:
         label = pair.a.dof_label(d)
-        stiffness.add(_distance(ours.stiffness, theirs.stiffness), pair.relative(TINY, ours.stiffness), label)
+        if ours.stiffness or theirs.stiffness:
+            allowed = pair.relative(TINY, ours.stiffness)
+            stiffness.add(_distance(ours.stiffness, theirs.stiffness), allowed, label, ours.stiffness, theirs.stiffness)
         rest = theirs.spring_ref - shift * bool(theirs.stiffness)
-        reference.add(_distance(ours.spring_ref, rest), pair.relative(LIMIT, 1.0), label)
+        if ours.stiffness or theirs.stiffness or ours.spring_ref or rest:
+            reference.add(_distance(ours.spring_ref, rest), pair.relative(LIMIT, 1.0), label, ours.spring_ref, rest)
         if not same_numbers(ours.nonlinear, theirs.nonlinear):
             curved.append(f"{label} has other curves")
     yield from (*stiffness.checks(), *reference.checks())
@@ -147,16 +154,16 @@ def _check_springs(pair: Pair) -> Iterator[Check]:
 
 
 def _check_references(pair: Pair) -> Iterator[Check]:
-    """A shifted coordinate is a difference where both formats represent its reference, else a note."""
+    """A shifted coordinate is a difference where both formats represent its reference, else a gap of the one that does not."""
     shifted = [(pair.a.dof_label(d), shift) for (d, _), shift in zip(pair.match.dofs, pair.shifts, strict=True) if shift]
     if pair.both_represent(Feature.REFS):
         found = Differences("coordinate references", "rad or m")
         for label, shift in shifted:
             found.add(abs(shift), LIMIT, label)
         yield from found.checks()
-    elif shifted:
-        moved = ", ".join(f"{label} by {shift:.6g}" for label, shift in shifted[:_MOST_LISTED])
-        pair.notes.append(f"coordinates count from another zero: {moved}{' and more' if len(shifted) > _MOST_LISTED else ''}")
+    else:
+        side = pair.a if Feature.REFS not in pair.a.features else pair.b
+        pair.add_gap(side, Feature.REFS.value, [f"{label} is shifted by {shift:.6g}" for label, shift in shifted])
 
 
 # ---- couplings -------------------------------------------------------------------------------------------------------
@@ -181,12 +188,10 @@ def _check_couplings(pair: Pair) -> Iterator[Check]:
 
 
 def _representable_followers(pair: Pair) -> Iterator[int]:
-    """The first robot's dofs that follow in a way that the second's format represents; a note for the others."""
+    """The first robot's dofs that follow in a way that the second's format represents; a gap for the others."""
     curved = [] if Feature.CURVES in pair.b.features else [coupling for coupling in pair.a.couplings if not coupling.straight]
     yield from (coupling.follower for coupling in pair.a.couplings if coupling not in curved)
-    if curved:
-        labels = ", ".join(pair.a.dof_label(coupling.follower) for coupling in curved[:3])
-        pair.notes.append(f"{Feature.CURVES.value}: {pair.b.format} has none; {len(curved)} in {pair.a.format}: {labels}")
+    pair.add_gap(pair.b, Feature.CURVES.value, [pair.a.dof_label(coupling.follower) for coupling in curved])
 
 
 # ---- shared ----------------------------------------------------------------------------------------------------------
@@ -197,15 +202,13 @@ def _distance(ours: float, theirs: float) -> float:
     return 0.0 if ours == theirs else abs(theirs - ours)
 
 
-def _note_unrepresented(pair: Pair, feature: Feature, has_it: Callable[[Dof], bool]) -> None:
-    """A note where dofs of one side have a number that the other's format or reader does not represent."""
+def _add_unrepresented(pair: Pair, feature: Feature, has_it: Callable[[Dof], bool]) -> None:
+    """A gap where dofs of one side have a number that the other's format or reader does not represent."""
     for model, other in ((pair.a, pair.b), (pair.b, pair.a)):
-        found = [dof for dof in model.dofs if has_it(dof) and not other.represents(feature, dof.kind)]
-        if not found:
-            continue
-        kinds = sorted({dof.kind.value for dof in found})
-        where = "" if feature not in other.features else f" for {' and '.join(kinds)} joints"
-        pair.notes.append(f"{feature.value}: {other.format} has none{where}; {len(found)} in {model.format}")
+        found = [d for d, dof in enumerate(model.dofs) if has_it(dof) and not other.represents(feature, dof.kind)]
+        kinds = sorted({model.dofs[d].kind.value for d in found})
+        where = "" if feature not in other.features else f" of {' and '.join(kinds)} joints"
+        pair.add_gap(other, f"{feature.value}{where}", [model.dof_label(d) for d in found])
 
 
 def _both_represent(pair: Pair, feature: Feature, d: int, e: int) -> bool:

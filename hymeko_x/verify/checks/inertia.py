@@ -50,13 +50,15 @@ def check_inertia(pair: Pair) -> Iterator[Check]:
     relative = pair.allowed(RELATIVE)
     for label, (mass, centre, tensor), (other_mass, other_centre, other_tensor) in _units(pair):
         floor = _floor(pair, (mass, centre, tensor))
-        masses.add(abs(mass - other_mass), max(relative * abs(mass), floor, _DUST), label)
+        if not (mass or other_mass or tensor.any() or other_tensor.any()):
+            continue
+        masses.add(abs(mass - other_mass), max(relative * abs(mass), floor, _DUST), label, mass, other_mass)
         if min(abs(mass), abs(other_mass)) > _LEAST:
             distance = float(np.linalg.norm(centre - other_centre))
-            centres.add(distance, max(CENTRE, relative * float(np.abs(centre).max())), label)
+            centres.add(distance, max(CENTRE, relative * float(np.abs(centre).max())), label, centre, other_centre)
         rounding = _DUST + _SPREAD * abs(mass) * float(centre @ centre)
         allowed = max(relative * float(np.abs(tensor).max()), floor, rounding)
-        tensors.add(float(np.abs(tensor - other_tensor).max()), allowed, label)
+        tensors.add(float(np.abs(tensor - other_tensor).max()), allowed, label, tensor, other_tensor)
     yield from (*masses.checks(), *centres.checks(), *tensors.checks())
 
 

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
+from hymeko_x.verify.checks.pair import shown
 from hymeko_x.verify.spatial import angle_between
 from hymeko_x.verify.verdict import Check
 
@@ -65,7 +67,7 @@ def check_kinematics(pair: Pair) -> Iterator[Check]:
         distances.add(slice(None), np.linalg.norm(a[..., :3, 3] - b[..., :3, 3], axis=-1), rows.start)
         angles.add(slice(None), angle_between(a[..., :3, :3], b[..., :3, :3]), rows.start)
     allowed = allowance(pair, reach)
-    yield _body_check(pair, "forward kinematics, position", "m", distances, allowed.metres)
+    yield _with_places(pair, _body_check(pair, "forward kinematics, position", "m", distances, allowed.metres), distances)
     yield _body_check(pair, "forward kinematics, rotation", "rad", angles, allowed.radians)
 
 
@@ -95,3 +97,14 @@ def _body_check(pair: Pair, quantity: str, unit: str, peaks: Peaks, allowed: flo
     if first != last:
         at += f", worst at {pair.a.body_label(bodies[last][0])}"
     return Check(quantity, unit, float(peaks.values[last]), at, allowed)
+
+
+def _with_places(pair: Pair, check: Check, peaks: Peaks) -> Check:
+    """A check that failed with where both robots have the first body that is off, in m."""
+    if check.passed:
+        return check
+    first = int(np.flatnonzero(peaks.values > check.allowed)[0])
+    row = slice(int(peaks.rows[first]), int(peaks.rows[first]) + 1)
+    i, j = pair.match.bodies[1:][first]
+    places = pair.forward_a.poses(pair.q_a[row])[0, i, :3, 3], pair.forward_b.poses(pair.q_b[row])[0, j, :3, 3]
+    return replace(check, values=(shown(places[0]), shown(places[1])))

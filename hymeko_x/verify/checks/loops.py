@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 LoopPair = tuple[Loop, Loop, bool]
 """A closure of each robot, and whether the second names the two bodies the other way round."""
 
-_MOST_LISTED = 3  # closures named in a note
-
 
 def check_loops(pair: Pair) -> Iterator[Check]:
     """Every closure of the first robot in the second, no new ones, and how open they are."""
@@ -56,10 +54,11 @@ def check_loops(pair: Pair) -> Iterator[Check]:
 def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
     """Closures by name, else by the two bodies that they join; and words about those without a counterpart.
 
-    None where the second robot's format has none: trees are then compared, and a note names the closures.
+    None where the second robot's format has none: trees are then compared, and a gap names the closures.
     """
     if Feature.LOOPS not in pair.b.features:
-        _note_unrepresented(pair)
+        labels = [f"'{loop.name}'" if loop.name else f"between {_ends_of(pair.a, loop)}" for loop in pair.a.loops]
+        pair.add_gap(pair.b, Feature.LOOPS.value, labels)
         return [], []
     back = {j: i for i, j in pair.match.bodies}
     there = dict(pair.match.bodies)
@@ -103,14 +102,6 @@ def _hinge_of(first: Loop, second: Loop) -> Loop:
         axis = there[:3, 3] - here[:3, 3]
         ends.append(frame_with_z(axis, here[:3, 3]) if axis.any() else here)
     return replace(first, kind="hinge", pose_a=ends[0], pose_b=ends[1])
-
-
-def _note_unrepresented(pair: Pair) -> None:
-    loops = pair.a.loops
-    if loops:
-        joined = [f"'{loop.name or loop.kind}' between {_ends_of(pair.a, loop)}" for loop in loops[:_MOST_LISTED]]
-        rest = f" and {len(loops) - _MOST_LISTED} more" if len(loops) > _MOST_LISTED else ""
-        pair.notes.append(f"loops: {pair.b.format} has none; {len(loops)} in {pair.a.format}: {', '.join(joined)}{rest}")
 
 
 def _counterpart(loop: Loop, waiting: list[Loop], back: dict[int, int]) -> Loop | None:

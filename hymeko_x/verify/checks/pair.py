@@ -12,7 +12,7 @@ from hymeko_x.verify.dh import zero_poses
 from hymeko_x.verify.kinematics import bounds, draw, follow, prepare
 from hymeko_x.verify.meshes import Meshes
 from hymeko_x.verify.spatial import quat_from_rotation
-from hymeko_x.verify.verdict import Check
+from hymeko_x.verify.verdict import Check, Gap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -33,9 +33,12 @@ _SAME_PLACEMENT = 1e-6
 MOST_NAMED = 5
 """So many findings a check names; it counts the rest."""
 
+MOST_SHOWN = 2
+"""So many elements a gap names."""
+
 
 class Pair(Struct, frozen=True, eq=False, dict=True):
-    """Two robots, their match, the same configurations (n, width) in the coordinates of each, and notes for the verdict.
+    """Two robots, their match, the same configurations (n, width) in the coordinates of each, notes and gaps for the verdict.
 
     ``shifts`` holds for each pair of dofs by how much the second's coordinate is larger for the same pose. ``meshes`` reads the mesh
     files that are compared, each once; ``mesh_distances`` holds the results of mesh comparisons.
@@ -49,6 +52,7 @@ class Pair(Struct, frozen=True, eq=False, dict=True):
     shifts: tuple[float, ...]
     meshes: Meshes = field(default_factory=Meshes)
     notes: list[str] = field(default_factory=list)
+    gaps: list[Gap] = field(default_factory=list)
     mesh_distances: dict[object, tuple[float, str, str]] = field(default_factory=dict)
 
     @cached_property
@@ -96,11 +100,18 @@ class Pair(Struct, frozen=True, eq=False, dict=True):
         """Whether both formats and their readers represent it."""
         return feature in self.a.features and feature in self.b.features
 
-    def note_unrepresented(self, feature: Feature, count: Callable[[KinematicModel], int]) -> None:
-        """A note for each side that has something of which the other's format or reader has none."""
+    def add_unrepresented(self, feature: Feature, names: Callable[[KinematicModel], Sequence[str]]) -> None:
+        """A gap for each side that has something which the other's format or reader does not represent."""
         for model, other in ((self.a, self.b), (self.b, self.a)):
-            if feature not in other.features and count(model):
-                self.notes.append(f"{feature.value}: {other.format} has none; {count(model)} in {model.format}")
+            if feature not in other.features:
+                self.add_gap(other, feature.value, names(model))
+
+    def add_gap(self, other: KinematicModel, quantity: str, names: Sequence[str]) -> None:
+        """A gap of this side: it does not represent these elements of the other one. A note where only its reader does not."""
+        if names and not other.is_independent:
+            self.notes.append(f"{quantity}: {len(names)} were not compared, because the reader of {other.format} does not read them")
+        elif names:
+            self.gaps.append(Gap(other.format, quantity, len(names), tuple(names[:MOST_SHOWN])))
 
     def row_label(self, row: int) -> str:
         """The name of a configuration in a verdict."""
@@ -126,18 +137,28 @@ class Differences:
 
     def __init__(self, quantity: str, unit: str) -> None:
         self.quantity, self.unit = quantity, unit
-        self._rows: list[tuple[float, float, str]] = []
+        self._rows: list[tuple[float, float, str, object, object]] = []
 
-    def add(self, difference: float, allowed: float, at: str) -> None:
-        """One more difference; not-a-number counts as infinite."""
-        self._rows.append((np.inf if np.isnan(difference) else float(difference), float(allowed), at))
+    def add(self, difference: float, allowed: float, at: str, ours: object = None, theirs: object = None) -> None:
+        """One more difference, of these values; not-a-number counts as infinite."""
+        self._rows.append((np.inf if np.isnan(difference) else float(difference), float(allowed), at, ours, theirs))
 
     def checks(self) -> list[Check]:
         """The check of the difference that exceeds its allowance the most; none where nothing was compared."""
         if not self._rows:
             return []
-        difference, allowed, at = max(self._rows, key=lambda row: row[0] / max(row[1], 1e-300))
-        return [Check(self.quantity, self.unit, difference, at if difference > 0 else "", allowed)]
+        difference, allowed, at, ours, theirs = max(self._rows, key=lambda row: row[0] / max(row[1], 1e-300))
+        values = None if ours is None or difference == 0 else (shown(ours), shown(theirs))
+        return [Check(self.quantity, self.unit, difference, at if difference > 0 else "", allowed, values)]
+
+
+def shown(value: object) -> str:
+    """A number, an interval, a vector or a symmetric tensor in a few digits."""
+    numbers = np.asarray(value, dtype=np.float64)
+    if numbers.shape == (3, 3):
+        numbers = numbers[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]
+    text = " ".join(f"{number:.6g}" for number in numbers.ravel())
+    return f"[{text}]" if numbers.ndim else text
 
 
 def counted(quantity: str, findings: Sequence[str]) -> Check:

@@ -6,6 +6,7 @@ on the other (see :mod:`hymeko_x.verify.meshes`), relative to their extent. Allo
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +15,7 @@ from msgspec.structs import replace
 
 from hymeko_x.verify.checks.pair import Differences, Pair, counted
 from hymeko_x.verify.meshes import ALLOWED, mesh_distance
-from hymeko_x.verify.model import WORLD, Array, Feature, MeshFile, Role, Shape
+from hymeko_x.verify.model import WORLD, Array, Feature, KinematicModel, MeshFile, Role, Shape
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -54,12 +55,16 @@ def check_shapes(pair: Pair) -> Iterator[Check]:
     """Collision shapes and visual shapes of every pair of bodies."""
     for feature, (word, roles) in _ROLES.items():
         if not pair.both_represent(feature):
-            silent = pair.a if feature not in pair.a.features else pair.b
-            pair.notes.append(f"{feature.value}: the reader of {silent.format} does not read them")
+            pair.add_unrepresented(feature, partial(_bodies_with, roles))
             continue
         results = [(i, _compare_body(pair, i, j, roles, pair.meshes)) for i, j in pair.match.bodies if _is_compared(pair, i, j, word)]
         if results:
             yield from _summed_up(pair, word, results)
+
+
+def _bodies_with(roles: tuple[Role, Role], model: KinematicModel) -> list[str]:
+    """A label for every shape of these roles: the body that it is on."""
+    return [model.body_label(index) for index, body in enumerate(model.bodies) for shape in body.shapes if shape.role in roles]
 
 
 def _is_compared(pair: Pair, i: int, j: int, word: str) -> bool:
@@ -119,7 +124,7 @@ def _in_common_kinds(pair: Pair, ours: Sequence[Shape], theirs: Sequence[Shape],
 def _without_stand_ins(pair: Pair, missing: Sequence[Shape], poor: Sequence[Shape], meshes: Meshes) -> list[Shape]:
     """The shapes of the poorer format but those that stand for one that it cannot represent, one for each role of it."""
     waiting = list(poor)
-    format = pair.a.format if pair.a.row.missing_shapes else pair.b.format
+    side = pair.a if pair.a.row.missing_shapes else pair.b
     for shape in missing:
         stands = []
         for role in (Role.VISUAL, Role.COLLISION):
@@ -127,8 +132,10 @@ def _without_stand_ins(pair: Pair, missing: Sequence[Shape], poor: Sequence[Shap
                 stands += [other for other in waiting if other.role is role and stands_for(other, shape, meshes)][:1]
         waiting = [other for other in waiting if other not in stands]
         kind = stands[0].kind if stands else ""
-        words = f"a {kind} stands for {_label(shape)}" if stands else f"{_label(shape)} was not compared"
-        pair.notes.append(f"shapes: {format} has no {shape.kind}; {words}")
+        if stands:
+            pair.notes.append(f"shapes: {side.format} has no {shape.kind}; a {kind} stands for {_label(shape)}")
+        else:
+            pair.add_gap(side, f"shapes of kind {shape.kind}", [_label(shape)])
     return waiting
 
 

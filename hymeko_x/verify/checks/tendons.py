@@ -37,7 +37,7 @@ _UNITS = {"coefficients": "SI", "path": "m", "axes": "rad"} | dict.fromkeys((*_M
 def check_tendons(pair: Pair) -> Iterator[Check]:
     """Every tendon of the first robot in the second, and no new ones."""
     if not pair.both_represent(Feature.TENDONS):
-        pair.note_unrepresented(Feature.TENDONS, lambda model: len(model.tendons))
+        pair.add_unrepresented(Feature.TENDONS, lambda model: [_name(tendon) for tendon in model.tendons])
         return
     if not pair.a.tendons and not pair.b.tendons:
         return
@@ -78,7 +78,11 @@ def _pair_tendons(pair: Pair) -> tuple[list[tuple[Tendon, Tendon]], list[str]]:
 
 
 def _label(tendon: Tendon) -> str:
-    return f"tendon '{tendon.name}'" if tendon.name is not None else "a tendon without a name"
+    return f"tendon {_name(tendon)}" if tendon.name is not None else "a tendon without a name"
+
+
+def _name(tendon: Tendon) -> str:
+    return f"'{tendon.name}'" if tendon.name is not None else "no name"
 
 
 def _path_difference(pair: Pair, ours: Tendon, theirs: Tendon, bodies: Mapping[int, int], dofs: Mapping[int, int]) -> str:
@@ -108,9 +112,11 @@ def _compare(pair: Pair, ours: Tendon, theirs: Tendon, found: Mapping[str, Diffe
     for number, (step, other) in enumerate(zip(ours.path, theirs.path, strict=True), 1):
         _compare_steps(pair, f"step {number} of {at}", step, other, found)
     for word, value, other_value in zip(_MECHANICS, ours.mechanics, theirs.mechanics, strict=True):
-        found[word].add(abs(value - other_value), pair.relative(_TINY, value), at)
+        if value or other_value:
+            found[word].add(abs(value - other_value), pair.relative(_TINY, value), at, value, other_value)
     for word, bounds, others in (("limits", ours.limits, theirs.limits), ("force limits", ours.force, theirs.force)):
-        found[word].add(_interval_distance(bounds, others), pair.relative(_TINY, *(bounds or ())), at)
+        if bounds or others:
+            found[word].add(_interval_distance(bounds, others), pair.relative(_TINY, *(bounds or ())), at, bounds or (), others or ())
     found["spring lengths"].add(_spring_distance(ours.spring, theirs.spring), pair.relative(_TINY, *(ours.spring.between or ())), at)
 
 

@@ -17,6 +17,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir import tendons as roles
 from hymeko_x.ir.mechanism import WORLD as WORLD_ID
 from hymeko_x.ir.mechanism import Id, JointView, Mechanism, ShapeView, numbers_weight, pose_weight
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.rewrite.context import Options
 from hymeko_x.source import Source
 from hymeko_x.verify import model as m
@@ -24,7 +25,7 @@ from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Kind, K
 from hymeko_x.verify.spatial import frame_with_z, pose
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
     from hymeko_x.ir.mechanism import RobotArc
@@ -34,7 +35,10 @@ if TYPE_CHECKING:
     Placed = Mapping[Id, tuple[int, Array]]
     Parameter = float | str | tuple[float, ...] | None
 
-FEATURES = frozenset(Feature) - {Feature.ACTUATORS, Feature.TIED_TENDONS}
+FEATURES = frozenset(Feature) - {Feature.TIED_TENDONS}
+
+_TRANSMISSION = "transmission"
+"""The kind of the actuators that urdfdom does not read, and that no other engine has."""
 
 
 def read(path: Path, lookup: Lookup) -> KinematicModel:
@@ -78,10 +82,18 @@ def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> Kinema
         bodies=bare.bodies,
         couplings=tuple(_couplings(mechanism, dofs)),
         loops=tuple(_loops(mechanism, numbers, frames)),
+        actuators=tuple(_records(mechanism, [key for key, part in mechanism.vertices(parts.Actuator) if part.kind != _TRANSMISSION])),
+        sensors=tuple(_records(mechanism, [key for key, _ in mechanism.vertices(parts.Sensor)])),
         tendons=tuple(_tendons(mechanism, dofs, frames, numbers)),
         features=FEATURES,
         is_independent=False,
     )
+
+
+def _records(mechanism: Mechanism, keys: Iterable[Id]) -> Iterator[m.Record]:
+    """Elements of which only the names are compared; None for those that have none in their source."""
+    for key in keys:
+        yield m.Record(None if mechanism.notation(key, UNNAMED) is not None else key.name, (), ())
 
 
 def _body(mechanism: Mechanism, key: Id, view: JointView | None, inertial: parts.Inertial | None, numbers: Mapping[Id, int]) -> Body:

@@ -18,7 +18,7 @@ from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.verify.kinematics import disagreement
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Role, Shape, Surface, world_body
 from hymeko_x.verify.readers import native_output
-from hymeko_x.verify.readers.mjcf.constraints import read_actuators, read_couplings, read_loops, read_tied_tendons
+from hymeko_x.verify.readers.mjcf.constraints import read_actuators, read_couplings, read_loops, read_sensors, read_tied_tendons
 from hymeko_x.verify.readers.mjcf.tendons import read_tendons
 from hymeko_x.verify.spatial import pose, quat_from_rotation, rigid, rotation_from_quat
 
@@ -97,6 +97,7 @@ def from_compiled(compiled: Any) -> KinematicModel:
         couplings=tuple(read_couplings(compiled, joint_dofs)),
         loops=tuple(read_loops(compiled)),
         actuators=tuple(read_actuators(compiled)),
+        sensors=tuple(read_sensors(compiled)),
         tendons=tuple(read_tendons(compiled, joint_dofs)) if compiled.ntendon else (),
         tied_tendons=tuple(read_tied_tendons(compiled)),
         features=FEATURES,

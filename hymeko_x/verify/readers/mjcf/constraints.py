@@ -112,6 +112,17 @@ def read_actuators(compiled: Any) -> Iterator[Record]:
         yield Record(compiled.actuator(i).name or None, words, _actuator_numbers(compiled, i))
 
 
+def read_sensors(compiled: Any) -> Iterator[Record]:
+    """What each sensor measures, of what, and where it cuts its values off."""
+    for i in range(compiled.nsensor):
+        kind = mujoco.mjtSensor(int(compiled.sensor_type[i])).name.removeprefix("mjSENS_").lower()
+        objects = zip(
+            (compiled.sensor_objtype[i], compiled.sensor_reftype[i]), (compiled.sensor_objid[i], compiled.sensor_refid[i]), strict=True
+        )
+        names = (mujoco.mj_id2name(compiled, int(type_), int(id_)) or "" if id_ >= 0 else "" for type_, id_ in objects)
+        yield Record(compiled.sensor(i).name or None, (kind, *names), (float(compiled.sensor_cutoff[i]),))
+
+
 def _target(compiled: Any, actuator: int) -> str:
     kind, target = int(compiled.actuator_trntype[actuator]), int(compiled.actuator_trnid[actuator][0])
     if kind in (int(_TRN.mjTRN_JOINT), int(_TRN.mjTRN_JOINTINPARENT)):

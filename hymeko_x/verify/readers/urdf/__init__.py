@@ -47,6 +47,7 @@ FEATURES = frozenset(Feature) - {
     Feature.SPRINGS,
     Feature.REFS,
     Feature.ACTUATORS,
+    Feature.SENSORS,
     Feature.TENDONS,
     Feature.TIED_TENDONS,
     Feature.LOOPS,

@@ -1,0 +1,74 @@
+"""Verdicts of the verifier as text: the answer, what a format cannot say, what failed, and on request the table of all checks."""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING
+
+from hymeko_x.cli import exits
+from hymeko_x.cli.terminal import is_coloured, paint
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.verify.verdict import Check, Verdict
+
+_MOST_LINES = 12
+"""So many findings are shown; `-v` shows all."""
+
+
+def exit_code(verdict: Verdict, *, strict: bool = False) -> int:
+    """0 for the same robot, 4 for another one, 1 where that cannot be told; with ``strict`` 4 where a format cannot say everything."""
+    if verdict.reason:
+        return exits.FAILED
+    return exits.DIFFERENT if verdict.failed or (strict and verdict.gaps) else exits.DONE
+
+
+def verdict_lines(verdict: Verdict, *, coloured: bool | None = None, verbose: bool = False) -> Iterator[str]:
+    """The verdict as text; ``verbose``: with the table of all checks and everything that was not compared."""
+    colour = is_coloured(sys.stdout) if coloured is None else coloured
+    yield _answer(verdict, colour)
+    if verdict.reason:
+        return
+    failed = [_failed_line(check, colour) for check in verdict.failed]
+    gaps = [f"  {gap.format} cannot say {gap}" for gap in verdict.gaps]
+    for lines in (failed, gaps):
+        yield from lines if verbose else lines[:_MOST_LINES]
+        if len(lines) > _MOST_LINES and not verbose:
+            yield f"  ... and {len(lines) - _MOST_LINES} more"
+    if verbose:
+        yield from _table(verdict, colour)
+        yield from (f"  note: {note}" for note in verdict.not_compared)
+    passed = len(verdict.checks) - len(verdict.failed)
+    notes = len(verdict.not_compared)
+    noted = f", {notes} {'note' if notes == 1 else 'notes'}" if notes else ""
+    yield f"{passed} {'check' if passed == 1 else 'checks'} passed{noted}" + ("" if verbose else "; -v has the table")
+
+
+def _answer(verdict: Verdict, colour: bool) -> str:
+    style = "33" if verdict.reason else "31" if verdict.failed else "33" if verdict.gaps else "32"
+    return _painted(style, verdict.verdict, colour) + (f": {verdict.reason}" if verdict.reason else "")
+
+
+def _failed_line(check: Check, colour: bool) -> str:
+    """What failed and where, both values, and by how much they are off."""
+    mark = _painted("31", "FAIL", colour)
+    if not check.unit:
+        return f"  {mark} {check.quantity}: {check.at}"
+    size = f"{check.worst:.3g} {check.unit} off, {check.allowed:.3g} allowed"
+    found = f"{check.values[0]} and {check.values[1]} {check.unit} ({size})" if check.values else size
+    return f"  {mark} {check.quantity}, {check.at}: {found}"
+
+
+def _table(verdict: Verdict, colour: bool) -> Iterator[str]:
+    yield f"  {verdict.engines[0]}  |  {verdict.engines[1]}"
+    yield f"  {'':4} {'quantity':<32} {'worst':>9} {'allowed':>9} {'unit':<10} at"
+    for check in verdict.checks:
+        mark = _painted("32", "ok  ", colour) if check.passed else _painted("31", "FAIL", colour)
+        yield f"  {mark} {check.quantity:<32} {check.worst:>9.3g} {check.allowed:>9.3g} {check.unit:<10} {check.at}".rstrip()
+    for quantity in verdict.nothing:
+        yield f"  -    {quantity}"
+
+
+def _painted(style: str, text: str, colour: bool) -> str:
+    return paint(style, text) if colour else text
