@@ -11,8 +11,9 @@ from msgspec.structs import replace
 
 from hymeko_x import codes, formats
 from hymeko_x.assets.pack import pack, with_stand_ins
-from hymeko_x.assets.shelf import safe_name
+from hymeko_x.assets.shelf import read_file, safe_name
 from hymeko_x.collector import uncollected
+from hymeko_x.compare.geometry import meshes_as_files, with_points_of_files, without_points
 from hymeko_x.compare.leaves import leaves_again, leaves_between
 from hymeko_x.compare.ledger import losses_between
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
@@ -100,7 +101,9 @@ def read(source: Source, format: Format, report: Report) -> Mechanism:
     Raises: Refusal when the input cannot be read at all.
     """
     image, carried = reader(format)(source, report)
-    return restored(image, carried, Origin(source.name), report) if carried else image
+    if not carried:
+        return image
+    return with_points_of_files(restored(image, carried, Origin(source.name), report), _fetch(source.files))
 
 
 @uncollected()
@@ -127,7 +130,8 @@ def convert(
         return Result(mechanism, package, report, None)
     carry = None if options.pure else package.carry
     image = read_back(package, format, files)
-    losses, residue = _compared(mechanism, printed, image, format, is_moved=is_moved, is_carried=carry is not None)
+    contents = None if place.assets == "reference" else PackageFiles(package, PlacedFiles(mechanism.places, files))
+    losses, residue = _compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_carried=carry is not None)
     if carry is None:
         return Result(mechanism, package, report, losses)
     return Result(mechanism, replace(package, main=carry(residue)) if residue else package, report, losses, package.main)
@@ -172,23 +176,30 @@ def read_back(package: Package, format: Format, files: Files) -> Mechanism:
 
 
 def _compared(
-    mechanism: Mechanism, printed: Mechanism, image: Mechanism, format: Format, *, is_moved: bool, is_carried: bool
+    mechanism: Mechanism, printed: Mechanism, image: Mechanism, format: Format, contents: Files | None, *, is_moved: bool, is_carried: bool
 ) -> tuple[tuple[Loss, ...], str]:
     """The losses, and the text of the residue if the file is to carry one: empty where the image is the mechanism.
 
-    Where files are moved, the residue has nothing that leads back to those in the way.
+    ``contents`` are the files of the output (None where the main file goes alone): points that the mechanism holds and that are in one of
+    them are no difference. Where files are moved, the residue has nothing that leads back to those in the way.
     """
     alignment, aligned = align(image, mechanism)
-    moved = with_references_of(printed, mechanism)
+    as_files = mechanism if contents is None else meshes_as_files(mechanism, aligned, _fetch(contents))
+    moved = with_references_of(printed, as_files)
     leaves = leaves_between(moved, aligned)
     losses = losses_between(moved, aligned, alignment_differences(alignment), format, leaves, is_carried=is_carried)
     if not is_carried:
         return losses, ""
-    source = mechanism
+    source = without_points(mechanism, as_files)
     if is_moved:
         source = moved if formats.native_format(moved) is None else replace(moved, extras=printed.extras)
     residue = residue_between(source, image, alignment, aligned, leaves_again(source, moved, aligned, leaves))
     return losses, "" if residue.is_empty else print_residue(residue)
+
+
+def _fetch(files: Files) -> Callable[[str], bytes | None]:
+    """Gives the content of a file by its uri, or None."""
+    return lambda uri: (read_file(files, uri) or ("", None))[1]
 
 
 # ---- steps of the stages ---------------------------------------------------------------------------------------------------------

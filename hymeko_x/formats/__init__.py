@@ -188,8 +188,8 @@ MJCF = Format(
     outline="hymeko_x.frontends.mjcf.outline:outline",
     completes="hymeko_x.frontends.mjcf.complete:complete",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
-    mesh_reader="hymeko_x.formats.mjcf.meshes:read_mesh",
-    read_otherwise="hymeko_x.formats.mjcf.meshes:read_otherwise",
+    mesh_reader="hymeko_x.meshes.tables:read_mesh",
+    read_otherwise="hymeko_x.meshes.tables:read_otherwise",
     refused="hymeko_x.formats.mjcf.files:refused",
     placing=frozenset({"@refpos", "@refquat", "@builtin", "@params"}),
     inherited="hymeko_x.formats.mjcf.classes:without_inherited",
@@ -310,7 +310,7 @@ def of_output(path: str, name: str | None = None) -> Format:
 
     Raises: Refusal HX003.
     """
-    owner = next((format for format in FORMATS if path.lower().endswith(format.suffixes)), None)
+    owner = of_file(path)
     if name is not None:
         named = by_name(name)
         is_kin = owner is not None and owner.family == named.family and not path.lower().endswith(".usd")
@@ -343,6 +343,11 @@ def of_input(name: str, data: bytes) -> Format:
         message = f"neither suffix nor content of '{name}' belongs to a format"
         raise refuse(codes.UNKNOWN_FORMAT, message, Origin(name), hint=_suffix_hint("--from"))
     return OWN
+
+
+def of_file(name: str) -> Format | None:
+    """The format to which the suffix of a file belongs, first of all; None where there is none."""
+    return next((format for format in FORMATS if name.lower().endswith(format.suffixes)), None)
 
 
 def of_root(root: str | None) -> Format | None:

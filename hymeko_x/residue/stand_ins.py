@@ -30,6 +30,8 @@ def with_stand_ins(mechanism: Mechanism, image: Mechanism) -> Mechanism:
     stored: dict[Id, StoredMesh | Texture] = {**image.stored, **_stored_meshes(mechanism, image)}
     for key, part in mechanism.assets():
         before = image.graph.vertices.get(key)
+        if part.uri is None and isinstance(part, Mesh) and not part.vertices and isinstance(before, Mesh) and before.uri is not None:
+            stored[key] = StoredMesh(before)  # it had points of its own, which are in that file
         if part.uri is None or not isinstance(before, Mesh | Texture) or before.uri in (None, part.uri):
             continue
         if _is_copy(mechanism, key, part, before):

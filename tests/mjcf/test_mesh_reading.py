@@ -12,8 +12,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import hymeko_x as hx
-from hymeko_x.formats.mjcf.meshes import read_mesh
 from hymeko_x.meshes.submesh import Unreadable
+from hymeko_x.meshes.tables import read_mesh
 from tests.meshes.real import cached_meshes
 
 if TYPE_CHECKING:

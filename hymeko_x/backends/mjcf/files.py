@@ -64,7 +64,6 @@ class _Packing(Builder, kw_only=True):
     gone: list[Id] = field(default_factory=list)
     surfaces: set[Id] = field(default_factory=set)
     materials: dict[tuple[object, bytes | None], Id] = field(default_factory=dict)
-    textured: frozenset[Id | None] = frozenset()
 
 
 def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
@@ -74,7 +73,6 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
 
         return pack_native(mechanism, shelf, files, report)
     run = _Packing(names=names_in_use(mechanism), mechanism=mechanism, shelf=shelf, files=files, report=report)
-    run.textured = frozenset(arc.target for _, _, arcs in mechanism.edges(Layer) for arc in arcs if arc.sign < 0)
     _pack_textures(run)
     _pack_meshes(run)
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), _SHELL) for key in run.surfaces}}
@@ -124,7 +122,8 @@ def _pack_meshes(run: _Packing) -> None:
 
 
 def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> None:
-    """Data that stands in the mechanism itself stays there, unless MuJoCo would refuse it."""
+    """Data that the mechanism holds stays in the text if there is little of it; else, or if MuJoCo would refuse it, it becomes a file."""
+    from hymeko_x.backends.mjcf.meshes import mesh_file, stays_inline, without_points
     from hymeko_x.meshes.reader import inline_part
     from hymeko_x.meshes.submesh import Unreadable
 
@@ -132,14 +131,15 @@ def _pack_inline(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> 
     try:
         part = inline_part(mesh.vertices, mesh.faces, mesh.texcoords, mesh.texfaces)
         _check_surface(part)
-        has_places = part.uv is not None and any(view.material in run.textured for view in users)
-        reason = "has texture coordinates, which need a file" if has_places else _refusal(part, ".obj", b"", solid=solid)
-        if reason is None:
-            _add_mesh(run, key, replace(mesh, texcoords=(), texfaces=()), part)
-            return
-        _report_converted(run, key, reason)
-        bare = replace(mesh, vertices=(), faces=(), texcoords=(), texfaces=())
-        _write_mesh(run, key, bare, part if has_places else replace(part, uv=None), key.name, solid=solid)
+        reason = _refusal(part, ".obj", b"", solid=solid)
+        if reason is not None:
+            _report_converted(run, key, reason)
+            _write_mesh(run, key, without_points(mesh), part, key.name, solid=solid)
+        elif stays_inline(part) or (run.shelf.mode == "reference" and part.uv is None):  # then the main file stands alone
+            _add_mesh(run, key, mesh, part)
+        else:
+            suffix, data = mesh_file(part)
+            _add_mesh(run, key, replace(without_points(mesh), uri=run.shelf.place(_MESHES, key.name, suffix, data)), part)
     except Unreadable as error:
         _leave_out(run, key, users, codes.ASSET_UNREADABLE, f"its data cannot be used: {error}")
 

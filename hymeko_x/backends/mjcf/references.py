@@ -34,8 +34,10 @@ def pack_native(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report
     The folders that <compiler> names stay as long as no file has to move; else every path is written in full.
     """
     settings = _settings(mechanism)
+    from hymeko_x.backends.mjcf.meshes import with_points_as_files
+
     packed = keep_references(mechanism, shelf, files, report, Keep.PACKAGES_AND_PATHS)
-    packed = _with_mended_files(mechanism, packed, shelf, files, report)
+    packed = with_points_as_files(_with_mended_files(mechanism, packed, shelf, files, report), shelf)
     moved: dict[tuple[str, str], str] = {}
     for key, extra in _with_files(mechanism):
         for _, file in _FILE.findall(_text(extra)):

@@ -1,4 +1,4 @@
-"""Mesh files as MuJoCo reads them: every point of the file in its order, and the triangles that it makes of the faces.
+"""Mesh files as tables, as MuJoCo reads them: every point of the file in its order, and the triangles that it makes of the faces.
 
 Source: MuJoCo 4.0, proven with its mjModel. Of an OBJ file only the first object or group with faces counts, and of a text that is not
 understood MuJoCo refuses the file. Equal points of STL, which has no others, become one; those of OBJ and MSH stay as many as they are.
