@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Literal, TypedDict, Unpack
 
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.delivery import Delivery, report_unwritten
+from hymeko_x.delivery import Delivery, report_unwritten, unchanged
 from hymeko_x.diagnostics import Report
 from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
@@ -161,10 +161,12 @@ def convert(
     """
     report = Report()
     given = _source(source, **reading)
-    robot = pipeline.read(given, _input_format(given, from_format), report)
+    read_as = _input_format(given, from_format)
+    robot = pipeline.read(given, read_as, report)
     options = Options(base, actuators, layout, nested, split, pure, beside=Path(target).stem)
     format = formats.of_output(os.fspath(target), to_format)
-    delivery = Delivery(robot, format, options, given.files, _place(target, assets), os.fspath(target))
+    own = unchanged(given, read_as, format)
+    delivery = Delivery(robot, format, options, given.files, _place(target, assets), os.fspath(target), own)
     result = delivery.convert(report)
     delivery.put(result)
     return result

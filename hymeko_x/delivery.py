@@ -8,18 +8,24 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, disk, pipeline
+from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Report
+from hymeko_x.edits.copying import copied
+from hymeko_x.pipeline import Result
+from hymeko_x.rewrite import Options
 
 if TYPE_CHECKING:
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
-    from hymeko_x.pipeline import Place, Result
-    from hymeko_x.rewrite import Options
-    from hymeko_x.source import Files, Package
+    from hymeko_x.pipeline import Place
+    from hymeko_x.source import Files, Package, Source
 
 
 class Delivery(Struct, frozen=True):
-    """A mechanism, and how and where its output goes; ``path`` is empty where only the main file is wanted."""
+    """A mechanism, and how and where its output goes; ``path`` is empty where only the main file is wanted.
+
+    ``own`` is the source that the mechanism was read from as it is, if that is of the same format.
+    """
 
     mechanism: Mechanism
     format: Format
@@ -27,12 +33,17 @@ class Delivery(Struct, frozen=True):
     files: Files
     place: Place
     path: str
+    own: Source | None = None
 
     def convert(self, report: Report, *, measured: bool = True) -> Result:
         """The result to write. Its files go below a folder named like the main file when those of another output are in the way.
 
         Without ``measured`` it is not read back. Raises: as :func:`hymeko_x.pipeline.convert`.
         """
+        if self.own is not None and self.path and replace(self.options, beside="") == Options():
+            package = copied(self.own, self.format, self.mechanism, self.place, report)
+            if package is not None and self._in_the_way(package, f"{safe_name(self.options.beside)}/") is None:
+                return Result(self.mechanism, package, report, ())
         place = replace(self.place, in_the_way=self._in_the_way if self.path else None)
         return pipeline.convert(self.mechanism, self.format, self.options, self.files, report, place, measured=measured)
 
@@ -47,6 +58,12 @@ class Delivery(Struct, frozen=True):
 
     def _in_the_way(self, package: Package, folder: str) -> str | None:
         return disk.in_the_way(package, self.path, folder, self.files)
+
+
+def unchanged(source: Source, from_format: Format, to_format: Format) -> Source | None:
+    """The source, if an output of this format may have its text: the same format, read without choices of the user."""
+    is_plain = not (source.arguments or source.environment or source.variants)
+    return source if from_format is to_format and is_plain else None
 
 
 def report_unwritten(package: Package, where: str, report: Report) -> None:

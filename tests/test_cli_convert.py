@@ -142,7 +142,7 @@ def test_a_loss_is_measured_by_reading_the_result_back(
     main_file = ARM.replace('effort="10"', 'effort="9"').encode()
     lossy = Package(main_file, carry=lambda residue: main_file)
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
-    assert main(["convert", "arm.urdf", "lossy.urdf", "--json"]) == exits.DONE
+    assert main(["convert", "arm.urdf", "lossy.xacro", "--json"]) == exits.DONE
     said = capsys.readouterr()
     assert json.loads(said.out)["losses"] == [
         {
@@ -161,7 +161,7 @@ def test_a_loss_is_measured_by_reading_the_result_back(
         }
     ]
     assert said.err.splitlines() == [
-        "wrote lossy.urdf (2 bodies, 1 joint)",
+        "wrote lossy.xacro (2 bodies, 1 joint)",
         "kept: effort limit of 1 joint, 1 field or element in all",
         "-v lists each with its place, --report FILE.json has all",
     ]
@@ -175,8 +175,8 @@ def test_a_long_value_is_shown_in_one_short_line() -> None:
 
 def test_what_our_own_reader_refuses_is_a_bug_and_not_written(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: Package(b"<html/>"))
-    assert main(["convert", "arm.urdf", "broken.urdf"]) == exits.BUG
-    assert not (folder / "broken.urdf").exists()
+    assert main(["convert", "arm.urdf", "broken.xacro"]) == exits.BUG
+    assert not (folder / "broken.xacro").exists()
 
 
 @pytest.mark.parametrize(

@@ -37,6 +37,7 @@ BESIDE = {
     ("corpus", "verify"),
     ("corpus", "pipeline"),
     ("corpus", "disk"),
+    ("delivery", "edits"),
 }
 """Imports within a layer that are meant to be: (who, whom)."""
 

@@ -74,7 +74,13 @@ class DiskFiles(Struct, frozen=True, dict=True):
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
         if Path(path).stat().st_size > MOST_BYTES:
             raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), path)
+        self.opened[path] = None
         return Path(path).read_bytes()
+
+    @cached_property
+    def opened(self) -> dict[str, None]:
+        """The paths that were read so far, in their order."""
+        return {}
 
     # ---- packages as folders ---------------------------------------------------------------------------------------------
 

@@ -15,7 +15,7 @@ from hymeko_x.cli.inputs import input_arguments, read_input
 from hymeko_x.cli.report import report_arguments, show_report, written_line
 from hymeko_x.cli.terminal import is_coloured
 from hymeko_x.cli.verdicts import exit_code, verdict_lines
-from hymeko_x.delivery import Delivery, report_unwritten
+from hymeko_x.delivery import Delivery, report_unwritten, unchanged
 from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.reporting.document import document
 from hymeko_x.reporting.sarif import sarif
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from hymeko_x.formats import Format
     from hymeko_x.pipeline import Result
     from hymeko_x.reporting.document import Json
+    from hymeko_x.source import Source
 
 FAIL_ON = ("error", "loss", "warning")
 
@@ -96,7 +97,9 @@ def run_convert(chosen: argparse.Namespace) -> int:
         raise UsageError("--verify reads the files again with other engines, so that neither can be a pipe")
     format = formats.of_output(chosen.output, chosen.to_format)
     report = Report()
-    code = _deliver(read_input(chosen.input, chosen, report), Output(format, chosen.output), chosen, report)
+    given = read_input(chosen.input, chosen, report)
+    own = unchanged(given.source, given.format, format)
+    code = _deliver(given, Output(format, chosen.output), chosen, report, own=own)
     return _verified(chosen.input, chosen.output, chosen) if chosen.verify and code == exits.DONE else code
 
 
@@ -125,14 +128,16 @@ def _output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
 
 
-def _deliver(given: Input, output: Output, chosen: argparse.Namespace, report: Report, *, measured: bool = True) -> int:
+def _deliver(
+    given: Input, output: Output, chosen: argparse.Namespace, report: Report, *, measured: bool = True, own: Source | None = None
+) -> int:
     """Write the mechanism that was read, show diagnostics and losses, and return the exit code.
 
-    With ``measured`` the result is read back and its losses are listed.
+    With ``measured`` the result is read back and its losses are listed; ``own`` is the source whose text the output may have.
     """
     path = "" if output.path == "-" else output.path
     options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, Path(path).stem)
-    delivery = Delivery(given.mechanism, output.format, options, given.source.files, _place(output, chosen.assets), path)
+    delivery = Delivery(given.mechanism, output.format, options, given.source.files, _place(output, chosen.assets), path, own)
     result = delivery.convert(report, measured=measured)
     if output.path == "-":
         report_unwritten(result.package, "standard output", report)

@@ -67,20 +67,20 @@ class _Matching:
         """Match what has the same content, and then what has the same tag, inside of matched blocks."""
         while self._open:
             first, second = self._open.pop()
-            self._match_by_children(first, second)
+            self._match_by_children(first)
             for key in _KEYS:
                 self._match(first, second, lambda block, key=key: key(self._contents[block]))  # type: ignore[misc]
             self._match(first, second, lambda block: block.tag)
             self.descend()
 
-    def _match_by_children(self, first: Block, second: Block) -> None:
-        """Match what has a child that is matched already."""
+    def _match_by_children(self, first: Block) -> None:
+        """Match what has a child that is matched already, in whichever of several blocks of one tag it stands."""
         for block in first.children:
             if block in self.pairs:
                 continue
             others = (self.pairs[child].parent for child in block.children if child in self.pairs)
-            other = next((parent for parent in others if parent is not None and parent.parent is second), None)
-            if other is not None and other not in self.taken and other.tag == block.tag:
+            other = next((parent for parent in others if parent is not None and parent.tag == block.tag), None)
+            if other is not None and other not in self.taken:
                 self.pair(block, other)
 
     def _is_matched(self, block: Block) -> bool:

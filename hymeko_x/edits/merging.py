@@ -64,16 +64,18 @@ class _Merge:
         earlier = self.since[block]
         if block.parent is None or earlier.parent is None:
             return False
-        return self.since.get(block.parent) is not earlier.parent or block.parent not in self.kept
+        return self.since.get(block.parent) is not earlier.parent or self._is_new(block.parent)
 
     def _is_put(self, block: Block) -> bool:
-        """Whether a block's text is put somewhere: it moved, or it is new and not only unlike the author's way of writing it."""
-        if block in self.moved or block in self.replaced:
-            return True
+        """Whether a block's text is put somewhere."""
+        return block in self.moved or self._is_new(block)
+
+    def _is_new(self, block: Block) -> bool:
+        """Whether a block is put in as it is printed: it was not there, or not so and the author does not have it."""
         if block in self.kept:
             return False
         earlier = self.since.get(block)
-        return earlier is None or not are_same(block, earlier)
+        return block in self.replaced or earlier is None or not are_same(block, earlier)
 
     # ---- steps -----------------------------------------------------------------------------------------------------------------
 

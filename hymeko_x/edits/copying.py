@@ -1,0 +1,120 @@
+"""Conversion within one format: the author's text as it is, but for the paths of files that moved; what it includes goes along."""
+
+from __future__ import annotations
+
+import os
+import posixpath
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from hymeko_x import formats, pipeline
+from hymeko_x.assets.pack import Keep, keep_references
+from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.assets.shelf import Shelf
+from hymeko_x.compare.diff import diff
+from hymeko_x.compare.ledger import TOLERANCE
+from hymeko_x.diagnostics import Refusal, Report
+from hymeko_x.edits.text import text_with_edits
+from hymeko_x.residue.align import align
+from hymeko_x.source import Package, PackageFiles
+
+if TYPE_CHECKING:
+    from hymeko_x.formats import Format
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.source import Files, Source
+
+
+def copied(source: Source, format: Format, mechanism: Mechanism, place: pipeline.Place, report: Report) -> Package | None:
+    """The package with the source's own text, for an output in another place; None where only a new text would be the same robot there.
+
+    The files that the text includes stand beside the output as they stand beside the source, if they are in its folder or below that.
+    """
+    if _is_folder(os.path.dirname(source.name) or ".", place.folder):
+        return Package(source.data)
+    found = Report()
+    shelf = Shelf(place.assets or format.assets, place.folder)
+    placed = _placed(mechanism, format, shelf, source.files, found)
+    package = _with_text(source, format, mechanism, placed, Package(source.data, shelf.files, shelf.copies))
+    if package is None or not _is_same_robot(package, source, format, placed, place.folder):
+        return None
+    report.extend(found)
+    return package
+
+
+def _is_folder(a: str, b: str) -> bool:
+    return os.path.realpath(a) == os.path.realpath(b)
+
+
+def _placed(mechanism: Mechanism, format: Format, shelf: Shelf, files: Files, report: Report) -> Mechanism:
+    """The mechanism with the new paths of meshes and images that cannot stay."""
+    if format.pack is not None and formats.native_format(mechanism) is format:
+        placed: Mechanism = formats.loaded(format.pack)(mechanism, shelf, files, report)
+        return placed
+    return keep_references(mechanism, shelf, files, report, Keep.PACKAGES if shelf.mode == "reference" else Keep.PACKAGES_AND_PATHS)
+
+
+def _with_text(source: Source, format: Format, before: Mechanism, after: Mechanism, package: Package) -> Package | None:
+    """The package with the text in which the paths are those of the mechanism ``after``, and with the files that it includes."""
+    home = os.path.dirname(source.name) or "."
+    changed: dict[str, bytes] = {}
+    if after is not before:
+        if format.outline is None:
+            return None
+        changed = text_with_edits(source, format, before, after, Report()).changed
+    opened = source.files.opened if isinstance(source.files, DiskFiles) else {}
+    copies = {name: path for path in opened if (name := _below(path, home)) is not None and path not in changed}
+    files = {name: data for path, data in changed.items() if path != source.name and (name := _below(path, home)) is not None}
+    return replace(
+        package, main=changed.get(source.name, source.data), files={**package.files, **files}, copies={**copies, **package.copies}
+    )
+
+
+def _below(path: str, home: str) -> str | None:
+    """The path from a folder to a file in it or below it."""
+    relative = os.path.relpath(path, home).replace(os.sep, "/")
+    return None if relative.startswith("../") or "[" in relative else relative
+
+
+class Elsewhere(Struct, frozen=True):
+    """The files around an output that is not on the disk yet, with the packages of its source; a :class:`hymeko_x.source.Files`."""
+
+    package: PackageFiles
+    around: DiskFiles
+    behind: Files
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file: of the package, from the output's folder, or of what means the same from everywhere."""
+        name = posixpath.normpath(uri)
+        if name in self.package.package.files or name in self.package.package.copies:
+            return name
+        return self.behind.find(uri) if "://" in uri or os.path.isabs(uri) else self.around.find(uri)
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        return self.package.read(path)
+
+    def find_package(self, name: str, beside: str = "") -> str | None:
+        """The folder of a package, or None."""
+        return self.behind.find_package(name, beside) if isinstance(self.behind, DiskFiles) else None
+
+    def guess_package(self, name: str, beside: str = "") -> str | None:
+        """A folder that may be the package under another name, or None."""
+        return self.behind.guess_package(name, beside) if isinstance(self.behind, DiskFiles) else None
+
+    def match(self, pattern: str) -> list[str]:
+        """The files that a path with wildcards names."""
+        return self.behind.match(pattern) if isinstance(self.behind, DiskFiles) else []
+
+
+def _is_same_robot(package: Package, source: Source, format: Format, mechanism: Mechanism, folder: str) -> bool:
+    """Whether the text is the robot where it is going to be."""
+    files = Elsewhere(PackageFiles(package, source.files), DiskFiles(Path(folder)), source.files)
+    try:
+        name = os.path.join(folder, os.path.basename(source.name))
+        found = pipeline.read(replace(source, name=name, data=package.main, files=files), format, Report())
+    except Refusal:
+        return False
+    return not diff(mechanism, align(found, mechanism)[1], TOLERANCE)
