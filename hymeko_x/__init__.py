@@ -5,6 +5,7 @@
     robot = hx.load("robot.urdf")
     hx.dump(robot, "robot.xml")
     print(hx.dumps(robot, "hymeko"))
+    arm = hx.open("arm.urdf")                 # the same with names: arm.joints["elbow"].limits.upper
     print(hx.verify("robot.urdf", "robot.xml").verdict)
     result = hx.convert("a.urdf", "b.xml", packages={"a_description": "..."})
 
@@ -17,38 +18,50 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hymeko_x.api import convert, dump, dumps, load, loads, update
+    from hymeko_x.api import convert, dump, dumps, load, loads, open, update
     from hymeko_x.compare.diff import diff
     from hymeko_x.diagnostics import Diagnostic, Refusal, Report, Severity
     from hymeko_x.dynamics import dynamics
     from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.values import Pose
+    from hymeko_x.robot import EditError, Robot
+    from hymeko_x.robot.units import deg, mm
     from hymeko_x.verify import verify
 
 __all__ = [
     "Diagnostic",
+    "EditError",
     "Id",
     "Mechanism",
+    "Pose",
     "Refusal",
     "Report",
+    "Robot",
     "Severity",
     "convert",
+    "deg",
     "diff",
     "dump",
     "dumps",
     "dynamics",
     "load",
     "loads",
+    "mm",
+    "open",
     "update",
     "verify",
 ]
 
 _HOMES = {
-    **dict.fromkeys(("convert", "dump", "dumps", "load", "loads", "update"), "hymeko_x.api"),
+    **dict.fromkeys(("convert", "dump", "dumps", "load", "loads", "open", "update"), "hymeko_x.api"),
     **dict.fromkeys(("Diagnostic", "Refusal", "Report", "Severity"), "hymeko_x.diagnostics"),
     "diff": "hymeko_x.compare.diff",
     "dynamics": "hymeko_x.dynamics",
     "verify": "hymeko_x.verify",
     **dict.fromkeys(("Id", "Mechanism"), "hymeko_x.ir.mechanism"),
+    **dict.fromkeys(("EditError", "Robot"), "hymeko_x.robot"),
+    **dict.fromkeys(("deg", "mm"), "hymeko_x.robot.units"),
+    "Pose": "hymeko_x.ir.values",
 }
 
 

@@ -13,14 +13,17 @@ from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.delivery import Delivery, report_unwritten, unchanged
 from hymeko_x.diagnostics import Report
+from hymeko_x.ir.holder import mechanism_of
 from hymeko_x.rewrite import Options
-from hymeko_x.source import NoFiles, Source
+from hymeko_x.source import ManyFiles, NoFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
     from hymeko_x.edits.updating import Updated
+    from hymeko_x.ir.holder import Holder
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.robot import Robot
     from hymeko_x.source import Files
 
 Place = str | os.PathLike[str]
@@ -80,6 +83,17 @@ def load(path: Place, format: str | None = None, *, report: Report | None = None
     return pipeline.read(source, _input_format(source, format), Report() if report is None else report)
 
 
+def open(path: Place, format: str | None = None, *, report: Report | None = None, **reading: Unpack[Reading]) -> Robot:
+    """The robot in a file as an object whose elements have names, and which can be edited and composed; options as for :func:`load`.
+
+    Raises: Refusal when the file cannot be read.
+    """
+    from hymeko_x.robot import Robot
+
+    source = _source(path, **reading)
+    return Robot(pipeline.read(source, _input_format(source, format), Report() if report is None else report), source.files)
+
+
 def loads(data: bytes | str, format: str | None = None, *, files: Files | None = None, report: Report | None = None) -> Mechanism:
     """The robot in a text or in bytes. ``files`` are those that it may refer to (none by default).
 
@@ -90,7 +104,7 @@ def loads(data: bytes | str, format: str | None = None, *, files: Files | None =
 
 
 def dump(
-    robot: Mechanism,
+    robot: Mechanism | Holder,
     path: Place,
     format: str | None = None,
     *,
@@ -110,13 +124,15 @@ def dump(
     report = Report()
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
     files = _files_of(robot, packages, search_path, confine)
-    delivery = Delivery(robot, target, Options(**writing, beside=Path(path).stem), files, _place(path, assets), os.fspath(path))
+    delivery = Delivery(
+        mechanism_of(robot), target, Options(**writing, beside=Path(path).stem), files, _place(path, assets), os.fspath(path)
+    )
     delivery.put(delivery.convert(report))
     return report
 
 
 def dumps(
-    robot: Mechanism,
+    robot: Mechanism | Holder,
     format: str,
     *,
     report: Report | None = None,
@@ -133,7 +149,8 @@ def dumps(
     """
     report = Report() if report is None else report
     files = _files_of(robot, packages, search_path, confine)
-    result = pipeline.convert(robot, formats.by_name(format), Options(**writing), files, report, pipeline.Place(assets="reference"))
+    mechanism = mechanism_of(robot)
+    result = pipeline.convert(mechanism, formats.by_name(format), Options(**writing), files, report, pipeline.Place(assets="reference"))
     report_unwritten(result.package, "a text", report)
     return result.package.main.decode()
 
@@ -232,7 +249,14 @@ def _folders(packages: Mapping[str, Place] | None) -> dict[str, Path]:
     return {name: Path(folder) for name, folder in (packages or {}).items()}
 
 
-def _files_of(robot: Mechanism, packages: Mapping[str, Place] | None, search_path: Iterable[Place], confine: Place | None) -> Files:
-    """The files beside the one that the robot was read from; those of the working folder if it was made by a program."""
-    folder = Path(robot.source.file).parent
-    return DiskFiles(folder, _folders(packages), tuple(map(Path, search_path)), None if confine is None else Path(confine))
+def _files_of(
+    robot: Mechanism | Holder, packages: Mapping[str, Place] | None, search_path: Iterable[Place], confine: Place | None
+) -> Files:
+    """The files beside the one that the robot was read from; those of the working folder if it was made by a program.
+
+    An object that knows its files itself is asked after the packages that the user names.
+    """
+    folder = Path(mechanism_of(robot).source.file).parent
+    named = DiskFiles(folder, _folders(packages), tuple(map(Path, search_path)), None if confine is None else Path(confine))
+    own: Files | None = getattr(robot, "files", None)
+    return named if own is None or confine is not None else ManyFiles((named, own))

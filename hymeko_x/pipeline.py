@@ -220,15 +220,21 @@ def restored(image: Mechanism, carried: str, origin: Origin, report: Report) -> 
 def completed(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
     """The mechanism with what only the engine of the format that it came from computes, where it goes to another format."""
     native = formats.native_format(mechanism)
-    if native is None or native.completes is None or native is format or format.is_exact:
+    return mechanism if native is format or format.is_exact else fully_completed(mechanism, files, report)
+
+
+def fully_completed(mechanism: Mechanism, files: Files, report: Report) -> Mechanism:
+    """The mechanism with what only the engine of the format that it came from computes, wherever it goes."""
+    native = formats.native_format(mechanism)
+    if native is None or native.completes is None:
         return mechanism
 
     def printed() -> tuple[Mechanism, bytes]:
         legal = legalize(mechanism, native.name, Options(), Report())
         return legal, writer(native)(legal, Options(), Report()).main
 
-    completed: Mechanism = formats.loaded(native.completes)(mechanism, printed, files, report)
-    return completed
+    found: Mechanism = formats.loaded(native.completes)(mechanism, printed, files, report)
+    return found
 
 
 def _contents(copies: Mapping[str, str], files: Files) -> Iterator[tuple[str, bytes]]:

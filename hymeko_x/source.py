@@ -7,6 +7,7 @@ Nothing here touches a disk. The shell gives a frontend a :class:`Source` whose 
 from __future__ import annotations
 
 import posixpath
+from contextlib import suppress
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from msgspec import Struct, field
@@ -113,3 +114,20 @@ class PlacedFiles(Struct, frozen=True):
     def read(self, path: str) -> bytes:
         """The content of a path that :meth:`find` returned. Raises: OSError."""
         return self.behind.read(path)
+
+
+class ManyFiles(Struct, frozen=True):
+    """The files around several descriptions: what the first ones do not find, the others do."""
+
+    all: tuple[Files, ...]
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file, of the first that finds it."""
+        return next((path for files in self.all if (path := files.find(uri)) is not None), None)
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        for files in self.all[:-1]:
+            with suppress(OSError):
+                return files.read(path)
+        return self.all[-1].read(path)

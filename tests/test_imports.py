@@ -24,7 +24,7 @@ LAYERS = (
     ("residue", "assets", "reporting"),
     ("frontends", "backends"),
     ("pipeline", "disk", "verify", "validation", "corpus", "dynamics"),
-    ("delivery", "edits"),
+    ("delivery", "edits", "robot"),
     ("api",),
     ("cli", "testing"),
     ("__main__",),

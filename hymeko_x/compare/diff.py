@@ -14,6 +14,7 @@ from msgspec.structs import replace
 from hymeko_x.compare.leaves import TURN, leaves_between, leaves_of
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.holder import mechanism_of
 from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
 from hymeko_x.ir.values import IDENTITY, Pose, are_numbers, number_text, numbers_text, rotation_angle
 
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.compare.leaves import Leaves, Path
     from hymeko_x.ir.fields import Layout
+    from hymeko_x.ir.holder import Holder
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
     from hymeko_x.ir.parts import Parameters
     from hymeko_x.ir.values import Quat
@@ -80,12 +82,15 @@ _LONG, _SHOWN = 64, 8
 """Tuples with more items are the numbers of meshes, of which only a few are shown."""
 
 
-def diff(a: Mechanism, b: Mechanism, tolerance: Tolerance = EXACT, leaves: Mapping[Id, Leaves] | None = None) -> tuple[Difference, ...]:
+def diff(
+    a: Mechanism | Holder, b: Mechanism | Holder, tolerance: Tolerance = EXACT, leaves: Mapping[Id, Leaves] | None = None
+) -> tuple[Difference, ...]:
     """Everything that differs from ``a`` to ``b``: the name, elements, their fields and arcs, and their extras.
 
     Order (of elements and of parameters), places and notations do not count. Linear in the size of both. ``leaves`` are the leaves of
     the elements that both have, if they are known.
     """
+    a, b = mechanism_of(a), mechanism_of(b)
     return tuple(_differences(a, b, tolerance, leaves_between(a, b) if leaves is None else leaves))
 
 

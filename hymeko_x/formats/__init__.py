@@ -100,6 +100,8 @@ class Format(Struct, frozen=True):
     """The module with ``read(path, places)`` that loads a file with the engine whose reading is authoritative."""
     libraries: Mapping[str, str] = field(default_factory=dict)
     """The libraries that its reader, its writer and its reference reader import, with the extra of the distribution that brings each."""
+    memory: Mapping[str, str] = field(default_factory=dict)
+    """By library, the function ``(main, contents) -> object`` that loads its files in memory: its text, and the files beside it by path."""
     names_are_identifiers: bool = False
     """Whether a name may hold letters, digits and underscores only, so that others are spelled differently (USD)."""
     has_single_dof_joints: bool = False
@@ -152,6 +154,7 @@ URDF = Format(
     keeps_package_uris=True,
     reference="hymeko_x.verify.readers.urdf",
     libraries=MappingProxyType({"pinocchio": "verify", "yourdfpy": "verify", "pydrake": "sdf"}),
+    memory=MappingProxyType({"pinocchio": "hymeko_x.verify.readers.urdf.memory:load"}),
     tokens=_XML_TOKENS,
     has_single_dof_joints=True,
     missing_shapes=frozenset({"plane", "hfield", "ellipsoid"}),
@@ -197,6 +200,7 @@ MJCF = Format(
     has_compact_extras=True,
     reference="hymeko_x.verify.readers.mjcf",
     libraries=MappingProxyType({"mujoco": "mujoco"}),
+    memory=MappingProxyType({"mujoco": "hymeko_x.verify.readers.mjcf.memory:load"}),
     tokens=_XML_TOKENS,
     requires_mass=True,
     includes=rb"<include\b",
@@ -215,6 +219,7 @@ USD = Format(
     pack="hymeko_x.backends.usd.files:pack_for_usd",
     reference="hymeko_x.verify.readers.usd",
     libraries=MappingProxyType({"pxr": "usd"}),
+    memory=MappingProxyType({"pxr": "hymeko_x.verify.readers.usd.memory:load"}),
     stated_notations=MappingProxyType({"pose on the stage": "usd.pose"}),
     names_are_identifiers=True,
     precision=1e-6,  # eight roundings of single precision: numbers are converted between units and frames on the way

@@ -16,7 +16,7 @@ from msgspec.json import encode
 from hymeko_x.ir.fields import Noted
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
 Vec3 = tuple[float, float, float]
 Quat = tuple[float, float, float, float]
@@ -48,6 +48,38 @@ class Pose(Noted, frozen=True):
     xyz: Vec3 = ZERO
     quat: Quat = NO_ROTATION
     written: Written | None = None
+
+    @staticmethod
+    def from_rpy(rpy: Vec3, xyz: Vec3 = ZERO) -> Pose:
+        """The pose of fixed-axis roll, pitch, yaw in rad and a position in m."""
+        roll, pitch, yaw = map(float, rpy)
+        return pose_from_rpy(_point(xyz), (roll, pitch, yaw))
+
+    @staticmethod
+    def from_quat(quat: Quat, xyz: Vec3 = ZERO) -> Pose:
+        """The pose of any non-zero quaternion (w, x, y, z) and a position in m."""
+        w, x, y, z = map(float, quat)
+        return Pose(_point(xyz), unit_quat((w, x, y, z)))
+
+    @staticmethod
+    def from_matrix(matrix: Sequence[Sequence[float]]) -> Pose:
+        """The pose of a rigid 4 x 4 matrix, or of a 3 x 3 rotation matrix, row by row."""
+        rows = [tuple(map(float, row)) for row in matrix]
+        xyz = ZERO if len(rows) == 3 else (rows[0][3], rows[1][3], rows[2][3])
+        return Pose(xyz, quat_from_matrix(((*rows[0][:3],), (*rows[1][:3],), (*rows[2][:3],))))  # type: ignore[arg-type]
+
+    def matrix(self) -> tuple[tuple[float, float, float, float], ...]:
+        """The 4 x 4 matrix, row by row."""
+        rows = zip(matrix_from_quat(self.quat), self.xyz, strict=True)
+        return (*((*row, position) for row, position in rows), (0.0, 0.0, 0.0, 1.0))
+
+    def inverse(self) -> Pose:
+        """The pose with ``pose @ pose.inverse()`` = identity."""
+        return inverse(self)
+
+    def __matmul__(self, other: Pose) -> Pose:
+        """The pose ``other``, given in this frame, seen from where this one is given."""
+        return compose(self, other)
 
 
 IDENTITY = Pose()
@@ -137,6 +169,26 @@ def plane_axes(normal: Vec3) -> tuple[Vec3, Vec3]:
     """The x and y directions of a plane: x and y turned by the smallest rotation from z to the normal."""
     turn = quat_from_z(normal)
     return rotate(turn, X), rotate(turn, Y)
+
+
+def _point(xyz: Vec3) -> Vec3:
+    x, y, z = map(float, xyz)
+    return (x, y, z)
+
+
+def quat_from_matrix(rows: Matrix3) -> Quat:
+    """The unit quaternion (w, x, y, z) of a rotation matrix, row by row; exact to rounding for every rotation.
+
+    Source: S. W. Shepperd, Quaternion from rotation matrix, 1978: the largest component is computed from the diagonal.
+    """
+    (a, b, c), (d, e, f), (g, h, i) = rows
+    found = max(
+        (1 + a + e + i, (1 + a + e + i, h - f, c - g, d - b)),
+        (1 + a - e - i, (h - f, 1 + a - e - i, b + d, c + g)),
+        (1 - a + e - i, (c - g, b + d, 1 - a + e - i, f + h)),
+        (1 - a - e + i, (d - b, c + g, f + h, 1 - a - e + i)),
+    )
+    return unit_quat(found[1])
 
 
 # ---- reading values ----------------------------------------------------------------------------------------------------

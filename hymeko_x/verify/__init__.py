@@ -7,6 +7,7 @@ in memory have no other reader; verdicts about them note that.
 from __future__ import annotations
 
 import sys
+from os import PathLike
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
@@ -16,15 +17,15 @@ from hymeko_x.diagnostics import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
-    from os import PathLike
 
+    from hymeko_x.ir.holder import Holder
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.verify.meshes import Meshes
     from hymeko_x.verify.model import KinematicModel
     from hymeko_x.verify.verdict import Verdict
 
     Packages = Mapping[str, str | PathLike[str]]
-    Robot = str | PathLike[str] | Mechanism | KinematicModel
+    Robot = str | PathLike[str] | Mechanism | Holder | KinematicModel
 
 
 def verify(
@@ -80,15 +81,15 @@ def model_of(
 
     Raises: Refusal, as :func:`verify`, and HX302 when the engine refuses the file.
     """
-    from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.verify.model import KinematicModel
 
     if isinstance(robot, KinematicModel):
         return robot
-    if isinstance(robot, Mechanism):
+    if not isinstance(robot, str | PathLike):
+        from hymeko_x.ir.holder import mechanism_of
         from hymeko_x.verify.readers.hymeko import from_mechanism
 
-        return from_mechanism(robot)
+        return from_mechanism(mechanism_of(robot))
     from hymeko_x.verify.readers import Lookup, read
 
     folders = {name: Path(folder) for name, folder in (packages or {}).items()}

@@ -1,0 +1,236 @@
+"""The tables of a robot, for looking around and for changing: elements by id, and for each element the edges at it.
+
+A :class:`Robot` reads a locked draft; an editing session owns an open one. Every change keeps the index of incidence, so that it costs
+what is at the element, and not what is in the robot.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
+
+from msgspec.structs import replace
+
+from hymeko_x.ir.graph import Arc, Hypergraph
+from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Mechanism
+from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.parts import Body, Shape, World
+from hymeko_x.robot.errors import EditError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from hymeko_x.ir.mechanism import RobotArc, RobotEdge
+    from hymeko_x.ir.names import Names
+    from hymeko_x.ir.parts import EdgePart, Inertial, VertexPart
+
+T = TypeVar("T")
+SHAPE = KINDS[Shape]
+
+
+class Draft:
+    """Vertices and edges by id, the edges at each element, and what was renamed or removed so far, by the ids of the mechanism."""
+
+    def __init__(self, mechanism: Mechanism, completed: Callable[[], Mechanism], *, is_locked: bool) -> None:
+        self.mechanism = mechanism
+        self.completed = completed
+        self.is_locked = is_locked
+        self.vertices: dict[Id, VertexPart] = dict(mechanism.graph.vertices)
+        self.edges: dict[Id, RobotEdge] = dict(mechanism.graph.edges)
+        self._was: dict[Id, Id] = {}
+        self._gone: set[Id] = set()
+        self._at: dict[Id, dict[Id, None]] = {}
+        for key, edge in self.edges.items():
+            for arc in edge.arcs:
+                self._at.setdefault(arc.target, {})[key] = None
+        self._names: Names | None = None
+
+    # ---- looking around --------------------------------------------------------------------------------------------------
+
+    def __contains__(self, key: object) -> bool:
+        """Whether an element has this id."""
+        return key in self.vertices or key in self.edges
+
+    def find(self, kind: str, name: str) -> Id | None:
+        """The id of this kind and name. A shape, whose name need not be unique, is also found by the name that its author gave it."""
+        key = Id(kind, name)
+        if key in self:
+            return key
+        found = self._shapes_called.get(name, ()) if kind == SHAPE else ()
+        return found[0] if len(found) == 1 and found[0] in self else None
+
+    @cached_property
+    def _shapes_called(self) -> dict[str, list[Id]]:
+        """The shapes by their authors' names."""
+        called: dict[str, list[Id]] = {}
+        for key in self.ids(SHAPE):
+            part = self.part(key)
+            if isinstance(part, Shape) and part.name:
+                called.setdefault(part.name, []).append(key)
+        return called
+
+    def ids(self, kind: str) -> Iterator[Id]:
+        """The ids of this kind in order."""
+        return (key for table in (self.vertices, self.edges) for key in table if key.kind == kind)
+
+    def part(self, key: Id) -> VertexPart | EdgePart:
+        """The part of a vertex or an edge."""
+        return self.vertices[key] if key in self.vertices else self.edges[key].data
+
+    def at(self, key: Id, kind: str) -> Iterator[tuple[Id, RobotEdge]]:
+        """The edges of this kind that have an arc to the element."""
+        return ((edge, self.edges[edge]) for edge in self._at.get(key, ()) if edge.kind == kind)
+
+    def computed_inertial(self, key: Id) -> Inertial | None:
+        """The inertial that the engine of the robot's format computes for a body; None where there is no such engine."""
+        found = self.completed().graph.vertices.get(self._was.get(key, key))
+        return found.inertial if isinstance(found, Body) else None
+
+    # ---- changing --------------------------------------------------------------------------------------------------------
+
+    def check_open(self, key: Id) -> None:
+        """Raises: EditError where this is a robot, which never changes, and not an editing session."""
+        if self.is_locked:
+            raise EditError(f"{key} belongs to a robot, which does not change; use `with robot.edit() as e:` and the elements of e")
+
+    def set_part(self, key: Id, part: VertexPart | EdgePart) -> None:
+        """Give an element another part of the same kind."""
+        self.check_open(key)
+        if key in self.vertices:
+            self.vertices[key] = part  # type: ignore[assignment]
+        else:
+            self.edges[key] = replace(self.edges[key], data=part)
+
+    def set_edge(self, key: Id, edge: RobotEdge) -> None:
+        """Add an edge, or exchange it for another one."""
+        self.check_open(key)
+        if key in self.edges:
+            self._unlink(key)
+        self.edges[key] = edge
+        for arc in edge.arcs:
+            self._at.setdefault(arc.target, {})[key] = None
+
+    def add_vertex(self, key: Id, part: VertexPart) -> None:
+        """Add a vertex."""
+        self.check_open(key)
+        self.vertices[key] = part
+
+    def new_id(self, kind: str, name: str) -> Id:
+        """The id of an element that is to be added. Raises: EditError when there is one of this kind and name."""
+        key = Id(kind, name)
+        self.check_open(key)
+        if not name:
+            raise EditError(f"a {kind} needs a name")
+        if key in self:
+            raise EditError(f"there is a {key} already")
+        return key
+
+    def free_id(self, kind: str, name: str) -> Id:
+        """A free id as close to the name as possible, for an element that needs no name of its own."""
+        if self._names is None:
+            self._names = names_in_use(self.mechanism)
+        key = self._names.take(kind, name)
+        while key in self:
+            key = self._names.take(kind, name)
+        return key
+
+    def need_world(self) -> Id:
+        """The world, which is there from now on."""
+        if WORLD not in self.vertices:
+            self.vertices = {WORLD: World(), **self.vertices}
+        return WORLD
+
+    def rename(self, old: Id, name: str) -> Id:
+        """Give an element another name, wherever it occurs. Raises: EditError when it is taken."""
+        if name == old.name:
+            return old
+        new = self.new_id(old.kind, name)
+        if old in self.vertices:
+            self.vertices[new] = self.vertices.pop(old)
+        else:
+            self._unlink(old)
+            self.set_edge(new, self.edges.pop(old))
+        for key in list(self._at.get(old, ())):
+            edge = self.edges[key]
+            self.edges[key] = replace(edge, arcs=tuple([_redirected(arc, old, new) for arc in edge.arcs]))
+        if old in self._at:
+            self._at[new] = self._at.pop(old)
+        self._was[new] = self._was.pop(old, old)
+        return new
+
+    def remove(self, keys: Iterable[Id]) -> None:
+        """Take elements away with every edge at them, and what those were for; a stance only loses the joint, a shape its material."""
+        waiting = list(keys)
+        while waiting:
+            key = waiting.pop()
+            if key not in self:
+                continue
+            self.check_open(key)
+            waiting += self._orphans(key)
+            if key in self.vertices:
+                del self.vertices[key]
+            else:
+                self._unlink(key)
+                del self.edges[key]
+            self._at.pop(key, None)
+            self._gone.add(self._was.pop(key, key))
+
+    def _orphans(self, key: Id) -> list[Id]:
+        """What goes when an element goes: edges at it, and vertices that were there for it alone."""
+        found: list[Id] = []
+        for edge in list(self._at.get(key, ())):
+            if (edge.kind, key.kind) in _LOSES_ARC:
+                kept = tuple([arc for arc in self.edges[edge].arcs if arc.target != key])
+                self.set_edge(edge, replace(self.edges[edge], arcs=kept))
+            else:
+                found.append(edge)
+        if key in self.edges:
+            found += [arc.target for arc in self.edges[key].arcs if arc.target.kind in _OWNED.get(key.kind, ()) and self._is_last(arc, key)]
+        return found
+
+    def _is_last(self, arc: RobotArc, edge: Id) -> bool:
+        return all(other == edge for other in self._at.get(arc.target, ()))
+
+    def _unlink(self, key: Id) -> None:
+        for arc in self.edges[key].arcs:
+            self._at.get(arc.target, {}).pop(key, None)
+
+    # ---- the result ------------------------------------------------------------------------------------------------------
+
+    def finished(self, name: str | None = None) -> Mechanism:
+        """The mechanism with all changes; side tables follow renamed elements and forget removed ones."""
+        source = self.mechanism
+        now = {old: new for new, old in self._was.items() if old not in self._gone}
+        graph = Hypergraph(_in_order(self.vertices, source.graph.vertices, now), _in_order(self.edges, source.graph.edges, now))
+        changed = replace(source, name=source.name if name is None else name, graph=graph)
+        if not (now or self._gone):
+            return changed
+        return replace(
+            changed,
+            extras=self._kept(source.extras, now),
+            origins=self._kept(source.origins, now),
+            notations=self._kept(source.notations, now),
+            stereotypes=self._kept(source.stereotypes, now),
+            stored=self._kept(source.stored, now),
+            layout=tuple([now.get(key, key) for key in source.layout if key not in self._gone]),
+        )
+
+    def _kept(self, table: Mapping[Id, T], now: Mapping[Id, Id]) -> dict[Id, T]:
+        """A side table with the present ids."""
+        return {now.get(key, key): value for key, value in table.items() if key not in self._gone}
+
+
+_LOSES_ARC = frozenset({("stance", "joint"), ("shape", "material")})
+"""The kinds of edges that stay when they lose an element of a kind."""
+_OWNED = {"mount": ("frame", "camera", "light", "sensor"), "drive": ("actuator",), "sense": ("sensor",)}
+"""By the kind of an edge, the vertices that go with it when nothing else needs them."""
+
+
+def _redirected(arc: RobotArc, old: Id, new: Id) -> RobotArc:
+    return Arc(new, arc.sign, arc.weight, arc.role) if arc.target == old else arc
+
+
+def _in_order(table: Mapping[Id, T], source: Mapping[Id, object], now: Mapping[Id, Id]) -> dict[Id, T]:
+    """A table in the order of the source; new elements follow."""
+    there = [new for new in (now.get(key, key) for key in source) if new in table]
+    return {**{key: table[key] for key in there}, **table}

@@ -1,0 +1,94 @@
+"""What all views of elements have in common, and mappings of them by name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from msgspec.structs import replace
+
+from hymeko_x.ir.values import IDENTITY
+from hymeko_x.robot.errors import EditError, unknown_name
+from hymeko_x.robot.fields import as_pose
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Origin
+    from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.robot.draft import Draft
+
+V = TypeVar("V", bound="Element")
+
+
+class Element:
+    """One element: its ``name``, and the id and the draft to which it belongs."""
+
+    def __init__(self, draft: Draft, key: Id) -> None:
+        self.draft = draft
+        self.id = key
+
+    @property
+    def name(self) -> str:
+        """Its name, unique among the elements of its kind."""
+        return self.id.name
+
+    @property
+    def part(self) -> Any:
+        """The frozen value of :mod:`hymeko_x.ir.parts` that the element carries. Raises: EditError when it was removed."""
+        try:
+            return self.draft.part(self.id)
+        except KeyError:
+            raise EditError(f"{self.id} is no longer there") from None
+
+    @property
+    def origin(self) -> Origin | None:
+        """File and line of its source, if known."""
+        return self.draft.mechanism.origin(self.id)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Element) and (self.draft, self.id) == (other.draft, other.id)
+
+    def __hash__(self) -> int:
+        return hash(self.id)
+
+    def __repr__(self) -> str:
+        return f"<{self.id}>"
+
+    def arc(self, edge: Id, sign: int) -> RobotArc | None:
+        """The first arc of an edge with this sign."""
+        return next((arc for arc in self.draft.edges[edge].arcs if arc.sign == sign), None)
+
+    def set_weight(self, edge: Id, sign: int, value: object) -> None:
+        """Put another pose on the first arc of this sign."""
+        self.draft.check_open(self.id)
+        new = as_pose(self.id, value)
+        arc = self.arc(edge, sign)
+        found = self.draft.edges[edge]
+        weight = None if new == IDENTITY and new.written is None else new
+        arcs = tuple([replace(other, weight=weight) if other is arc else other for other in found.arcs])
+        self.draft.set_edge(edge, replace(found, arcs=arcs))
+
+
+class Elements(Mapping[str, V], Generic[V]):
+    """The elements of one kind by name, in order. An unknown name is a KeyError that lists similar ones."""
+
+    def __init__(self, draft: Draft, kind: str, view: type[V]) -> None:
+        self._draft, self._kind, self._view = draft, kind, view
+
+    def __getitem__(self, name: str) -> V:
+        key = self._draft.find(self._kind, name)
+        if key is None:
+            raise unknown_name(self._kind, name, self)
+        return self._view(self._draft, key)
+
+    def __iter__(self) -> Iterator[str]:
+        return (key.name for key in self._draft.ids(self._kind))
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, name: object) -> bool:
+        return self._draft.find(self._kind, str(name)) is not None
+
+    def __repr__(self) -> str:
+        names = [*self]
+        return f"<{len(names)} of kind {self._kind}: {', '.join(names[:8])}{', ...' if len(names) > 8 else ''}>"

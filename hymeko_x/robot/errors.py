@@ -1,0 +1,33 @@
+"""What is wrong with a call of the object model, in a message that names the element."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+
+class EditError(ValueError):
+    """A change that a robot cannot have; the message names the element. Nothing was changed by the call that raised it."""
+
+
+class UnknownName(KeyError):
+    """There is no element of this kind and name; the message lists similar names."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownName:
+    """The error of a name that no element of this kind has."""
+    names = list(known)
+    near = get_close_matches(str(name), names, 3)
+    if near:
+        hint = f"did you mean {' or '.join(map(repr, near))}?"
+    elif names:
+        hint = f"there are {', '.join(map(repr, names[:5]))}{', ...' if len(names) > 5 else ''}"
+    else:
+        hint = f"the robot has no {kind}"
+    return UnknownName(f"there is no {kind} {name!r}; {hint}")

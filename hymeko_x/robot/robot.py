@@ -1,0 +1,103 @@
+"""The robot of the public API: an immutable mechanism with its elements by name, its kinematics, and its hand-over to engines."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hymeko_x import pipeline
+from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.parts import Body
+from hymeko_x.robot import memory, text
+from hymeko_x.robot.draft import Draft
+from hymeko_x.robot.kinematics import all_poses
+from hymeko_x.robot.named import Named
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.values import Pose
+    from hymeko_x.robot.kinematics import Coordinates
+    from hymeko_x.source import Files
+
+
+class Robot(Named):
+    """A robot, which never changes: every change gives a new one.
+
+    ``mechanism`` is what it is made of, ``files`` finds its meshes and images; by default they are looked for beside the file
+    that the mechanism was read from.
+    """
+
+    def __init__(self, mechanism: Mechanism, files: Files | None = None) -> None:
+        self.mechanism = mechanism
+        self.files: Files = DiskFiles(Path(mechanism.source.file).parent) if files is None else files
+
+    @property
+    def name(self) -> str:
+        """The name of the robot."""
+        return self.mechanism.name
+
+    @cached_property
+    def draft(self) -> Draft:
+        """The tables behind the mappings."""
+        return Draft(self.mechanism, lambda: self.completed, is_locked=True)
+
+    @cached_property
+    def completed(self) -> Mechanism:
+        """The mechanism with what only the engine of its format computes, such as inertias from shapes."""
+        return pipeline.fully_completed(self.mechanism, self.files, Report())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Robot) and self.mechanism == other.mechanism
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return text.one_line(self.mechanism)
+
+    def __str__(self) -> str:
+        return text.tree(self.mechanism)
+
+    # ---- numbers ---------------------------------------------------------------------------------------------------------
+
+    @property
+    def mass(self) -> float:
+        """The sum of the masses of all bodies in kg; bodies without one count 0."""
+        return sum(body.inertial.mass or 0.0 for _, body in self.completed.vertices(Body) if body.inertial is not None)
+
+    @property
+    def dofs(self) -> int:
+        """The number of degrees of freedom of all joints, 3 of a ball and 6 of a free joint; couplings and loops are not subtracted."""
+        return sum(_FREEDOMS.get(dof.kind.value, 1) for view in self.mechanism.joints.values() for dof in view.joint.dofs)
+
+    def fk(self, q: Coordinates | None = None) -> dict[str, Pose]:
+        """The pose of every body in the world (or in the root of its tree), by name, at coordinates by joint in rad or m.
+
+        ``q`` has a number by joint name, a quaternion (w, x, y, z) for a ball, a position and a quaternion for a free joint, or it is
+        the sequence of all coordinates in the order of the joints. Joints left out are at their references; followers follow.
+
+        Raises: KeyError for a joint that is not there, EditError for a wrong number of coordinates.
+        """
+        return {key.name: pose for key, pose in all_poses(self.mechanism, {} if q is None else q).items() if key.kind == "body"}
+
+    # ---- in memory -------------------------------------------------------------------------------------------------------
+
+    def to_mujoco(self) -> Any:
+        """The robot as a compiled ``mujoco.MjModel``. Raises: Refusal HX302 in MuJoCo's words."""
+        return memory.hand_over(self.mechanism, self.files, "mujoco")
+
+    def to_pinocchio(self) -> Any:
+        """The robot as a ``pinocchio.Model``. Raises: Refusal HX302 in Pinocchio's words."""
+        return memory.hand_over(self.mechanism, self.files, "pinocchio")
+
+    def to_usd(self) -> Any:
+        """The robot as a ``pxr.Usd.Stage`` in memory."""
+        return memory.hand_over(self.mechanism, self.files, "pxr")
+
+    def to_networkx(self) -> Any:
+        """The hypergraph as a bipartite ``networkx.MultiDiGraph``: a node per vertex and per edge, an arrow per arc."""
+        return memory.as_networkx(self.mechanism)
+
+
+_FREEDOMS = {"ball": 3, "free": 6}
