@@ -66,41 +66,50 @@ class Writing(TypedDict, total=False):
     """xacro: whether the macros go into a file of their own."""
     pure: bool
     """Whether the output carries no residue of what its format cannot represent."""
+    lenient: bool
+    """Whether to go on where writing makes errors; else they raise Stopped, and nothing is written."""
 
 
 Assets = Literal["copy", "reference"] | None
 """Copy meshes beside the output, or refer to them where they are; None = usual for the format."""
 
 
-def load(path: Place, format: str | None = None, *, report: Report | None = None, **reading: Unpack[Reading]) -> Mechanism:
+def load(
+    path: Place, format: str | None = None, *, report: Report | None = None, lenient: bool = False, **reading: Unpack[Reading]
+) -> Mechanism:
     """The robot in a file; :class:`Reading` lists the options. The format is taken from suffix and content unless it is given.
 
-    Diagnostics go into ``report``.
+    Diagnostics go into ``report``. ``lenient`` goes on where the input has errors, with what each error says.
 
-    Raises: Refusal when the file cannot be read.
+    Raises: Refusal when the file cannot be read; Stopped, a Refusal, when it has errors and ``lenient`` is not set.
     """
     source = _source(path, **reading)
-    return pipeline.read(source, _input_format(source, format), Report() if report is None else report)
+    return pipeline.read(source, _input_format(source, format), Report() if report is None else report, lenient=lenient)
 
 
-def open(path: Place, format: str | None = None, *, report: Report | None = None, **reading: Unpack[Reading]) -> Robot:
+def open(
+    path: Place, format: str | None = None, *, report: Report | None = None, lenient: bool = False, **reading: Unpack[Reading]
+) -> Robot:
     """The robot in a file as an object whose elements have names, and which can be edited and composed; options as for :func:`load`.
 
-    Raises: Refusal when the file cannot be read.
+    Raises: as :func:`load`.
     """
     from hymeko_x.robot import Robot
 
     source = _source(path, **reading)
-    return Robot(pipeline.read(source, _input_format(source, format), Report() if report is None else report), source.files)
+    read = pipeline.read(source, _input_format(source, format), Report() if report is None else report, lenient=lenient)
+    return Robot(read, source.files)
 
 
-def loads(data: bytes | str, format: str | None = None, *, files: Files | None = None, report: Report | None = None) -> Mechanism:
+def loads(
+    data: bytes | str, format: str | None = None, *, files: Files | None = None, report: Report | None = None, lenient: bool = False
+) -> Mechanism:
     """The robot in a text or in bytes. ``files`` are those that it may refer to (none by default).
 
-    Raises: Refusal when it cannot be read.
+    Raises: as :func:`load`.
     """
     source = Source("<text>", data.encode() if isinstance(data, str) else data, NoFiles() if files is None else files)
-    return pipeline.read(source, _input_format(source, format), Report() if report is None else report)
+    return pipeline.read(source, _input_format(source, format), Report() if report is None else report, lenient=lenient)
 
 
 def dump(
@@ -168,19 +177,20 @@ def convert(
     nested: bool | None = None,
     split: bool = False,
     pure: bool = False,
+    lenient: bool = False,
     **reading: Unpack[Reading],
 ) -> pipeline.Result:
     """Convert a file with its meshes; return the mechanism, the package, the diagnostics and the losses.
 
     :class:`Reading` and :class:`Writing` list the options. The output carries what its format cannot represent, unless it is ``pure``.
 
-    Raises: Refusal when the input cannot be read or the output not written; then nothing was changed.
+    Raises: Refusal when the input cannot be read or has errors, or the output cannot be written; then nothing was changed.
     """
     report = Report()
     given = _source(source, **reading)
     read_as = _input_format(given, from_format)
-    robot = pipeline.read(given, read_as, report)
-    options = Options(base, actuators, layout, nested, split, pure, beside=Path(target).stem)
+    robot = pipeline.read(given, read_as, report, lenient=lenient)
+    options = Options(base, actuators, layout, nested, split, pure, lenient, Path(target).stem)
     format = formats.of_output(os.fspath(target), to_format)
     own = unchanged(given, read_as, format)
     delivery = Delivery(robot, format, options, given.files, _place(target, assets), os.fspath(target), own)

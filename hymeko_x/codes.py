@@ -38,6 +38,17 @@ ENTITIES = Code(
     "Entities can grow without bounds and can read other files, and robot files do not need them; they are never expanded.",
 )
 
+PASSED_OVER = Code(
+    "HX009",
+    "errors were passed over",
+    "An error ends the command and nothing is written, because the result is not what the author of the input meant. With --lenient (lenient=True in Python) the program goes on, with what each error says.",
+)
+NOT_WELL_FORMED = Code(
+    "HX010",
+    "the XML is not well-formed",
+    "An end tag is missing, the file is cut off, or a tag is damaged. What could be read was read, but nothing tells how much is missing.",
+)
+
 # ---- HX02x: numbers and names ----------------------------------------------------------------------------------------
 BAD_NUMBER = Code(
     "HX020",

@@ -1,7 +1,7 @@
 """What the program says to its user: codes, places, messages, and the report that collects them.
 
-Every statement is one :class:`Diagnostic` with a stable :class:`Code`. A stage that can go on reports
-and uses the documented default; a stage that cannot raises :class:`Refusal`, which the shell catches once.
+Every statement is one :class:`Diagnostic` with a stable :class:`Code`. A stage that can go on reports and uses the documented
+default; a stage that cannot raises :class:`Refusal`, which the shell catches once. Errors stop the pipeline at the end of their stage.
 """
 
 from __future__ import annotations
@@ -16,7 +16,11 @@ if TYPE_CHECKING:
 
 
 class Severity(Enum):
-    """How bad it is: ``NOTE`` informs, ``WARNING`` means that something was changed or guessed, ``ERROR`` that something was lost."""
+    """How bad it is; :mod:`hymeko_x.severities` justifies that of each code.
+
+    ``ERROR``: the result is not what the author meant. It ends the command, unless the user asks to go on.
+    ``WARNING``: something is odd, or the output cannot represent it. ``NOTE``: all is well, and this is how it was done.
+    """
 
     NOTE = "note"
     WARNING = "warning"
@@ -103,7 +107,7 @@ class Report(Struct):
         self.diagnostics.append(Diagnostic(code, Severity.WARNING, message, origin, element, hint))
 
     def error(self, code: Code, message: str, origin: Origin | None = None, *, element: str = "", hint: str = "") -> None:
-        """Record an error after which the program goes on with the documented default."""
+        """Record an error: the stage goes on with the documented default, to find all of them, and then the command ends."""
         self.diagnostics.append(Diagnostic(code, Severity.ERROR, message, origin, element, hint))
 
     def extend(self, diagnostics: Iterable[Diagnostic]) -> None:
@@ -118,8 +122,12 @@ class Report(Struct):
 
     @property
     def worst(self) -> Severity | None:
-        """The highest severity said so far, or None when nothing was said."""
+        """The highest severity so far, or None when nothing was reported."""
         return max((d.severity for d in self.diagnostics), key=lambda s: s.rank, default=None)
+
+    def errors(self, since: int = 0) -> tuple[Diagnostic, ...]:
+        """The errors, from the diagnostic of this number on."""
+        return tuple(diagnostic for diagnostic in self.diagnostics[since:] if diagnostic.severity is Severity.ERROR)
 
 
 class Refusal(Exception):
@@ -128,6 +136,26 @@ class Refusal(Exception):
     def __init__(self, diagnostic: Diagnostic) -> None:
         super().__init__(str(diagnostic))
         self.diagnostic = diagnostic
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """Everything that there is to report: the reason alone, unless the stage had come to its end."""
+        return (self.diagnostic,)
+
+
+class Stopped(Refusal):
+    """A stage came to its end with errors, each with its documented default; the user has to allow what comes out (``--lenient``)."""
+
+    def __init__(self, report: Report, since: int = 0) -> None:
+        errors = report.errors(since)
+        super().__init__(errors[0])
+        self.args = ("\n".join(map(str, errors)),)
+        self._diagnostics = tuple(report.diagnostics)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """The whole report of the run, in its order."""
+        return self._diagnostics
 
 
 def refuse(

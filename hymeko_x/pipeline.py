@@ -16,7 +16,7 @@ from hymeko_x.collector import uncollected
 from hymeko_x.compare.geometry import meshes_as_files, with_points_of_files, without_points
 from hymeko_x.compare.leaves import leaves_again, leaves_between
 from hymeko_x.compare.ledger import losses_between
-from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
+from hymeko_x.diagnostics import Origin, Refusal, Report, Stopped, refuse
 from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.residue.align import align
 from hymeko_x.residue.delta import residue_between
@@ -94,23 +94,42 @@ class _Printed(NamedTuple):
 # ---- the stages ------------------------------------------------------------------------------------------------------------------
 
 
-@uncollected()
-def read(source: Source, format: Format, report: Report) -> Mechanism:
+def read(source: Source, format: Format, report: Report, *, lenient: bool = False) -> Mechanism:
     """The mechanism in a source of this format, with what its residue restores.
 
-    Raises: Refusal when the input cannot be read at all.
+    Raises: Refusal when the input cannot be read at all; Stopped when it has errors, unless ``lenient``.
     """
+    since = len(report)
+    mechanism = read_anyway(source, format, report)
+    stop_on_errors(report, since, lenient=lenient)
+    return mechanism
+
+
+@uncollected()
+def read_anyway(source: Source, format: Format, report: Report) -> Mechanism:
+    """As :func:`read`, whatever errors there are: for those who look at the errors. Raises: Refusal when nothing can be read."""
     image, carried = reader(format)(source, report)
     if not carried:
         return image
     return with_points_of_files(restored(image, carried, Origin(source.name), report), _fetch(source.files))
 
 
+def stop_on_errors(report: Report, since: int, *, lenient: bool) -> None:
+    """End a stage whose diagnostics are those from this number on. Raises: Stopped when one is an error, unless ``lenient``."""
+    errors = report.errors(since)
+    if not errors:
+        return
+    if not lenient:
+        raise Stopped(report, since)
+    those = "one error was" if len(errors) == 1 else f"{len(errors)} errors were"
+    report.warn(codes.PASSED_OVER, f"{those} passed over, as asked: the result is not what the input means")
+
+
 @uncollected()
 def write(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE) -> Package:
     """The mechanism in a format, without a residue: rewritten until the format can represent it, its files placed, then printed.
 
-    Raises: Refusal when the format cannot be written.
+    Raises: Refusal when the format cannot be written; Stopped when that made errors, unless the options are lenient.
     """
     return _printed(mechanism, format, options, files, report, place).package
 
@@ -123,7 +142,7 @@ def convert(
 
     With the option ``pure`` it carries no residue; without ``measured`` it is only written.
 
-    Raises: Refusal when the format cannot be written; HX901 when our own reader refuses the output.
+    Raises: as :func:`write`, and HX901 when our own reader refuses the output.
     """
     package, printed, is_moved = _printed(mechanism, format, options, files, report, place)
     if format.frontend is None or not measured:
@@ -139,10 +158,12 @@ def convert(
 
 def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
     """Rewritten, with its files placed, and printed."""
+    since = len(report)
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
     complete = completed(with_stand_ins(mechanism, format, files, report), format, files, report)
     legal = legalize(complete, format.name, options, report)
     printed = _placed_and_printed(legal, format, options, files, report, place)
+    stop_on_errors(report, since, lenient=options.lenient)
     folder = f"{safe_name(options.beside)}/"
     other = None if place.in_the_way is None else place.in_the_way(printed.package, folder)
     if other is None:

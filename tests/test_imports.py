@@ -15,7 +15,7 @@ from hymeko_x import formats
 
 ROOT = Path(__file__).parents[1]
 LAYERS = (
-    ("collector", "diagnostics", "codes"),
+    ("collector", "diagnostics", "codes", "severities"),
     ("ir",),
     ("source", "outline"),
     ("xml", "meshes"),
@@ -33,6 +33,8 @@ LAYERS = (
 
 BESIDE = {
     ("codes", "diagnostics"),
+    ("severities", "codes"),
+    ("severities", "diagnostics"),
     ("compare", "rewrite"),
     ("corpus", "verify"),
     ("corpus", "pipeline"),

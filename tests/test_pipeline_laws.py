@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
@@ -108,6 +108,7 @@ def _without_dof_names(part: parts.EdgePart) -> parts.EdgePart:
 @given(data=st.data())
 def test_a_second_way_through_a_format_changes_nothing_more(format: str, data: st.DataObject) -> None:
     mechanism = data.draw(mechanisms(PLAIN if format == "usd" else TREES))
+    assume(any(True for _ in mechanism.vertices(parts.Body)))  # what was written without a body is read as an error
     once = through(mechanism, format)
     assert differences(once, through(once, format), format) == []
 

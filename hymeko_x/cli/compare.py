@@ -13,7 +13,7 @@ from hymeko_x import api, formats
 from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.inputs import input_arguments, read_input
+from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.terminal import show
 from hymeko_x.cli.verdicts import exit_code, verdict_lines
 from hymeko_x.compare.diff import Tolerance, diff
@@ -38,6 +38,7 @@ def diff_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--tolerance", type=float, default=1e-12, metavar="T", help="numbers this close are equal (default 1e-12)")
     parser.add_argument("--json", action="store_true", help="print JSON")
     input_arguments(parser)
+    lenient_argument(parser)
 
 
 def run_diff(chosen: argparse.Namespace) -> int:
@@ -142,6 +143,7 @@ def roundtrip_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print JSON")
     engine_arguments(parser)
     input_arguments(parser)
+    lenient_argument(parser)
 
 
 def run_roundtrip(chosen: argparse.Namespace) -> int:
@@ -179,8 +181,8 @@ def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], 
     for number, format in enumerate(stops, start=1):
         after = folder / f"leg{number}" / f"robot{format.suffixes[0]}"
         after.parent.mkdir(exist_ok=True)
-        result = api.convert(before, after, to_format=format.name, packages=packages)
-        back = api.load(after, format.name, packages=packages)
+        result = api.convert(before, after, to_format=format.name, packages=packages, lenient=chosen.lenient)
+        back = api.load(after, format.name, packages=packages, lenient=chosen.lenient)
         losses = None if result.losses is None else len(result.losses)
         differences = len(diff(original, back, _TOLERANCE))
         yield Leg(format.name, after.stat().st_size, losses, differences, verdict_of(chosen.input, str(after), chosen))

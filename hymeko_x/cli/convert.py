@@ -11,7 +11,7 @@ from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.cli import exits
 from hymeko_x.cli.compare import engine_arguments, verdict_of
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.inputs import input_arguments, read_input
+from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.report import report_arguments, show_report, written_line
 from hymeko_x.cli.terminal import is_coloured
 from hymeko_x.cli.verdicts import exit_code, verdict_lines
@@ -47,6 +47,7 @@ def import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("input", metavar="FILE", help="the robot to read; - is standard input")
     parser.add_argument("-o", "--output", default="-", metavar="OUT.hymeko", help="where to write (default: standard output)")
     input_arguments(parser)
+    lenient_argument(parser)
     _output_arguments(parser)
 
 
@@ -63,6 +64,7 @@ def export_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", dest="to_format", metavar="FORMAT", help="the format to write, where the output's suffix does not tell")
     parser.add_argument("-o", "--output", default="-", metavar="OUT", help="where to write (default: standard output)")
     input_arguments(parser)
+    lenient_argument(parser)
     _output_arguments(parser)
 
 
@@ -82,6 +84,7 @@ def convert_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", dest="to_format", metavar="FORMAT", help="the format to write, where the output's suffix does not tell")
     parser.add_argument("--json", action="store_true", help="print diagnostics and losses as JSON to standard output")
     input_arguments(parser)
+    lenient_argument(parser)
     _output_arguments(parser)
     parser.add_argument("--verify", action="store_true", help="ask the formats' own engines whether it is the same robot; else exit 4")
     engine_arguments(parser)
@@ -136,7 +139,8 @@ def _deliver(
     With ``measured`` the result is read back and its losses are listed; ``own`` is the source whose text the output may have.
     """
     path = "" if output.path == "-" else output.path
-    options = Options(chosen.base, chosen.actuators, chosen.layout, chosen.nested, chosen.split, chosen.pure, Path(path).stem)
+    layout = chosen.layout, chosen.nested, chosen.split
+    options = Options(chosen.base, chosen.actuators, *layout, chosen.pure, chosen.lenient, Path(path).stem)
     delivery = Delivery(given.mechanism, output.format, options, given.source.files, _place(output, chosen.assets), path, own)
     result = delivery.convert(report, measured=measured)
     if output.path == "-":

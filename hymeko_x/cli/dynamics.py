@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.inputs import input_arguments, read_input
+from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.terminal import show
 from hymeko_x.diagnostics import Report
 
@@ -29,6 +29,7 @@ def dynamics_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--style", choices=_STYLES, default="text", help="how to print them (default text)")
     parser.add_argument("--json", action="store_const", dest="style", const="json", help="the same as --style json")
     input_arguments(parser)
+    lenient_argument(parser)
 
 
 def run_dynamics(chosen: argparse.Namespace) -> int:
@@ -67,6 +68,7 @@ def simulate_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--figure", type=Path, metavar="OUT", help="draw inputs and outputs into OUT.png, .svg or .pdf")
     input_arguments(parser)
+    lenient_argument(parser)
 
 
 def run_simulate(chosen: argparse.Namespace) -> int:

@@ -20,7 +20,7 @@ BUG = 70
 INTERRUPTED = 130
 
 TABLE = (
-    "exit: 0 done; 1 input could not be read or output not written; 2 usage; 3 --fail-on reached;\n"
+    "exit: 0 done; 1 the input has errors or cannot be read, or the output cannot be written; 2 usage; 3 --fail-on reached;\n"
     "      4 a difference was found; 70 a bug of ours"
 )
 
@@ -33,12 +33,16 @@ def guarded(verb: str, body: Callable[[], int]) -> int:
     """Run a verb's body; return its exit code, or that of what went wrong. HYMEKO_X_DEBUG shows the traceback of a bug."""
     from hymeko_x import codes
     from hymeko_x.cli.terminal import show
-    from hymeko_x.diagnostics import Refusal
+    from hymeko_x.diagnostics import Refusal, Stopped
 
     try:
         return body()
+    except Stopped as stopped:
+        show(stopped.diagnostics)
+        print(f"hymeko-x {verb}: stopped by errors, nothing was written; --lenient goes on with what they say", file=sys.stderr)
+        return FAILED
     except Refusal as refusal:
-        show([refusal.diagnostic])
+        show(refusal.diagnostics)
         return BUG if refusal.diagnostic.code == codes.BUG else FAILED
     except UsageError as error:
         print(f"hymeko-x {verb}: {error}", file=sys.stderr)

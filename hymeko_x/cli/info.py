@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 from hymeko_x import formats
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.inputs import input_arguments, read_input
+from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.terminal import show
 from hymeko_x.codes import CODES
 from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.severities import reasons
 
 if TYPE_CHECKING:
     from hymeko_x.cli.inputs import Input
@@ -34,6 +35,7 @@ def info_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("input", metavar="FILE", help="the robot to look at; - is standard input")
     parser.add_argument("--json", action="store_true", help="print JSON")
     input_arguments(parser)
+    lenient_argument(parser)
 
 
 def run_info(chosen: argparse.Namespace) -> int:
@@ -120,7 +122,7 @@ def run_check(chosen: argparse.Namespace) -> int:
     from hymeko_x.validation import Declared, Profile, validate
 
     report = Report()
-    given = read_input(chosen.input, chosen, report)
+    given = read_input(chosen.input, chosen, report, anyway=True)
     profiles = [Profile(word) for word in chosen.profile or PROFILES]
     validate(given.mechanism, given.source.files, report, profiles, Declared(chosen.links, chosen.joints))
     failed = report.worst in ((Severity.ERROR,) if chosen.fail_on == "error" else (Severity.ERROR, Severity.WARNING))
@@ -197,7 +199,8 @@ def run_explain(chosen: argparse.Namespace) -> int:
     found = CODES.get(_canonical(chosen.code))
     if found is None:
         raise UsageError(f"there is no code '{chosen.code}'; `hymeko-x explain` lists all")
-    print(f"{found.id}: {found.title}\n\n{textwrap.fill(found.explanation, 100)}")
+    why = [textwrap.fill(f"{severity.value}: {reason}", 100, subsequent_indent="  ") for severity, reason in reasons(found)]
+    print("\n".join((f"{found.id}: {found.title}", "", textwrap.fill(found.explanation, 100), "", *why)))
     return exits.DONE
 
 

@@ -42,10 +42,15 @@ def input_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--env", action="append", default=[], type=_variable, metavar="NAME[=VALUE]", help=passed)
 
 
-def read_input(path: str, chosen: argparse.Namespace, report: Report) -> Input:
-    """Read a file, or standard input for `-`.
+def lenient_argument(parser: argparse.ArgumentParser) -> None:
+    """The option of every verb that an error ends."""
+    parser.add_argument("--lenient", action="store_true", help="go on where the input has errors, with what each error says")
 
-    Raises: Refusal when it cannot be read.
+
+def read_input(path: str, chosen: argparse.Namespace, report: Report, *, anyway: bool = False) -> Input:
+    """Read a file, or standard input for `-`; ``anyway``: whatever errors it has.
+
+    Raises: Refusal when it cannot be read; Stopped when it has errors, without `--lenient`.
     """
     source = _standard_input(chosen) if path == "-" else source_of(path, chosen)
     format = formats.by_name(chosen.from_format) if chosen.from_format else formats.of_input(source.name, source.data)
@@ -55,7 +60,9 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report) -> Input:
     if chosen.variant and not format.has_variants:
         raise UsageError(f"--variant is for formats that have variants, and {source.name} is {format.name}")
     source = replace(source, variants=dict(chosen.variant), arguments=dict(chosen.arg), environment=dict(chosen.env))
-    return Input(pipeline.read(source, format, report), format, source)
+    if anyway:
+        return Input(pipeline.read_anyway(source, format, report), format, source)
+    return Input(pipeline.read(source, format, report, lenient=chosen.lenient), format, source)
 
 
 def source_of(path: str, chosen: argparse.Namespace) -> Source:

@@ -369,7 +369,7 @@ def root_hint(root: str) -> str:
 
 
 _BEFORE_ROOT = re.compile(rb"\s+|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>\[]*(?:\[.*?\]\s*)?>", re.DOTALL)
-_ROOT = re.compile(rb"<([A-Za-z_][^\s/>]*)")
+_ROOT = re.compile(rb"<([A-Za-z_][\w.:-]*)")
 
 
 def xml_root(data: bytes) -> str | None:

@@ -18,7 +18,7 @@ class Options(Struct, frozen=True):
     ``base``: what becomes of an open base (None = the target's own default). ``actuators``: which kind to give every
     driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows. ``layout`` and
     ``nested``: how a stage of USD is laid out (None = one file with flat bodies). ``split``: whether the macros of xacro
-    go into a file of their own. ``pure``: whether the output carries no residue.
+    go into a file of their own. ``pure``: whether the output carries no residue. ``lenient``: whether errors are passed over.
     ``beside``: how files of our own that may stand beside the output begin, which is its own name; empty = there is no place.
     ``within``: the folder below the output's own that holds every file beside it, and ends in a slash; empty = each where it belongs.
     """
@@ -29,6 +29,7 @@ class Options(Struct, frozen=True):
     nested: bool | None = None
     split: bool = False
     pure: bool = False
+    lenient: bool = False
     beside: str = ""
     within: str = ""
 

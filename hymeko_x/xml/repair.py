@@ -57,7 +57,7 @@ def _recover(
     for message in repairs:
         report.warn(codes.REPAIRED_XML, message, place)
     message = f"not well-formed: {expat.errors.messages[error.code]}; what could be read was read, and what could not is missing"
-    report.warn(codes.REPAIRED_XML, message, place)
+    report.error(codes.NOT_WELL_FORMED, message, place)
     _tidy(root)
     around = [*reversed(list(root.itersiblings(preceding=True))), root, *root.itersiblings()]
     data = b"\n".join(etree.tostring(node, encoding="utf-8", with_tail=False) for node in around if not _is_declaration(node))
@@ -113,12 +113,14 @@ def _tidy_attributes(element: Any) -> None:
 # ---- repairs of the text -----------------------------------------------------------------------------------------------------
 
 _NAME = re.compile(r"(?:\{[^}]*\})?[^\W\d][\w.-]*")
-_PIECES = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<[^\s<>!?/][^<>]*>?|[^<]+|<", re.DOTALL)
+_PIECES = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<[^\s<>!?][^<>]*>?|[^<]+|<", re.DOTALL)
 _DECLARATION = re.compile(r"<\?xml\s[^?>]*\?>")
 _CONTROL = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\ufffe\uffff]")
 _REFERENCE = re.compile(r"&#(\d{1,30}|x[0-9a-fA-F]{1,30});")
 _BARE_AMPERSAND = re.compile(r"&(?![A-Za-z_][\w.-]*;|#\d+;|#x[0-9a-fA-F]+;)")
 _NO_BLANK = re.compile(r"""(=\s*(?:"[^"]*"|'[^']*'))(?=[\w:])""")
+_OTHER_BLANKS = re.compile(r"""("[^"]*"|'[^']*')|[\xa0\u2000-\u200b\u202f\u205f\u3000\ufeff]""")
+"""A quoted value, or a blank of typesetting, such as the no-break spaces in text that was copied from a page."""
 
 
 def decoded(data: bytes) -> tuple[str, str]:
@@ -178,7 +180,7 @@ def _without_rest(text: str) -> tuple[str, str]:
 
 
 def _with_clean_tags(text: str) -> tuple[str, str]:
-    """Blanks between attributes, escaped ampersands, and comments without ``--``; CDATA stays as it is."""
+    """Blanks between attributes that are blanks to XML, escaped ampersands, and comments without ``--``; CDATA stays as it is."""
     pieces = []
     changed: set[str] = set()
     for piece in _PIECES.findall(text):
@@ -190,7 +192,9 @@ def _with_clean_tags(text: str) -> tuple[str, str]:
             clean, count = _BARE_AMPERSAND.subn("&amp;", piece)
             changed |= {"'&' stands where '&amp;' is needed; read as '&'"} if count else set()
         if piece.startswith("<") and not piece.startswith(("<!", "<?")):
-            clean, count = _NO_BLANK.subn(r"\1 ", clean)
+            plain = _OTHER_BLANKS.sub(lambda found: found[1] or " ", clean)
+            changed |= {"no-break or other typographic spaces between attributes; read as spaces"} if plain != clean else set()
+            clean, count = _NO_BLANK.subn(r"\1 ", plain)
             changed |= {"attributes without a blank between them; read as if there was one"} if count else set()
         pieces.append(clean)
     return "".join(pieces), "; ".join(sorted(changed))

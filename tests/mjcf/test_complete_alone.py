@@ -111,17 +111,17 @@ def test_wherever_more_than_solids_counts_the_whole_robot_is_asked(content: str,
     assert not are_solids_alone(robot, unweighed(robot))
 
 
-def test_without_mujoco_there_is_a_warning_and_no_inertia(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_mujoco_there_is_an_error_and_no_inertia(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mujoco", None)
     robot, report = robot_of(), Report()
     assert complete(robot, lambda: pytest.fail("it was printed"), NoFiles(), report) is robot
-    assert [str(said)[:15] for said in report] == ["warning[HX301]:"]
+    assert [str(said)[:15] for said in report] == ["error[HX301]: M"]
 
 
 def test_what_weighs_nothing_is_left_to_the_whole_robot_which_mujoco_refuses() -> None:
     robot, report = robot_of('<geom size=".1" mass="0"/>'), Report()
     assert complete(robot, lambda: (robot, write(robot).encode()), NoFiles(), report) == robot
-    assert [str(said)[:15] for said in report] == ["warning[HX302]:"]
+    assert [str(said)[:15] for said in report] == ["error[HX302]: M"]
 
 
 def test_nothing_is_printed_for_a_robot_of_solids() -> None:

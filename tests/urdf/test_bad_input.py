@@ -67,19 +67,19 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
     "a second root element": (
         robot(LINK) + "<robot/>",
         [
-            "3:9: warning[HX005]: not well-formed: ...; what could be read was read, and what could not is missing",
+            "3:9: error[HX010]: not well-formed: ...; what could be read was read, and what could not is missing",
         ],
     ),
     "an element that is not closed": (
         robot('<link name="a">'),
         [
-            "3:3: warning[HX005]: not well-formed: ...; what could be read was read, and what could not is missing",
+            "3:3: error[HX010]: not well-formed: ...; what could be read was read, and what could not is missing",
         ],
     ),
     "an attribute twice": (
         robot('<link name="a" name="b"/>'),
         [
-            "2:16: warning[HX005]: not well-formed: ...; what could be read was read, and what could not is missing",
+            "2:16: error[HX010]: not well-formed: ...; what could be read was read, and what could not is missing",
         ],
     ),
     "hyphens in a comment": (
@@ -109,7 +109,7 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
     "a robot without a name": (
         robot(LINK, ""),
         [
-            "1: error[HX022]: the robot has no name; it is called 'robot' after its file",
+            "1: warning[HX022]: the robot has no name; it is called 'robot' after its file",
         ],
     ),
     "a robot without links": (
@@ -136,7 +136,7 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
     "a xacro file": (
         robot('<xacro:macro name="x"/>' + LINK, ' name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"'),
         [
-            "1: warning[HX024]: <xacro:macro> is text for xacro; it is kept as it is",
+            "1: error[HX024]: <xacro:macro> is text for xacro; what it stands for is missing, and the text is kept as it is",
         ],
     ),
     "a link without a name": (
@@ -327,7 +327,7 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
     "a mesh without file": (
         robot(visual("<geometry><mesh/></geometry>")),
         [
-            "2: error[HX021]: visual 'a/visual': <mesh> has no filename; it stays empty",
+            "2: warning[HX021]: visual 'a/visual': <mesh> has no filename; it stays empty",
         ],
     ),
     "a mesh scale of two numbers": (

@@ -45,7 +45,7 @@ def complete(mechanism: Mechanism, printed: Printed, files: Files, report: Repor
 
     That is the mass, centre of mass and tensor of every body, stiffness and damping of springs, the points of meshes, the sizes of
     fitted primitives, and the field of view of cameras. Bodies without mass stay without an inertial. Where MuJoCo is not installed
-    or refuses the text, only cameras change, with a warning.
+    or refuses the text, only cameras change, with an error (a warning where files are missing).
     """
     mechanism = _with_fields_of_view(mechanism)
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
@@ -58,17 +58,20 @@ def complete(mechanism: Mechanism, printed: Printed, files: Files, report: Repor
     try:
         import mujoco
     except ImportError:
-        report.warn(codes.ENGINE_MISSING, "MuJoCo computes inertias from geoms and some meshes, and is not installed; they are left out")
+        message = "MuJoCo computes inertias from geoms and some meshes, and is not installed; they are left out"
+        report.error(codes.ENGINE_MISSING, message, hint="pip install mujoco")
         return mechanism
     alone = None if scaled or sprung or meshes or fitted else _computed_alone(mujoco, mechanism, wanted)
     if alone is not None:
         return mechanism.with_graph(mechanism.graph.replace(vertices=alone))
     legal, text = printed()
+    assets, missing = _assets(mechanism, files)
     try:
-        model = _compiled(mujoco, text, _assets(mechanism, files))
+        model = _compiled(mujoco, text, assets)
     except (ValueError, mujoco.FatalError) as error:
         reason = str(error).strip().splitlines()[0]
-        report.warn(codes.ENGINE_REFUSED, f"MuJoCo refuses the model, so that inertias and meshes that it computes are left out: {reason}")
+        record = report.warn if missing else report.error  # a missing file is reported by itself, and is no reason to stop
+        record(codes.ENGINE_REFUSED, f"MuJoCo refuses the model, so that inertias and meshes that it computes are left out: {reason}")
         return mechanism
     order = {key: number for number, key in enumerate(legal.depth_first(), 1)}
     chosen = [key for key, _ in mechanism.vertices(Body)] if scaled else wanted
@@ -121,8 +124,8 @@ def _remove_appearance(spec: Any) -> None:
         spec.delete(texture)
 
 
-def _assets(mechanism: Mechanism, files: Files) -> dict[str, bytes]:
-    """Every file that counts for masses and shapes, by its path from the model."""
+def _assets(mechanism: Mechanism, files: Files) -> tuple[dict[str, bytes], set[str]]:
+    """Every file that counts for masses and shapes, by its path from the model; and the paths of those that are not there."""
     uris = [part.uri for part in mechanism.graph.vertices.values() if isinstance(part, Mesh) and part.uri]
     settings = _settings(mechanism)
     for extra in mechanism.extras.get(ROOT, ()):
@@ -134,7 +137,7 @@ def _assets(mechanism: Mechanism, files: Files) -> dict[str, bytes]:
         if path is not None:
             with contextlib.suppress(OSError):
                 found[uri] = files.read(path)
-    return found
+    return found, {uri for uri in uris if uri} - found.keys()
 
 
 def _settings(mechanism: Mechanism) -> Settings:

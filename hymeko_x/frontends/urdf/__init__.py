@@ -49,7 +49,7 @@ def read(source: Source, report: Report) -> Reading:
     for node in root.take_children("transmission"):
         read_transmission(node, builder)
     finish_materials(builder)
-    check_structure(root, builder)
+    check_structure(root, builder, carries=bool("".join(carried)))
     _check_templates(root, builder)
     return Reading(builder.finish(name, _around(document), source.name), "".join(carried))
 
@@ -72,7 +72,7 @@ def _read_name(root: Node, source: Source, builder: UrdfBuilder) -> str:
     if name:
         return name
     stem = PurePath(source.name.replace("\\", "/")).stem.strip("-<> ") or "robot"
-    builder.report.error(codes.BAD_NAME, f"the robot has no name; it is called '{stem}' after its file", root.origin)
+    builder.report.warn(codes.BAD_NAME, f"the robot has no name; it is called '{stem}' after its file", root.origin)
     return stem
 
 
@@ -96,13 +96,12 @@ def _check_templates(root: Node, builder: UrdfBuilder) -> None:
     tag = next((node.tag for node in root.children if node.tag.startswith("xacro:")), None)
     if name is None and tag is None:
         return
-    found = f"the name '{name}'" if name is not None else f"<{tag}>"
-    builder.report.warn(
-        codes.LEFTOVER_TEMPLATE,
-        f"{found} is text for xacro; it is kept as it is",
-        root.origin,
-        hint="if this is a xacro file, read it with --from xacro",
-    )
+    hint = "if this is a xacro file, read it with --from xacro"
+    if tag is not None:
+        message = f"<{tag}> is text for xacro; what it stands for is missing, and the text is kept as it is"
+        builder.report.error(codes.LEFTOVER_TEMPLATE, message, root.origin, hint=hint)
+    else:
+        builder.report.warn(codes.LEFTOVER_TEMPLATE, f"the name '{name}' is text for xacro; it is kept as it is", root.origin, hint=hint)
 
 
 def _around(document: Document) -> list[Extra]:

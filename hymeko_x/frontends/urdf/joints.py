@@ -11,7 +11,7 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
 from hymeko_x.formats.urdf.notations import Explicit
 from hymeko_x.frontends.urdf.builder import read_origin, shortened, take_name, take_number, take_numbers
-from hymeko_x.ir.mechanism import ROOT, coupling_edge, joint_edge
+from hymeko_x.ir.mechanism import ROOT, WORLD, coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
 from hymeko_x.ir.values import Written, X, plane_axes, unit
 from hymeko_x.xml.text import attributes_text
@@ -82,7 +82,8 @@ def _read_end(joint: Node, tag: str, builder: UrdfBuilder) -> Id:
     if known is not None:
         return known
     message = f"{joint.subject}: <{tag} link> is '{name}', which is not defined; an empty link of this name was added"
-    builder.error(codes.UNDEFINED_REFERENCE, joint, message)
+    is_world = tag == "parent" and name == WORLD.name  # the usual way to fix a base, and what some readers define by themselves
+    (builder.warn if is_world else builder.error)(codes.UNDEFINED_REFERENCE, joint, message)
     key = builder.links[name] = builder.names.take("body", name)
     builder.vertices[key] = Body()
     builder.origins[key] = joint.origin

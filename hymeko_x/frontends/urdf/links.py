@@ -183,7 +183,7 @@ def _read_mesh(node: Node, builder: UrdfBuilder) -> Id:
     uri = node.take("filename")
     if uri is None:
         message = f"{node.subject}: <mesh> has no filename; it stays empty"
-        builder.error(codes.MISSING_ATTRIBUTE, node, message)
+        builder.warn(codes.MISSING_ATTRIBUTE, node, message)
         uri = ""
     scale = _read_scale(node, builder)
     known = builder.meshes.get((uri, scale))

@@ -157,7 +157,7 @@ def _fetch(uri: str, layer: str, base: str, source: Source, report: Report) -> s
         os.makedirs(os.path.dirname(target), exist_ok=True)
         Path(target).write_bytes(data)
         return target
-    report.warn(codes.ASSET_NOT_FOUND, f"the layer '{uri}' was not found; its content is missing", Origin(source.name))
+    report.error(codes.ASSET_NOT_FOUND, f"the layer '{uri}' was not found; its content is missing", Origin(source.name))
     return None
 
 
