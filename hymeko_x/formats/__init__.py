@@ -106,6 +106,8 @@ class Format(Struct, frozen=True):
     """Whether a name may hold letters, digits and underscores only, so that others are spelled differently (USD)."""
     has_single_dof_joints: bool = False
     """Whether a joint of several dofs becomes a chain of joints (URDF)."""
+    joints_share_names: bool = False
+    """Whether a joint cannot have the name of a body, and then has ``_joint`` behind its own (SDF)."""
     requires_mass: bool = False
     """Whether its engine refuses moving bodies without mass (MJCF)."""
     missing_shapes: frozenset[str] = frozenset()
@@ -251,7 +253,15 @@ SDF = Format(
     "Simulation Description Format (Gazebo)",
     (".sdf", ".world"),
     "hymeko_x.frontends.sdf",
+    "hymeko_x.backends.sdf",
+    "hymeko_x.backends.sdf.rules",
     roots=("sdf",),
+    keeps_package_uris=True,
+    joints_share_names=True,
+    has_single_dof_joints=True,
+    requires_mass=True,
+    includes=rb"<include\b",
+    colour="#17becf",
     tokens=_XML_TOKENS,
     reference="hymeko_x.verify.readers.sdf",
     libraries=MappingProxyType({"pydrake": "sdf"}),

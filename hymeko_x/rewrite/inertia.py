@@ -87,6 +87,19 @@ def give_moving_bodies_mass(mechanism: Mechanism, context: Context) -> Mechanism
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 
+def give_every_body_mass(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Every body gets the least mass and inertia where it has none: SDF takes a link without an inertial for one of 1 kg."""
+    changed = {}
+    for key, body in mechanism.vertices(Body):
+        if not _is_sound(body):
+            changed[key] = replace(body, inertial=_least_inertial(body.inertial))
+    if changed:
+        listed = ", ".join(f"'{key.name}'" for key in list(changed)[:5]) + (", ..." if len(changed) > 5 else "")
+        message = f"{len(changed)} links have no mass or no inertia; mass {LEAST!r} and inertia {LEAST!r} are written: {listed}"
+        context.report.note(codes.INERTIA_REPAIRED, message, element=str(next(iter(changed))))
+    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+
+
 # ---- the tree --------------------------------------------------------------------------------------------------------------
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from hymeko_x.assets.written import contents_of
 from hymeko_x.backends.urdf.joints import joint_tag
 from hymeko_x.backends.urdf.links import link_tag
-from hymeko_x.backends.urdf.meshes import contents_of
 from hymeko_x.backends.urdf.sheet import UrdfSheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
 from hymeko_x.formats import urdf as words

@@ -6,8 +6,8 @@ import re
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
+from hymeko_x.assets.written import files_of_meshes
 from hymeko_x.backends.urdf.materials import Materials
-from hymeko_x.backends.urdf.meshes import files_of_meshes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
 from hymeko_x.formats.urdf.notations import Style

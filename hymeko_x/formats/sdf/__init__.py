@@ -25,12 +25,24 @@ DEFAULT_VERSION = "1.9"
 """What is written unless the file came from another version or needs a later one."""
 VERSION_OF_MIMIC = "1.11"
 VERSION_OF_AUTO = "1.11"
+VERSION_OF_PITCH = "1.10"
+"""From here on the pitch of a screw is ``screw_thread_pitch``."""
+VERSION_OF_RELATIVE_TO = 7
+"""The minor version from which on a pose names its frame in ``relative_to``, and an axis in ``expressed_in``."""
+VERSION_OF_JOINT_AXES = 5
+"""The minor version from which on an axis is given in the joint's own frame unless the file says otherwise."""
+AROUND = ("preceding", "following")
+"""The paths of extras outside the root element."""
 DENSITY = 1000.0
 """kg/m^3 of collisions from which an inertial is computed."""
 
 MODEL_FRAME = "__model__"
 WORLD_FRAME = "world"
+WORLD_LINK = "world_geometry"
+"""The link for what is on the world, where only links have shapes and sensors; a fixed joint to the world holds it."""
 SCOPE = "::"
+WORLD_SCOPE = "\0"
+"""Stands before the names of frames and joints in the world where its only model has no scope of its own."""
 
 
 def minor(version: str) -> int:
@@ -98,6 +110,16 @@ def shape_name(tag: str, number: int) -> str:
     """The name of the n-th visual or collision of a link, counted from 1, when its author gave it none: SDF requires one."""
     return tag if number == 1 else f"{tag}_{number}"
 
+
+SENSORS = frozenset(
+    (
+        *("air_pressure", "air_speed", "altimeter", "boundingbox_camera", "camera", "contact", "depth", "depth_camera", "force_torque"),
+        *("gps", "gpu_lidar", "gpu_ray", "imu", "lidar", "logical_camera", "magnetometer", "multicamera", "navsat", "ray", "rfid"),
+        *("rfidtag", "rgbd", "rgbd_camera", "segmentation", "segmentation_camera", "sonar", "thermal", "thermal_camera"),
+        *("wideanglecamera", "wireless_receiver", "wireless_transmitter", "custom", "none"),
+    )
+)
+"""The types of sensors."""
 
 OTHER_GEOMETRIES = ("cone", "polyline", "heightmap", "image", "empty")
 """Geometries that the IR cannot represent; they are kept as written."""

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 
 from hymeko_x.ir.notations import Notation, flag, word
+from hymeko_x.ir.values import Pose, numbers_text
+from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -25,6 +27,26 @@ NO_INERTIAL = flag("sdf.inertial", "missing")
 """Body: it has the inertial that libsdformat gives to a link without one."""
 AUTO = flag("sdf.auto")
 """Body: its inertial is that of its collisions."""
+SEVERAL = flag("sdf.models", "several")
+"""Mechanism: its models are at top level, without a world."""
+IN_WORLD = flag("sdf.place", "world")
+"""Frame, joint: it stands in the world, beside the only model."""
+
+
+def _numbers(pose: Pose) -> str:
+    return numbers_text((*pose.xyz, *pose.quat))
+
+
+def _pose_of(text: str) -> Pose | None:
+    numbers = read_numbers(text)
+    if numbers is None or len(numbers) != 7:
+        return None
+    x, y, z, *quat = numbers
+    return Pose((x, y, z), (quat[0], quat[1], quat[2], quat[3]))
+
+
+MODEL = Notation("sdf.model", _numbers, _pose_of)
+"""Mechanism: where the frame of its model is in the world, as a position and a quaternion (w, x, y, z); nowhere else without it."""
 IMPLIED = flag("sdf.implied")
 """Joint: not in the file; a model without <static> floats, one with it stands."""
 

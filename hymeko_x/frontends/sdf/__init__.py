@@ -24,9 +24,11 @@ from hymeko_x.frontends.sdf.models import (
     hold_bases,
     mount_frames,
     name_from_outside,
+    note_model,
     place_content,
     place_model,
     register_content,
+    with_world_link_as_world,
 )
 from hymeko_x.frontends.sdf.sensors import read_light
 from hymeko_x.ir.mechanism import ROOT, WORLD
@@ -56,9 +58,11 @@ def read(source: Source, report: Report) -> Reading:
     builder.note(ROOT, notations.VERSION, version)
     world = _take_world(root, report)
     name = _read_models(root, world, source, builder)
-    for child in list(root.children):
-        builder.unread.close(child)
-    return Reading(builder.finish(name, _around(document), source.name, version), "".join(carried))
+    for child in root.children:
+        if child.taken:
+            builder.unread.close(child)
+    mechanism = builder.finish(name, _around(document), source.name, version)
+    return Reading(with_world_link_as_world(mechanism), "".join(carried))
 
 
 def _whole_text(node: Node) -> str:
@@ -98,13 +102,16 @@ def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBui
     """Everything in the world, or in the model of the file. Returns the name of the mechanism."""
     place = root if world is None else world
     tops = list(place.take_children("model"))
-    around = Model(place, "", WORLD)
     named = None if world is None else world.take("name") or "default"
     if named is not None:
         builder.note(ROOT, notations.WORLD, named)
     is_alone = len(tops) == 1
+    around = Model(place, words.WORLD_SCOPE if is_alone else "", WORLD)
+    if len(tops) != 1:
+        builder.note(ROOT, notations.SEVERAL, True)
     models = collect_models(tops, builder, is_alone=is_alone)
     scenes = [*models, *([around] if world is not None else [])]
+    builder.layout += [model.frame for model in models if model.around is None and model.frame in builder.vertices]
     for model in scenes:
         register_content(model, builder)
     if is_alone and world is not None:
@@ -114,6 +121,7 @@ def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBui
     for model in reversed(models):
         place_model(model, builder)
     break_cycles(builder)
+    note_model(models, builder)
     attach_models(models, builder)
     _read_content(scenes, builder)
     mount_frames(scenes, builder)

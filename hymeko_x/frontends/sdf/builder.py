@@ -87,9 +87,11 @@ class SdfBuilder(Builder):
             name = node.tag
         elif words.SCOPE in name or (name.startswith("__") and name.endswith("__")) or (name == words.WORLD_FRAME and kind != "shape"):
             self.error(codes.BAD_NAME, node, f"the name '{name}' of a <{node.tag}> is reserved in SDF; it is kept")
-        wanted = words.scoped(scope, name)
+        wanted = name if scope == words.WORLD_SCOPE else words.scoped(scope, name)
         node.owner = key = self.fresh(kind, wanted, node.origin)
         if key.name != wanted:
+            self.written.setdefault(key, {})["@name"] = name
+        if key.name != wanted and scope != words.WORLD_SCOPE:
             message = f"there are two <{node.tag}> called '{name}' ({self.origins[Id(kind, wanted)]}); this one is '{key.name}'"
             self.error(codes.DUPLICATE_NAME, node, message)
         return key
@@ -105,12 +107,16 @@ class SdfBuilder(Builder):
     def value(self, node: Node, field: Field, key: Id, prefix: str = "") -> Any:
         """The value of a field below a node; where it would not be written like this again, its text is noted under ``prefix`` and path."""
         *steps, last = field.path.split("/")
+        path = []
         for step in steps:
             found = next((child for child in node.children if child.tag == step), None)
             if found is None:
                 return field.default
-            found.taken = True
+            path.append(found)
             node = found
+        if node.has(last):  # else an empty element stays as it is
+            for found in path:
+                found.taken = True
         return self.child_value(node, last, field.codec, field.default, key, f"{prefix}{field.path}")
 
     def child_value(self, node: Node, tag: str, codec: Codec, default: Any, key: Id, path: str) -> Any:
@@ -143,7 +149,7 @@ class SdfBuilder(Builder):
             return IDENTITY, None
         relative_to = child.take("relative_to" if self.version_of(node) >= 7 else "frame")
         text = " ".join((child.text or "").split())
-        written = WrittenPose(relative_to or None, child.take("rotation_format"), child.take("degrees"), text)
+        written = WrittenPose(relative_to, child.take("rotation_format"), child.take("degrees"), text)
         try:
             pose = read_pose(written)
         except BadText as error:
@@ -159,7 +165,7 @@ class SdfBuilder(Builder):
 
     def base_of(self, node: Node, scope: str, name: str | None, default: Id) -> Id:
         """The frame that a pose is relative to; an unknown one is reported."""
-        if name is None:
+        if not name:
             return default
         found = self.find(scope, name)
         if found is None:

@@ -19,9 +19,10 @@ if TYPE_CHECKING:
 
 def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | None, Id | None]:
     """The colour of a visual, or, where it has textures, the material with them. Scripts and further colours stay as written."""
-    node = visual.take_child("material")
-    if node is None:
+    node = next((child for child in visual.children if child.tag == "material"), None)
+    if node is None or not node.children:
         return None, None
+    node.taken = True
     rgba = builder.child_value(node, "diffuse", COLOUR, None, key, "material/diffuse")
     pbr = next((child for child in node.children if child.tag == "pbr"), None)
     metal = None if pbr is None else next((child for child in pbr.children if child.tag == "metal"), None)

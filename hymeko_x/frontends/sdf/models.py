@@ -12,13 +12,14 @@ from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.values import TRUTH
 from hymeko_x.frontends.sdf.builder import Model
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge, mount_edge
-from hymeko_x.ir.names import free_name
+from hymeko_x.ir.names import free_name, rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Dof, DofKind, Frame, Joint, Loop, World
 from hymeko_x.ir.values import IDENTITY, compose, inverse
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.sdf.builder import SdfBuilder
+    from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.ir.values import Pose
     from hymeko_x.xml.tree import Node
 
@@ -55,6 +56,8 @@ def _in_scope(node: Node, around: Model | None, builder: SdfBuilder) -> Model:
         builder.error(codes.DUPLICATE_NAME, node, f"there are two models called '{name}'; this one is '{free}'")
     scope = free + words.SCOPE
     node.owner = frame = builder.fresh("frame", scope + words.MODEL_FRAME, node.origin)
+    if free != outer + name:
+        builder.written.setdefault(frame, {})["@name"] = name
     builder.vertices[frame] = Frame()
     builder.named.setdefault(outer + name, frame)
     builder.named[scope + words.MODEL_FRAME] = frame
@@ -63,6 +66,8 @@ def _in_scope(node: Node, around: Model | None, builder: SdfBuilder) -> Model:
 
 def _is_static(node: Node, around: Model | None, key: Id, builder: SdfBuilder) -> bool:
     own: bool = builder.child_value(node, "static", TRUTH, False, key, "static")
+    if own:
+        builder.written.setdefault(key, {}).setdefault("static", "true")
     return own or (around is not None and around.is_static)
 
 
@@ -74,19 +79,24 @@ def register_content(model: Model, builder: SdfBuilder) -> None:
             name = words.scoped(model.scope, node.attributes.get("name", ""))
             key = builder.own(node, kind, model.scope)
             builder.named.setdefault(name, key)
+            if model.frame == WORLD:
+                builder.note(key, notations.IN_WORLD, True)
             if kind == "joint":
                 builder.joints.setdefault(name, key)
             elif kind == "body":
                 builder.vertices[key] = Body()
             else:
                 builder.vertices[key] = Frame()
-    builder.layout += [child.owner for child in model.node.children if child.taken and child.owner is not None]
+    builder.layout += [child.owner for child in model.node.children if child.owner is not None]
 
 
 def name_from_outside(model: Model, builder: SdfBuilder) -> None:
     """The world's own frames and joints name the content of its only model with that model's name before it."""
     name = model.node.attributes.get("name", "")
-    builder.named |= {f"{name}{words.SCOPE}{inner}": key for inner, key in list(builder.named.items())}
+    outside = f"{words.WORLD_SCOPE}{name}"
+    known = [(inner, key) for inner, key in builder.named.items() if inner[:1] != words.WORLD_SCOPE]
+    inside = {f"{outside}{words.SCOPE}{inner}": key for inner, key in known}
+    builder.named |= {outside: model.frame, **inside}
 
 
 def place_content(model: Model, builder: SdfBuilder) -> None:
@@ -107,6 +117,8 @@ def _attachment(node: Node, model: Model, builder: SdfBuilder) -> Id:
     """What a frame is attached to; it is given in that."""
     assert node.owner is not None
     name = node.take("attached_to")
+    if name == "":
+        builder.note(node.owner, notations.ATTACHED, name)
     if not name:
         builder.attached[node.owner] = model.frame
         return model.frame
@@ -149,6 +161,14 @@ def _back_from_placement(name: str, model: Model, builder: SdfBuilder) -> Pose:
         builder.error(codes.UNDEFINED_REFERENCE, model.node, message)
         return IDENTITY
     return inverse(inside)
+
+
+def note_model(models: list[Model], builder: SdfBuilder) -> None:
+    """Keep where the frame of the only model is, which is no element."""
+    for model in models:
+        pose = builder.frames.in_world(model.frame)
+        if model.frame not in builder.vertices and pose != IDENTITY:
+            builder.note(ROOT, notations.MODEL, pose)
 
 
 def break_cycles(builder: SdfBuilder) -> None:
@@ -196,7 +216,7 @@ def mount_frames(models: list[Model], builder: SdfBuilder) -> None:
     """Every frame, and every model that has one of its own, becomes a frame on its body."""
     keys = [key for model in models for key in (model.frame, *(node.owner for node in model.node.children if node.tag == "frame"))]
     for key in keys:
-        if key is not None and key in builder.vertices:
+        if key is not None and key != WORLD and key in builder.vertices:
             mount_frame(key, builder)
 
 
@@ -273,7 +293,7 @@ def _make_loop(joint: Id, node: Node, builder: SdfBuilder) -> None:
     dofs = edge.data.dofs
     kind = "joint" if dofs else "weld"
     if len(dofs) == 1 and dofs[0].kind is DofKind.BALL:
-        kind, dofs = "connect", ()
+        kind, dofs = "connect", dofs if dofs[0].damping else ()
     node.owner = key = builder.fresh("loop", joint.name, node.origin)
     arcs = tuple([replace(arc, sign=0) for arc in edge.arcs])
     builder.edges[key] = replace(edge, data=Loop(kind, dofs), arcs=arcs)
@@ -281,3 +301,15 @@ def _make_loop(joint: Id, node: Node, builder: SdfBuilder) -> None:
         if joint in table:
             table[key] = table.pop(joint)
     builder.layout = [key if other == joint else other for other in builder.layout]
+
+
+# ---- the world -----------------------------------------------------------------------------------------------------------------
+
+
+def with_world_link_as_world(mechanism: Mechanism) -> Mechanism:
+    """The link that the writer makes for what is on the world is the world again."""
+    link = Id("body", words.WORLD_LINK)
+    above = mechanism.parent_joint.get(link)
+    if above is None or above.parent != WORLD or above.joint.dofs or mechanism.children.get(link) or above.parent_pose != above.child_pose:
+        return mechanism
+    return rename(mechanism.with_graph(mechanism.graph.replace(without=[above.id])), {link: WORLD})

@@ -45,8 +45,9 @@ def read_joint_sensor(node: Node, joint: Id, model: Model, builder: SdfBuilder) 
 def _own(node: Node, kind: str, scope: str, builder: SdfBuilder) -> Id:
     """The id of a sensor or light; another link may have one of the same name."""
     name = node.take("name") or node.tag
-    node.owner = key = builder.fresh(kind, words.scoped(scope, name), node.origin)
-    if key.name != words.scoped(scope, name):
+    wanted = words.scoped(scope, name).removeprefix(words.WORLD_SCOPE)
+    node.owner = key = builder.fresh(kind, wanted, node.origin)
+    if key.name != wanted:
         builder.written.setdefault(key, {})["@name"] = name
     return key
 

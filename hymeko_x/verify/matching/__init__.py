@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
-from hymeko_x.verify.matching.bodies import only_carries, pair_by_name, pair_by_structure, speller
+from hymeko_x.verify.matching.bodies import joint_speller, only_carries, pair_by_name, pair_by_structure, speller
 from hymeko_x.verify.model import WORLD, Kind, KinematicModel
 
 if TYPE_CHECKING:
@@ -225,7 +225,7 @@ def _motion(kind: Kind) -> Kind:
 def _compare_joint_names(
     found: Match, a: KinematicModel, b: KinematicModel, path_a: JointPath, path_b: JointPath, pairs: Sequence[tuple[int, int]]
 ) -> None:
-    spell = speller(a, b)
+    spell = joint_speller(a, b)
     if not path_a.dofs and not path_b.dofs and len(path_a.bodies) == len(path_b.bodies) == 1:
         ours, theirs = a.bodies[path_a.bodies[0]].joint.name, b.bodies[path_b.bodies[0]].joint.name
         if ours is not None and theirs is not None and spell(ours) != spell(theirs):

@@ -35,6 +35,14 @@ def speller(a: KinematicModel, b: KinematicModel) -> Callable[[str], str]:
     return identifier if a.row.names_are_identifiers or b.row.names_are_identifiers else str
 
 
+def joint_speller(a: KinematicModel, b: KinematicModel) -> Callable[[str], str]:
+    """The spelling in which names of joints are compared: without what sets them apart from bodies where a format needs that."""
+    spell = speller(a, b)
+    if a.row.joints_share_names or b.row.joints_share_names:
+        return lambda name: spell(name).removesuffix("_joint")
+    return spell
+
+
 def pair_by_name(a: KinematicModel, b: KinematicModel) -> dict[int, int]:
     """For each matched body of the first robot the second's; bodies with no name or another one are matched by their place."""
     pairs = {WORLD: WORLD}

@@ -1,6 +1,6 @@
 """SDF as libsdformat reads it, through Drake's MultibodyPlant.
 
-Drake has bodies, joints, limits, damping, inertia and shapes; it does not hand out mimic joints, which verdicts note.
+Drake has bodies, joints, limits, damping, inertia and shapes; mimic joints, which it does not hand out, are taken from the text.
 Source: pydrake.multibody.plant, pydrake.geometry.
 """
 
@@ -9,8 +9,10 @@ from __future__ import annotations
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
+from xml.etree import ElementTree
 
 import numpy as np
+from msgspec.structs import replace
 from pydrake.geometry import Box, Capsule, Convex, Cylinder, Ellipsoid, HalfSpace, Mesh, Sphere
 from pydrake.geometry import Role as GeometryRole
 from pydrake.multibody.parsing import Parser
@@ -24,6 +26,7 @@ from hymeko_x.verify.model import (
     WORLD,
     Array,
     Body,
+    Coupling,
     Dof,
     Feature,
     Joint,
@@ -49,6 +52,11 @@ FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JO
 _SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS})
 _TURNS = {"ball_rpy": Kind.BALL, "quaternion_floating": Kind.FREE, "rpy_floating": Kind.FREE}
 _ROLES = {Role.VISUAL: GeometryRole.kIllustration, Role.COLLISION: GeometryRole.kProximity}
+_LEAST = 2e-10
+"""kg and kg m^2: a link cannot be without mass, and so little stands for none."""
+_WORLD_LINK = "world_geometry"
+"""A link of this name that is fixed to the world holds what is on the world itself."""
+_MIMIC = (("multiplier", "1"), ("offset", "0"), ("reference", "0"))
 _STATIC = "sdformat_model_static_"
 """How the names of the joints begin that Drake adds to static models."""
 
@@ -64,7 +72,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
     except Refusal:
         plant, scene = MultibodyPlant(0.0), None
         _load(path, plant, lookup)
-    return _model(plant, None if scene is None else scene.model_inspector(), path.stem, _screw_axes(path, plant, lookup))
+    return _model(plant, None if scene is None else scene.model_inspector(), path, _screw_axes(path, plant, lookup))
 
 
 def _screw_axes(path: Path, plant: Any, lookup: Lookup) -> dict[int, Array]:
@@ -106,7 +114,7 @@ def _load(path: Path, plant: Any, lookup: Lookup) -> None:
             raise refuse(codes.ENGINE_REFUSED, f"libsdformat refuses the file: {reason}", Origin(str(path))) from error
 
 
-def _model(plant: Any, scene: Any | None, name: str, screws: Mapping[int, Array]) -> KinematicModel:
+def _model(plant: Any, scene: Any | None, path: Path, screws: Mapping[int, Array]) -> KinematicModel:
     joints: dict[int, Any] = {}
     closing: list[Any] = []
     for joint in (plant.get_joint(index) for index in plant.GetJointIndices()):
@@ -118,17 +126,45 @@ def _model(plant: Any, scene: Any | None, name: str, screws: Mapping[int, Array]
     order = parents_first(children.get(WORLD, ()), children)
     numbers = {WORLD: WORLD} | {index: number for number, index in enumerate(order, start=1)}
     words = _Words(_scopes(plant), screws)
-    return KinematicModel(
-        name=name,
+    bodies = [_body(plant, scene, index, joints.get(index), numbers, words) for index in order]
+    model = KinematicModel(
+        name=path.stem,
         format="sdf",
         engine="libsdformat in Drake",
-        bodies=(
-            world_body(shapes=tuple(_shapes(plant, scene, WORLD))),
-            *(_body(plant, scene, index, joints.get(index), numbers, words) for index in order),
-        ),
+        bodies=_without_world_link([world_body(shapes=tuple(_shapes(plant, scene, WORLD))), *bodies]),
         loops=tuple(_loop(joint, numbers, words) for joint in closing),
         features=FEATURES if scene is None else FEATURES | _SHAPES,
     )
+    return replace(model, couplings=tuple(_couplings(path, model)))
+
+
+def _without_world_link(bodies: list[Body]) -> tuple[Body, ...]:
+    """The bodies, with the shapes of the link that stands for the world on the world."""
+    place = next((i for i, body in enumerate(bodies) if body.name == _WORLD_LINK and body.parent == WORLD and not body.joint.dofs), None)
+    if place is None or any(body.parent == place for body in bodies[1:]):
+        return tuple(bodies)
+    shapes = (*bodies[WORLD].shapes, *bodies[place].shapes)
+    rest = [replace(body, parent=body.parent - (body.parent > place)) for body in (*bodies[1:place], *bodies[place + 1 :])]
+    return (replace(bodies[WORLD], shapes=shapes), *rest)
+
+
+# ---- mimic joints ------------------------------------------------------------------------------------------------------------
+
+
+def _couplings(path: Path, model: KinematicModel) -> Iterator[Coupling]:
+    """The <mimic> of single axes, as the file has them: Drake knows them and does not hand them out."""
+    numbers = {dof.name: number for number, dof in enumerate(model.dofs) if dof.name is not None}
+    try:
+        root = ElementTree.parse(path).getroot()
+    except ElementTree.ParseError:
+        return
+    for joint in root.iter("joint"):
+        mimic = joint.find("axis/mimic")
+        follower, leader = numbers.get(joint.get("name", "")), None if mimic is None else numbers.get(mimic.get("joint", ""))
+        if mimic is None or follower is None or leader is None:
+            continue
+        multiplier, offset, reference = (float(mimic.findtext(tag, usual)) for tag, usual in _MIMIC)
+        yield Coupling(follower, offset - multiplier * reference, ((leader, (multiplier,)),), joint.get("name"))
 
 
 def _parent(joint: Any) -> int:
@@ -164,6 +200,8 @@ def _body(plant: Any, scene: Any | None, index: int, joint: Any | None, numbers:
     mass, com = float(inertia.get_mass()), np.array(inertia.get_com())
     tensor = shifted_tensor(-mass, com, np.array(inertia.CalcRotationalInertia().CopyToFullMatrix3()))
     known = not np.allclose(tensor, np.eye(3) * 0.4 * mass * (mass * 0.75e-3 / math.pi) ** (2 / 3), rtol=1e-9, atol=0.0)
+    if mass <= _LEAST and float(np.abs(tensor).max()) <= _LEAST:
+        mass, com, tensor = 0.0, np.zeros(3), np.zeros((3, 3))
     name, shapes = words.name(body), tuple(_shapes(plant, scene, index))
     parent, above = (WORLD, _base(plant, body)) if joint is None else (numbers[_parent(joint)], _joint(joint, words))
     return Body(name, parent, above, mass, com, tensor, shapes, inertia_is_known=known)

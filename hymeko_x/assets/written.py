@@ -1,4 +1,4 @@
-"""Meshes that have no file: each is written as a Wavefront OBJ file beside the URDF file, with its materials in an MTL file."""
+"""Meshes that have no file: each is written as a Wavefront OBJ file beside the robot, with its materials in an MTL file."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def _subset_materials(mechanism: Mechanism, mesh: Mesh, view: ShapeView | None, 
 
 
 def _path_to(image: str) -> str | None:
-    """The path of an image from the folder of the meshes; None where it is not named relative to the URDF file."""
+    """The path of an image from the folder of the meshes; None where it is not named relative to the robot."""
     is_relative = not image.startswith("/") and ":" not in image and "\\" not in image
     return posixpath.relpath(image, FOLDER) if is_relative else None
 

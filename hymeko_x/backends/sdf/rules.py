@@ -1,0 +1,185 @@
+"""The rules that make a mechanism legal in SDF."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from hymeko_x import codes
+from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf import notations
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge, pose_weight
+from hymeko_x.ir.names import free_name, names_in_use, rename
+from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.parts import Body, Dof, DofKind, Frame, Joint, Light, Loop, Mount, Shape
+from hymeko_x.ir.values import ZERO, Pose, compose, quat_about, scaled
+from hymeko_x.rewrite.chains import chain_dofs
+from hymeko_x.rewrite.couplings import make_couplings_scalar
+from hymeko_x.rewrite.inertia import fill_tensors, give_every_body_mass, make_tensors_physical
+from hymeko_x.rewrite.joints import lower_inner_free_joints
+from hymeko_x.rewrite.names import make_names_usable
+from hymeko_x.rewrite.roots import hold_or_free_open_bases, put_world_link_into_world
+from hymeko_x.rewrite.shapes import drop_engine_shapes, prefer_own_colours, split_shared_shapes
+from hymeko_x.rewrite.subsets import part_meshes_by_looks
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.mechanism import JointView, Mechanism, RobotEdge
+    from hymeko_x.rewrite.context import Context, Rule
+
+
+def _is_from_sdf(mechanism: Mechanism) -> bool:
+    return mechanism.notation(ROOT, notations.VERSION) is not None
+
+
+def unless_from_sdf(rule: Rule) -> Rule:
+    """The rule for mechanisms of other formats: what an SDF file has, SDF can represent."""
+
+    def applied(mechanism: Mechanism, context: Context) -> Mechanism:
+        return mechanism if _is_from_sdf(mechanism) else rule(mechanism, context)
+
+    applied.__doc__ = rule.__doc__
+    return applied
+
+
+# ---- joints ------------------------------------------------------------------------------------------------------------------
+
+
+def move_anchors_into_frames(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """The only dof of a joint turns about the origin of the joint's frame: P Tr(a) M(-ref) and C Tr(a) are the frames then."""
+    edges: dict[Id, RobotEdge] = {}
+    for key, view in mechanism.joints.items():
+        dofs = view.joint.dofs
+        if len(dofs) != 1 or dofs[0].kind is DofKind.FREE or not (any(dofs[0].anchor) or dofs[0].ref):
+            continue
+        dof, at = dofs[0], Pose(dofs[0].anchor)
+        parent = compose(compose(view.parent_pose, at), _moved_by(dof, -dof.ref))
+        single = replace(dof, anchor=ZERO, ref=0.0)
+        edges[key] = joint_edge(Joint((single,)), view.parent, view.child, parent, compose(view.child_pose, at))
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+
+
+def _moved_by(dof: Dof, coordinate: float) -> Pose:
+    if dof.kind is DofKind.SLIDE:
+        return Pose(scaled(dof.axis, coordinate))
+    if dof.kind is DofKind.SCREW:
+        return Pose(scaled(dof.axis, coordinate * dof.pitch), quat_about(dof.axis, coordinate))
+    return Pose(ZERO, quat_about(dof.axis, coordinate)) if dof.kind is DofKind.HINGE else Pose()
+
+
+def chain_joints(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A joint with dofs that no SDF joint has becomes a chain of joints with one dof each."""
+    if _is_from_sdf(mechanism):
+        return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if words.default_type(view.joint) is None])
+    return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if not _is_joint(view)])
+
+
+def _is_joint(view: JointView) -> bool:
+    dofs = view.joint.dofs
+    if len(dofs) == 1 and dofs[0].kind is DofKind.FREE:
+        return view.parent == WORLD
+    if any(any(dof.anchor) or dof.ref for dof in dofs):
+        return False
+    if len(dofs) == 2 and any(dof != Dof(dof.kind, dof.axis, damping=dofs[0].damping) for dof in dofs):
+        return False  # Drake has neither limits nor springs of universal joints, and one damping for both axes
+    return words.default_type(view.joint) not in (None, "revolute2")
+
+
+# ---- names -------------------------------------------------------------------------------------------------------------------
+
+
+def make_names_unique_in_models(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Links, frames and joints of a model have different names; ``::`` only stands between a model and what is in it."""
+    taken: set[str] = set()
+    renamed: dict[Id, Id] = {}
+    order = ("body", "joint", "loop", "frame")
+    named = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if key.kind in order]
+    for key in sorted(named, key=lambda key: order.index(key.kind)):
+        if _is_unwritten(key, mechanism):
+            continue
+        wanted = key.name.replace(words.SCOPE, "_")
+        if (wanted.startswith("__") and wanted.endswith("__")) or wanted == words.WORLD_FRAME:
+            wanted = f"{key.kind}_{wanted.strip('_')}"
+        name = free_name(wanted if wanted not in taken else f"{wanted}_{key.kind}", taken.__contains__, "_")
+        taken.add(name)
+        if name != key.name:
+            renamed[key] = Id(key.kind, name)
+            message = f"{key} is written as '{name}': names are unique in a model, and '::', '__' and 'world' have a meaning"
+            context.report.note(codes.RENAMED, message, mechanism.origin(key), element=str(renamed[key]))
+    return rename(mechanism, renamed)
+
+
+def _is_unwritten(key: Id, mechanism: Mechanism) -> bool:
+    """Whether a joint to the world stays without a name in the file."""
+    view = mechanism.joints.get(key)
+    return view is not None and view.parent == WORLD and mechanism.notation(key, UNNAMED) is not None
+
+
+# ---- the world ---------------------------------------------------------------------------------------------------------------
+
+
+def put_world_geometry_on_a_link(mechanism: Mechanism, context: Context) -> Mechanism:
+    """What is on the world goes on a link that is fixed to it: only links have shapes and sensors. Lights stay."""
+    in_world = mechanism.notation(ROOT, notations.WORLD) is not None
+    moved: dict[Id, RobotEdge] = {}
+    for key, edge in mechanism.graph.edges.items():
+        if isinstance(edge.data, Shape | Mount) and any(arc.target == WORLD and arc.sign > 0 for arc in edge.arcs):
+            thing = next((mechanism.graph.vertices.get(arc.target) for arc in edge.arcs if arc.sign < 0), None)
+            if not isinstance(thing, Light) and not ((in_world or _is_from_sdf(mechanism)) and isinstance(thing, Frame)):
+                moved[key] = edge
+    if not moved:
+        return mechanism
+    names = names_in_use(mechanism)
+    link = names.take("body", words.WORLD_LINK)
+    message = f"what is on the world is written on {link}, which is fixed to it"
+    context.report.note(codes.REWRITTEN, message, element=str(link))
+    edges = {key: _on(edge, link) for key, edge in moved.items()}
+    edges[names.take("joint", f"{link.name}_to_world")] = joint_edge(Joint(), WORLD, link)
+    return mechanism.with_graph(mechanism.graph.replace(vertices={link: Body()}, edges=edges))
+
+
+def _on(edge: RobotEdge, link: Id) -> RobotEdge:
+    return replace(edge, arcs=tuple([replace(arc, target=link) if arc.target == WORLD and arc.sign > 0 else arc for arc in edge.arcs]))
+
+
+def close_loops_by_joints(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A closure joins two bodies, of which the second one is not the world; frames stand for the bodies that they are on."""
+    places = {view.thing: (view.body, view.pose) for views in mechanism.mounts.values() for view in views}
+    edges: dict[Id, RobotEdge] = {}
+    gone = []
+    for key, loop, arcs in mechanism.edges(Loop):
+        if len(arcs) != 2 or loop.kind not in ("connect", "weld", "joint") or words.default_type(Joint(loop.dofs)) is None:
+            context.report.warn(codes.NOT_SAID, f"{key} is no joint of SDF; it is left out", mechanism.origin(key), element=str(key))
+            gone.append(key)
+            continue
+        ends = []
+        for arc in arcs:
+            body, on = places.get(arc.target, (arc.target, Pose()))
+            ends.append(replace(arc, target=body, weight=compose(on, pose_weight(arc))) if body != arc.target else arc)
+        if ends[1].target == WORLD:
+            ends.reverse()
+        if tuple(ends) != arcs:
+            edges[key] = replace(mechanism.graph.edges[key], arcs=tuple(ends))
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=gone)) if edges or gone else mechanism
+
+
+RULES: tuple[Rule, ...] = (
+    make_names_usable,
+    unless_from_sdf(drop_engine_shapes),
+    unless_from_sdf(put_world_link_into_world),
+    unless_from_sdf(fill_tensors),
+    unless_from_sdf(make_tensors_physical),
+    unless_from_sdf(lower_inner_free_joints),
+    move_anchors_into_frames,
+    chain_joints,
+    unless_from_sdf(close_loops_by_joints),
+    make_couplings_scalar,
+    hold_or_free_open_bases,
+    put_world_geometry_on_a_link,
+    unless_from_sdf(give_every_body_mass),
+    prefer_own_colours,
+    split_shared_shapes,
+    part_meshes_by_looks,
+    unless_from_sdf(make_names_unique_in_models),
+    make_names_usable,  # once more, for what the rules have added
+)

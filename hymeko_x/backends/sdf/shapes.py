@@ -1,0 +1,120 @@
+"""<visual> and <collision>: geometry, appearance and friction."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf import materials
+from hymeko_x.formats.sdf.values import COLOUR, NUMBER, PAIR, TEXT, VECTOR, BadText, Field
+from hymeko_x.ir.names import free_name
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Material, Mesh, MeshShape, NoShape, Plane, Role, Sphere
+from hymeko_x.ir.values import Pose, compose, inverse, quat_from_z, unit
+from hymeko_x.xml.printing import Tag
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.backends.sdf.sheet import SdfSheet
+    from hymeko_x.ir.mechanism import ShapeView
+
+_MISSING = object()
+"""No value equals it: what has no default is always written."""
+
+
+def shape_tag(view: ShapeView, name: str, number: int, scope: str, names: set[tuple[str, str]], sheet: SdfSheet) -> Tag:
+    """The n-th <visual> or <collision> of a link; ``names`` are those that the link has already."""
+    wanted = words.shape_name(name, number) if view.shape.name is None else view.shape.name
+    own = wanted if sheet.from_sdf else free_name(wanted or name, lambda text: (name, text) in names, "_")
+    names.add((name, own))
+    tag = Tag(name, {"name": own})
+    texts = sheet.written(view.id)
+    pose, normal = _pose_of(view, texts)
+    sheet.add_pose(tag, view.id, scope, view.body, pose=pose)
+    if not isinstance(view.shape.geometry, NoShape):
+        _add_geometry(tag.add("geometry"), view, normal, texts, sheet)
+    if view.shape.role is Role.VISUAL:
+        _add_material(tag, view, texts, sheet)
+    elif view.shape.friction:
+        sheet.put(tag, Field("surface/friction/ode/mu", "friction", NUMBER), view.shape.friction[0], texts)
+    if view.shape.density is not None and "density" in texts:
+        sheet.put(tag, Field("density", "density", NUMBER), view.shape.density, texts)
+    sheet.put_back(tag, view.id)
+    return tag
+
+
+def _pose_of(view: ShapeView, texts: Mapping[str, str]) -> tuple[Pose, str | None]:
+    """The shape's pose; that of a plane is followed by the turn to the normal that its author gave."""
+    text = texts.get("geometry/plane/normal")
+    if not isinstance(view.shape.geometry, Plane) or text is None:
+        return view.pose, None
+    try:
+        turn = Pose(quat=quat_from_z(unit(VECTOR.read(text))))
+    except (BadText, ZeroDivisionError):
+        return view.pose, None
+    return compose(view.pose, inverse(turn)), text
+
+
+def _add_geometry(tag: Tag, view: ShapeView, normal: str | None, texts: Mapping[str, str], sheet: SdfSheet) -> None:
+    values: list[tuple[str, object, object]] = []
+    match view.shape.geometry:
+        case Box(size):
+            values = [("box/size", size, VECTOR)]
+        case Sphere(radius):
+            values = [("sphere/radius", radius, NUMBER)]
+        case Cylinder(radius, length):
+            values = [("cylinder/radius", radius, NUMBER), ("cylinder/length", length, NUMBER)]
+        case Capsule(radius, length):
+            values = [("capsule/radius", radius, NUMBER), ("capsule/length", length, NUMBER)]
+        case Ellipsoid(radii):
+            values = [("ellipsoid/radii", radii, VECTOR)]
+        case Plane((x, y)):
+            _add_plane(tag.add("plane"), (2.0 * x, 2.0 * y), normal, texts, sheet)
+        case MeshShape():
+            _add_mesh(tag.add("mesh"), view, texts, sheet)
+        case _:
+            return  # what SDF alone has is an extra
+    for path, value, codec in values:
+        sheet.put(tag, Field(path, "", codec, _MISSING), value, texts, "geometry/")  # type: ignore[arg-type]
+
+
+def _add_plane(tag: Tag, size: tuple[float, float], normal: str | None, texts: Mapping[str, str], sheet: SdfSheet) -> None:
+    """The size is only that of what is drawn; one of zero stands for none."""
+    if normal is not None:
+        tag.add("normal").children.append(normal)
+    shown = (size[0] or 1.0, size[1] or 1.0)
+    sheet.put(tag, Field("size", "size", PAIR, (1.0, 1.0) if sheet.from_sdf else _MISSING), shown, texts, "geometry/plane/")
+
+
+def _add_mesh(tag: Tag, view: ShapeView, texts: Mapping[str, str], sheet: SdfSheet) -> None:
+    if view.mesh is None:
+        return
+    mesh = sheet.mechanism.vertex(view.mesh, Mesh)
+    uri = sheet.mesh_files.get(view.mesh, mesh.uri)
+    if uri is not None:
+        sheet.put(tag, Field("uri", "uri", TEXT), uri, {})
+    sheet.put(tag, Field("scale", "scale", VECTOR, (1.0, 1.0, 1.0)), mesh.scale, texts, "geometry/mesh/")
+
+
+# ---- appearance --------------------------------------------------------------------------------------------------------------
+
+
+def _add_material(visual: Tag, view: ShapeView, texts: Mapping[str, str], sheet: SdfSheet) -> None:
+    part = sheet.mechanism.graph.vertices.get(view.material) if view.material is not None else None
+    material = part if isinstance(part, Material) else None
+    rgba = view.shape.rgba or (material.rgba if material is not None else None)
+    if rgba is not None:
+        tag = visual.child("material")
+        if not sheet.from_sdf:
+            tag.add("ambient").children.append(COLOUR.write(rgba))
+        sheet.put(tag, Field("diffuse", "rgba", COLOUR), rgba, texts, "material/")
+    images = sheet.textures.get(view.material, {}) if view.material is not None else {}
+    numbers = [] if material is None else [(tag, getattr(material, name)) for tag, name in materials.NUMBERS.items()]
+    if not images and not any(value is not None for _, value in numbers):
+        return
+    metal = visual.child("material").child("pbr").child("metal")
+    for name, use in materials.MAPS.items():
+        if use in images:
+            metal.add(name).children.append(images[use])
+    for name, value in numbers:
+        sheet.put(metal, Field(name, name, NUMBER), value, texts, "material/pbr/metal/")
