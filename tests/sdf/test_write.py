@@ -43,7 +43,7 @@ def test_what_is_carried_brings_the_robot_back(arm: Path) -> None:
 def test_drake_sees_the_same_robot(arm: Path) -> None:
     pytest.importorskip("pydrake")
     hx.convert(str(arm / "arm.urdf"), str(arm / "arm.sdf"))
-    assert hx.verify(str(arm / "arm.urdf"), str(arm / "arm.sdf"), samples=10).verdict == "same"
+    assert hx.verify(str(arm / "arm.urdf"), str(arm / "arm.sdf"), samples=10).is_same
 
 
 MUJOCO = """<mujoco model="scene"><worldbody><light name="sun" pos="0 0 3"/><geom name="floor" type="plane" size="5 5 .1"/>
@@ -60,7 +60,7 @@ def test_a_scene_with_lights_becomes_a_world(tmp_path: Path) -> None:
     assert '<light name="sun" type="spot">' in text
     assert hx.load(str(tmp_path / "scene.sdf")) == hx.load(str(tmp_path / "scene.xml"))
     pytest.importorskip("pydrake")
-    assert hx.verify(str(tmp_path / "scene.xml"), str(tmp_path / "scene.sdf"), samples=10).verdict == "same"
+    assert hx.verify(str(tmp_path / "scene.xml"), str(tmp_path / "scene.sdf"), samples=10).is_same
 
 
 def test_a_model_goes_to_other_formats_and_back(tmp_path: Path) -> None:
@@ -76,4 +76,4 @@ def test_a_model_goes_to_other_formats_and_back(tmp_path: Path) -> None:
         hx.convert(str(file), str(tmp_path / name))
         assert hx.load(str(tmp_path / name)) == hx.load(str(file)), name
         verdict = hx.verify(str(file), str(tmp_path / name), samples=10)
-        assert verdict.verdict.startswith("same"), f"{name}: {[check for check in verdict.checks if not check.passed]}"
+        assert verdict.is_same, f"{name}: {[check for check in verdict.checks if not check.passed]}"
