@@ -328,6 +328,14 @@ SIMULATION_FAILED = Code(
     "HX409", "the simulation stopped", "The solver could not go on: the solution grows without bounds, or the equations have no solution there."
 )
 
+# ---- HX5xx: pictures -------------------------------------------------------------------------------------------------
+NOTHING_TO_DRAW = Code("HX501", "nothing of a robot is visible", "The robot has no shapes, or none of the kind that is drawn; their meshes may be missing.")
+CANNOT_DRAW = Code(
+    "HX502",
+    "this machine cannot draw",
+    "Pictures are drawn by MuJoCo through OpenGL: on a screen, or without one through EGL or OSMesa, whose libraries the system provides. MUJOCO_GL chooses the way.",
+)
+
 # ---- HX9xx: our bugs -------------------------------------------------------------------------------------------------
 BUG = Code(
     "HX901", "this is a bug in hymeko-x", "Something happened that should be impossible. Please report it with the input and the message."

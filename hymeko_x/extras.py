@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Refusal
 
-OF_ROOMS: Mapping[str, str] = MappingProxyType({"verify": "verify", "corpus": "corpus", "dynamics": "dynamics", "testing": "testing"})
+OF_ROOMS: Mapping[str, str] = MappingProxyType({room: room for room in ("corpus", "draw", "dynamics", "testing", "verify")})
 """Rooms all of whose libraries come with one extra."""
 OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
     {
@@ -23,6 +23,7 @@ OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
         **{library: extra for row in formats.FORMATS for library, extra in row.libraries.items()},
         **dict.fromkeys(("casadi", "sympy"), "dynamics"),
         "hypothesis": "testing",
+        "imageio_ffmpeg": "draw",
         "ray": "ray",
     }
 )

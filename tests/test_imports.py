@@ -26,6 +26,7 @@ LAYERS = (
     ("pipeline", "disk", "verify", "validation", "corpus", "dynamics"),
     ("delivery", "edits", "robot"),
     ("api",),
+    ("draw",),
     ("cli", "testing"),
     ("__main__",),
 )
@@ -45,7 +46,7 @@ BESIDE = {
 
 HOMES = {
     "pxr": ("frontends/usd", "backends/usd", "verify/"),
-    "mujoco": ("frontends/mjcf", "verify/"),
+    "mujoco": ("frontends/mjcf", "verify/", "draw/"),
     "pinocchio": ("verify/",),
     "trimesh": ("meshes/", "verify/"),
     "collada": ("meshes/",),

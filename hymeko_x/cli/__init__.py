@@ -22,6 +22,7 @@ VERBS = {
     "diff": ("hymeko_x.cli.compare", "what differs between two robots, element by element"),
     "verify": ("hymeko_x.cli.compare", "whether two files are the same robot, by the formats' own engines"),
     "roundtrip": ("hymeko_x.cli.compare", "through other formats and back, every leg verified"),
+    "render": ("hymeko_x.cli.render", "draw a robot, or a film of its joints, without a screen"),
     "check": ("hymeko_x.cli.info", "is a robot complete and sane? for people and for repair loops"),
     "dh": ("hymeko_x.cli.dh", "Denavit-Hartenberg tables: standard, modified, Hayati-Roberts"),
     "dynamics": ("hymeko_x.cli.dynamics", "the equations of motion: state space, transfer functions, energies"),

@@ -1,0 +1,296 @@
+"""Pictures of a robot, drawn by MuJoCo without a screen: light, ground, and a camera that fits."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
+
+from hymeko_x import api, codes, formats
+from hymeko_x.diagnostics import Origin, refuse
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    import mujoco
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from hymeko_x.draw.camera import Corners
+    from hymeko_x.ir.mechanism import Mechanism
+
+    Picture = NDArray[np.uint8]
+    """Rows, columns and three colours from 0 to 255."""
+
+_VISUAL = frozenset({0, 1, 2})
+_COLLISION = frozenset({3, 4, 5})
+_FRAMES_PER_JOINT = 24
+_FIELD_OF_VIEW = 35.0
+"""The vertical angle of the camera in degrees: long enough that an arm does not look bent."""
+
+
+class Look(Struct, frozen=True):
+    """How a picture is made. ``size`` is width and height in pixels; ``pose`` the name of a keyframe, or a JSON file of joint positions."""
+
+    size: tuple[int, int] = (960, 720)
+    view: str = "iso"
+    pose: str | None = None
+    collision: bool = False
+    frames: bool = False
+    inertia: bool = False
+
+
+class Studio:
+    """A robot that MuJoCo has compiled, in a scene with light and ground.
+
+    Raises: Refusal HX302 when MuJoCo refuses the robot, HX501 when nothing is visible, HX502 when this machine cannot draw.
+    """
+
+    def __init__(self, spec: Any, name: str, look: Look) -> None:
+        import mujoco
+
+        self._name = name
+        self._look = look
+        self.model = _compiled(spec, name)
+        self.data = mujoco.MjData(self.model)
+        self._place(look.pose)
+        groups = _groups(self.model, collision=look.collision)
+        corners = self._corners(groups)
+        self.model = _compiled(_with_scene(spec, self.model, corners, look.size), name)
+        placed, self.data = self.data, mujoco.MjData(self.model)
+        self.data.qpos[:] = placed.qpos
+        mujoco.mj_forward(self.model, self.data)
+        self._options = _options(look, groups)
+        self._groups = groups
+
+    def still(self) -> Picture:
+        """One picture of the robot in its pose."""
+        import mujoco
+
+        return next(self._drawn([self.data.qpos.copy()], self._corners(self._groups), mujoco))
+
+    def sweep(self) -> Iterator[Picture]:
+        """Pictures in which each joint in turn goes through its limits and back; joints without limits go half a turn or 0.1 m."""
+        import mujoco
+
+        rest = self.data.qpos.copy()
+        positions = [*_swept(self.model, rest)]
+        datas = []
+        for qpos in positions[:: max(1, _FRAMES_PER_JOINT // 4)] or [rest]:
+            data = mujoco.MjData(self.model)
+            data.qpos[:] = qpos
+            mujoco.mj_forward(self.model, data)
+            datas.append(data)
+        from hymeko_x.draw.camera import corners_of
+
+        yield from self._drawn(positions or [rest], corners_of(self.model, datas, self._groups), mujoco)
+
+    def _drawn(self, positions: list[NDArray[np.float64]], corners: Corners, mujoco: Any) -> Iterator[Picture]:
+        from hymeko_x.draw.camera import fitted_camera
+
+        width, height = self._look.size
+        camera = fitted_camera(corners, self._look.view, width / height, _FIELD_OF_VIEW)
+        renderer = _renderer(self.model, width, height)
+        try:
+            for qpos in positions:
+                self.data.qpos[:] = qpos
+                mujoco.mj_forward(self.model, self.data)
+                renderer.update_scene(self.data, camera, self._options)
+                yield renderer.render()
+        finally:
+            renderer.close()
+
+    def _corners(self, groups: frozenset[int]) -> Corners:
+        from hymeko_x.draw.camera import corners_of
+
+        return corners_of(self.model, [self.data], groups)
+
+    def _place(self, pose: str | None) -> None:
+        """Put the robot into a keyframe, into the positions of a file, or into its home keyframe if it has one."""
+        import mujoco
+
+        keys = {self.model.key(number).name: number for number in range(self.model.nkey)}
+        wanted = pose or ("home" if "home" in keys else None)
+        if wanted is not None and wanted in keys:
+            mujoco.mj_resetDataKeyframe(self.model, self.data, keys[wanted])
+        elif wanted is not None and wanted.endswith(".json"):
+            self._take_positions(_positions(Path(wanted)), wanted)
+        elif wanted is not None and wanted != "home":
+            known = ", ".join(sorted(name for name in keys if name)) or "none"
+            raise refuse(codes.UNDEFINED_REFERENCE, f"{self._name} has no pose '{wanted}'", hint=f"keyframes: {known}; or a file NAME.json")
+        mujoco.mj_forward(self.model, self.data)
+
+    def _take_positions(self, positions: Mapping[str, float], file: str) -> None:
+        import mujoco
+
+        for name, value in positions.items():
+            joint = mujoco.mj_name2id(self.model, mujoco.mjtObj.mjOBJ_JOINT, name)
+            if joint < 0:
+                raise refuse(codes.UNDEFINED_REFERENCE, f"{self._name} has no joint '{name}'", Origin(file))
+            self.data.qpos[self.model.jnt_qposadr[joint]] = value
+
+
+def open_studio(robot: Mechanism, path: str | None, look: Look) -> Studio:
+    """The scene of a robot. ``path`` is its file where MuJoCo reads that format itself; other formats go through our own writer.
+
+    Raises: Refusal as :class:`Studio`.
+    """
+    choose_backend()
+    import mujoco
+
+    if path is not None:
+        try:
+            return Studio(mujoco.MjSpec.from_file(path), path, look)
+        except ValueError as error:
+            raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(path)) from error
+    row = next(row for row in formats.FORMATS if row.is_drawn)
+    with TemporaryDirectory(prefix="hymeko-x-") as folder:
+        file = Path(folder) / f"robot{row.suffixes[0]}"
+        api.dump(robot, file, row.name)
+        return Studio(mujoco.MjSpec.from_file(str(file)), robot.name, look)
+
+
+def _compiled(spec: Any, name: str) -> mujoco.MjModel:
+    import mujoco
+
+    try:
+        return spec.compile()
+    except (ValueError, mujoco.FatalError) as error:
+        raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(name)) from error
+
+
+def _first_line(error: Exception) -> str:
+    return str(error).strip().partition("\n")[0]
+
+
+def _positions(path: Path) -> Mapping[str, float]:
+    """Joint positions (rad or m) by name. Raises: Refusal when the file is no JSON object of numbers."""
+    try:
+        found = json.loads(path.read_text("utf-8"))
+    except (OSError, ValueError) as error:
+        raise refuse(codes.CANNOT_READ, f"cannot be read: {error}", Origin(str(path))) from error
+    if not isinstance(found, dict) or not all(isinstance(value, int | float) for value in found.values()):
+        raise refuse(codes.BAD_VALUE, "expected one JSON object: joint names with their positions in rad or m", Origin(str(path)))
+    return found
+
+
+# ---- the scene ---------------------------------------------------------------------------------------------------------------
+
+
+def _groups(model: mujoco.MjModel, *, collision: bool) -> frozenset[int]:
+    """The groups of geoms to draw: the visual ones, or those for collision where they are asked for or there are no others."""
+    if collision:
+        return _COLLISION if any(group in _COLLISION for group in model.geom_group) else _VISUAL
+    moving = [model.geom_group[geom] for geom in range(model.ngeom) if model.geom_bodyid[geom] != 0]
+    return _VISUAL if any(group in _VISUAL for group in (moving or model.geom_group)) else _VISUAL | _COLLISION
+
+
+def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, size: tuple[int, int]) -> Any:
+    """The robot with a sky, with one light, and with ground under it if it has none."""
+    import mujoco
+
+    spec.visual.global_.offwidth, spec.visual.global_.offheight = size
+    spec.visual.global_.fovy = _FIELD_OF_VIEW
+    spec.visual.headlight.ambient = [0.35] * 3
+    spec.visual.headlight.diffuse = [0.45] * 3
+    spec.visual.quality.shadowsize = 2048
+    spec.visual.map.znear = 0.01
+    if not any(texture.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX for texture in spec.textures):
+        gradient = mujoco.mjtBuiltin.mjBUILTIN_GRADIENT
+        colours = {"rgb1": [0.93, 0.95, 0.98], "rgb2": [0.66, 0.72, 0.8]}
+        spec.add_texture(name="hymeko-x sky", type=mujoco.mjtTexture.mjTEXTURE_SKYBOX, builtin=gradient, width=256, height=1536, **colours)
+    for light in spec.lights:
+        spec.delete(light)  # so that a robot has the same picture in every format
+    centre = (corners.points.min(axis=0) + corners.points.max(axis=0)) / 2.0
+    beam = (0.35, 0.3, -1.0)
+    light = spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_SPOT, castshadow=True, cutoff=75.0, exponent=0.0)
+    light.pos, light.dir = [at - 2.0 * corners.size * along for at, along in zip(centre, beam, strict=True)], beam
+    light.diffuse, light.specular = [0.6] * 3, [0.2] * 3
+    if not any(kind == mujoco.mjtGeom.mjGEOM_PLANE for kind in model.geom_type):
+        _add_ground(spec, corners)
+    return spec
+
+
+def _add_ground(spec: Any, corners: Corners) -> None:
+    """A chequered plane just below the robot, with squares of a round size that suits it."""
+    import mujoco
+
+    square = 10.0 ** round(math.log10(corners.size / 5.0))
+    spec.add_texture(
+        name="hymeko-x ground",
+        type=mujoco.mjtTexture.mjTEXTURE_2D,
+        builtin=mujoco.mjtBuiltin.mjBUILTIN_CHECKER,
+        width=256,
+        height=256,
+        rgb1=[0.86, 0.88, 0.9],
+        rgb2=[0.8, 0.83, 0.86],
+    )
+    material = spec.add_material(name="hymeko-x ground", texuniform=True, texrepeat=[1.0 / (2.0 * square)] * 2, reflectance=0.0)
+    material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "hymeko-x ground"
+    centre = corners.points.mean(axis=0)
+    spec.worldbody.add_geom(
+        name="hymeko-x ground",
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        size=[0.0, 0.0, square],
+        pos=[centre[0], centre[1], corners.lowest - 1e-4 * corners.size],
+        material="hymeko-x ground",
+        contype=0,
+        conaffinity=0,
+    )
+
+
+def _options(look: Look, groups: frozenset[int]) -> mujoco.MjvOption:
+    import mujoco
+
+    options = mujoco.MjvOption()
+    options.geomgroup[:] = [group in groups or group == 0 for group in range(mujoco.mjNGROUP)]
+    options.sitegroup[:] = 0
+    options.flags[mujoco.mjtVisFlag.mjVIS_INERTIA] = look.inertia
+    options.flags[mujoco.mjtVisFlag.mjVIS_TRANSPARENT] = look.frames or look.inertia
+    if look.frames:
+        options.frame = mujoco.mjtFrame.mjFRAME_BODY
+    return options
+
+
+def _swept(model: mujoco.MjModel, rest: NDArray[np.float64]) -> Iterator[NDArray[np.float64]]:
+    """Configurations in which one joint after the other leaves its place, goes to both limits and comes back."""
+    import mujoco
+    import numpy as np
+
+    wave = np.sin(np.linspace(0.0, 2.0 * np.pi, _FRAMES_PER_JOINT, endpoint=False))
+    for joint in range(model.njnt):
+        kind = mujoco.mjtJoint(model.jnt_type[joint])
+        if kind not in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE):
+            continue
+        address = model.jnt_qposadr[joint]
+        reach = np.pi if kind == mujoco.mjtJoint.mjJNT_HINGE else 0.1
+        lower, upper = model.jnt_range[joint] if model.jnt_limited[joint] else (rest[address] - reach, rest[address] + reach)
+        for height in wave:
+            qpos = rest.copy()
+            qpos[address] += height * ((upper - rest[address]) if height > 0 else (rest[address] - lower))
+            yield qpos
+
+
+# ---- the machine -------------------------------------------------------------------------------------------------------------
+
+
+def choose_backend() -> None:
+    """Draw through EGL where there is no screen and the environment does not name another way. MuJoCo decides when it is imported."""
+    if "DISPLAY" not in os.environ and os.name == "posix":
+        os.environ.setdefault("MUJOCO_GL", "egl")
+
+
+def _renderer(model: mujoco.MjModel, width: int, height: int) -> mujoco.Renderer:
+    import mujoco
+
+    try:
+        return mujoco.Renderer(model, height, width)
+    except (AttributeError, ImportError, RuntimeError, mujoco.FatalError) as error:
+        way = os.environ.get("MUJOCO_GL", "the screen")
+        hint = "install EGL (Debian: libegl1 libgl1-mesa-dri), or OSMesa (libosmesa6) and set MUJOCO_GL=osmesa"
+        raise refuse(codes.CANNOT_DRAW, f"MuJoCo cannot draw through {way} on this machine: {_first_line(error)}", hint=hint) from error
