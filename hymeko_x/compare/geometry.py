@@ -45,21 +45,25 @@ def without_points(mechanism: Mechanism, others: Mechanism) -> Mechanism:
 
 def with_points_of_files(mechanism: Mechanism, fetch: Fetch) -> Mechanism:
     """The restored mechanism with the points of meshes that hold them themselves, from the files that stood for them."""
+    waiting = {
+        key: (mesh, stored.mesh.uri)
+        for key, stored in mechanism.stored.items()
+        if isinstance(stored, StoredMesh) and stored.mesh.uri is not None
+        for mesh in [mechanism.graph.vertices.get(key)]
+        if isinstance(mesh, Mesh) and mesh.uri is None and not mesh.vertices
+    }
+    if not waiting:
+        return mechanism
     from hymeko_x.meshes.submesh import Unreadable, listed
     from hymeko_x.meshes.tables import read_mesh
 
     changed: dict[Id, Mesh] = {}
-    for key, mesh in mechanism.vertices(Mesh):
-        stored = mechanism.stored.get(key)
-        if mesh.uri is not None or mesh.vertices or stored is None or not isinstance(stored, StoredMesh) or stored.mesh.uri is None:
-            continue
-        changed[key] = replace(mesh, uri=stored.mesh.uri)
+    for key, (mesh, uri) in waiting.items():
+        changed[key] = replace(mesh, uri=uri)
         with suppress(Unreadable):
-            part = read_mesh(fetch(stored.mesh.uri) or b"", suffix_of(stored.mesh.uri))
+            part = read_mesh(fetch(uri) or b"", suffix_of(uri))
             if part is not None:
                 changed[key] = replace(listed(part), scale=mesh.scale, name=mesh.name)
-    if not changed:
-        return mechanism
     others = {key: found for key, found in mechanism.stored.items() if key not in changed}
     return replace(mechanism.with_graph(mechanism.graph.replace(vertices=changed)), stored=others)
 
