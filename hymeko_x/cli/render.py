@@ -58,13 +58,13 @@ def run_render(chosen: argparse.Namespace) -> int:
 
 
 def _studio(path: str, chosen: argparse.Namespace) -> Studio:
-    from hymeko_x.draw.render import Look, open_studio
+    from hymeko_x.draw.render import Look, is_drawn, open_studio
 
     report = Report()
     given = read_input(path, chosen, report)
     show(report)
     look = Look(chosen.size, chosen.view, chosen.pose, chosen.collision, chosen.frames, chosen.inertia)
-    return open_studio(given.mechanism, path if given.format.is_drawn and path != "-" else None, look)
+    return open_studio(given.mechanism, path if is_drawn(given.format) and path != "-" else None, look)
 
 
 def _size(text: str) -> tuple[int, int]:

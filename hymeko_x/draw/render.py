@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from hymeko_x.draw.camera import Corners
+    from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
 
     Picture = NDArray[np.uint8]
@@ -135,6 +136,11 @@ class Studio:
             self.data.qpos[self.model.jnt_qposadr[joint]] = value
 
 
+def is_drawn(format: Format) -> bool:
+    """Whether MuJoCo, which draws, reads the format itself; robots in other formats are written in such a one first."""
+    return "mujoco" in format.memory
+
+
 def open_studio(robot: Mechanism, path: str | None, look: Look) -> Studio:
     """The scene of a robot. ``path`` is its file where MuJoCo reads that format itself; other formats go through our own writer.
 
@@ -148,7 +154,7 @@ def open_studio(robot: Mechanism, path: str | None, look: Look) -> Studio:
             return Studio(mujoco.MjSpec.from_file(path), path, look)
         except ValueError as error:
             raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(path)) from error
-    row = next(row for row in formats.FORMATS if row.is_drawn)
+    row = next(row for row in formats.FORMATS if is_drawn(row))
     with TemporaryDirectory(prefix="hymeko-x-") as folder:
         file = Path(folder) / f"robot{row.suffixes[0]}"
         api.dump(robot, file, row.name)
