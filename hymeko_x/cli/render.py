@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import disk
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.inputs import input_arguments, read_input
+from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.terminal import show
 from hymeko_x.diagnostics import Report
 
@@ -34,6 +34,7 @@ def render_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--inertia", action="store_true", help="the inertias of the bodies too, as boxes")
     parser.add_argument("--animate", action="store_true", help="a film in which each joint goes through its limits")
     input_arguments(parser)
+    lenient_argument(parser)
 
 
 def run_render(chosen: argparse.Namespace) -> int:
