@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import argparse
 
     from hymeko_x.dynamics.lumped import Lumped
+    from hymeko_x.dynamics.multibody import Multibody
     from hymeko_x.dynamics.signals import Signal
 
 _FORMS = ("state-space", "second-order", "port-hamiltonian", "transfer-function")
@@ -25,6 +26,9 @@ def dynamics_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `dynamics`."""
     parser.add_argument("input", metavar="FILE", help="a robot or a lumped network in any format; - is standard input")
     parser.add_argument("--form", choices=_FORMS, default=_FORMS[0], help="the form of the equations (default state-space)")
+    where = "operating point of a mechanism: a named configuration, joint=value,..., or found (default: every joint at its reference)"
+    parser.add_argument("--at", default="", metavar="WHERE", help=where)
+    _base_argument(parser)
     parser.add_argument("--symbolic", action="store_true", help="formulas in the parameters instead of numbers")
     parser.add_argument("--style", choices=_STYLES, default="text", help="how to print them (default text)")
     parser.add_argument("--json", action="store_const", dest="style", const="json", help="the same as --style json")
@@ -35,22 +39,28 @@ def dynamics_arguments(parser: argparse.ArgumentParser) -> None:
 def run_dynamics(chosen: argparse.Namespace) -> int:
     """Print the equations of motion."""
     from hymeko_x.dynamics.linear import report_unstable
+    from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.pages import page_of, printed
 
     report = Report()
     found = _dynamics(chosen, report)
-    text = printed(page_of(found, chosen.form, symbolic=chosen.symbolic), chosen.style)
-    report_unstable(found.state_space(), report)
+    text = printed(page_of(found, chosen.form, symbolic=chosen.symbolic, at=chosen.at), chosen.style)
+    if not chosen.symbolic:
+        report_unstable(found.state_space() if isinstance(found, Lumped) else found.state_space(chosen.at), report)
     show(report)
     print(text, end="")
     return exits.DONE
 
 
-def _dynamics(chosen: argparse.Namespace, report: Report) -> Lumped:
+def _base_argument(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the file leaves open (default fixed)")
+
+
+def _dynamics(chosen: argparse.Namespace, report: Report) -> Lumped | Multibody:
     import hymeko_x as hx
 
     given = read_input(chosen.input, chosen, report)
-    return hx.dynamics(given.mechanism)
+    return hx.dynamics(given.mechanism, base=chosen.base, files=given.source.files, report=report)
 
 
 # ---- simulate ------------------------------------------------------------------------------------------------------------
@@ -59,6 +69,7 @@ def _dynamics(chosen: argparse.Namespace, report: Report) -> Lumped:
 def simulate_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `simulate`."""
     parser.add_argument("input", metavar="FILE", help="a robot or a lumped network in any format; - is standard input")
+    _base_argument(parser)
     parser.add_argument("--time", type=float, default=2.0, metavar="S", help="how long, in s (default 2)")
     parser.add_argument("--step", type=float, metavar="S", help="time between rows in s (default a thousandth of --time)")
     what = "a signal for an input, instead of the file's: pulse,period=2,duty=0.05 or table.csv:COLUMN (repeatable)"
@@ -86,7 +97,7 @@ def run_simulate(chosen: argparse.Namespace) -> int:
     else:
         write_table(response, chosen.output)
     if chosen.figure is not None:
-        draw(response, found.network.name, chosen.figure)
+        draw(response, found.system.name, chosen.figure)
     return exits.DONE
 
 

@@ -4,35 +4,67 @@ import hymeko_x as hx
 
 car = hx.dynamics(hx.load("quarter_vehicle_model.hymeko"))
 print(car.state_space().A)
+arm = hx.dynamics(hx.load("arm.urdf"))
+print(arm.mass_matrix(q))
 """
 
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
     from hymeko_x.dynamics.lumped import Lumped
+    from hymeko_x.dynamics.multibody import Multibody
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.source import Files
 
 
-def dynamics(robot: Mechanism) -> Lumped:
-    """The equations of motion of a lumped network.
+def dynamics(
+    robot: Mechanism,
+    *,
+    base: str | None = None,
+    gravity: tuple[float, float, float] = (0.0, 0.0, -9.81),
+    files: Files | None = None,
+    report: Report | None = None,
+) -> Lumped | Multibody:
+    """The equations of motion of a lumped network, or of a mechanism with joints.
+
+    ``base`` is what becomes of a base without a joint (fixed, free), ``gravity`` in m/s^2 in the world; inertias that only the
+    engine of the robot's format computes are computed with the meshes among ``files`` (those beside the robot's file by default).
 
     Raises: Refusal (HX4xx) that names the element for which there are none.
     """
     from hymeko_x.dynamics.lumped import Lumped
-    from hymeko_x.dynamics.network import network_of
+    from hymeko_x.dynamics.multibody import multibody_of
+    from hymeko_x.dynamics.network import has_network, network_of
 
-    return Lumped(network_of(robot))
+    if has_network(robot):
+        return Lumped(network_of(robot))
+    return multibody_of(_with_inertias(robot, files, report), base=base, gravity=gravity)
+
+
+def _with_inertias(robot: Mechanism, files: Files | None, report: Report | None) -> Mechanism:
+    """The robot with inertias that its format computes from shapes."""
+    from hymeko_x import pipeline
+    from hymeko_x.assets.resolve import DiskFiles
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.rewrite.context import Context, Options
+    from hymeko_x.rewrite.inertia import fill_tensors
+
+    told = Report() if report is None else report
+    beside = DiskFiles(Path(robot.source.file).parent, {}, (), None) if files is None else files
+    return fill_tensors(pipeline.fully_completed(robot, beside, told), Context(Options(), told))
 
 
 class _Callable(ModuleType):
     """This module, which is called like its function: ``hx.dynamics(robot)``."""
 
-    def __call__(self, robot: Mechanism) -> Lumped:
-        return dynamics(robot)
+    def __call__(self, robot: Mechanism, **options: Any) -> Lumped | Multibody:
+        return dynamics(robot, **options)
 
 
 sys.modules[__name__].__class__ = _Callable

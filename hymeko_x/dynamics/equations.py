@@ -62,7 +62,7 @@ class Moment(Struct, frozen=True, dict=True):
             found[key] = Motion(add(mean.position, self.numbers.exact(offset)), mean.velocity)
         for key in network.moved:
             if (key, "velocity") not in inputs:
-                found[key] = Motion(0.0, 0.0)
+                found[key] = Motion(0, 0)
             elif (key, "position") in states:
                 found[key] = Motion(self.state(key, "position"), self.input(key, "velocity"))
             else:
@@ -81,7 +81,7 @@ class Moment(Struct, frozen=True, dict=True):
     def effort(self, branch: Branch) -> Number:
         """The force or torque that the elements of an edge exert against its deflection."""
         along = self.deflection(branch)
-        total: Number = 0.0
+        total: Number = 0
         for element in branch.elements:
             total = add(total, times(self.numbers.exact(element.count), self._force(branch, element, along)))
         return total
@@ -125,17 +125,17 @@ class Moment(Struct, frozen=True, dict=True):
         for branch in network.branches:
             against = self.effort(branch)
             for key, ratio in branch.ends:
-                on[key] = add(on.get(key, 0.0), -1 * times(self.numbers.exact(ratio), against))
+                on[key] = add(on.get(key, 0), -1 * times(self.numbers.exact(ratio), against))
         for key in reversed(list(network.followers)):
             for leader, ratio in network.followers[key][1]:
-                on[leader] = add(on.get(leader, 0.0), times(self.numbers.exact(ratio), on.get(key, 0.0)))
-        return [on.get(key, 0.0) for key in network.coordinates]
+                on[leader] = add(on.get(leader, 0), times(self.numbers.exact(ratio), on.get(key, 0)))
+        return [on.get(key, 0) for key in network.coordinates]
 
     def mass_matrix(self) -> Matrix:
         """M = sum of m_i t_i t_i' over the masses, where t_i is how the coordinates move mass i."""
         moves = participation(self.layout.network, self.numbers)
         n = len(self.layout.network.coordinates)
-        matrix: Matrix = [[0.0] * n for _ in range(n)]
+        matrix: Matrix = [[0] * n for _ in range(n)]
         for key, row in moves.items():
             mass = self.parameter(key, "mass")
             for i, a in row.items():
@@ -146,12 +146,12 @@ class Moment(Struct, frozen=True, dict=True):
 
 def participation(network: Network, numbers: Numbers) -> dict[Id, dict[int, Number]]:
     """For each mass how much the independent coordinates (by number) move it."""
-    moves: dict[Id, dict[int, Number]] = {key: {number: 1.0} for number, key in enumerate(network.coordinates)}
+    moves: dict[Id, dict[int, Number]] = {key: {number: 1} for number, key in enumerate(network.coordinates)}
     for key, (_, leaders) in network.followers.items():
         row: dict[int, Number] = {}
         for leader, ratio in leaders:
             for number, value in moves[leader].items():
-                row[number] = add(row.get(number, 0.0), times(numbers.exact(ratio), value))
+                row[number] = add(row.get(number, 0), times(numbers.exact(ratio), value))
         moves[key] = row
     return moves
 

@@ -61,7 +61,7 @@ class StateSpace(Struct, frozen=True, dict=True):
 
         values = map(complex, np.linalg.eigvals(self.floats[0])) if self.states else ()
         poles = [Pole(value, abs(value), -value.real / abs(value) if value else 0.0) for value in values]
-        return sorted(poles, key=lambda pole: (pole.frequency, pole.value.real, pole.value.imag))
+        return sorted(poles, key=lambda pole: (float(f"{pole.frequency:.9g}"), pole.value.real, pole.value.imag))
 
     @property
     def controllable(self) -> int:

@@ -7,13 +7,12 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
-from hymeko_x import codes
-from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics import forms
 from hymeko_x.dynamics.equations import system_of
 from hymeko_x.dynamics.linear import StateSpace, is_linear, linearize
 from hymeko_x.dynamics.signals import constant, signal_of, total
 from hymeko_x.dynamics.simulation import Response, simulate
+from hymeko_x.dynamics.system import input_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -61,11 +60,7 @@ class Lumped(Struct, frozen=True, dict=True):
 
         Raises: Refusal (HX407) when there is none.
         """
-        for variable in self.system.inputs:
-            if name in (variable.name, variable.name.rpartition(".")[0]):
-                return variable
-        known = ", ".join(variable.name for variable in self.system.inputs) or "none"
-        raise refuse(codes.BAD_SIGNAL, f"there is no input '{name}'; there are {known}")
+        return input_of(self.system, name)
 
     def simulate(self, duration: float, step: float, inputs: Mapping[str, Signal] | None = None) -> Response:
         """The response from rest to the signals of the file, or to these instead, by the name of their input or its element.

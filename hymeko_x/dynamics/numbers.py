@@ -74,6 +74,12 @@ def is_zero(x: Number) -> bool:
     return getattr(x, "is_Number", False) is True and bool(x == 0)
 
 
+def is_one(x: Number) -> bool:
+    """Whether a number is one by its form."""
+    kind = type(x)
+    return (kind is float or kind is int) and bool(x == 1)
+
+
 def add(a: Number, b: Number) -> Number:
     """a + b, where zeros cost nothing."""
     return b if is_zero(a) else a if is_zero(b) else a + b
@@ -82,15 +88,13 @@ def add(a: Number, b: Number) -> Number:
 def times(a: Number, b: Number) -> Number:
     """a * b, where zeros and ones cost nothing."""
     if is_zero(a) or is_zero(b):
-        return 0.0
-    if type(a) is float and a == 1.0:
-        return b
-    return a if type(b) is float and b == 1.0 else a * b
+        return 0
+    return b if is_one(a) else a if is_one(b) else a * b
 
 
 def dot(a: Sequence[Number], b: Sequence[Number]) -> Number:
     """The sum of the products."""
-    total: Number = 0.0
+    total: Number = 0
     for x, y in zip(a, b, strict=True):
         total = add(total, times(x, y))
     return total
@@ -105,14 +109,14 @@ def factorize(matrix: Matrix) -> tuple[Matrix, list[Number]]:
     Source: Golub & Van Loan, Matrix Computations, algorithm 4.1.2.
     """
     n = len(matrix)
-    lower: Matrix = [[0.0] * n for _ in range(n)]
+    lower: Matrix = [[0] * n for _ in range(n)]
     diagonal: list[Number] = []
     for j in range(n):
         scaled = [times(lower[j][k], diagonal[k]) for k in range(j)]
         diagonal.append(add(matrix[j][j], -1 * dot(lower[j][:j], scaled)))
         for i in range(j + 1, n):
             rest = add(matrix[i][j], -1 * dot(lower[i][:j], scaled))
-            lower[i][j] = 0.0 if is_zero(rest) else rest / diagonal[j]
+            lower[i][j] = 0 if is_zero(rest) else rest / diagonal[j]
     return lower, diagonal
 
 
@@ -123,7 +127,7 @@ def solve(factors: tuple[Matrix, list[Number]], right: Sequence[Number]) -> list
     x: list[Number] = []
     for i in range(n):
         x.append(add(right[i], -1 * dot(lower[i][:i], x)))
-    x = [0.0 if is_zero(value) else value / d for value, d in zip(x, diagonal, strict=True)]
+    x = [0 if is_zero(value) else value / d for value, d in zip(x, diagonal, strict=True)]
     for i in reversed(range(n)):
         x[i] = add(x[i], -1 * dot([lower[k][i] for k in range(i + 1, n)], x[i + 1 :]))
     return x

@@ -7,14 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.linear import complex_text
+from hymeko_x.dynamics.lumped import Lumped
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
     from hymeko_x.dynamics.forms import PortHamiltonian, SecondOrder
     from hymeko_x.dynamics.linear import Pole, StateSpace
-    from hymeko_x.dynamics.lumped import Lumped
+    from hymeko_x.dynamics.multibody import Multibody
     from hymeko_x.dynamics.system import Variable
 
 FORMS = ("state-space", "second-order", "port-hamiltonian", "transfer-function")
@@ -41,11 +44,45 @@ class Page(Struct, frozen=True):
     facts: Mapping[str, Any]
 
 
-def page_of(dynamics: Lumped, form: str, *, symbolic: bool = False) -> Page:
-    """The equations of a network in one form.
+def page_of(dynamics: Lumped | Multibody, form: str, *, symbolic: bool = False, at: str = "") -> Page:
+    """The equations in one form; those of a mechanism at an operating point (``Multibody.at``), in symbols everywhere.
 
     Raises: Refusal (HX408) when there is no such form.
     """
+    if isinstance(dynamics, Lumped):
+        return _lumped_page(dynamics, form, symbolic=symbolic)
+    if symbolic:
+        return _symbolic_page(dynamics)
+    if form == "port-hamiltonian":
+        raise refuse(codes.NO_FORM, f"{dynamics.tree.name}: the port-Hamiltonian form is that of lumped networks")
+    point = dynamics.at(at)
+    space = dynamics.state_space(at)
+    made = {
+        "state-space": lambda: _state_space(space, None),
+        "second-order": lambda: _second_order(dynamics.second_order(at)),
+        "transfer-function": lambda: _transfer(space),
+    }[form]()
+    formula, variables, blocks, facts = made
+    names = [variable.name for variable in dynamics.system.states]
+    where = {name: value for name, value in zip(names, point.positions, strict=False) if value}
+    held = {variable.name: value for variable, value in zip(dynamics.system.inputs, point.inputs, strict=True) if value}
+    place = {"at": _pairs(where), "held by": _pairs(held), "equilibrium": "yes" if point.is_equilibrium else "no"}
+    return Page(dynamics.tree.name, form, formula, variables, blocks, {**place, **facts})
+
+
+def _pairs(values: Mapping[str, float]) -> str:
+    return ", ".join(f"{name} = {value:.9g}" for name, value in values.items()) or "zero"
+
+
+def _symbolic_page(dynamics: Multibody) -> Page:
+    names = {f"{variable.name}": variable for variable in dynamics.system.states}
+    found = dynamics.symbolic()
+    blocks = (Block("M", found.mass), Block("h", found.bias), Block("g", found.gravity))
+    variables = {"states": tuple(names.values()), "inputs": dynamics.system.inputs}
+    return Page(dynamics.tree.name, "second-order", "M(q) v' + h(q, v) = tau, h(q, 0) = g(q)", variables, blocks, {})
+
+
+def _lumped_page(dynamics: Lumped, form: str, *, symbolic: bool) -> Page:
     make: Mapping[str, Callable[[], tuple[str, Mapping[str, tuple[Variable, ...]], tuple[Block, ...], Mapping[str, Any]]]] = {
         "state-space": lambda: _state_space(dynamics.state_space(symbolic=symbolic), dynamics.state_space() if symbolic else None),
         "second-order": lambda: _second_order(dynamics.second_order(symbolic=symbolic)),
@@ -139,11 +176,16 @@ def _block_lines(block: Block) -> list[str]:
         return [f"{block.name} = {block.value}"]
     if not block.value.cols or not block.value.rows:
         return [f"{block.name} = []"]
-    rows = [[str(entry) for entry in block.value.row(i)] for i in range(block.value.rows)]
+    rows = [[_entry(entry) for entry in block.value.row(i)] for i in range(block.value.rows)]
     widths = [max(len(row[j]) for row in rows) for j in range(block.value.cols)]
     lines = ["[" + "  ".join(f"{entry:>{width}}" for entry, width in zip(row, widths, strict=True)) + "]" for row in rows]
     indent = " " * (len(block.name) + 3)
     return [f"{block.name} = {lines[0]}", *[indent + line for line in lines[1:]]]
+
+
+def _entry(value: Any) -> str:
+    """A formula or a fraction as it is, a float with nine digits."""
+    return f"{0.0 if abs(value) < 1e-13 else float(value):.9g}" if getattr(value, "is_Float", False) else str(value)
 
 
 def _pole_lines(poles: Sequence[Pole]) -> list[str]:

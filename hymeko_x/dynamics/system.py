@@ -6,6 +6,9 @@ from typing import TYPE_CHECKING, Literal
 
 from msgspec import Struct
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
@@ -45,3 +48,15 @@ class System(Struct, frozen=True):
         """The initial states, the constant parts of the inputs, or the parameters."""
         variables: tuple[Variable, ...] = getattr(self, which)
         return [variable.value for variable in variables]
+
+
+def input_of(system: System, name: str) -> Variable:
+    """The input of this name, or the first one of the element of this name.
+
+    Raises: Refusal (HX407) when there is none.
+    """
+    for variable in system.inputs:
+        if name in (variable.name, variable.name.rpartition(".")[0]):
+            return variable
+    known = ", ".join(variable.name for variable in system.inputs) or "none"
+    raise refuse(codes.BAD_SIGNAL, f"there is no input '{name}'; there are {known}")

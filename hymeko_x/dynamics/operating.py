@@ -1,0 +1,208 @@
+"""Operating points of a mechanism: configurations by name or number, holding forces, equilibria, and the linear system there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.dynamics.couplings import independent
+from hymeko_x.dynamics.linear import StateSpace
+from hymeko_x.dynamics.numbers import Number, floats, graphs
+from hymeko_x.dynamics.spatial import of_quaternion, turned
+from hymeko_x.dynamics.system import Variable
+from hymeko_x.dynamics.tree import joint_name
+from hymeko_x.ir import parts
+from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.mechanism import numbers_weight
+from hymeko_x.ir.parts import DofKind
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from hymeko_x.dynamics.multibody import Multibody
+    from hymeko_x.dynamics.tree import Link
+    from hymeko_x.ir.mechanism import Mechanism
+
+    Floats = NDArray[np.floating[Any]]
+
+_ELSEWHERE = "--at joint=value,... linearises at a configuration that inputs hold"
+_HELD = 1e-9
+"""In m/s^2 or rad/s^2: accelerations up to which a point is an equilibrium."""
+
+
+class OperatingPoint(NamedTuple):
+    """The positions of the independent coordinates, and the inputs that hold them as far as inputs can; ``rates`` is what remains."""
+
+    positions: list[float]
+    inputs: list[float]
+    rates: list[float]
+
+    @property
+    def is_equilibrium(self) -> bool:
+        """Whether nothing accelerates there."""
+        return max(map(abs, self.rates), default=0.0) <= _HELD
+
+
+def named_positions(mechanism: Mechanism, words: str) -> dict[str, float]:
+    """The positions that ``--at`` gives by the names of dofs: a named configuration of the file, or ``joint=value,joint=value``.
+
+    Raises: Refusal (HX407) for words that are neither.
+    """
+    found: dict[str, float] = {}
+    for _, _, arcs in mechanism.edges(parts.Stance):
+        if not any(arc.target.kind == "pose" and arc.target.name == words for arc in arcs):
+            continue
+        for arc in arcs:
+            edge = mechanism.graph.edges.get(arc.target)
+            joint = edge.data if edge is not None else None
+            number = dof_number(joint, arc.role) if isinstance(joint, parts.Joint) else None
+            if number is not None and isinstance(joint, parts.Joint) and len(numbers_weight(arc)) == 1:
+                found[joint.dofs[number].name or arc.target.name] = numbers_weight(arc)[0]
+    if found:
+        return found
+    try:
+        return {name: float(value) for name, value in (pair.split("=") for pair in words.split(","))}
+    except ValueError as error:
+        known = ", ".join(key.name for key, _ in mechanism.vertices(parts.PoseSet)) or "none"
+        hint = f"named configurations of the file: {known}; or joint=0.5,other=1 in rad and m"
+        raise refuse(codes.BAD_SIGNAL, f"'{words}' is no configuration", hint=hint) from error
+
+
+def operating_point(found: Multibody, positions: Mapping[str, float], *, search: bool = False) -> OperatingPoint:
+    """The point at these positions (others at their reference); with ``search`` the equilibrium without inputs next to it.
+
+    Raises: Refusal (HX407) for a joint that is not there, HX408 when there is no equilibrium near.
+    """
+    import numpy as np
+
+    links = independent(found.tree, found.followers)
+    z = _positions(links, positions)
+    system, numbers = found.system, floats()
+    width = sum(link.velocities for link in links)
+
+    def accelerations(z: Sequence[float], u: Sequence[float]) -> Floats:
+        return np.array([float(value) for value in system.rates([*z, *[0.0] * width], u, (), numbers)])[-width:]
+
+    none = [0.0] * len(system.inputs)
+    if search:
+        z = _equilibrium(links, z, lambda moved: accelerations(moved, none))
+        return OperatingPoint(z, none, accelerations(z, none).tolist())
+    free = accelerations(z, none)
+    each = np.array([accelerations(z, row.tolist()) - free for row in np.eye(len(none))]).reshape(len(none), width).T
+    held = np.linalg.lstsq(each, -free, rcond=None)[0] if len(none) else np.zeros(0)
+    held[np.abs(held) < 1e-12] = 0.0
+    return OperatingPoint(z, held.tolist(), (free + each @ held).tolist())
+
+
+def _positions(links: Sequence[Link], given: Mapping[str, float]) -> list[float]:
+    names = [joint_name(link) for link in links if link.coordinates == 1]
+    wrong = [name for name in given if name not in names]
+    if wrong:
+        raise refuse(codes.BAD_SIGNAL, f"there is no independent joint '{wrong[0]}' with one coordinate; there are {', '.join(names)}")
+    z: list[float] = []
+    for link in links:
+        if link.coordinates == 1:
+            z.append(given.get(joint_name(link), link.dof.ref))
+        else:
+            z += [0.0] * (link.coordinates - 4) + [1.0, 0.0, 0.0, 0.0]
+    return z
+
+
+def _equilibrium(links: Sequence[Link], z: list[float], accelerations: Any) -> list[float]:
+    import numpy as np
+    from scipy.optimize import root
+
+    width = sum(link.velocities for link in links)
+    with np.errstate(all="ignore"):
+        found = root(lambda step: accelerations(moved(links, z, step.tolist())), np.zeros(width), tol=1e-13)
+    if not found.success or np.abs(found.fun).max(initial=0.0) > 1e-6:
+        raise refuse(codes.NO_FORM, "no equilibrium without inputs was found near the configuration", hint=_ELSEWHERE)
+    return [float(value) for value in moved(links, z, found.x.tolist())]
+
+
+def moved(links: Sequence[Link], z: Sequence[Number], step: Sequence[Number]) -> list[Number]:
+    """Positions after a small step along the velocities; exact to first order."""
+    found: list[Number] = []
+    at = column = 0
+    for link in links:
+        own, along = list(z[at : at + link.coordinates]), list(step[column : column + link.velocities])
+        at, column = at + link.coordinates, column + link.velocities
+        if link.coordinates == 1:
+            found.append(own[0] + along[0])
+            continue
+        if link.dof.kind is DofKind.FREE:
+            found += [a + b for a, b in zip(own[:3], turned(of_quaternion(own[3:]), along[:3]), strict=True)]
+        w, x, y, z_ = own[-4:]
+        a, b, c = (value / 2 for value in along[-3:])
+        found += [w - x * a - y * b - z_ * c, x + w * a + y * c - z_ * b, y + w * b + z_ * a - x * c, z_ + w * c + x * b - y * a]
+    return found
+
+
+_TANGENTS = {DofKind.BALL: ("rx", "ry", "rz"), DofKind.FREE: ("dx", "dy", "dz", "rx", "ry", "rz")}
+
+
+def displacements(links: Sequence[Link]) -> tuple[Variable, ...]:
+    """The small displacements from an operating point, one per velocity, in the moving axes."""
+    found: list[Variable] = []
+    for link in links:
+        name, turns = joint_name(link), link.dof.kind is not DofKind.SLIDE
+        if link.coordinates == 1:
+            plain = name.replace("_", r"\_")
+            found.append(Variable(f"{name}.position", "rad" if turns else "m", rf"q_{{\mathrm{{{plain}}}}}", element=str(link.joint)))
+        else:
+            for part in _TANGENTS[link.dof.kind]:
+                found.append(Variable(f"{name}.{part}", "rad" if part.startswith("r") else "m", part, element=str(link.joint)))
+    return tuple(found)
+
+
+def linearized(found: Multibody, point: OperatingPoint) -> StateSpace:
+    """The linear system at an operating point: states are displacements and velocities from there, inputs count from what holds it.
+
+    Derivatives are exact (casadi's).
+    """
+    import casadi
+    import numpy as np
+
+    links = independent(found.tree, found.followers)
+    width, system = sum(link.velocities for link in links), found.system
+    step, v, u = casadi.SX.sym("d", width), casadi.SX.sym("v", width), casadi.SX.sym("u", len(system.inputs))
+    z = moved(links, point.positions, [step[k] for k in range(width)])
+    rates = system.rates([*z, *[v[k] for k in range(width)]], [u[k] for k in range(len(system.inputs))], (), graphs())
+    accelerations = casadi.vertcat(*rates[-width:])
+    slopes = casadi.Function("f", [step, v, u], [casadi.jacobian(accelerations, part) for part in (step, v, u)] + [accelerations])
+    by_step, by_v, by_u, rest = (np.array(block, dtype=float) for block in slopes(np.zeros(width), np.zeros(width), np.array(point.inputs)))
+    a = np.block([[np.zeros((width, width)), np.eye(width)], [by_step, by_v]])
+    b = np.vstack([np.zeros((width, len(point.inputs))), by_u.reshape(width, len(point.inputs))])
+    positions = displacements(links)
+    outputs = [number for number, variable in enumerate(positions) if variable.name.endswith(".position")]
+    c = np.zeros((len(outputs), 2 * width))
+    c[range(len(outputs)), outputs] = 1.0
+    rest[np.abs(rest) <= _HELD] = 0.0
+    offset = np.concatenate([np.zeros(width), rest.reshape(-1)])
+    velocities = tuple(Variable(_rate_name(v.name), f"{v.unit}/s", rf"\dot {v.symbol}") for v in positions)
+    matrices = map(sympy_matrix, (a, b, c, np.zeros((len(outputs), b.shape[1])), offset[:, None]))
+    return StateSpace((*positions, *velocities), system.inputs, tuple(positions[k] for k in outputs), *matrices)
+
+
+def _rate_name(name: str) -> str:
+    return name.removesuffix(".position") + ".velocity" if name.endswith(".position") else f"{name}'"
+
+
+def sympy_matrix(rows: Any) -> Any:
+    """A matrix of floats for sympy."""
+    import numpy as np
+    import sympy
+
+    array = np.array(rows, dtype=float)
+    return sympy.Matrix(*array.shape, [_plain(x) for x in array.reshape(-1)])
+
+
+def _plain(value: float) -> Any:
+    """A float as sympy's number; whole numbers as integers."""
+    import sympy
+
+    return sympy.Integer(int(value)) if float(value).is_integer() and abs(value) < 1e15 else sympy.Float(float(value))
