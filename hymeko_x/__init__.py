@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from hymeko_x.dynamics import dynamics
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.values import Pose
-    from hymeko_x.robot import EditError, Robot
+    from hymeko_x.robot import EditError, Robot, compose
     from hymeko_x.robot.units import deg, mm
     from hymeko_x.verify import verify
 
@@ -38,6 +38,7 @@ __all__ = [
     "Report",
     "Robot",
     "Severity",
+    "compose",
     "convert",
     "deg",
     "diff",
@@ -59,7 +60,7 @@ _HOMES = {
     "dynamics": "hymeko_x.dynamics",
     "verify": "hymeko_x.verify",
     **dict.fromkeys(("Id", "Mechanism"), "hymeko_x.ir.mechanism"),
-    **dict.fromkeys(("EditError", "Robot"), "hymeko_x.robot"),
+    **dict.fromkeys(("EditError", "Robot", "compose"), "hymeko_x.robot"),
     **dict.fromkeys(("deg", "mm"), "hymeko_x.robot.units"),
     "Pose": "hymeko_x.ir.values",
 }

@@ -258,6 +258,15 @@ def fully_completed(mechanism: Mechanism, files: Files, report: Report) -> Mecha
     return found
 
 
+def flattened(mechanism: Mechanism) -> Mechanism:
+    """The mechanism whose elements have all that they inherit from classes of the format that it came from, and no classes."""
+    native = formats.native_format(mechanism)
+    if native is None or native.flattens is None:
+        return mechanism
+    found: Mechanism = formats.loaded(native.flattens)(mechanism, writer(native)(mechanism, Options(), Report()).main)
+    return found
+
+
 def _contents(copies: Mapping[str, str], files: Files) -> Iterator[tuple[str, bytes]]:
     """The files to copy that are still there."""
     for name, path in copies.items():

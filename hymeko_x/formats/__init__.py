@@ -64,6 +64,13 @@ class Format(Struct, frozen=True):
     completes: str | None = None
     """The function ``(mechanism, printed, files, report) -> mechanism`` that adds what only this format's engine computes, for a
     mechanism that came from this format and goes to another one; ``printed()`` gives it as this format has it."""
+    flattens: str | None = None
+    """The function ``(mechanism, text) -> mechanism`` by which each element has all that it inherits; ``text`` is it as printed."""
+    names_in: str | None = None
+    """The function ``(extra, change, is_of_whole) -> extra or None`` that changes the names in an extra of a part that becomes one of a
+    robot; None for what a robot has once."""
+    joins: str | None = None
+    """The function ``(whole, host, part, change) -> whole`` that gives a composed mechanism what depends on all of its elements."""
 
     # ---- its files
     assets: Literal["copy", "reference"] = "copy"
@@ -192,6 +199,9 @@ MJCF = Format(
     roots=("mujoco", "mujocoinclude"),
     outline="hymeko_x.frontends.mjcf.outline:outline",
     completes="hymeko_x.frontends.mjcf.complete:complete",
+    flattens="hymeko_x.frontends.mjcf.flat:flatten",
+    names_in="hymeko_x.formats.mjcf.prefixes:renamed",
+    joins="hymeko_x.formats.mjcf.keyframes:joined",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
     mesh_reader="hymeko_x.meshes.tables:read_mesh",
     read_otherwise="hymeko_x.meshes.tables:read_otherwise",

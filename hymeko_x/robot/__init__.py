@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from hymeko_x.robot.composing import compose_scene as compose
 from hymeko_x.robot.errors import EditError as EditError
 from hymeko_x.robot.errors import UnknownName as UnknownName
 from hymeko_x.robot.robot import Robot as Robot
+
+__all__ = ["EditError", "Robot", "UnknownName", "compose"]

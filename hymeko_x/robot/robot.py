@@ -10,14 +10,19 @@ from hymeko_x import pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.parts import Body
+from hymeko_x.ir.values import IDENTITY
 from hymeko_x.robot import memory, text
+from hymeko_x.robot.composing import attach, detach, subtree
 from hymeko_x.robot.draft import Draft
+from hymeko_x.robot.editing import Editing
 from hymeko_x.robot.kinematics import all_poses
 from hymeko_x.robot.named import Named
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
-    from hymeko_x.ir.values import Pose
+    from hymeko_x.ir.parts import Joint
+    from hymeko_x.ir.values import Pose, Vec3
+    from hymeko_x.robot.element import Element
     from hymeko_x.robot.kinematics import Coordinates
     from hymeko_x.source import Files
 
@@ -80,6 +85,48 @@ class Robot(Named):
         Raises: KeyError for a joint that is not there, EditError for a wrong number of coordinates.
         """
         return {key.name: pose for key, pose in all_poses(self.mechanism, {} if q is None else q).items() if key.kind == "body"}
+
+    # ---- changing --------------------------------------------------------------------------------------------------------
+
+    def edit(self) -> Editing:
+        """A session of changes: ``with robot.edit() as e: e.bodies["wrist"].mass = 0.5``; the changed robot is ``e.robot``."""
+        return Editing(self)
+
+    def attach(
+        self,
+        part: Robot,
+        at: str | Element = "world",
+        *,
+        prefix: str = "",
+        joint: str | Joint | None = None,
+        pose: Pose | Vec3 = IDENTITY,
+    ) -> Robot:
+        """This robot with another one on a body or frame of it; the names of the other one get the prefix.
+
+        The world of the part is where ``pose`` is in the frame ``at``. What is fixed or free in its world is fixed to the body, or moves
+        by ``joint``: a type such as ``"hinge"``, or a Joint with its dofs. Settings of the whole (gravity, time step) are those of this
+        robot; classes are written out, files, materials, tendons, keyframes and extras of both come along.
+
+        Raises: EditError when names clash or a joint is given for several roots; KeyError when there is no such body or frame.
+        """
+        return attach(self, part, at, prefix=prefix, joint=joint, pose=pose)
+
+    def detach(self, name: str) -> tuple[Robot, Robot]:
+        """The robot without a part, and the part: all with this prefix, or a body with all below it, which is then an open root.
+
+        What was attached with a prefix gets back its names and its world. Relations between the two are in neither.
+
+        Raises: KeyError when no body has this prefix, and none this name.
+        """
+        return detach(self, name)
+
+    def subtree(self, body: str) -> Robot:
+        """A body with all below it as a robot of its own; the body is its open root. Raises: KeyError when there is no such body."""
+        return subtree(self, body)
+
+    def changed(self, mechanism: Mechanism, files: Files | None = None) -> Robot:
+        """A robot of another mechanism, with the files of this one unless others are given."""
+        return Robot(mechanism, self.files if files is None else files)
 
     # ---- in memory -------------------------------------------------------------------------------------------------------
 

@@ -1,0 +1,149 @@
+"""Two mechanisms as one: every element of the part gets a prefix, its files keep leading to where they are, its side tables come along."""
+
+from __future__ import annotations
+
+import posixpath
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from hymeko_x import formats
+from hymeko_x.assets.pack import is_of_package
+from hymeko_x.ir.graph import Hypergraph
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism, Provenance
+from hymeko_x.ir.names import rename
+from hymeko_x.ir.parts import Joint, Material, Mesh, Shape, Texture
+from hymeko_x.robot.errors import EditError
+from hymeko_x.source import ManyFiles
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Mapping
+
+    from hymeko_x.ir.mechanism import Extra, RobotArc, RobotEdge
+    from hymeko_x.ir.parts import EdgePart, VertexPart
+    from hymeko_x.source import Files
+
+
+# ---- names ---------------------------------------------------------------------------------------------------------------------
+
+
+def with_names(mechanism: Mechanism, change: Callable[[str], str]) -> Mechanism:
+    """The mechanism with every name changed, also those in its extras; the world stays the world. What a robot has once is left out."""
+    graph = mechanism.graph
+    vertices = {key: _named(part, change) for key, part in graph.vertices.items()}
+    edges = {
+        key: replace(edge, data=_edge_named(edge.data, change), arcs=_arcs(edge, graph.edges, change)) for key, edge in graph.edges.items()
+    }
+    pairs = ((key, Id(key.kind, change(key.name))) for table in (vertices, edges) for key in table if key != WORLD)
+    renamed = rename(replace(mechanism, graph=Hypergraph(vertices, edges)), {old: new for old, new in pairs if old != new})
+    extras = {key: tuple(_extras(found, change, is_of_whole=key == ROOT)) for key, found in renamed.extras.items()}
+    return replace(renamed, extras={key: found for key, found in extras.items() if found})
+
+
+def _named(part: VertexPart, change: Callable[[str], str]) -> VertexPart:
+    return replace(part, name=change(part.name)) if isinstance(part, Material | Mesh | Texture) and part.name else part
+
+
+def _edge_named(part: EdgePart, change: Callable[[str], str]) -> EdgePart:
+    if isinstance(part, Shape) and part.name:
+        return replace(part, name=change(part.name))
+    if isinstance(part, Joint) and any(dof.name for dof in part.dofs):
+        return replace(part, dofs=tuple([replace(dof, name=change(dof.name)) if dof.name else dof for dof in part.dofs]))
+    return part
+
+
+def _arcs(edge: RobotEdge, edges: Mapping[Id, RobotEdge], change: Callable[[str], str]) -> tuple[RobotArc, ...]:
+    """The arcs; roles that are names of dofs change as well."""
+    if not any(arc.role for arc in edge.arcs):
+        return edge.arcs
+    return tuple([replace(arc, role=change(arc.role)) if _is_dof(arc, edges) else arc for arc in edge.arcs])
+
+
+def _is_dof(arc: RobotArc, edges: Mapping[Id, RobotEdge]) -> bool:
+    joint = edges[arc.target].data if arc.role and arc.target in edges else None
+    return isinstance(joint, Joint) and any(dof.name == arc.role for dof in joint.dofs)
+
+
+def _extras(found: Iterable[Extra], change: Callable[[str], str], *, is_of_whole: bool) -> Iterator[Extra]:
+    """The extras with changed names where their format says how. Of those of the whole, only elements of XML come along."""
+    for extra in found:
+        row = next((row for row in formats.FORMATS if row.name == extra.format and row.names_in), None)
+        if row is not None and row.names_in is not None:
+            changed = formats.loaded(row.names_in)(extra, change, is_of_whole=is_of_whole)
+            yield from () if changed is None else (changed,)
+        elif not is_of_whole or extra.text.startswith("<"):
+            yield extra
+
+
+# ---- formats -------------------------------------------------------------------------------------------------------------------
+
+
+def provenance_of(host: Mechanism, part: Mechanism) -> Provenance:
+    """That of the host where both came from one format; else that of a robot made by a program, beside the file of the host."""
+    same = host.source.format == part.source.format
+    return host.source if same or not (formats.native_format(host) or formats.native_format(part)) else Provenance(file=host.source.file)
+
+
+# ---- tables --------------------------------------------------------------------------------------------------------------------
+
+
+def merged(host: Mechanism, part: Mechanism, source: Provenance) -> Mechanism:
+    """All elements and side tables of both. Raises: EditError when an element of both has the same id."""
+    taken = {*host.graph.vertices, *host.graph.edges}
+    clash = next((key for table in (part.graph.vertices, part.graph.edges) for key in table if key in taken and key != WORLD), None)
+    if clash is not None:
+        raise EditError(f"{clash} is in robot '{host.name}' and in robot '{part.name}'; give a prefix")
+    start = len(host.layout) + len(host.extras.get(ROOT, ()))
+    later = tuple([replace(extra, index=extra.index + start) for extra in part.extras.get(ROOT, ())])
+    extras = {**host.extras, **part.extras, ROOT: host.extras.get(ROOT, ()) + later}
+    return replace(
+        host,
+        graph=Hypergraph({**host.graph.vertices, **part.graph.vertices}, {**host.graph.edges, **part.graph.edges}),
+        extras={key: found for key, found in extras.items() if found},
+        origins={**host.origins, **part.origins},
+        notations={**host.notations, **{key: found for key, found in part.notations.items() if key != ROOT}},
+        stereotypes={**host.stereotypes, **part.stereotypes},
+        layout=host.layout + part.layout,
+        places={**part.places, **host.places},
+        stored={**host.stored, **part.stored},
+        source=source,
+    )
+
+
+# ---- files ---------------------------------------------------------------------------------------------------------------------
+
+
+class PartFiles:
+    """The files of a part under the uris that they have in the robot of which it became one."""
+
+    def __init__(self, uris: Mapping[str, str], files: Files) -> None:
+        self._uris, self._files = uris, files
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file of the part."""
+        return self._files.find(self._uris.get(uri, uri))
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        return self._files.read(path)
+
+
+def with_files(host: Mechanism, part: Mechanism, of_host: Files, of_part: Files) -> tuple[Mechanism, Files]:
+    """The part with its relative uris seen from the folder of the host, and the files of both."""
+    here, there = (posixpath.dirname(mechanism.source.file.replace("\\", "/")) or "." for mechanism in (host, part))
+    if here == there or here.startswith("/") != there.startswith("/"):
+        return part, of_host if of_host == of_part else ManyFiles((of_host, of_part))
+    way = posixpath.relpath(there, here)
+    moved: dict[Id, VertexPart] = {}
+    uris: dict[str, str] = {}
+    for key, uri, asset in _relative_assets(part):
+        new = posixpath.normpath(f"{way}/{uri}")
+        moved[key], uris[new] = replace(asset, uri=new), uri
+    return part.with_graph(part.graph.replace(vertices=moved)), ManyFiles((of_host, PartFiles(uris, of_part)))
+
+
+def _relative_assets(mechanism: Mechanism) -> Iterator[tuple[Id, str, Mesh | Texture]]:
+    for key, asset in mechanism.assets():
+        uri = asset.uri
+        if uri and not uri.startswith("/") and "://" not in uri and not is_of_package(uri) and uri[1:2] != ":":
+            yield key, uri, asset

@@ -1,0 +1,140 @@
+"""Robots from robots: one on another, taken apart again, as part of a scene."""
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+import pytest
+
+import hymeko_x as hx
+from hymeko_x.ir.parts import Dof, DofKind, Joint
+from tests.robot.robots import ARM, HAND, arm, claw, hand
+
+PARTS = {"mjcf": hand, "urdf": claw}
+
+
+@pytest.mark.parametrize("host", [arm, claw], ids=["mjcf", "urdf"])
+@pytest.mark.parametrize("part", [hand, claw], ids=["mjcf", "urdf"])
+def test_a_part_is_on_the_host_with_its_mass_and_its_kinematics(host, part) -> None:  # type: ignore[no-untyped-def]
+    at = "flange" if host is arm else "finger"
+    pose = hx.Pose.from_rpy((0.1, 0.2, 0.3), (0, 0, 0.05))
+    whole = host().attach(part(), at=at, prefix="hand/", pose=pose)
+    assert whole.mass == pytest.approx(host().mass + part().mass, abs=1e-12)
+    q = {name: 0.1 + 0.01 * number for number, (name, joint) in enumerate(whole.joints.items()) if joint.dofs}
+    own = {name.removeprefix("hand/"): value for name, value in q.items() if name.startswith("hand/")}
+    alone = part().fk(own)
+    poses = whole.fk(q)
+    mount = (whole.frames[at] if host is arm else whole.bodies[at]).world_pose(q) @ pose
+    for name, found in alone.items():
+        assert np.allclose(poses[f"hand/{name}"].matrix(), (mount @ found).matrix(), atol=1e-12)
+    model = whole.to_mujoco()
+    data = mujoco.MjData(model)
+    for name, value in q.items():
+        data.joint(name).qpos[:] = value
+    mujoco.mj_kinematics(model, data)
+    for name, found in poses.items():
+        assert data.body(name).xpos == pytest.approx(found.xyz, abs=1e-12)
+    assert whole.to_pinocchio().existBodyName("hand/palm")
+    assert whole.to_usd().GetDefaultPrim()
+
+
+def test_within_mjcf_the_model_is_the_one_that_mujoco_attaches() -> None:
+    whole = arm().attach(hand(), at="flange", prefix="hand/").to_mujoco()
+    spec, child = mujoco.MjSpec.from_string(ARM), mujoco.MjSpec.from_string(HAND)
+    spec.attach(child, site=spec.site("flange"), prefix="hand/")
+    model = spec.compile()
+    compared = 0
+    for name in dir(model):
+        ours, theirs = getattr(whole, name), getattr(model, name)
+        if isinstance(theirs, np.ndarray) and not name.startswith("_") and name not in ("names_map", "paths"):
+            assert ours.shape == theirs.shape, name
+            assert np.allclose(ours, theirs, atol=1e-12, rtol=1e-12), name
+            compared += 1
+        elif isinstance(theirs, int) and not name.startswith("_"):
+            assert ours == theirs, name
+    assert compared > 300
+    assert whole.names == model.names
+
+
+def test_keyframes_of_both_fit_the_whole() -> None:
+    with_key = HAND.replace("</mujoco>", "<keyframe><key name='open' qpos='0.01 0.02' ctrl='3'/></keyframe></mujoco>")
+    model = arm().attach(hx.Robot(hx.loads(with_key, "mjcf")), at="flange", prefix="hand/").to_mujoco()
+    assert (model.key("home").qpos.tolist(), model.key("home").ctrl.tolist()) == ([0.1, 0.2, 0, 0], [0.1, 0, 0])
+    assert (model.key("hand/open").qpos.tolist(), model.key("hand/open").ctrl.tolist()) == ([0, 0, 0.01, 0.02], [0, 0, 3])
+
+
+def test_a_joint_between_the_two_moves_the_part() -> None:
+    whole = arm().attach(hand(), at="flange", prefix="hand/", joint=Joint((Dof(DofKind.SLIDE, (0, 0, 1)),)))
+    assert whole.joints["hand/palm"].type == "slide"
+    assert whole.fk({"hand/palm": 0.1})["hand/palm"].xyz[2] == pytest.approx(whole.fk()["hand/palm"].xyz[2] + 0.1)
+    with pytest.raises(hx.EditError, match="there is no type 'hing'"):
+        arm().attach(hand(), at="flange", prefix="hand/", joint="hing")
+
+
+def test_clashing_names_and_unknown_frames_are_errors() -> None:
+    with pytest.raises(hx.EditError, match="material 'steel' is in robot 'arm' and in robot 'hand'; give a prefix"):
+        arm().attach(hand(), at="flange")
+    with pytest.raises(KeyError, match="there is no body or frame 'flang'; did you mean 'flange'?"):
+        arm().attach(hand(), at="flang", prefix="hand/")
+
+
+def test_what_was_attached_comes_off_as_it_was() -> None:
+    rest, back = claw().attach(claw(), at="finger", prefix="hand/", pose=hx.Pose.from_rpy((1, 2, 3), (0.1, 0.2, 0.3))).detach("hand/")
+    assert (hx.diff(rest, claw()), hx.diff(back, claw())) == ((), ())
+    rest, back = arm().attach(hand(), at="flange", prefix="hand/").detach("hand/")
+    for ours, theirs in ((rest, arm()), (back, hand())):
+        assert hx.verify(ours, theirs, samples=5).verdict == "same"
+        assert ours.to_mujoco().geom_solref.tolist() == theirs.to_mujoco().geom_solref.tolist()
+
+
+def test_attaching_is_associative() -> None:
+    one = claw().attach(claw(), at="finger", prefix="b/").attach(claw(), at="b/finger", prefix="b/c/")
+    other = claw().attach(claw().attach(claw(), at="finger", prefix="c/"), at="finger", prefix="b/")
+    assert hx.diff(one, other) == ()
+
+
+def test_a_subtree_and_the_rest_are_the_whole() -> None:
+    robot = arm()
+    part = robot.subtree("fore")
+    rest, off = robot.detach("fore")
+    assert hx.diff(part, off) == ()
+    assert [*part.bodies] == ["fore"]
+    assert [*rest.bodies] == ["base", "upper"]
+    assert part.mass + rest.mass == pytest.approx(robot.mass)
+    assert ([*part.frames], [*rest.frames], [*rest.actuators]) == (["flange"], [], ["turn"])
+    assert part.to_mujoco().nbody == 2
+    with pytest.raises(KeyError, match="there is no body or prefix 'foree'; did you mean 'fore'"):
+        robot.detach("foree")
+
+
+def test_a_scene_has_all_robots_at_their_poses() -> None:
+    scene = hx.compose((arm(), arm(), claw()), ((0, 0, 0), hx.Pose.from_rpy((0, 0, 180 * hx.deg), (1, 0, 0)), (0.5, 0, 1)), name="table")
+    assert [*scene.bodies] == [
+        *("arm/base", "arm/upper", "arm/fore", "arm#2/base", "arm#2/upper", "arm#2/fore"),
+        *("claw/palm", "claw/finger"),
+    ]
+    assert scene.bodies["arm#2/base"].world_pose().xyz == pytest.approx((1, 0, 0.1))
+    assert scene.bodies["claw/palm"].world_pose().xyz == (0.5, 0, 1)
+    assert scene.to_mujoco().nq == 5
+    with pytest.raises(hx.EditError, match="scene 'scene' has 1 robots and 2 poses"):
+        hx.compose((arm(),), ((0, 0, 0), (0, 0, 0)))
+
+
+def test_meshes_of_several_folders_are_found(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    box = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 {0}\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    for name, height in (("arm", 1), ("hand", 2)):
+        (tmp_path / name / "meshes").mkdir(parents=True)
+        (tmp_path / name / "meshes/part.obj").write_text(box.format(height))
+        (tmp_path / name / f"{name}.urdf").write_text(
+            f"<robot name='{name}'><link name='{name}'><visual><geometry><mesh filename='meshes/part.obj'/></geometry></visual></link>"
+            "</robot>"
+        )
+    (tmp_path / "out").mkdir()
+    whole = hx.open(tmp_path / "arm/arm.urdf").attach(hx.open(tmp_path / "hand/hand.urdf"), at="arm", prefix="hand/")
+    report = hx.dump(whole, tmp_path / "out/both.xml")
+    assert [str(line) for line in report if "not found" in line.message] == []
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "out/both.xml"))
+    assert (model.nmesh, model.ngeom) == (2, 2)
+    hx.dump(whole, tmp_path / "out/both.hymeko")
+    again = hx.open(tmp_path / "out/both.hymeko")
+    assert again.to_mujoco().nmesh == 2
