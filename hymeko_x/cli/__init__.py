@@ -20,7 +20,7 @@ VERBS = {
     "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
     "update": ("hymeko_x.cli.update", "bring the edits of a converted file home into the text of its original"),
     "diff": ("hymeko_x.cli.compare", "what differs between two robots, element by element"),
-    "verify": ("hymeko_x.cli.compare", "whether two files are the same robot, by the formats' own engines"),
+    "verify": ("hymeko_x.cli.verdicts", "whether two files are the same robot, by the formats' own engines"),
     "roundtrip": ("hymeko_x.cli.compare", "through other formats and back, every leg verified"),
     "render": ("hymeko_x.cli.render", "draw a robot, or a film of its joints, without a screen"),
     "check": ("hymeko_x.cli.info", "is a robot complete and sane? for people and for repair loops"),

@@ -1,8 +1,7 @@
-"""`hymeko-x diff`, `verify` and `roundtrip`: robots compared by this program, and by the formats' own engines."""
+"""`hymeko-x diff` and `roundtrip`: robots compared by this program, on one way or on a whole journey."""
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import tempfile
@@ -10,16 +9,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import api, formats
-from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.terminal import show
-from hymeko_x.cli.verdicts import exit_code, verdict_lines
+from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_of
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
 
 if TYPE_CHECKING:
+    import argparse
     from collections.abc import Iterator
 
     from hymeko_x.cli.inputs import Input
@@ -61,63 +60,6 @@ def _differences_json(a: Input, b: Input, found: tuple[Difference, ...]) -> dict
     rows = [{"element": str(row.element), "field": row.field, "before": row.before, "after": row.after} for row in found]
     names = {key: {"path": given.source.name, "format": given.format.name} for key, given in (("a", a), ("b", b))}
     return {**names, "differences": rows}
-
-
-# ---- verify ------------------------------------------------------------------------------------------------------------
-
-
-def verify_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `verify`."""
-    parser.add_argument("a", metavar="A", help="a robot in any format")
-    parser.add_argument("b", metavar="B", help="the robot to compare it with")
-    engine_arguments(parser)
-    parser.add_argument("--strict", action="store_true", help="exit 4 as well where a format cannot say what the other robot has")
-    parser.add_argument("-v", "--verbose", action="store_true", help="print the table of all checks, and what was not compared")
-    parser.add_argument("--match", choices=("name", "structure"), default="name", help="how to find each body's counterpart (default name)")
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    input_arguments(parser)
-
-
-def engine_arguments(parser: argparse.ArgumentParser) -> None:
-    """Options of every verb that verifies."""
-    parser.add_argument("--samples", type=_samples, default=100, metavar="N", help="random configurations to compare at (default 100)")
-    parser.add_argument("--no-meshes", dest="meshes", action="store_false", help="do not read mesh files, which takes most of the time")
-    parser.add_argument("--seed", type=int, default=0, metavar="S", help="where the random numbers start (default 0)")
-
-
-def run_verify(chosen: argparse.Namespace) -> int:
-    """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared, as :func:`exit_code` says."""
-    verdict = verdict_of(chosen.a, chosen.b, chosen, structure=chosen.match == "structure")
-    print(
-        json.dumps(verdict.as_json(), indent=2, ensure_ascii=False)
-        if chosen.json
-        else "\n".join(verdict_lines(verdict, verbose=chosen.verbose))
-    )
-    return exit_code(verdict, strict=chosen.strict)
-
-
-def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = False) -> Verdict:
-    """The verdict about two files, with the options of :func:`engine_arguments` and of every verb that reads a robot."""
-    from hymeko_x.verify import verify
-
-    return verify(
-        a,
-        b,
-        samples=chosen.samples,
-        seed=chosen.seed,
-        structure=structure,
-        meshes=chosen.meshes,
-        packages=dict(chosen.package),
-        search_path=search_path(os.environ),
-        arguments=dict(chosen.arg),
-        variants=dict(chosen.variant),
-    )
-
-
-def _samples(text: str) -> int:
-    if not text.isascii() or not text.isdigit():
-        raise argparse.ArgumentTypeError(f"expected a number of configurations, found '{text}'")
-    return int(text)
 
 
 # ---- roundtrip ---------------------------------------------------------------------------------------------------------

@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.cli import exits
-from hymeko_x.cli.compare import engine_arguments, verdict_of
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.report import report_arguments, show_report, written_line
 from hymeko_x.cli.terminal import is_coloured
-from hymeko_x.cli.verdicts import exit_code, verdict_lines
+from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_lines, verdict_of
 from hymeko_x.delivery import Delivery, report_unwritten, unchanged
 from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.reporting.document import document

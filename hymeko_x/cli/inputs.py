@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec.structs import replace
 
-from hymeko_x import disk, formats, pipeline
+from hymeko_x import formats
 from hymeko_x.assets.resolve import DiskFiles, search_path
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.source import Source
@@ -52,6 +52,8 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report, *, anyway:
 
     Raises: Refusal when it cannot be read; Stopped when it has errors, without `--lenient`.
     """
+    from hymeko_x import pipeline
+
     source = _standard_input(chosen) if path == "-" else source_of(path, chosen)
     format = formats.by_name(chosen.from_format) if chosen.from_format else formats.of_input(source.name, source.data)
     if (chosen.arg or chosen.env) and not format.has_arguments:
@@ -67,10 +69,14 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report, *, anyway:
 
 def source_of(path: str, chosen: argparse.Namespace) -> Source:
     """A file with the files around it. Raises: Refusal when it cannot be read."""
+    from hymeko_x import disk
+
     return disk.open_source(path, packages=dict(chosen.package), search_path=search_path(os.environ), confine=chosen.confine)
 
 
 def _standard_input(chosen: argparse.Namespace) -> Source:
+    from hymeko_x import disk
+
     files = DiskFiles(Path(), dict(chosen.package), search_path(os.environ), chosen.confine)
     return Source("<stdin>", sys.stdin.buffer.read(disk.MOST_BYTES), files)
 

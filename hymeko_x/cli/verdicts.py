@@ -1,11 +1,19 @@
-"""Verdicts of the verifier as text: the answer, what a format cannot say, what failed, and on request the table of all checks."""
+"""`hymeko-x verify`: the verdict of the formats' own engines, as text: the answer, what a format cannot say, what failed, all checks.
+
+Of this program it loads the verifier alone, so that it answers at once.
+"""
 
 from __future__ import annotations
 
+import argparse
+import json
+import os
 import sys
 from typing import TYPE_CHECKING
 
+from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
+from hymeko_x.cli.inputs import input_arguments
 from hymeko_x.cli.terminal import is_coloured, paint
 
 if TYPE_CHECKING:
@@ -15,6 +23,64 @@ if TYPE_CHECKING:
 
 _MOST_LINES = 12
 """So many findings are shown; `-v` shows all."""
+
+
+def verify_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `verify`."""
+    parser.add_argument("a", metavar="A", help="a robot in any format")
+    parser.add_argument("b", metavar="B", help="the robot to compare it with")
+    engine_arguments(parser)
+    parser.add_argument("--strict", action="store_true", help="exit 4 as well where a format cannot say what the other robot has")
+    parser.add_argument("-v", "--verbose", action="store_true", help="print the table of all checks, and what was not compared")
+    parser.add_argument("--match", choices=("name", "structure"), default="name", help="how to find each body's counterpart (default name)")
+    parser.add_argument("--json", action="store_true", help="print JSON")
+    input_arguments(parser)
+
+
+def engine_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options of every verb that verifies."""
+    parser.add_argument("--samples", type=_samples, default=100, metavar="N", help="random configurations to compare at (default 100)")
+    parser.add_argument("--no-meshes", dest="meshes", action="store_false", help="do not read mesh files, which takes most of the time")
+    parser.add_argument("--seed", type=int, default=0, metavar="S", help="where the random numbers start (default 0)")
+
+
+def run_verify(chosen: argparse.Namespace) -> int:
+    """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared, as :func:`exit_code` says."""
+    verdict = verdict_of(chosen.a, chosen.b, chosen, structure=chosen.match == "structure")
+    print(
+        json.dumps(verdict.as_json(), indent=2, ensure_ascii=False)
+        if chosen.json
+        else "\n".join(verdict_lines(verdict, verbose=chosen.verbose))
+    )
+    return exit_code(verdict, strict=chosen.strict)
+
+
+def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = False) -> Verdict:
+    """The verdict about two files, with the options of :func:`engine_arguments` and of every verb that reads a robot."""
+    os.environ.setdefault("MUJOCO_GL", "disable")  # nothing is drawn, and importing what draws takes a twentieth of the time
+    from hymeko_x.verify import verify
+
+    return verify(
+        a,
+        b,
+        samples=chosen.samples,
+        seed=chosen.seed,
+        structure=structure,
+        meshes=chosen.meshes,
+        packages=dict(chosen.package),
+        search_path=search_path(os.environ),
+        arguments=dict(chosen.arg),
+        variants=dict(chosen.variant),
+    )
+
+
+def _samples(text: str) -> int:
+    if not text.isascii() or not text.isdigit():
+        raise argparse.ArgumentTypeError(f"expected a number of configurations, found '{text}'")
+    return int(text)
+
+
+# ---- as text -----------------------------------------------------------------------------------------------------------
 
 
 def exit_code(verdict: Verdict, *, strict: bool = False) -> int:

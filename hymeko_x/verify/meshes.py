@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from msgspec.structs import replace
 
+from hymeko_x.verify.mesh_files import read_obj, read_stl
 from hymeko_x.verify.model import MeshFile, Surface
 
 if TYPE_CHECKING:
@@ -34,6 +35,7 @@ _MOST_POINTS = 4000  # of each side are searched among all points of the other: 
 
 _EMPTY = "holds no triangles"
 _REFERRING = (".gltf",)
+_PLAIN = {".obj": read_obj, ".stl": read_stl}
 _POLYGON = re.compile(rb"^f(?:[ \t]+[\d/-]+){4}", re.MULTILINE)
 
 
@@ -106,6 +108,13 @@ def _digest(path: Path) -> bytes:
 
 
 def _load(path: Path) -> Surface | str:
+    """The triangles of a file: at once if it is of a plain kind, else by trimesh."""
+    read = _PLAIN.get(path.suffix.lower())
+    found = None if read is None else read(path.read_bytes())
+    return _load_by_trimesh(path) if found is None else found
+
+
+def _load_by_trimesh(path: Path) -> Surface | str:
     import trimesh
 
     try:
@@ -154,8 +163,8 @@ def mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes)
         return (math.inf, "nothing is left", "") if theirs.endswith(_EMPTY) else (0.0, "", theirs)
     points_a, points_b = used(ours.vertices, ours.faces), used(theirs.vertices, theirs.faces)
     extent = float(np.ptp(points_a, axis=0).max()) or 1.0
-    if len(ours.vertices) == len(theirs.vertices) and np.array_equal(ours.faces, theirs.faces):
-        in_order = float(np.linalg.norm(ours.vertices - theirs.vertices, axis=1).max()) / extent
+    if len(ours.faces) == len(theirs.faces):
+        in_order = _in_order(ours, theirs) / extent
         if in_order <= ALLOWED:  # the same triangles: box, area and volume cannot differ by more
             return in_order, "the points of the meshes", ""
     box_a, area_a, volume_a = measures(ours.vertices, ours.faces)
@@ -171,6 +180,13 @@ def mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes)
     ]
     difference, where = max(candidates)
     return difference, f"{where} of the meshes", ""
+
+
+def _in_order(ours: Surface, theirs: Surface) -> float:
+    """The largest distance in m between corners of triangles in their order; points may be stored once, or for every triangle."""
+    same = len(ours.vertices) == len(theirs.vertices) and np.array_equal(ours.faces, theirs.faces)
+    a, b = (surface.vertices if same else surface.vertices[surface.faces].reshape(-1, 3) for surface in (ours, theirs))
+    return float(np.linalg.norm(a - b, axis=1).max())
 
 
 def _points_distance(a: Array, b: Array) -> float:

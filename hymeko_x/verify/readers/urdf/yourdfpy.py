@@ -13,6 +13,7 @@ from msgspec import Struct
 
 from hymeko_x.verify import kinematics
 from hymeko_x.verify.model import WORLD, Array, Body, Dof, Joint, Kind, KinematicModel, MeshFile, Role, Shape, parents_first, world_body
+from hymeko_x.verify.readers.urdf.deferred import without_trimesh
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -47,9 +48,9 @@ class Second(Struct, frozen=True, eq=False):
 
 def load(data: bytes, path: Path, lookup: Lookup) -> Second:
     """The file through yourdfpy; its refusal is a note, not an error, because urdfdom is authoritative."""
-    import yourdfpy
     from lxml import etree
 
+    yourdfpy = without_trimesh("yourdfpy")
     try:
         with _silent("yourdfpy.urdf"):
             robot = yourdfpy.URDF.load(_well_formed(data), build_scene_graph=False, load_meshes=False).robot
