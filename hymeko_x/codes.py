@@ -291,7 +291,11 @@ BAD_TENSOR = Code(
 NO_VISUAL = Code("HX317", "a link cannot be seen", "The link has a mass and no visual shape.")
 NO_COLLISION = Code("HX318", "a link cannot be touched", "The link has a mass and no collision shape.")
 BAD_SIZE = Code("HX319", "a shape has an impossible size", "Sizes and scales are finite and not zero, and a robot is not a kilometre large.")
-
+COM_OUTSIDE = Code(
+    "HX320",
+    "a centre of mass lies far outside of its body",
+    "The centre of mass is farther from the box around the body's shapes than half of its diagonal. Often it was given in another frame or unit, or in that of the joint.",
+)
 # ---- HX4xx: dynamics -------------------------------------------------------------------------------------------------
 NO_DYNAMICS = Code(
     "HX400",

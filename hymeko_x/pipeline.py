@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from contextlib import suppress
 from importlib import import_module
 from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
@@ -17,7 +18,8 @@ from hymeko_x.compare.geometry import meshes_as_files, with_points_of_files, wit
 from hymeko_x.compare.leaves import leaves_again, leaves_between
 from hymeko_x.compare.ledger import losses_between
 from hymeko_x.diagnostics import Origin, Refusal, Report, Stopped, refuse
-from hymeko_x.ir.parts import Mesh, Texture
+from hymeko_x.ir.mechanism import LUMPED_KINDS
+from hymeko_x.ir.parts import Body, Mesh, Texture
 from hymeko_x.residue.align import align
 from hymeko_x.residue.delta import residue_between
 from hymeko_x.residue.realign import alignment_differences
@@ -159,6 +161,7 @@ def convert(
 def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
     """Rewritten, with its files placed, and printed."""
     since = len(report)
+    _check_is_robot(mechanism, format, report)
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
     complete = completed(with_stand_ins(mechanism, format, files, report), format, files, report)
     legal = legalize(complete, format.name, options, report)
@@ -170,6 +173,16 @@ def _printed(mechanism: Mechanism, format: Format, options: Options, files: File
         return printed
     report.note(codes.ASSETS_APART, f"'{other}' beside the output has another content and stays; files of this output go to '{folder}'")
     return _placed_and_printed(legal, format, replace(options, within=folder), files, Report(), place)
+
+
+def _check_is_robot(mechanism: Mechanism, format: Format, report: Report) -> None:
+    """Report a graph or a lumped system that goes to a format for robots: nothing of it would be there."""
+    kinds = Counter(key.kind for key in mechanism.graph.vertices if key.kind in LUMPED_KINDS)
+    if format.is_exact or not kinds or any(True for _ in mechanism.vertices(Body)):
+        return
+    found = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
+    message = f"'{mechanism.name}' has no bodies, and {format.name} can represent nothing of it: {found}"
+    report.error(codes.NOT_A_ROBOT, message, hint="hymeko represents graphs and lumped systems")
 
 
 def _placed_and_printed(legal: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:

@@ -88,6 +88,8 @@ ERRORS: Mapping[Code, str] = {
     codes.BAD_SIGNAL: "nothing tells what the input is",
     codes.NO_FORM: "there is nothing to print",
     codes.SIMULATION_FAILED: "there is no result from there on",
+    codes.NOTHING_TO_DRAW: "there is no picture",
+    codes.CANNOT_DRAW: "there is no picture",
     codes.BUG: "the result cannot be trusted",
 }
 """Why it ends the command."""
@@ -126,6 +128,7 @@ WARNINGS: Mapping[Code, str] = {
     codes.NO_VISUAL: "links without a visual shape are usual, and cannot be seen",
     codes.NO_COLLISION: "links without a collision shape are usual, and cannot be touched",
     codes.BAD_SIZE: "such a size is possible, and mostly a mistake of units",
+    codes.COM_OUTSIDE: "such a centre is possible, and mostly a mistake of frames or units",
     codes.NOT_UNIT: "the direction is what counts, and it is the same",
     codes.UNSTABLE_INPUT: "an unstable system is one, and its response is what it is",
     codes.EDIT_REWRITTEN: "the edit is there, and more lines of the text are new than it needed",

@@ -17,7 +17,7 @@ from hymeko_x import codes, formats
 from hymeko_x.assets.pack import package_hint
 from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir import parts
-from hymeko_x.ir.mechanism import WORLD, Id, JointView, Mechanism, ShapeView, suffix_of
+from hymeko_x.ir.mechanism import LUMPED_KINDS, WORLD, Id, JointView, Mechanism, ShapeView, suffix_of
 from hymeko_x.rewrite.inertia import principal_moments
 
 if TYPE_CHECKING:
@@ -35,11 +35,17 @@ _MOST_NAMED = 5  # roots named in a message
 
 
 class Profile(Enum):
-    """The purpose of the robot: computing poses, simulating it, or drawing it."""
+    """The purpose of the robot: computing poses, simulating it, or drawing it; or that nothing at all is missing."""
 
     KINEMATICS = "kinematics"
     SIMULATION = "simulation"
     DISPLAY = "display"
+    COMPLETE = "complete"
+    """The six checks of the paper: structure, links, joints, and in every link a visual, a collision shape and an inertial."""
+
+
+USUAL = (Profile.KINEMATICS, Profile.SIMULATION, Profile.DISPLAY)
+"""What is checked when no purpose is given."""
 
 
 class Declared(Struct, frozen=True):
@@ -50,7 +56,7 @@ class Declared(Struct, frozen=True):
 
 
 def validate(
-    mechanism: Mechanism, files: Files, report: Report, profiles: Iterable[Profile] = tuple(Profile), declared: Declared | None = None
+    mechanism: Mechanism, files: Files, report: Report, profiles: Iterable[Profile] = USUAL, declared: Declared | None = None
 ) -> None:
     """Append the faults of a robot to the report. ``files`` are those that its meshes may be in."""
     wanted = set(profiles)
@@ -60,12 +66,15 @@ def validate(
     for view in mechanism.joints.values():
         for dof in view.joint.dofs:
             _check_dof(found, view.id, dof)
-    if Profile.SIMULATION in wanted:
+    if Profile.COMPLETE in wanted:
+        _check_completeness(found)
+    if wanted & {Profile.SIMULATION, Profile.COMPLETE}:
         _check_inertia(found)
-        _check_presence(found, parts.Role.COLLISION)
-    if Profile.DISPLAY in wanted:
-        _check_presence(found, parts.Role.VISUAL)
-    if wanted & {Profile.SIMULATION, Profile.DISPLAY}:
+    if Profile.COMPLETE not in wanted:
+        roles = {Profile.SIMULATION: parts.Role.COLLISION, Profile.DISPLAY: parts.Role.VISUAL}
+        for role in (role for profile, role in roles.items() if profile in wanted):
+            _check_presence(found, role)
+    if wanted - {Profile.KINEMATICS}:
         for shape in mechanism.every_shape():
             _check_size(found, shape)
             if shape.mesh is not None:
@@ -95,7 +104,7 @@ def _check_structure(found: _Findings) -> None:
     """There are bodies, every joint has two ends, no body has two parents, and every body descends from a root."""
     mechanism, report = found.mechanism, found.report
     bodies = [key for key, _ in mechanism.vertices(parts.Body)]
-    if not bodies:
+    if not bodies and not any(key.kind in LUMPED_KINDS for key in mechanism.graph.vertices):  # those are graphs and networks
         report.error(codes.EMPTY_ROBOT, f"'{mechanism.name}' has no links", hint="a robot has at least one")
     for key, _, arcs in mechanism.edges(parts.Joint):
         if key not in mechanism.joints:
@@ -170,6 +179,7 @@ def _check_inertia(found: _Findings) -> None:
     for key, body in mechanism.vertices(parts.Body):
         if body.inertial is not None:
             _check_inertial(found, key, body.inertial)
+            _check_centre(found, key, body.inertial)
         view = mechanism.parent_joint.get(key)
         if view is not None and view.joint.dofs and _group_mass(mechanism, key) < _LEAST_MASS:
             message = f"{key} moves and has no mass, nor has anything that is fixed to it"
@@ -206,7 +216,36 @@ def _check_inertial(found: _Findings, key: Id, inertial: parts.Inertial) -> None
         found.error(codes.BAD_TENSOR, key, message, hint)
 
 
+def _check_centre(found: _Findings, key: Id, inertial: parts.Inertial) -> None:
+    """The centre of mass is in the box around the body's shapes, or not much farther away than this is large."""
+    low, high = [math.inf] * 3, [-math.inf] * 3
+    for view in found.mechanism.shapes.get(key, ()):
+        reach = math.hypot(*_sizes(view.shape.geometry))
+        if not reach or not math.isfinite(reach):
+            return  # meshes, planes and shapes without a size have no extent that is known here
+        low = [min(least, at - reach) for least, at in zip(low, view.pose.xyz, strict=True)]
+        high = [max(most, at + reach) for most, at in zip(high, view.pose.xyz, strict=True)]
+    away = math.hypot(*(max(least - at, at - most, 0.0) for least, at, most in zip(low, inertial.com, high, strict=True)))
+    if math.isfinite(away) and away > math.dist(low, high) / 2.0:
+        message = f"the centre of mass of {key} is {away:.3g} m away from its shapes"
+        found.warn(codes.COM_OUTSIDE, key, message, "is it in the frame of the link, and in metres?")
+
+
 # ---- shapes ----------------------------------------------------------------------------------------------------------
+
+
+def _check_completeness(found: _Findings) -> None:
+    """Every link has a visual shape, a collision shape, a mass and a tensor; a link that stands for the world needs none."""
+    mechanism = found.mechanism
+    for key, body in mechanism.vertices(parts.Body):
+        if body.inertial is None and key.name == WORLD.name and key not in mechanism.parent_joint:
+            continue
+        roles = {view.shape.role for view in mechanism.shapes.get(key, ())}
+        for code, role in ((codes.NO_VISUAL, parts.Role.VISUAL), (codes.NO_COLLISION, parts.Role.COLLISION)):
+            if not roles & {role, parts.Role.BOTH}:
+                found.error(code, key, f"{key} has no {role.value} shape")
+        if body.inertial is None or not body.inertial.mass or body.inertial.tensor is None:
+            found.error(codes.NO_INERTIA, key, f"{key} has no mass with an inertia tensor")
 
 
 def _check_presence(found: _Findings, role: parts.Role) -> None:

@@ -138,6 +138,7 @@ def _deliver(
     With ``measured`` the result is read back and its losses are listed; ``own`` is the source whose text the output may have.
     """
     path = "" if output.path == "-" else output.path
+    _check_applicable(output.format, chosen)
     layout = chosen.layout, chosen.nested, chosen.split
     options = Options(chosen.base, chosen.actuators, *layout, chosen.pure, chosen.lenient, Path(path).stem)
     delivery = Delivery(given.mechanism, output.format, options, given.source.files, _place(output, chosen.assets), path, own)
@@ -156,6 +157,14 @@ def _deliver(
     if getattr(chosen, "json", False):
         print(as_text(_document(given, output, report, result.losses)))
     return exits.FAIL_ON if failed else exits.DONE
+
+
+def _check_applicable(format: Format, chosen: argparse.Namespace) -> None:
+    """Refuse options that change nothing in this format. Raises: UsageError."""
+    for option in ("layout", "nested", "split"):
+        if getattr(chosen, option) and option not in format.layout_options:
+            takers = ", ".join(row.name for row in formats.FORMATS if option in row.layout_options)
+            raise UsageError(f"--{option} is for {takers}, and the output is {format.name}")
 
 
 def _place(output: Output, assets: Literal["copy", "reference"] | None) -> pipeline.Place:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from typing import TYPE_CHECKING
@@ -52,11 +53,28 @@ def guarded(verb: str, body: Callable[[], int]) -> int:
     except KeyboardInterrupt:
         return INTERRUPTED
     except Exception as error:
+        if isinstance(error, OSError) and error.errno in _FULL:
+            return _output_full(error)
         missing = _missing_library(error)
         if missing is None and os.environ.get("HYMEKO_X_DEBUG"):
             raise
         show([missing or _bug(error)])
         return BUG if missing is None else FAILED
+
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What the system says when standard output takes no more; files report it themselves."""
+
+
+def _output_full(error: OSError) -> int:
+    """Standard output took not all of the result. Python must not flush the rest into it at exit."""
+    from hymeko_x import codes
+    from hymeko_x.cli.terminal import show
+    from hymeko_x.diagnostics import Diagnostic, Severity
+
+    show([Diagnostic(codes.CANNOT_WRITE, Severity.ERROR, f"standard output cannot be written: {error.strerror}")])
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return FAILED
 
 
 def _reader_left() -> int:

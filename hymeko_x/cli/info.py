@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from hymeko_x.cli.inputs import Input
     from hymeko_x.ir.mechanism import Id, Mechanism
 
-PROFILES = ("kinematics", "simulation", "display")
+PROFILES = ("kinematics", "simulation", "display", "complete")
 COORDINATES = {parts.DofKind.BALL: 3, parts.DofKind.FREE: 6}
 """Degrees of freedom of the dofs that have more than one."""
 
@@ -107,7 +107,7 @@ def _text(value: object) -> str:
 def check_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `check`."""
     parser.add_argument("input", metavar="FILE", help="the robot to check; - is standard input")
-    parser.add_argument("--profile", action="append", choices=PROFILES, help="what it is for (repeatable; default: everything)")
+    parser.add_argument("--profile", action="append", choices=PROFILES, help="what it is for (repeatable; default: all but complete)")
     parser.add_argument("--links", type=_count, metavar="N", help="how many links there should be")
     parser.add_argument("--joints", type=_count, metavar="N", help="how many joints there should be")
     parser.add_argument(
@@ -119,11 +119,11 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_check(chosen: argparse.Namespace) -> int:
     """Print what is wrong; exit 3 when it is bad enough."""
-    from hymeko_x.validation import Declared, Profile, validate
+    from hymeko_x.validation import USUAL, Declared, Profile, validate
 
     report = Report()
     given = read_input(chosen.input, chosen, report, anyway=True)
-    profiles = [Profile(word) for word in chosen.profile or PROFILES]
+    profiles = [Profile(word) for word in chosen.profile] if chosen.profile else USUAL
     validate(given.mechanism, given.source.files, report, profiles, Declared(chosen.links, chosen.joints))
     failed = report.worst in ((Severity.ERROR,) if chosen.fail_on == "error" else (Severity.ERROR, Severity.WARNING))
     if chosen.json:

@@ -49,6 +49,10 @@ class Format(Struct, frozen=True):
     """The XML root elements of its files."""
     magic: tuple[bytes, ...] = ()
     """The first bytes of its files."""
+    beginning: bytes | None = None
+    """The pattern with which its texts begin, where they have neither a root element nor first bytes of their own (HyMeKo)."""
+    layout_options: frozenset[str] = frozenset()
+    """Those of the options ``layout``, ``nested`` and ``split`` that it takes when it is written."""
     is_exact: bool = False
     """Whether it represents every mechanism exactly, so that it carries no residue and keeps what only another format understands."""
     container_of: str = ""
@@ -145,6 +149,7 @@ HYMEKO = Format(
     "hymeko_x.frontends.hymeko",
     "hymeko_x.backends.hymeko",
     is_exact=True,
+    beginning=rb"(?:\s|//[^\n]*\n|#[^\n]*\n|/\*.*?\*/)*+(?:[^\W\d]|[`\"@\[\x80-\xff])[^{}=;$]{0,1000}\{",
     assets="reference",
     reference="hymeko_x.verify.readers.hymeko",
     tokens="hymeko_x.language.grammar:tokens",
@@ -179,6 +184,7 @@ XACRO = Format(
     "hymeko_x.backends.urdf.rules",
     expands_to="urdf",
     has_arguments=True,
+    layout_options=frozenset({"split"}),
     keeps_package_uris=True,
     boilerplate=frozenset({"urdf @xmlns:xacro"}),  # each file declares its own prefix, and no expansion does
     reference="hymeko_x.verify.readers.xacro",
@@ -228,6 +234,7 @@ USD = Format(
     "hymeko_x.backends.usd.rules",
     magic=(b"#usda", b"PXR-USDC"),
     has_variants=True,
+    layout_options=frozenset({"layout", "nested"}),
     pack="hymeko_x.backends.usd.files:pack_for_usd",
     reference="hymeko_x.verify.readers.usd",
     libraries=MappingProxyType({"pxr": "usd"}),
@@ -348,7 +355,7 @@ def of_output(path: str, name: str | None = None) -> Format:
 def of_input(name: str, data: bytes) -> Format:
     """The format of a file: by its suffix where that belongs to one format only, else by its content.
 
-    XML is recognised by its root element, other formats by their first bytes; remaining text is HyMeKo.
+    XML is recognised by its root element, other formats by their first bytes, and HyMeKo by a name that stands before a brace.
 
     Raises: Refusal HX003.
     """
@@ -364,10 +371,11 @@ def of_input(name: str, data: bytes) -> Format:
         raise refuse(codes.UNKNOWN_FORMAT, f"the root element <{root}> belongs to no format", Origin(name), hint=_root_hint())
     if owners:
         return owners[0]
-    if suffix not in ("", ".txt") or b"\0" in data[:4096]:
+    found = next((format for format in FORMATS if format.beginning and re.match(format.beginning, data, re.DOTALL)), None)
+    if found is None or suffix not in ("", ".txt") or b"\0" in data[:4096]:
         message = f"neither suffix nor content of '{name}' belongs to a format"
         raise refuse(codes.UNKNOWN_FORMAT, message, Origin(name), hint=_suffix_hint("--from"))
-    return OWN
+    return found
 
 
 def of_file(name: str) -> Format | None:

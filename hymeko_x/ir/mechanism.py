@@ -73,6 +73,8 @@ KINDS: Mapping[type, str] = MappingProxyType(
     }
 )
 """The kind of every part: an element's id has the kind of its part."""
+LUMPED_KINDS = frozenset({"spring", "damper", "mass", "port", "datum"})
+"""The kinds of vertices of graphs and of lumped systems, which are no robots."""
 
 RobotArc = Arc[Id, parts.Weight]
 RobotEdge = Edge[Id, parts.EdgePart, parts.Weight]

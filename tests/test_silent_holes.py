@@ -1,0 +1,145 @@
+"""What went wrong without a word, typed as a user types it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import hymeko_x as hx
+from hymeko_x import formats
+from hymeko_x.cli import exits, main
+from hymeko_x.diagnostics import Report, Severity, Stopped
+from hymeko_x.source import NoFiles
+from hymeko_x.validation import Profile, validate
+
+LUMPED = """quarter_vehicle {
+  spring { spring_constant = 50000.0 }
+  damping { damping_const = 1000.0 }
+  wheel { mass = 50.0 }
+  chassis {}
+  @suspension { + chassis, - wheel, + damping, - spring }
+}
+"""
+PENDULUM = """pendulum : robot {
+  base {}
+  rod { mass 1 shape { capsule 0.02 fromto [0 0 0 0 0 -1] } }
+  @hinge { + base - rod axis=Y }
+}
+"""
+GRAPH = "g : graph { a {} b {} @e { + a - b } }"
+
+
+def hymeko_x(command: str, folder: Path, stdin: bytes = b"") -> tuple[int, str]:
+    """The exit code of a command line of the shell, and everything that it prints."""
+    program = f'hymeko-x() {{ {sys.executable} -m hymeko_x "$@"; }}\n{command}'
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+    run = subprocess.run(["bash", "-c", program], cwd=folder, input=stdin, capture_output=True, env=environment, check=False)
+    return run.returncode, (run.stdout + run.stderr).decode()
+
+
+# ---- check -----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", [GRAPH, LUMPED])
+def test_check_passes_graphs_and_lumped_systems_that_are_in_order(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "a.hymeko"
+    path.write_text(text)
+    assert main(["check", str(path)]) == exits.DONE
+    assert capsys.readouterr().out == "nothing is wrong\n"
+
+
+def test_check_fails_on_a_file_that_is_cut_off(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "a.urdf"
+    path.write_text('<robot name="r"><link name="a"/><link name="b"')
+    assert main(["check", str(path)]) == exits.FAIL_ON
+    said = capsys.readouterr()
+    assert "error[HX010]: not well-formed" in said.err
+    assert "passed" not in said.out
+
+
+LINK = '<robot name="r"><link name="a">{}</link></robot>'
+SHAPES = {role: f'<{role}><geometry><sphere radius="1"/></geometry></{role}>' for role in ("visual", "collision")}
+INERTIAL = '<inertial><origin xyz="{}"/><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+WHOLE = {**SHAPES, "inertial": INERTIAL.format("0 0 0")}
+
+
+def found(text: str, *profiles: Profile) -> list[str]:
+    """The codes of what `check` finds, errors only."""
+    report = Report()
+    validate(hx.loads(text, "urdf"), NoFiles(), report, profiles)
+    return [diagnostic.code.id for diagnostic in report if diagnostic.severity is Severity.ERROR]
+
+
+@pytest.mark.parametrize(("missing", "code"), [("visual", "HX317"), ("collision", "HX318"), ("inertial", "HX314")])
+def test_complete_demands_visual_collision_and_inertial_of_every_link(missing: str, code: str) -> None:
+    assert found(LINK.format("".join(WHOLE.values())), Profile.COMPLETE) == []
+    rest = LINK.format("".join(text for name, text in WHOLE.items() if name != missing))
+    assert found(rest, Profile.COMPLETE) == [code]
+    assert found(rest, Profile.KINEMATICS, Profile.SIMULATION, Profile.DISPLAY) == []
+
+
+@pytest.mark.parametrize(("centre", "codes"), [("0 0 0", []), ("1 1 1", []), ("0 0 20", ["HX320"])])
+def test_check_warns_of_a_centre_of_mass_far_outside_of_the_shapes(centre: str, codes: list[str]) -> None:
+    report = Report()
+    text = LINK.format("".join(SHAPES.values()) + INERTIAL.format(centre))
+    validate(hx.loads(text, "urdf"), NoFiles(), report)
+    assert [diagnostic.code.id for diagnostic in report] == codes
+
+
+# ---- writing ---------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("target", [row.name for row in formats.FORMATS if row.backend and not row.is_exact])
+def test_a_lumped_system_that_cannot_be_written_says_so(target: str) -> None:
+    with pytest.raises(Stopped) as caught:
+        hx.dumps(hx.loads(LUMPED, "hymeko"), target)
+    assert str(caught.value) == (
+        f"error[HX065]: 'quarter_vehicle' has no bodies, and {target} can represent nothing of it: 1 spring, 1 damper, 1 mass, 1 port\n"
+        "  hint: hymeko represents graphs and lumped systems"
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("convert a.hymeko a.urdf --layout layered", "--layout is for usd, usdc, usdz, and the output is urdf"),
+        ("convert a.hymeko a.xml --nested", "--nested is for usd, usdc, usdz, and the output is mjcf"),
+        ("convert a.hymeko a.usda --split", "--split is for xacro, and the output is usd"),
+        ("convert a.hymeko a.urdf --arg a:=1", "--arg is for formats that take arguments, and a.hymeko is hymeko"),
+    ],
+)
+def test_options_that_change_nothing_are_refused(words: str, message: str, tmp_path: Path) -> None:
+    (tmp_path / "a.hymeko").write_text(PENDULUM)
+    assert hymeko_x(f"hymeko-x {words}", tmp_path) == (exits.USAGE, f"hymeko-x convert: {message}\n")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.hymeko"]
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="only Linux has a device that is always full")
+@pytest.mark.parametrize("command", ["import a.hymeko > /dev/full", "import a.hymeko -o /dev/full", "info a.hymeko > /dev/full"])
+def test_a_full_device_is_one_diagnostic(command: str, tmp_path: Path) -> None:
+    (tmp_path / "a.hymeko").write_text(PENDULUM)
+    code, said = hymeko_x(f"hymeko-x {command}", tmp_path)
+    assert code == exits.FAILED
+    assert [line for line in said.splitlines() if "error[HX002]" in line and "No space left on device" in line] == said.splitlines()
+
+
+# ---- reading ---------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", ["hello world", '{"links": []}', "name: arm\nlinks: 3\n", "a,b\n1,2\n", "", "#!/bin/sh\necho\n", "x = {}"])
+def test_unknown_content_is_no_format_and_never_parsed_as_hymeko(text: str, tmp_path: Path) -> None:
+    code, said = hymeko_x("hymeko-x info -", tmp_path, text.encode())
+    assert code == exits.FAILED
+    assert said.startswith("<stdin>: error[HX003]: neither suffix nor content of '<stdin>' belongs to a format\n")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [PENDULUM, LUMPED, GRAPH, f"// arm\n# of mine\n/* here */\n{GRAPH}", "[head]\ng {}", 'g import "x.hymeko"\n a {}', "`a b` : graph {}"],
+)
+def test_hymeko_text_needs_no_suffix(text: str) -> None:
+    assert formats.of_input("<stdin>", text.encode()) is formats.HYMEKO
