@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from hymeko_x.edits.splicing import Splices
     from hymeko_x.outline import Block, Field
 
+_AFTER_FIELD = (b" ", b"\t", b"\r", b"\n", b"/", b">")
 _WORD = re.compile(rb"[^\s,()\[\]]+")
 
 
@@ -47,10 +48,12 @@ def _change(splices: Splices, mine: Field, earlier: Field | None, field: Field, 
 def _add(splices: Splices, own: Block, after: Block, name: str, print: bytes) -> None:
     """Write a field that the author does not have behind the one that precedes it in the print."""
     names = [*after.fields]
-    behind = next((own.fields[other] for other in reversed(names[: names.index(name)]) if other in own.fields), None)
+    before = (own.fields[other] for other in reversed(names[: names.index(name)]) if other in own.fields)
+    behind = next((field for field in before if field.start >= own.first), None)
     text = print[after.fields[name].start : after.fields[name].end]
     if behind is None:
-        splices.put(own.first, own.first, text)
+        following = splices.data[own.first : own.first + 1]
+        splices.put(own.first, own.first, b" " + text.strip() + (b"" if following in _AFTER_FIELD else b" "))
         return
     blanks = splices.data[behind.start : behind.end]
     blanks = blanks[: len(blanks) - len(blanks.lstrip())]

@@ -70,8 +70,30 @@ class _Matching:
             self._match_by_children(first)
             for key in _KEYS:
                 self._match(first, second, lambda block, key=key: key(self._contents[block]))  # type: ignore[misc]
-            self._match(first, second, lambda block: block.tag)
+            self._match_in_order(first, second)
             self.descend()
+
+    def _match_in_order(self, first: Block, second: Block) -> None:
+        """Match what has the same tag and, if it has another name, something in common."""
+        self._match(first, second, lambda block: None if block.name else block.tag)
+        waiting: dict[str, list[Block]] = defaultdict(list)
+        for other in reversed(second.children):
+            if other not in self.taken:
+                waiting[other.tag].append(other)
+        for block in first.children:
+            row = waiting.get(block.tag)
+            if block not in self.pairs and row and self._are_alike(block, row[-1]):
+                self.pair(block, row.pop())
+
+    def _are_alike(self, block: Block, other: Block) -> bool:
+        """Whether two blocks have no two names, or a field or an inner block in common."""
+        if not (block.name and other.name):
+            return True
+        fields = {(name, value_of(field.text)) for name, field in block.fields.items()}
+        if any((name, value_of(field.text)) in fields for name, field in other.fields.items()):
+            return True
+        inner = {self._contents[child].named for child in block.children}
+        return any(self._contents[child].named in inner for child in other.children)
 
     def _match_by_children(self, first: Block) -> None:
         """Match what has a child that is matched already, in whichever of several blocks of one tag it stands."""

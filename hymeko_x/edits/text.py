@@ -94,7 +94,7 @@ class _Attempt:
         self.own: Outline = formats.loaded(format.outline or "")(source, Report())
         package = printed(after, printing, report)
         self.whole, self.beside = package.main, package.files
-        sources = [Source(source.name, text, source.files) for text in (printed(before, printing, Report()).main, self.whole)]
+        sources = [Source(source.name, printed(robot, printing, Report(), flat=True).main, source.files) for robot in (before, after)]
         self.before, self.after = (outline(print, Report()) for print in sources)
         image, self.goal = (pipeline.reader(printing)(print, Report()).mechanism for print in sources)
         self.unprinted = {(difference.element, difference.field) for difference in diff(before, image, TOLERANCE)}
@@ -143,7 +143,8 @@ class _Attempt:
         return [origin.line for origin in origins if origin is not None and origin.line is not None]
 
 
-def printed(mechanism: Mechanism, format: Format, report: Report) -> Package:
-    """The text of a mechanism in a format, which refers to every file where it is."""
+def printed(mechanism: Mechanism, format: Format, report: Report, *, flat: bool = False) -> Package:
+    """The text of a mechanism in a format, which refers to every file where it is; ``flat`` as the format's row has it."""
     legal = legalize(mechanism, format.name, Options(), report)
-    return pipeline.writer(format)(legal, Options(), report)
+    write: pipeline.Writer = formats.loaded(format.flat) if flat and format.flat else pipeline.writer(format)
+    return write(legal, Options(), report)

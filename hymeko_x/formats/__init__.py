@@ -61,6 +61,8 @@ class Format(Struct, frozen=True):
     """The name of the format that its files expand to (xacro)."""
     outline: str | None = None
     """The function ``(source, report) -> outline`` that finds where everything stands in its text."""
+    flat: str | None = None
+    """The function that writes as ``backend`` does, without what depends on several elements; None: ``write`` itself is like that."""
     has_arguments: bool = False
     """Whether the user can set values in it (xacro)."""
     has_variants: bool = False
@@ -148,6 +150,8 @@ HYMEKO = Format(
     (".hymeko", ".himeko"),
     "hymeko_x.frontends.hymeko",
     "hymeko_x.backends.hymeko",
+    outline="hymeko_x.frontends.hymeko.outline:outline",
+    flat="hymeko_x.backends.hymeko:write_flat",
     is_exact=True,
     beginning=rb"(?:\s|//[^\n]*\n|#[^\n]*\n|/\*.*?\*/)*+(?:[^\W\d]|[`\"@\[\x80-\xff])[^{}=;$]{0,1000}\{",
     assets="reference",

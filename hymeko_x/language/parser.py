@@ -50,7 +50,7 @@ def parse(text: str, name: str = "<text>") -> Document:
     lines = Lines(text)
     gaps: list[Gap] = []
     try:
-        document = _machine().run(text, _TERMINALS, {**_ACTIONS, **_item_actions(lines.place)}, gaps)
+        document = machine().run(text, _TERMINALS, {**_ACTIONS, **_item_actions(lines.place)}, gaps)
     except TooDeep as error:
         line, column = lines.place(error.offset)
         raise refuse(codes.TOO_LARGE, f"brackets are nested more than {MAX_DEPTH} levels deep", Origin(name, line, column)) from error
@@ -240,7 +240,8 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
 
 
 @cache
-def _machine() -> Machine:
+def machine() -> Machine:
+    """The machine; a text is also read with other actions for the same rules (:mod:`hymeko_x.language.outline`)."""
     return Machine(frozenset({*_ACTIONS, *_item_actions(Lines("").place)}))
 
 

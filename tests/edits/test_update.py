@@ -205,3 +205,42 @@ def test_another_output_leaves_the_original_alone(tmp_path: Path) -> None:
     there.write_text(there.read_text().replace('mass="1.5"', 'mass="2.25"'))
     hx.update(original, there, out)
     assert (original.read_text(), out.read_text()) == (ARM, ARM.replace('"1.50"/> <!', '"2.25"/> <!'))
+
+
+HYMEKO = """// An arm of one joint.
+arm : robot {
+  heavy(m) : link { mass ${m} com [0 0 0.2] }
+  base { mass 2.0 inertia [0.01 0.01 0.01] shape { cylinder [0.1 0.2] } }   // the base
+  link : heavy(m=1) { inertia [0.02 0.02 0.001] shape { box [5cm 5cm 40cm] at [0 0 0.2] } }
+  @shoulder : revolute { [0 0 0.10] + base - link axis=Y limit [-90 90] effort 20 velocity 120deg/s }
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("edit", "old", "new"),
+    [
+        (('mass value="2"', 'mass value="2.5"'), "base { mass 2.0 ", "base { mass 2.5 "),
+        (('mass value="1"', 'mass value="1.5"'), "link : heavy(m=1) { inertia", "link : heavy(m=1) { mass 1.5 inertia"),
+        (('xyz="0 0 0.1"', 'xyz="0 0.02 0.1"'), "[0 0 0.10] + base", "[0 0.02 0.10] + base"),
+        (('upper="[^"]*"', 'upper="1.2"'), "limit [-90 90]", "limit [-90 1.2rad]"),
+        (('joint name="shoulder"', 'joint name="hip"'), "@shoulder", "@hip"),
+    ],
+)
+def test_hymeko_keeps_its_author_s_text(edit: tuple[str, str], old: str, new: str, tmp_path: Path) -> None:
+    """Of an instance of a template its own block gets the value."""
+    assert edited(HYMEKO, "urdf", edit, tmp_path, "hymeko") == HYMEKO.replace(old, new)
+
+
+def test_what_a_text_cannot_hold_is_printed_anew_and_reported(tmp_path: Path) -> None:
+    text = "r : robot {\n  pair() : assembly {\n    a { mass 1 inertia [1 1 1] }\n  }\n  // kept as long as possible\n  left : pair {}\n}\n"
+    original, there = tmp_path / "r.hymeko", tmp_path / "r.urdf"
+    original.write_text(text)
+    hx.convert(original, there)
+    there.write_text(there.read_text().replace('mass value="1"', 'mass value="3"'))
+    found = hx.update(original, there)
+    assert [str(diagnostic) for diagnostic in found.report] == [
+        f"warning[HX108]: the edits could not be placed in the text of '{original}', which is printed anew as a whole"
+    ]
+    assert list(map(str, found.edits)) == ["body 'left_a' inertial.mass: 1 -> 3"]
+    assert list(map(str, hx.diff(hx.load(there), hx.load(original)))) == []

@@ -16,7 +16,7 @@ from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.parts import attached_arcs, part_items
 from hymeko_x.backends.hymeko.sheet import HymekoSheet, name_of, written_items
 from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
-from hymeko_x.backends.hymeko.values import shortest_angles
+from hymeko_x.backends.hymeko.values import ExplicitAngles, shortest_angles
 from hymeko_x.formats.hymeko import AXES, ROOT_NAME
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
@@ -45,21 +45,26 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     return Package(print_document(document(mechanism)).encode("utf-8"))
 
 
-def document(mechanism: Mechanism) -> Document:
-    """The syntax tree of a mechanism."""
+def write_flat(mechanism: Mechanism, options: Options, report: Report) -> Package:
+    """The text in which every element stands by itself and every angle has its unit: what two mechanisms share looks the same in both."""
+    return Package(print_document(document(mechanism, flat=True)).encode("utf-8"))
+
+
+def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
+    """The syntax tree of a mechanism; ``flat`` as :func:`write_flat`."""
     plain = _is_plain(mechanism)
     inline = inline_assets(mechanism)
     sheet = HymekoSheet(
         mechanism,
-        files_prefix(mechanism),
+        "" if flat else files_prefix(mechanism),
         inline,
         given_names(mechanism, inline),
         mimic_arcs(mechanism),
         attached_arcs(mechanism),
-        shortest_angles(mechanism),
+        ExplicitAngles() if flat else shortest_angles(mechanism),
     )
     items = _settings(sheet, plain)
-    items += [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})] if plain else _grouped(sheet)
+    items += [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})] if plain or flat else _grouped(sheet)
     root = mechanism.notation(ROOT, ROOT_NAME)
     name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""

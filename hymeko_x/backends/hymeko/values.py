@@ -50,6 +50,21 @@ class Angles(Struct, frozen=True):
         return (*numbers[:3], self.value(numbers[3])) if kind == "axisangle" else numbers
 
 
+_PLAIN_DIGITS = 9
+
+
+class ExplicitAngles(Angles, frozen=True):
+    """Every angle with its unit: degrees where they are a short number, else radians."""
+
+    degrees: bool = True
+
+    def value(self, radians: float) -> Value:
+        """An angle with its unit."""
+        plain = in_degrees(radians)
+        is_short = plain is not None and len(number_text(plain)) <= _PLAIN_DIGITS
+        return Quantity(plain, "deg") if plain is not None and is_short else Quantity(radians, "rad")
+
+
 def value_of(value: object) -> Value:
     """A part's value as a value of the language."""
     if isinstance(value, bool):
