@@ -40,7 +40,7 @@ class Delivery(Struct, frozen=True):
 
         Without ``measured`` it is not read back. Raises: as :func:`hymeko_x.pipeline.convert`.
         """
-        if self.own is not None and self.path and replace(self.options, beside="") == Options():
+        if self.own is not None and self.path and replace(self.options, beside="", lenient=False) == Options():
             package = copied(self.own, self.format, self.mechanism, self.place, report)
             if package is not None and self._in_the_way(package, f"{safe_name(self.options.beside)}/") is None:
                 return Result(self.mechanism, package, report, ())

@@ -46,7 +46,9 @@ class Conversion:
 
     def __init__(self, mechanism: Mechanism, source: Source, edited: Source, format: Format, home: Format, report: Report) -> None:
         self.mechanism, self.source, self.format, self.report = mechanism, source, format, report
+        since = len(report)
         self.edited = pipeline.reader(format)(edited, report).mechanism
+        pipeline.stop_on_errors(report, since, lenient=False)
         self.files, self.home = edited.files, home
         self.folder = os.path.dirname(edited.name) or "."
 

@@ -28,7 +28,7 @@ WHEEL = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
 </robot>
 """
 HYMEKO = "// as I like it\nr : robot {\n  base { mass 2.50 }   link { }\n  @j : revolute { + base - link  axis=Y }\n}\n"
-USD = '#usda 1.0\n(\n    upAxis = "Z"\n)\n\ndef Xform "r" # the robot\n{\n}\n'
+USD = '#usda 1.0\n(\n    upAxis = "Z"\n)\n\ndef Xform "r" ( # the robot\n    prepend apiSchemas = ["PhysicsRigidBodyAPI"]\n)\n{\n}\n'
 TEXTS = {"urdf": ARM, "mjcf": MJCF, "xacro": XACRO, "hymeko": HYMEKO, "usd": USD}
 SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "usd": ".usda", "hymeko": ".hymeko", "xacro": ".xacro"}
 
