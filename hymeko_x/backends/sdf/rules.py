@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.backends.sdf.gazebo import obey_gazebo_fragments
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge, pose_weight
@@ -179,6 +180,7 @@ RULES: tuple[Rule, ...] = (
     unless_from_sdf(give_every_body_mass),
     prefer_own_colours,
     split_shared_shapes,
+    unless_from_sdf(obey_gazebo_fragments),
     part_meshes_by_looks,
     unless_from_sdf(make_names_unique_in_models),
     make_names_usable,  # once more, for what the rules have added

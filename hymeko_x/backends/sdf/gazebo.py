@@ -1,0 +1,120 @@
+"""`<gazebo>` fragments of robots from ROS: what they say of links, joints and the model in the words of SDF itself.
+
+Source: libsdformat's reader of such files. Fixed joints always stay, so what asks for that (``preserveFixedJoint``,
+``disableFixedJointLumping``) is obeyed by nothing being lumped.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+from xml.parsers.expat import ExpatError
+
+from msgspec.structs import replace
+
+from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf.values import NUMBER, BadText
+from hymeko_x.ir.mechanism import ROOT, Extra, Id
+from hymeko_x.ir.parts import Role
+from hymeko_x.xml.parse import parse_text
+from hymeko_x.xml.printing import markup
+from hymeko_x.xml.text import escaped
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+    from hymeko_x.rewrite.context import Context
+    from hymeko_x.xml.tree import Node
+
+_START = "<gazebo"
+_OF_LINK: Mapping[str, str] = MappingProxyType({"selfCollide": "self_collide", "gravity": "gravity"})
+_OF_COLLISION: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "mu2": ("surface/friction/ode", "mu2"),
+        "fdir1": ("surface/friction/ode", "fdir1"),
+        "kp": ("surface/contact/ode", "kp"),
+        "kd": ("surface/contact/ode", "kd"),
+        "minDepth": ("surface/contact/ode", "min_depth"),
+        "maxVel": ("surface/contact/ode", "max_vel"),
+        "maxContacts": ("", "max_contacts"),
+    }
+)
+_OF_JOINT: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "provideFeedback": ("physics", "provide_feedback"),
+        "implicitSpringDamper": ("physics/ode", "implicit_spring_damper"),
+        "cfmDamping": ("physics/ode", "cfm_damping"),
+        "fudgeFactor": ("physics/ode", "fudge_factor"),
+    }
+)
+"""The path and the name in SDF of what a fragment calls otherwise."""
+_OBEYED = ("preserveFixedJoint", "disableFixedJointLumping")
+_MATERIALS = "file://media/materials/scripts/gazebo.material"
+
+
+def obey_gazebo_fragments(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """What <gazebo> elements say becomes what SDF says; the elements themselves belong to the format that they came from."""
+    fragments = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.text.startswith(_START) and extra.format != words.FORMAT]
+    if not fragments:
+        return mechanism
+    added: dict[Id, list[Extra]] = {}
+    edges: dict[Id, RobotEdge] = {}
+    for text in fragments:
+        try:
+            node = parse_text(text)
+        except ExpatError:
+            continue
+        for key, extra in _extras_of(node, mechanism, edges):
+            if extra not in (*mechanism.extras.get(key, ()), *added.get(key, ())):
+                added.setdefault(key, []).append(extra)
+    extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), *found) for key, found in added.items()}}
+    return replace(mechanism, graph=mechanism.graph.replace(edges=edges) if edges else mechanism.graph, extras=extras)
+
+
+def _extras_of(node: Node, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> Iterator[tuple[Id, Extra]]:
+    reference = node.attributes.get("reference")
+    body, joint = Id("body", reference or ""), Id("joint", reference or "")
+    for child in node.children:
+        if not child.is_element or child.tag in _OBEYED:
+            continue
+        if not reference:
+            yield ROOT, Extra(words.FORMAT, "model", markup(child))
+        elif body in mechanism.graph.vertices:
+            yield from _of_link(child, body, mechanism, edges)
+        elif joint in mechanism.graph.edges and child.tag in _OF_JOINT:
+            yield joint, _extra(*_OF_JOINT[child.tag], child)
+        elif joint in mechanism.graph.edges and child.tag == "sensor":
+            yield joint, Extra(words.FORMAT, "", markup(child))
+
+
+def _of_link(child: Node, body: Id, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> Iterator[tuple[Id, Extra]]:
+    shapes = mechanism.shapes.get(body, ())
+    if child.tag in _OF_LINK:
+        yield body, _extra("", _OF_LINK[child.tag], child)
+    elif child.tag == "turnGravityOff":
+        yield body, Extra(words.FORMAT, "", f"<gravity>{'false' if _text(child) in ('true', '1') else 'true'}</gravity>")
+    elif child.tag in ("sensor", "projector"):
+        yield body, Extra(words.FORMAT, "", markup(child))
+    elif child.tag in _OF_COLLISION:
+        yield from ((view.id, _extra(*_OF_COLLISION[child.tag], child)) for view in shapes if view.shape.role is Role.COLLISION)
+    elif child.tag == "material" and _text(child):
+        script = f"<script><uri>{_MATERIALS}</uri><name>{escaped(_text(child))}</name></script>"
+        yield from ((view.id, Extra(words.FORMAT, "material", script)) for view in shapes if view.shape.role is Role.VISUAL)
+    elif child.tag == "mu1":
+        try:
+            friction = (NUMBER.read(_text(child)),)
+        except BadText:
+            return
+        for view in shapes:
+            edge = mechanism.graph.edges[view.id]
+            if view.shape.role is Role.COLLISION:
+                edges[view.id] = replace(edge, data=replace(view.shape, friction=friction))
+
+
+def _text(node: Node) -> str:
+    return " ".join((node.text or "").split())
+
+
+def _extra(path: str, tag: str, child: Node) -> Extra:
+    return Extra(words.FORMAT, path, f"<{tag}>{escaped(_text(child))}</{tag}>")
