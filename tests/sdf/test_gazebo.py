@@ -1,4 +1,3 @@
-# ruff: noqa: E501 - fragments as they stand
 """<gazebo> fragments of URDF files are obeyed in SDF."""
 
 from __future__ import annotations

@@ -86,7 +86,7 @@ class SdfBuilder(Builder):
             self.error(codes.BAD_NAME, node, f"a <{node.tag}> has no name; it is called '{node.tag}'")
             name = node.tag
         elif words.SCOPE in name or (name.startswith("__") and name.endswith("__")) or (name == words.WORLD_FRAME and kind != "shape"):
-            self.error(codes.BAD_NAME, node, f"the name '{name}' of a <{node.tag}> is reserved in SDF; it is kept")
+            self.warn(codes.BAD_NAME, node, f"the name '{name}' of a <{node.tag}> is reserved in SDF; it is kept")
         wanted = name if scope == words.WORLD_SCOPE else words.scoped(scope, name)
         node.owner = key = self.fresh(kind, wanted, node.origin)
         if key.name != wanted:

@@ -53,7 +53,7 @@ def _in_scope(node: Node, around: Model | None, builder: SdfBuilder) -> Model:
     name = node.take("name") or "model"
     free = free_name(outer + name, lambda name: name + words.SCOPE + words.MODEL_FRAME in builder.named)
     if free != outer + name:
-        builder.error(codes.DUPLICATE_NAME, node, f"there are two models called '{name}'; this one is '{free}'")
+        builder.warn(codes.DUPLICATE_NAME, node, f"there are two models called '{name}'; this one is '{free}'")
     scope = free + words.SCOPE
     node.owner = frame = builder.fresh("frame", scope + words.MODEL_FRAME, node.origin)
     if free != outer + name:

@@ -70,8 +70,8 @@ def _floor(pair: Pair, inertia: Inertia) -> float:
 
 
 def _gets_least_mass(pair: Pair) -> bool:
-    """Whether the second robot's engine refuses inertias that the first robot's format allows."""
-    return pair.b.row.requires_mass and not pair.a.row.requires_mass
+    """Whether one of two formats has an engine that refuses inertias: a converter then gives the least, or had got it before."""
+    return pair.a.row is not pair.b.row and (pair.a.row.requires_mass or pair.b.row.requires_mass)
 
 
 def repaired_bodies(pair: Pair) -> list[tuple[int, int]]:
