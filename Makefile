@@ -13,7 +13,7 @@ help:
 	@echo "make test-full  the same with the tests that take minutes: every robot, every size"
 	@echo "make test-format FORMAT=urdf  what belongs to one format, without real robots"
 	@echo "make coverage  which lines no test runs; writes docs/coverage.md"
-	@echo "make bench  speed as ratios against yardsticks timed in the same run, other people's programs among them; writes README's table"
+	@echo "make bench  speed as ratios against yardsticks timed in the same run, other people's programs among them; writes docs/speed.md"
 	@echo "make peers  other people's programs, each into .peers/, and the tests that compare with them"
 	@echo "make fuzz   damage texts of every format and read them; PROFILE=ci (minutes) or nightly (hours)"
 	@echo "make corpus every robot of the catalogue through every format, verified; renews corpus/results and its pages"

@@ -1,4 +1,4 @@
-"""The comparison with other programs: the README says what the results say, and nobody is left out without a reason."""
+"""The comparison with other programs: the page has what the results have, and no program is left out without a reason."""
 
 from __future__ import annotations
 
@@ -20,8 +20,8 @@ ROOT = Path(__file__).parents[1]
 BLOCK = "<!-- speed: written by `make bench` -->\n\n{}\n\n<!-- end of speed -->"
 
 
-def test_the_readme_says_what_the_results_say() -> None:
-    text = (ROOT / "README.md").read_text("utf-8")
+def test_the_page_has_the_figures_of_the_results() -> None:
+    text = (ROOT / "docs/speed.md").read_text("utf-8")
     assert page(text, from_csv(RESULTS.read_text("utf-8"))) == text
 
 

@@ -1,7 +1,7 @@
 """python -m benchmarks.contest [--links N ...] [--no-real] [--ways TEXT] [--limit SECONDS] [--table]     (after `python -m peers`; POSIX)
 
 On each way all programs take turns at one robot; the rows of that robot replace those of the run before in `benchmarks/results`,
-and the README's table is written from them. Times are processor times; the ratios mean something, the seconds belong to the machine.
+and the table of docs/speed.md is written from them. Times are processor times; the ratios mean something, the seconds belong to the machine.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from benchmarks.contest.inputs import Input
     from benchmarks.contest.rows import Row
 
-README = Path(__file__).parents[2] / "README.md"
+PAGE = Path(__file__).parents[2] / "docs" / "speed.md"
 LINKS = (2, 100, 1_000, 10_000, 100_000)
 
 
@@ -39,7 +39,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as folder:
         if not said.table:
             _measure(_robots(Path(folder), sorted(said.links), said.real), Path(folder), said.ways, said.limit)
-    README.write_text(page(README.read_text("utf-8"), from_csv(RESULTS.read_text("utf-8"))), "utf-8")
+    PAGE.write_text(page(PAGE.read_text("utf-8"), from_csv(RESULTS.read_text("utf-8"))), "utf-8")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""The README's table: how many times as long as hymeko-x everybody takes."""
+"""The table of docs/speed.md: how many times as long as hymeko-x everybody takes."""
 
 from __future__ import annotations
 
