@@ -14,7 +14,7 @@ from hymeko_x.verify.mesh_files import read_obj, read_stl
 from hymeko_x.verify.model import MeshFile, Surface
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
     from pathlib import Path
 
     from hymeko_x.verify.model import Array, Index, Shape
@@ -62,30 +62,30 @@ class Meshes:
         if isinstance(found, str):
             return found
         if mesh not in self._scaled:
-            self._scaled[mesh] = replace(found, vertices=found.vertices * np.asarray(mesh.scale))
+            scale = np.asarray(mesh.scale)
+            other = None if found.other is None else (found.other[0] * scale, found.other[1])
+            self._scaled[mesh] = replace(found, vertices=found.vertices * scale, other=other)
         return self._scaled[mesh]
 
     def why_none(self, shapes: Sequence[Shape]) -> str:
         """Why none of these meshes can be read; "" when one can: an engine that needs the files leaves such meshes out."""
+        if not self._wanted:
+            return ""
         surfaces = [self.surface(shape.mesh) for shape in shapes]
         reasons = [surface for surface in surfaces if isinstance(surface, str)]
         return reasons[0] if len(reasons) == len(surfaces) else ""
 
     def together(self, shapes: Sequence[Shape]) -> Surface | str:
         """All triangles of several mesh shapes in the body's frame; or the reason why there are none."""
-        vertices: list[Array] = []
-        faces: list[Index] = []
-        count = 0
-        polygons = False
-        for shape in shapes:
-            surface = self.surface(shape.mesh)
-            if isinstance(surface, str):
-                return surface
-            vertices.append(surface.vertices @ shape.pose[:3, :3].T + shape.pose[:3, 3])
-            faces.append(surface.faces + count)
-            count += len(surface.vertices)
-            polygons = polygons or surface.polygons
-        return Surface(np.concatenate(vertices), np.concatenate(faces), polygons)
+        surfaces = [(shape, self.surface(shape.mesh)) for shape in shapes]
+        found = [(surface, shape.pose) for shape, surface in surfaces if isinstance(surface, Surface)]
+        if len(found) < len(surfaces):
+            return next(surface for _, surface in surfaces if isinstance(surface, str))
+        own = _placed([(surface.vertices, surface.faces, place) for surface, place in found])
+        other = None
+        if any(surface.other is not None for surface, _ in found):
+            other = _placed([(*(surface.other or (surface.vertices, surface.faces)), place) for surface, place in found])
+        return Surface(*own, any(surface.polygons for surface, _ in found), other)
 
     def _read(self, path: Path) -> Surface | str:
         """The triangles of a file, which several names may have: a copy beside the result is the file that was copied."""
@@ -96,6 +96,13 @@ class Meshes:
         if digest not in self._contents:
             self._contents[digest] = _load(path)
         return self._contents[digest]
+
+
+def _placed(tables: Sequence[tuple[Array, Index, Array]]) -> tuple[Array, Index]:
+    """Points and triangles of several meshes, each at its pose, as one."""
+    starts = np.cumsum([0, *(len(vertices) for vertices, _, _ in tables)])
+    vertices = [vertices @ place[:3, :3].T + place[:3, 3] for vertices, _, place in tables]
+    return np.concatenate(vertices), np.concatenate([faces + start for (_, faces, _), start in zip(tables, starts, strict=False)])
 
 
 def _digest(path: Path) -> bytes:
@@ -126,7 +133,19 @@ def _load_by_trimesh(path: Path) -> Surface | str:
         return f"the mesh '{path.name}' {_EMPTY}"
     polygons = path.suffix.lower() == ".obj" and _POLYGON.search(path.read_bytes()) is not None
     points = np.asarray(whole.vertices, dtype=float) * (_metres(loaded) if path.suffix.lower() == ".dae" else 1.0)
-    return Surface(points, np.asarray(whole.faces, dtype=np.intp), polygons)
+    return Surface(points, np.asarray(whole.faces, dtype=np.intp), polygons, _split_as_mujoco(path) if polygons else None)
+
+
+def _split_as_mujoco(path: Path) -> tuple[Array, Index] | None:
+    """An OBJ file with its polygons split as MuJoCo splits them; None where it does not read the file."""
+    from hymeko_x.meshes.submesh import Unreadable
+    from hymeko_x.meshes.tables import read_mesh
+
+    try:
+        part = read_mesh(path.read_bytes(), ".obj")
+    except Unreadable:
+        return None
+    return None if part is None else (part.points, np.asarray(part.faces, dtype=np.intp))
 
 
 def _metres(scene: Any) -> float:
@@ -167,11 +186,9 @@ def mesh_distance(left: Sequence[Shape], right: Sequence[Shape], meshes: Meshes)
         in_order = _in_order(ours, theirs) / extent
         if in_order <= ALLOWED:  # the same triangles: box, area and volume cannot differ by more
             return in_order, "the points of the meshes", ""
-    box_a, area_a, volume_a = measures(ours.vertices, ours.faces)
-    box_b, area_b, volume_b = measures(theirs.vertices, theirs.faces)
+    box_a, box_b = (np.stack([points.min(axis=0), points.max(axis=0)]) for points in (points_a, points_b))
     split = _POLYGONS if ours.polygons or theirs.polygons else 0.0
-    area = abs(area_a - area_b) / max(area_a, extent * extent * _THIN)
-    volume = abs(abs(volume_a) - abs(volume_b)) / extent**3
+    area, volume = min(_difference(a, b, extent) for a in _splits(ours) for b in _splits(theirs))
     candidates = [
         (float(np.abs(box_a - box_b).max()) / extent, "the bounding box"),
         (_SURFACE * area if area > split else 0.0, "the area"),
@@ -187,6 +204,19 @@ def _in_order(ours: Surface, theirs: Surface) -> float:
     same = len(ours.vertices) == len(theirs.vertices) and np.array_equal(ours.faces, theirs.faces)
     a, b = (surface.vertices if same else surface.vertices[surface.faces].reshape(-1, 3) for surface in (ours, theirs))
     return float(np.linalg.norm(a - b, axis=1).max())
+
+
+def _splits(surface: Surface) -> Iterator[tuple[float, float]]:
+    """Area and volume of a surface, and those with its polygons split as MuJoCo does."""
+    yield measures(surface.vertices, surface.faces)[1:]
+    if surface.other is not None:
+        yield measures(*surface.other)[1:]
+
+
+def _difference(ours: tuple[float, float], theirs: tuple[float, float], extent: float) -> tuple[float, float]:
+    """How far areas and volumes differ, relative to area and extent."""
+    (area_a, volume_a), (area_b, volume_b) = ours, theirs
+    return abs(area_a - area_b) / max(area_a, extent * extent * _THIN), abs(abs(volume_a) - abs(volume_b)) / extent**3
 
 
 def _points_distance(a: Array, b: Array) -> float:

@@ -138,12 +138,14 @@ class Role(Enum):
 class Surface(Struct, frozen=True, eq=False):
     """The triangles of a mesh in its own frame after scaling: ``vertices`` (n, 3) in m and ``faces`` (m, 3).
 
-    ``polygons``: whether its file has larger faces, which each reader splits in its own way.
+    ``polygons``: whether its file has larger faces, which each reader splits in its own way. ``other``: the same file with these split as
+    MuJoCo splits them, (points, triangles).
     """
 
     vertices: Array
     faces: Index
     polygons: bool = False
+    other: tuple[Array, Index] | None = None
 
 
 class MeshFile(Struct, frozen=True):

@@ -57,7 +57,8 @@ def check_inertia(pair: Pair) -> Iterator[Check]:
             distance = float(np.linalg.norm(centre - other_centre))
             centres.add(distance, max(CENTRE, relative * float(np.abs(centre).max())), label, centre, other_centre)
         rounding = _DUST + _SPREAD * abs(mass) * float(centre @ centre)
-        allowed = max(relative * float(np.abs(tensor).max()), floor, rounding)
+        lever = abs(mass) * max(float(centre @ centre), float(other_centre @ other_centre))  # what a shift of the parts by rounding changes
+        allowed = max(relative * max(float(np.abs(tensor).max()), lever), floor, rounding)
         tensors.add(float(np.abs(tensor - other_tensor).max()), allowed, label, tensor, other_tensor)
     yield from (*masses.checks(), *centres.checks(), *tensors.checks())
 

@@ -45,6 +45,8 @@ class _Result(Struct, frozen=True):
     at: str = ""
     mesh_at: str = ""
     missing: str = ""
+    lost: tuple[str, ...] = ()
+    """Meshes of the first robot that its reader cannot load, and that the second one does not have."""
 
     @property
     def misfit(self) -> tuple[int, float, float]:
@@ -84,6 +86,8 @@ def _summed_up(pair: Pair, word: str, results: Sequence[tuple[int, _Result]]) ->
     yield from solids.checks()
     if any(result.meshes for _, result in results) or any(shape.kind == "mesh" for i, _ in results for shape in pair.a.bodies[i].shapes):
         yield from meshes.checks()
+    lost = [f"{label} of {pair.a.body_label(i)}" for i, result in results for label in result.lost]
+    pair.add_gap(pair.b, f"{word} meshes that cannot be loaded", lost)
     missing = [result.missing for _, result in results if result.missing]
     if missing:
         pair.notes.append(f"{word} meshes of {len(missing)} bodies: {missing[0]}")
@@ -198,7 +202,8 @@ def _fit(pair: Pair, left: Sequence[Shape], right: Sequence[Shape]) -> _Result:
     unreadable = pair.meshes.why_none(mesh_left) if mesh_left else ""
     if not unreadable:
         unmatched += [f"{_label(shape)} has no counterpart" for shape in mesh_left] + [f"{_label(shape)} is new" for shape in mesh_right]
-    return _Result(tuple(unmatched), distance, 0.0, at, "", unreadable)
+    lost = tuple(_label(shape) for shape in mesh_left) if unreadable else ()
+    return _Result(tuple(unmatched), distance, 0.0, at, "", unreadable, lost)
 
 
 def _label(shape: Shape) -> str:

@@ -101,7 +101,7 @@ def read_tied_tendons(compiled: Any) -> Iterator[Record]:
 
 def read_actuators(compiled: Any) -> Iterator[Record]:
     """The target, law and numbers of each actuator; ranges that do not limit count as zero."""
-    for i in range(compiled.nu):
+    for i in range(compiled.nactuator):
         words = (
             _TRN(int(compiled.actuator_trntype[i])).name.removeprefix("mjTRN_").lower(),
             _target(compiled, i),
@@ -137,9 +137,12 @@ def _target(compiled: Any, actuator: int) -> str:
 
 
 def _actuator_numbers(compiled: Any, i: int) -> tuple[float, ...]:
-    plain = [np.ravel(getattr(compiled, f"actuator_{name}")[i]) for name in ("gear", "gainprm", "biasprm", "dynprm", "cranklength")]
+    """The numbers of an actuator, with those of each of its controls and outputs: an orientation has several."""
+    controls = slice(first := int(compiled.actuator_ctrladr[i]), first + int(compiled.actuator_ctrlnum[i]))
+    outputs = slice(first := int(compiled.actuator_outadr[i]), first + int(compiled.actuator_outnum[i]))
+    plain = [np.ravel(getattr(compiled, f"actuator_{name}")[i]) for name in ("gainprm", "biasprm", "dynprm", "cranklength")]
     ranges = [
-        getattr(compiled, f"actuator_{name}range")[i] * bool(getattr(compiled, f"actuator_{name}limited")[i])
-        for name in ("ctrl", "force", "act")
+        np.ravel(getattr(compiled, f"actuator_{name}range")[rows] * getattr(compiled, f"actuator_{name}limited")[rows, None].astype(bool))
+        for name, rows in (("ctrl", controls), ("force", slice(i, i + 1)), ("act", slice(i, i + 1)))
     ]
-    return tuple(float(x) for x in np.concatenate([*plain, *ranges]))
+    return tuple(float(x) for x in np.concatenate([np.ravel(compiled.actuator_gear[outputs]), *plain, *ranges]))
