@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 from msgspec import Struct
 from msgspec.structs import replace
 
+from hymeko_x import formats
 from hymeko_x.compare.leaves import TURN, leaves_between, leaves_of
 from hymeko_x.ir.fields import NUMBERS, layout_of
 from hymeko_x.ir.graph import Arc, Edge
@@ -87,8 +88,8 @@ def diff(
 ) -> tuple[Difference, ...]:
     """Everything that differs from ``a`` to ``b``: the name, elements, their fields and arcs, and their extras.
 
-    Order (of elements and of parameters), places and notations do not count. Linear in the size of both. ``leaves`` are the leaves of
-    the elements that both have, if they are known.
+    Order (of elements and of parameters) does not count, but for that of constraints, nor do places and notations. Linear in the size of
+    both. ``leaves`` are the leaves of the elements that both have, if they are known.
     """
     a, b = mechanism_of(a), mechanism_of(b)
     return tuple(_differences(a, b, tolerance, leaves_between(a, b) if leaves is None else leaves))
@@ -99,8 +100,20 @@ def _differences(a: Mechanism, b: Mechanism, tolerance: Tolerance, leaves: Mappi
         yield Difference(ROOT, "name", repr(a.name), repr(b.name))
     yield from _elements(a.graph.vertices, b.graph.vertices, tolerance, leaves)
     yield from _elements(a.graph.edges, b.graph.edges, tolerance, leaves)
+    yield from _order(a, b)
     for key in _union(a.extras, b.extras):
         yield from _extras(key, a.extras.get(key, ()), b.extras.get(key, ()))
+
+
+def _order(a: Mechanism, b: Mechanism) -> Iterator[Difference]:
+    """The order of constraints, where the format of one of both numbers them."""
+    if not any(row is not None and row.numbers_constraints for row in map(formats.of_source, (a, b))):
+        return
+    ours, theirs = a.constraints, b.constraints
+    common = set(ours) & set(theirs)
+    before, after = ([key for key in keys if key in common] for keys in (ours, theirs))
+    if before != after:
+        yield Difference(ROOT, "order of constraints", " ".join(map(str, before)), " ".join(map(str, after)))
 
 
 def _elements(a: Mapping[Id, P], b: Mapping[Id, P], tolerance: Tolerance, leaves: Mapping[Id, Leaves]) -> Iterator[Difference]:

@@ -101,6 +101,8 @@ class Format(Struct, frozen=True):
     """The function ``text -> text`` that leaves out of an extra what the elements have in fields of their own (classes of MJCF)."""
     shapes_have_weight: str | None = None
     """The function ``mechanism -> bool``: whether masses of shapes may count although their bodies have inertials."""
+    numbers_constraints: bool = False
+    """Whether its engine numbers closures and couplings in their common order, so that this order is content (MJCF)."""
     boilerplate: frozenset[str] = frozenset()
     """Fields of the whole that every file of the format has, and no other."""
     precision: float = 0.0
@@ -213,6 +215,7 @@ MJCF = Format(
     names_in="hymeko_x.formats.mjcf.prefixes:renamed",
     joins="hymeko_x.formats.mjcf.keyframes:joined",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",
+    numbers_constraints=True,
     mesh_reader="hymeko_x.meshes.tables:read_mesh",
     read_otherwise="hymeko_x.meshes.tables:read_otherwise",
     refused="hymeko_x.formats.mjcf.files:refused",

@@ -253,6 +253,15 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
                 found.setdefault(shape.target, []).append(SubsetView(key, subset.faces, material.target))
         return {key: tuple(views) for key, views in found.items()}
 
+    @property
+    def constraints(self) -> list[Id]:
+        """Closures and couplings in their common order: that of the author's layout, behind it those without a place there."""
+        found = [key for key, edge in self.graph.edges.items() if isinstance(edge.data, parts.Loop | parts.Coupling)]
+        if len(found) < 2:
+            return found
+        places = {key: place for place, key in enumerate(self.layout)}
+        return sorted(found, key=lambda key: places.get(key, len(places)))
+
     @cached_property
     def mounts(self) -> Mapping[Id, tuple[MountView, ...]]:
         """For each body (and the world) the frames, cameras, lights and sensors on it, in order."""

@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 
 
 def write_equalities(sheet: MjcfSheet) -> None:
-    """Closures between two elements and couplings of joints, in the order in which they are in the mechanism."""
+    """Closures between two elements and couplings of joints, in their common order, by which MuJoCo numbers them."""
     items: list[tuple[Id, Tag]] = []
-    for key, edge in sheet.mechanism.graph.edges.items():
+    for key in sheet.mechanism.constraints:
+        edge = sheet.mechanism.graph.edges[key]
         data, arcs = edge.data, edge.arcs
         if isinstance(data, Coupling) and all(arc.target.kind == "joint" for arc in arcs):
             items.append((key, tag_of("joint", _coupling(sheet, key, data, arcs), sheet.inside(key))))
