@@ -100,6 +100,10 @@ def _noted_pose(mechanism: Mechanism, body: Id) -> Pose | None:
 # ---- mass --------------------------------------------------------------------------------------------------------------------
 
 
+_ROUNDING = 1e-12
+"""Of the largest moment: a thin rod has no other about its axis."""
+
+
 def write_inertial(spec: Any, inertial: Inertial, com: Vec3) -> None:
     """Mass, centre of mass (in the prim's space), and the tensor both as principal moments and as Newton's six doubles."""
     apply(spec, "PhysicsMassAPI")
@@ -109,8 +113,8 @@ def write_inertial(spec: Any, inertial: Inertial, com: Vec3) -> None:
     if inertial.tensor is None:
         return
     moments, quat = principal(inertial)
-    if min(moments) > 0.0:  # UsdPhysics takes anything else for "not authored"
-        put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*moments))
+    if max(moments) > 0.0 and min(moments) >= -_ROUNDING * max(moments):  # UsdPhysics takes three zeros for "not authored"
+        put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*(max(moment, 0.0) for moment in moments)))
         put(spec, "physics:principalAxes", T.Quatf, quatf(quat))
     apply(spec, "NewtonMassAPI")
     put(spec, "newton:inertia", T.DoubleArray, Vt.DoubleArray(list(inertial.tensor)))

@@ -29,8 +29,10 @@ _APPROXIMATION = "physics:approximation"
 
 
 def is_shape(prim: Prim) -> bool:
-    """Whether a prim is a geometry that the IR has, and no site."""
-    return prim.kind in TYPES and not any(prim.has_api(site) for site in words.SITES)
+    """Whether a prim is a geometry that the IR has, and no site; what neither collides nor is shown is none."""
+    if prim.kind not in TYPES or any(prim.has_api(site) for site in words.SITES):
+        return False
+    return _collides(prim) or not (_is_invisible(prim) or _purpose(prim) == "guide")
 
 
 def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
@@ -107,15 +109,27 @@ def _take_extent(prim: Prim, half: Vec3, builder: UsdBuilder) -> None:
 
 
 def _role(prim: Prim, builder: UsdBuilder) -> Role:
-    """Without a collider a shape is for looking; a collider that is only a guide or a proxy is for colliding alone."""
-    collides = prim.has_api(COLLISION) and prim.value("physics:collisionEnabled") is not False
-    if not collides:
+    """Without a collider a shape is for looking; a collider that is only a guide or a proxy, or invisible, is for colliding alone."""
+    if not _collides(prim):
         return Role.VISUAL
     builder.mark_read(prim, f"@{COLLISION}")
     purpose = _purpose(prim)
     if purpose == "guide":
         builder.get(prim, "purpose")
-    return Role.COLLISION if purpose in ("guide", "proxy") else Role.BOTH
+    return Role.COLLISION if purpose in ("guide", "proxy") or _is_invisible(prim) else Role.BOTH
+
+
+def _collides(prim: Prim) -> bool:
+    return prim.has_api(COLLISION) and prim.value("physics:collisionEnabled") is not False
+
+
+def _is_invisible(prim: Prim) -> bool:
+    """Whether a prim or one above it says so."""
+    if not any("visibility" in above.types for above in prim.with_ancestors()):
+        return False
+    from pxr import UsdGeom
+
+    return bool(UsdGeom.Imageable(prim.composed).ComputeVisibility() == UsdGeom.Tokens.invisible)
 
 
 def _purpose(prim: Prim) -> str:
