@@ -118,7 +118,10 @@ def _load(path: Path) -> Surface | str:
     """The triangles of a file: at once if it is of a plain kind, else by trimesh."""
     read = _PLAIN.get(path.suffix.lower())
     found = None if read is None else read(path.read_bytes())
-    return _load_by_trimesh(path) if found is None else found
+    surface = _load_by_trimesh(path) if found is None else found
+    if isinstance(surface, Surface) and surface.polygons:
+        return replace(surface, other=_split_as_mujoco(path))
+    return surface
 
 
 def _load_by_trimesh(path: Path) -> Surface | str:
@@ -133,7 +136,7 @@ def _load_by_trimesh(path: Path) -> Surface | str:
         return f"the mesh '{path.name}' {_EMPTY}"
     polygons = path.suffix.lower() == ".obj" and _POLYGON.search(path.read_bytes()) is not None
     points = np.asarray(whole.vertices, dtype=float) * (_metres(loaded) if path.suffix.lower() == ".dae" else 1.0)
-    return Surface(points, np.asarray(whole.faces, dtype=np.intp), polygons, _split_as_mujoco(path) if polygons else None)
+    return Surface(points, np.asarray(whole.faces, dtype=np.intp), polygons)
 
 
 def _split_as_mujoco(path: Path) -> tuple[Array, Index] | None:
