@@ -1,7 +1,8 @@
 """python -m benchmarks.contest [--links N ...] [--no-real] [--ways TEXT] [--limit SECONDS] [--table]     (after `python -m peers`; POSIX)
 
 On each way all programs take turns at one robot; the rows of that robot replace those of the run before in `benchmarks/results`,
-and the table of docs/speed.md is written from them. Times are processor times; the ratios mean something, the seconds belong to the machine.
+and the table of docs/speed.md is written from them. Times are processor times; the ratios mean something, the seconds belong to the
+machine.
 """
 
 from __future__ import annotations
