@@ -8,6 +8,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats, pipeline
+from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Refusal, Report
@@ -38,7 +39,7 @@ class Texts(NamedTuple):
 
 
 class EditedFiles(Struct, frozen=True):
-    """Files of which some have another content; a :class:`hymeko_x.source.Files`."""
+    """Files of which some have another content; a :class:`hymeko_x.source.Files` that knows packages if those behind it do."""
 
     changed: Mapping[str, bytes]
     behind: Files
@@ -50,6 +51,18 @@ class EditedFiles(Struct, frozen=True):
     def read(self, path: str) -> bytes:
         """The content of a path that :meth:`find` returned. Raises: OSError."""
         return self.changed[path] if path in self.changed else self.behind.read(path)
+
+    def find_package(self, name: str, beside: str = "") -> str | None:
+        """The folder of a package, or None."""
+        return self.behind.find_package(name, beside) if isinstance(self.behind, DiskFiles) else None
+
+    def guess_package(self, name: str, beside: str = "") -> str | None:
+        """A folder that may be the package under another name, or None."""
+        return self.behind.guess_package(name, beside) if isinstance(self.behind, DiskFiles) else None
+
+    def match(self, pattern: str) -> list[str]:
+        """The files that a path with wildcards names."""
+        return self.behind.match(pattern) if isinstance(self.behind, DiskFiles) else []
 
 
 def text_with_edits(source: Source, format: Format, before: Mechanism, after: Mechanism, report: Report) -> Texts:
@@ -92,7 +105,7 @@ class _Attempt:
         printing = formats.by_name(format.expands_to) if format.expands_to else format
         outline = formats.loaded(printing.outline or "")
         self.own: Outline = formats.loaded(format.outline or "")(source, Report())
-        package = printed(after, printing, report)
+        package = printed(after, format, report)
         self.whole, self.beside = package.main, package.files
         sources = [Source(source.name, printed(robot, printing, Report(), flat=True).main, source.files) for robot in (before, after)]
         self.before, self.after = (outline(print, Report()) for print in sources)

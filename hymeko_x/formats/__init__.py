@@ -188,6 +188,7 @@ XACRO = Format(
     "hymeko_x.frontends.xacro",
     "hymeko_x.backends.xacro",
     "hymeko_x.backends.urdf.rules",
+    outline="hymeko_x.frontends.xacro.outline:outline",
     expands_to="urdf",
     has_arguments=True,
     layout_options=frozenset({"split"}),

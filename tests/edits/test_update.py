@@ -244,3 +244,34 @@ def test_what_a_text_cannot_hold_is_printed_anew_and_reported(tmp_path: Path) ->
     ]
     assert list(map(str, found.edits)) == ["body 'left_a' inertial.mass: 1 -> 3"]
     assert list(map(str, hx.diff(hx.load(there), hx.load(original)))) == []
+
+
+XACRO = """<?xml version="1.0"?>
+<robot name="cart" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:property name="r" value="0.10"/>
+  <xacro:include filename="wheel.xacro"/>
+  <link name="base">
+    <inertial><mass value="5.0"/> <inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>
+    <visual><geometry><sphere radius="${2 * r}"/></geometry></visual>
+  </link>
+  <xacro:wheel name="left"/>
+  <xacro:wheel name="right"/>
+</robot>
+"""
+WHEEL = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <link name="axle"/>
+  <joint name="suspension" type="fixed"><parent link="base"/><child link="axle"/><origin xyz="0 0 0.20"/></joint>
+  <xacro:macro name="wheel" params="name">
+    <link name="${name}"/>
+    <joint name="${name}_spin" type="continuous"><parent link="axle"/><child link="${name}"/><axis xyz="0 1 0"/></joint>
+  </xacro:macro>
+</robot>
+"""
+
+
+def test_a_literal_of_xacro_is_edited_in_the_file_where_it_stands(tmp_path: Path) -> None:
+    wheel = tmp_path / "wheel.xacro"
+    wheel.write_text(WHEEL)
+    assert edited(XACRO, "mjcf", ('mass="5"', 'mass="6"'), tmp_path, "xacro") == XACRO.replace('"5.0"', '"6"')
+    assert edited(XACRO, "mjcf", ('(name="axle" pos=)"0 0 0.2"', r'\1"0 0 0.3"'), tmp_path, "xacro") == XACRO
+    assert wheel.read_text() == WHEEL.replace("0 0 0.20", "0 0 0.3")
