@@ -61,6 +61,8 @@ class SdfBuilder(Builder):
     meshes: dict[tuple[str, Vec3], Id] = field(default_factory=dict)
     joints: dict[str, Id] = field(default_factory=dict)
     attached: dict[Id, Id] = field(default_factory=dict)
+    moves_with: dict[Id, Id | None] = field(default_factory=dict)
+    left: set[Id] = field(default_factory=set)
     written: dict[Id, dict[str, str]] = field(default_factory=dict)
 
     # ---- diagnostics -----------------------------------------------------------------------------------------------------
@@ -182,4 +184,5 @@ class SdfBuilder(Builder):
         for key, extras in self.unread.finish().items():
             self.add_extras(key, *extras)
         self.add_extras(ROOT, *around)
+        self.layout = [key for key in self.layout if key not in self.left]
         return self.build(name, Provenance(words.FORMAT, version, file))

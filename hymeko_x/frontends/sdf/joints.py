@@ -59,10 +59,11 @@ def _keep_as_written(node: Node, key: Id, model: Model, builder: SdfBuilder) -> 
     model.node.leave(node)
     for member in node.walk():
         member.taken = False
-    builder.layout = [other for other in builder.layout if other != key]
+    builder.left.add(key)
     builder.notations.pop(key, None)
     builder.written.pop(key, None)
-    builder.joints = {name: other for name, other in builder.joints.items() if other != key}
+    if builder.joints.get(key.name) == key:
+        del builder.joints[key.name]
 
 
 # ---- ends ------------------------------------------------------------------------------------------------------------------------

@@ -184,13 +184,15 @@ def break_cycles(builder: SdfBuilder) -> None:
 
 def body_of(frame: Id, builder: SdfBuilder) -> Id | None:
     """The body (or the world) that a link, frame or model moves with; None where frames are attached to each other in a circle."""
-    seen = set()
-    while frame.kind not in ("body", "world"):
-        if frame in seen or frame not in builder.attached:
-            return None
-        seen.add(frame)
+    path: dict[Id, None] = {}
+    while frame.kind not in ("body", "world") and frame not in builder.moves_with and frame not in path:
+        path[frame] = None
+        if frame not in builder.attached:
+            break
         frame = builder.attached[frame]
-    return frame
+    found = frame if frame.kind in ("body", "world") else builder.moves_with.get(frame)
+    builder.moves_with |= dict.fromkeys(path, found)
+    return found
 
 
 def attach_models(models: list[Model], builder: SdfBuilder) -> None:

@@ -1,0 +1,59 @@
+"""<include>: models of other files, in the place where they are included."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import hymeko_x as hx
+from hymeko_x.diagnostics import Report
+
+PART = '<sdf version="1.7"><model name="part"><link name="l"><pose>0 0 1 0 0 0</pose></link><link name="k"/></model></sdf>'
+
+
+def load(tmp_path: Path, inside: str) -> tuple[hx.Mechanism, list[str]]:
+    """The robot of a file beside a folder `part` with a model, and the codes of what was reported."""
+    folder = tmp_path / "part"
+    folder.mkdir(exist_ok=True)
+    (folder / "model.config").write_text('<model><sdf version="1.4">old.sdf</sdf><sdf version="1.7">part.sdf</sdf></model>', "utf-8")
+    (folder / "part.sdf").write_text(PART, "utf-8")
+    (tmp_path / "r.sdf").write_text(f'<sdf version="1.9"><model name="r"><link name="a"/>{inside}</model></sdf>', "utf-8")
+    report = Report()
+    robot = hx.load(str(tmp_path / "r.sdf"), report=report, lenient=True)
+    return robot, [diagnostic.code.id for diagnostic in report if diagnostic.code.id != "HX009"]  # which says that reading went on
+
+
+@pytest.mark.parametrize("uri", ["model://part", "part", "part/part.sdf", "package://part/part.sdf"])
+def test_a_model_is_found_by_folder_and_by_file(tmp_path: Path, uri: str) -> None:
+    robot, codes = load(tmp_path, f"<include><uri>{uri}</uri><name>p</name><pose>1 0 0 0 0 0</pose></include>")
+    assert codes == []
+    poses = {joint.child.name: joint.parent_pose.xyz for joint in robot.joints.values()}
+    assert poses == {"a": (0.0, 0.0, 0.0), "p::l": (1.0, 0.0, 1.0), "p::k": (1.0, 0.0, 0.0)}
+
+
+def test_a_merged_model_has_no_scope(tmp_path: Path) -> None:
+    robot, codes = load(tmp_path, '<include merge="true"><uri>part</uri><pose>1 0 0 0 0 0</pose></include>')
+    assert codes == []
+    poses = {joint.child.name: joint.parent_pose.xyz for joint in robot.joints.values()}
+    assert poses == {"a": (0.0, 0.0, 0.0), "l": (1.0, 0.0, 1.0), "k": (1.0, 0.0, 0.0)}
+
+
+@pytest.mark.parametrize("uri", ["https://fuel.gazebosim.org/1.0/a/models/b", "nowhere", "model://../..", ""])
+def test_what_is_not_there_is_reported_and_kept(tmp_path: Path, uri: str) -> None:
+    robot, codes = load(tmp_path, f"<include><uri>{uri}</uri></include>")
+    assert codes == ["HX053"]
+    assert any("<include>" in extra.text for extras in robot.extras.values() for extra in extras)
+
+
+def test_a_model_that_includes_itself_is_reported(tmp_path: Path) -> None:
+    (tmp_path / "part").mkdir()
+    (tmp_path / "loop.sdf").write_text('<sdf version="1.9"><model name="m"><include><uri>loop.sdf</uri></include></model></sdf>', "utf-8")
+    _, codes = load(tmp_path, "<include><uri>loop.sdf</uri></include>")
+    assert codes == ["HX043"]
+
+
+def test_frames_in_a_circle_are_reported(tmp_path: Path) -> None:
+    circle = '<link name="x"><pose relative_to="y"/></link><link name="y"><pose relative_to="x"/></link>'
+    _, codes = load(tmp_path, circle)
+    assert codes == ["HX043"]
