@@ -13,6 +13,8 @@ import hymeko_x as hx
 from hymeko_x import formats
 from hymeko_x.cli import exits, main
 from hymeko_x.diagnostics import Report, Severity, Stopped
+from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.parts import Body
 from hymeko_x.source import NoFiles
 from hymeko_x.validation import Profile, validate
 
@@ -143,3 +145,29 @@ def test_unknown_content_is_no_format_and_never_parsed_as_hymeko(text: str, tmp_
 )
 def test_hymeko_text_needs_no_suffix(text: str) -> None:
     assert formats.of_input("<stdin>", text.encode()) is formats.HYMEKO
+
+
+# ---- bodies ----------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("target", ["mjcf", "urdf", "sdf", "xacro"])
+def test_a_pendulum_swings_because_its_centre_of_mass_is_that_of_its_shapes(target: str) -> None:
+    """The centre of mass comes with the tensor: 1 kg at 0.5 m below the hinge, and m/12 l^2 about it for the middle of a thin rod."""
+    rod = hx.loads(hx.dumps(hx.loads(PENDULUM, "hymeko"), target, pure=True), target).vertex(Id("body", "rod"), Body).inertial
+    assert rod is not None
+    assert rod.com == pytest.approx((0.0, 0.0, -0.5))
+    assert rod.tensor is not None
+    assert rod.tensor[0] == rod.tensor[1] == pytest.approx(1 / 12, rel=0.06)
+
+
+def test_a_centre_of_mass_that_is_given_stays() -> None:
+    text = PENDULUM.replace("mass 1", "mass 1 com [0 0 -0.2]")
+    rod = hx.loads(hx.dumps(hx.loads(text, "hymeko"), "urdf", pure=True), "urdf").vertex(Id("body", "rod"), Body).inertial
+    assert rod is not None
+    assert rod.com == (0.0, 0.0, -0.2)
+
+
+def test_the_verifier_sees_the_same_pendulum(tmp_path: Path) -> None:
+    (tmp_path / "a.hymeko").write_text(PENDULUM)
+    code, said = hymeko_x("hymeko-x convert a.hymeko a.xml -q && hymeko-x verify a.hymeko a.xml", tmp_path)
+    assert (code, said.splitlines()[0]) == (exits.DONE, "same"), said

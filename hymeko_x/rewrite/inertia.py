@@ -264,8 +264,9 @@ _Solid = tuple[float, "Vec3"]
 def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
     """A body with a mass and no tensor gets that of its shapes: of those that collide, else of those that are seen.
 
-    The centre of mass stays as it is. Unspecified inertia means zero in MJCF, and no inertial in URDF: those stay,
-    and so do bodies without solids, which get a notation: a plane that becomes a thin box later is none.
+    The centre of mass comes with the tensor where none is given, which is where it is the origin. Unspecified inertia means zero in
+    MJCF, and no inertial in URDF: those stay, and so do bodies without solids, which get a notation: a plane that becomes a thin box
+    later is none.
     """
     if native_format(mechanism):
         return mechanism
@@ -275,25 +276,30 @@ def fill_tensors(mechanism: Mechanism, context: Context) -> Mechanism:
         inertial = body.inertial
         if inertial is None or not inertial.mass or inertial.tensor is not None or mechanism.notation(key, WITHOUT_TENSOR):
             continue
-        unit = unit_tensor(mechanism.shapes.get(key, ()))
-        if unit is None:
+        unit = evenly_spread(mechanism.shapes.get(key, ()))
+        if unit is None or unit.tensor is None:
             unsaid[key] = {**mechanism.notations.get(key, {}), WITHOUT_TENSOR.name: WITHOUT_TENSOR.write(True)}
             continue
-        xx, yy, zz, xy, xz, yz = (inertial.mass * value for value in unit)
-        changed[key] = replace(body, inertial=replace(inertial, tensor=(xx, yy, zz, xy, xz, yz)))
+        xx, yy, zz, xy, xz, yz = (inertial.mass * value for value in unit.tensor)
+        com = inertial.com if any(inertial.com) else unit.com
+        changed[key] = replace(body, inertial=replace(inertial, com=com, tensor=(xx, yy, zz, xy, xz, yz)))
         message = f"{key} has a mass and no inertia tensor; that of its geometry is written"
+        if com != inertial.com:
+            message = f"{key} has a mass, and neither a centre of mass nor an inertia tensor; those of its geometry are written"
         context.report.note(codes.REWRITTEN, message, mechanism.origin(key), element=str(key))
     if unsaid:
         mechanism = replace(mechanism, notations={**mechanism.notations, **unsaid})
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 
-def unit_tensor(views: Iterable[ShapeView]) -> Tensor | None:
-    """The tensor in m^2, in body axes about the centre of the shapes, of 1 kg spread evenly over them; None without a solid."""
+def evenly_spread(views: Iterable[ShapeView]) -> Inertial | None:
+    """The centre of the shapes, and the tensor in m^2 about it, in body axes, of 1 kg spread evenly over them; None without a solid.
+
+    The shapes are those that collide, else those that are seen; ``mass`` is their volume in m^3.
+    """
     solids = [(view, solid) for view in views if (solid := _solid(view.shape.geometry)) is not None]
     chosen = [item for item in solids if item[0].shape.role is not Role.VISUAL] or solids
-    spread = _spread([(view, solid[0], solid) for view, solid in chosen])
-    return None if spread is None else spread.tensor
+    return _spread([(view, solid[0], solid) for view, solid in chosen])
 
 
 def inertial_of_solids(views: Iterable[ShapeView], density: float) -> Inertial | None:

@@ -19,6 +19,7 @@ from hymeko_x.ir.mechanism import WORLD as WORLD_ID
 from hymeko_x.ir.mechanism import Id, JointView, Mechanism, ShapeView, numbers_weight, pose_weight
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.rewrite.context import Options
+from hymeko_x.rewrite.inertia import evenly_spread
 from hymeko_x.source import Source
 from hymeko_x.verify import model as m
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Kind, KinematicModel, Step, Tendon, point_of, world_body
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from hymeko_x.ir.mechanism import RobotArc
-    from hymeko_x.ir.values import Pose
+    from hymeko_x.ir.values import Pose, Vec3
     from hymeko_x.verify.readers import Lookup
 
     Placed = Mapping[Id, tuple[int, Array]]
@@ -104,11 +105,19 @@ def _body(mechanism: Mechanism, key: Id, view: JointView | None, inertial: parts
         WORLD if view is None else numbers[view.parent],
         m.Joint(open=True) if view is None else _joint(view),
         inertial.mass or 0.0,
-        np.array(inertial.com),
+        np.array(_centre(inertial, mechanism.shapes.get(key, ()))),
         np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]),
         tuple(_shapes(mechanism, key)),
         tensor_is_known=inertial.tensor is not None or not inertial.mass,
     )
+
+
+def _centre(inertial: parts.Inertial, shapes: Iterable[ShapeView]) -> Vec3:
+    """The centre of mass: that of the shapes where a body has a mass, and neither a centre nor a tensor."""
+    if not inertial.mass or inertial.tensor is not None or any(inertial.com):
+        return inertial.com
+    spread = evenly_spread(shapes)
+    return inertial.com if spread is None else spread.com
 
 
 def _matrix(value: Pose) -> Array:
