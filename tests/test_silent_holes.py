@@ -8,11 +8,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import hymeko_x as hx
-from hymeko_x import formats
+from hymeko_x import codes, formats
 from hymeko_x.cli import exits, main
-from hymeko_x.diagnostics import Report, Severity, Stopped
+from hymeko_x.diagnostics import Refusal, Report, Severity, Stopped
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Body
 from hymeko_x.source import NoFiles
@@ -84,12 +86,12 @@ def test_complete_demands_visual_collision_and_inertial_of_every_link(missing: s
     assert found(rest, Profile.KINEMATICS, Profile.SIMULATION, Profile.DISPLAY) == []
 
 
-@pytest.mark.parametrize(("centre", "codes"), [("0 0 0", []), ("1 1 1", []), ("0 0 20", ["HX320"])])
-def test_check_warns_of_a_centre_of_mass_far_outside_of_the_shapes(centre: str, codes: list[str]) -> None:
+@pytest.mark.parametrize(("centre", "expected"), [("0 0 0", []), ("1 1 1", []), ("0 0 20", ["HX320"])])
+def test_check_warns_of_a_centre_of_mass_far_outside_of_the_shapes(centre: str, expected: list[str]) -> None:
     report = Report()
     text = LINK.format("".join(SHAPES.values()) + INERTIAL.format(centre))
     validate(hx.loads(text, "urdf"), NoFiles(), report)
-    assert [diagnostic.code.id for diagnostic in report] == codes
+    assert [diagnostic.code.id for diagnostic in report] == expected
 
 
 # ---- writing ---------------------------------------------------------------------------------------------------------------
@@ -171,3 +173,50 @@ def test_the_verifier_sees_the_same_pendulum(tmp_path: Path) -> None:
     (tmp_path / "a.hymeko").write_text(PENDULUM)
     code, said = hymeko_x("hymeko-x convert a.hymeko a.xml -q && hymeko-x verify a.hymeko a.xml", tmp_path)
     assert (code, said.splitlines()[0]) == (exits.DONE, "same"), said
+
+
+# ---- graphs ----------------------------------------------------------------------------------------------------------------
+
+NAMES = st.sampled_from("abcdef")
+FIELDS = st.builds("{} {}".format, NAMES.map(lambda name: f"w{name}"), st.integers(0, 9))
+
+
+def _vertices(within: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+    """A vertex with fields, or with what is within it."""
+    return st.builds(
+        "v{} {{ {} }}".format, NAMES, st.lists(FIELDS | within, max_size=3, unique_by=lambda text: text.split()[0]).map(" ".join)
+    )
+
+
+EDGES = st.builds("@e{} {{ + va ~ vb }}".format, NAMES)
+NESTED = st.recursive(_vertices(FIELDS) | EDGES, lambda within: _vertices(within | EDGES), max_leaves=8)
+
+
+@settings(max_examples=40, deadline=None)
+@given(parts=st.lists(NESTED, min_size=1, max_size=4, unique_by=lambda text: text.split()[0]))
+def test_nested_graphs_come_back_from_their_text(parts: list[str]) -> None:
+    missing = [f"v{name} {{}}" for name in "ab" if not any(part.startswith(f"v{name} ") for part in parts)]
+    text = f"g : graph {{ {' '.join([*missing, *parts])} }}"
+    graph = hx.loads(text, "hymeko")
+    printed = hx.dumps(graph, "hymeko")
+    again = hx.loads(printed, "hymeko")
+    assert (again.graph, again.extras, hx.dumps(again, "hymeko")) == (graph.graph, graph.extras, printed)
+    assert "".join(printed.split()).count("@e") == text.count("@e")
+
+
+def test_nested_vertices_and_edges_of_a_graph_are_kept_with_a_warning() -> None:
+    report = Report()
+    graph = hx.loads("g : graph { a { x 1 b {} @e { + a } c { y 2 } } }", "hymeko", report=report)
+    assert [diagnostic.message for diagnostic in report] == [
+        "datum 'a' has no 'b'; it is kept as it is",
+        "datum 'a' has no 'e'; it is kept as it is",
+    ]
+    kept = 'extra ["hymeko" "" "b {}"] extra ["hymeko" "" "@e { + a }"]'
+    assert hx.dumps(graph, "hymeko") == f"g : graph {{ a : datum {{ x 1 `c.y` 2 {kept} }} }}\n"
+
+
+@pytest.mark.parametrize("text", ["b { y = a.x }", "b { y = -a }", "@e { [a.x] + a }", "@e { [a] + a }", "@e { + a.x }"])
+def test_references_resolve_or_are_refused_and_never_become_text(text: str) -> None:
+    with pytest.raises(Refusal) as caught:
+        hx.loads(f"g : graph {{ a {{ x 1 }} {text} }}", "hymeko")
+    assert caught.value.diagnostic.code in (codes.BAD_VALUE, codes.UNDEFINED_REFERENCE)

@@ -74,10 +74,10 @@ def _renamed(items: tuple[Item, ...], kind: str) -> tuple[Item, ...]:
 
 
 def _nested_parameters(builder: HymekoBuilder, block: Block) -> list[tuple[str, ParameterValue]]:
-    """Fields of nested nodes as parameters with dotted names; arcs of a vertex are left to be reported."""
+    """Fields of nested nodes as parameters with dotted names; nested vertices and edges, which are more, are left to be reported."""
     found: list[tuple[str, ParameterValue]] = []
-    stack = [(node.name, node) for node in reversed(block.nodes)]
-    block.nodes = []
+    stack = [(node.name, node) for node in reversed(block.nodes) if _has_only_fields(node)]
+    block.nodes = [node for node in block.nodes if not _has_only_fields(node)]
     while stack:
         path, node = stack.pop()
         for item in node.items:
@@ -86,6 +86,17 @@ def _nested_parameters(builder: HymekoBuilder, block: Block) -> list[tuple[str, 
             elif isinstance(item, Node):
                 stack.append((f"{path}.{item.name}", item))
     return found
+
+
+def _has_only_fields(node: Node) -> bool:
+    """Whether a node is nothing but a group of fields, and of such groups."""
+    stack = [node]
+    while stack:
+        group = stack.pop()
+        if group.edge or group.stereotypes or not group.items or not all(isinstance(item, Field | Node) for item in group.items):
+            return False
+        stack.extend(item for item in group.items if isinstance(item, Node))
+    return True
 
 
 def has_attached(kind: str, node: Node) -> bool:

@@ -119,8 +119,11 @@ class ValueReader(Struct):
             return ""
         if is_list(value):
             return self.numbers(value, "", item)
+        if isinstance(value, Ref) and (len(value.path) > 1 or value.direction):
+            hint = f"a text stands in quotes: \"{value.dotted}\"; an arc is written {value.direction or '+'} {value.dotted}, without '='"
+            raise self.refuse(item, f"{name_of(item)} takes a value, not {describe(value)}", hint=hint)
         if isinstance(value, Ref):
-            return value.dotted
+            return value.path[0]
         return value if isinstance(value, str) else self.number(value, "", item)
 
     def _as_written(self, xyz: Vec3, kind: str, value: Value, item: Item) -> Pose:
