@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from hymeko_x.compare.diff import diff
     from hymeko_x.diagnostics import Diagnostic, Refusal, Report, Severity
     from hymeko_x.dynamics import dynamics
+    from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Sphere
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.values import Pose
     from hymeko_x.robot import EditError, Robot, compose
@@ -29,6 +30,9 @@ if TYPE_CHECKING:
     from hymeko_x.verify import verify
 
 __all__ = [
+    "Box",
+    "Capsule",
+    "Cylinder",
     "Diagnostic",
     "EditError",
     "Id",
@@ -38,6 +42,7 @@ __all__ = [
     "Report",
     "Robot",
     "Severity",
+    "Sphere",
     "compose",
     "convert",
     "deg",
@@ -63,6 +68,7 @@ _HOMES = {
     **dict.fromkeys(("EditError", "Robot", "compose"), "hymeko_x.robot"),
     **dict.fromkeys(("deg", "mm"), "hymeko_x.robot.units"),
     "Pose": "hymeko_x.ir.values",
+    **dict.fromkeys(("Box", "Capsule", "Cylinder", "Sphere"), "hymeko_x.ir.geometry"),
 }
 
 

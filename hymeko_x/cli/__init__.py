@@ -19,6 +19,7 @@ VERBS = {
     "export": ("hymeko_x.cli.convert", "read HyMeKo (standard input by default), write another format"),
     "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
     "update": ("hymeko_x.cli.update", "bring the edits of a converted file home into the text of its original"),
+    "attach": ("hymeko_x.cli.attach", "one robot on another: a hand on an arm, whatever formats they have"),
     "diff": ("hymeko_x.cli.compare", "what differs between two robots, element by element"),
     "verify": ("hymeko_x.cli.verdicts", "whether two files are the same robot, by the formats' own engines"),
     "roundtrip": ("hymeko_x.cli.compare", "through other formats and back, every leg verified"),

@@ -47,14 +47,14 @@ def import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", default="-", metavar="OUT.hymeko", help="where to write (default: standard output)")
     input_arguments(parser)
     lenient_argument(parser)
-    _output_arguments(parser)
+    output_arguments(parser)
 
 
 def run_import(chosen: argparse.Namespace) -> int:
     """Read the file and print it as HyMeKo, which represents everything: losses are measured only on request."""
     report = Report()
     given = read_input(chosen.input, chosen, report)
-    return _deliver(given, Output(formats.OWN, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))
+    return deliver(given, Output(formats.OWN, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))
 
 
 def export_arguments(parser: argparse.ArgumentParser) -> None:
@@ -64,7 +64,7 @@ def export_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", default="-", metavar="OUT", help="where to write (default: standard output)")
     input_arguments(parser)
     lenient_argument(parser)
-    _output_arguments(parser)
+    output_arguments(parser)
 
 
 def run_export(chosen: argparse.Namespace) -> int:
@@ -73,7 +73,7 @@ def run_export(chosen: argparse.Namespace) -> int:
         raise UsageError("say which format to write: --to FORMAT, or -o FILE with its suffix")
     format = formats.of_output(chosen.output, chosen.to_format)
     report = Report()
-    return _deliver(read_input(chosen.input, chosen, report), Output(format, chosen.output), chosen, report)
+    return deliver(read_input(chosen.input, chosen, report), Output(format, chosen.output), chosen, report)
 
 
 def convert_arguments(parser: argparse.ArgumentParser) -> None:
@@ -84,7 +84,7 @@ def convert_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print diagnostics and losses as JSON to standard output")
     input_arguments(parser)
     lenient_argument(parser)
-    _output_arguments(parser)
+    output_arguments(parser)
     parser.add_argument("--verify", action="store_true", help="ask the formats' own engines whether it is the same robot; else exit 4")
     engine_arguments(parser)
 
@@ -101,7 +101,7 @@ def run_convert(chosen: argparse.Namespace) -> int:
     report = Report()
     given = read_input(chosen.input, chosen, report)
     own = unchanged(given.source, given.format, format)
-    code = _deliver(given, Output(format, chosen.output), chosen, report, own=own)
+    code = deliver(given, Output(format, chosen.output), chosen, report, own=own)
     return _verified(chosen.input, chosen.output, chosen) if chosen.verify and code == exits.DONE else code
 
 
@@ -116,7 +116,7 @@ def _verified(before: str, after: str, chosen: argparse.Namespace) -> int:
 # ---- writing -----------------------------------------------------------------------------------------------------------
 
 
-def _output_arguments(parser: argparse.ArgumentParser) -> None:
+def output_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of every verb that writes a robot."""
     parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the source leaves open")
     parser.add_argument("--actuators", choices=("none", "motor", "position", "velocity"), help="the actuators to write")
@@ -130,7 +130,7 @@ def _output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
 
 
-def _deliver(
+def deliver(
     given: Input, output: Output, chosen: argparse.Namespace, report: Report, *, measured: bool = True, own: Source | None = None
 ) -> int:
     """Write the mechanism that was read, show diagnostics and losses, and return the exit code.

@@ -65,19 +65,22 @@ def attach(
     return host.changed(_with_states(whole, host.mechanism, part.mechanism, lambda word: prefix + word), files)
 
 
-def compose_scene(robots: Sequence[Robot], poses: Sequence[Pose | Vec3] | None = None, *, name: str = "scene") -> Robot:
-    """Several robots in one world, each at its pose; the names of each get the name of its robot and a slash before them.
+def compose_scene(
+    robots: Sequence[Robot], poses: Sequence[Pose | Vec3] | None = None, *, names: Sequence[str] | None = None, name: str = "scene"
+) -> Robot:
+    """Several robots in one world, each at its pose; before the names of each are its own name (or that of ``names``) and a slash.
 
-    Raises: EditError when there is no robot, or when there are not as many poses as robots.
+    Raises: EditError when there is no robot, or when there are not as many poses or names as robots.
     """
-    if poses is not None and len(poses) != len(robots):
-        raise EditError(f"scene '{name}' has {len(robots)} robots and {len(poses)} poses")
+    for what, given in (("poses", poses), ("names", names)):
+        if given is not None and len(given) != len(robots):
+            raise EditError(f"scene '{name}' has {len(robots)} robots and {len(given)} {what}")
     if not robots:
         raise EditError(f"scene '{name}' has no robots")
     scene = robots[0].changed(Mechanism(name, Hypergraph({WORLD: World()}), source=robots[0].mechanism.source))
     used = names_in_use(Mechanism(name))
     for number, robot in enumerate(robots):
-        prefix = used.take("robot", robot.name or "robot").name
+        prefix = used.take("robot", names[number] if names else robot.name or "robot").name
         scene = attach(scene, robot, prefix=f"{prefix}/", pose=IDENTITY if poses is None else poses[number])
     return scene
 

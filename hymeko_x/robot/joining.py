@@ -27,8 +27,11 @@ if TYPE_CHECKING:
 # ---- names ---------------------------------------------------------------------------------------------------------------------
 
 
-def with_names(mechanism: Mechanism, change: Callable[[str], str]) -> Mechanism:
-    """The mechanism with every name changed, also those in its extras; the world stays the world. What a robot has once is left out."""
+def with_names(mechanism: Mechanism, change: Callable[[str], str], *, is_part: bool = True) -> Mechanism:
+    """The mechanism with every name changed, also those in its extras; the world stays the world.
+
+    Of one that becomes a part of a robot, the extras that a robot has once are left out.
+    """
     graph = mechanism.graph
     vertices = {key: _named(part, change) for key, part in graph.vertices.items()}
     edges = {
@@ -36,7 +39,7 @@ def with_names(mechanism: Mechanism, change: Callable[[str], str]) -> Mechanism:
     }
     pairs = ((key, Id(key.kind, change(key.name))) for table in (vertices, edges) for key in table if key != WORLD)
     renamed = rename(replace(mechanism, graph=Hypergraph(vertices, edges)), {old: new for old, new in pairs if old != new})
-    extras = {key: tuple(_extras(found, change, is_of_whole=key == ROOT)) for key, found in renamed.extras.items()}
+    extras = {key: tuple(_extras(found, change, is_of_whole=is_part and key == ROOT)) for key, found in renamed.extras.items()}
     return replace(renamed, extras={key: found for key, found in extras.items() if found})
 
 

@@ -15,10 +15,17 @@ from hymeko_x.robot import memory, text
 from hymeko_x.robot.composing import attach, detach, subtree
 from hymeko_x.robot.draft import Draft
 from hymeko_x.robot.editing import Editing
+from hymeko_x.robot.joining import with_names
 from hymeko_x.robot.kinematics import all_poses
+from hymeko_x.robot.merging import merge_fixed
+from hymeko_x.robot.mirroring import mirror, swapped
 from hymeko_x.robot.named import Named
+from hymeko_x.robot.scaling import scale
+from hymeko_x.robot.varying import vary
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.ir.parts import Joint
     from hymeko_x.ir.values import Pose, Vec3
@@ -123,6 +130,39 @@ class Robot(Named):
     def subtree(self, body: str) -> Robot:
         """A body with all below it as a robot of its own; the body is its open root. Raises: KeyError when there is no such body."""
         return subtree(self, body)
+
+    def merge_fixed_joints(self, *, keep: Iterable[str] = ()) -> Robot:
+        """Every body that a fixed joint attaches to another body becomes a part of that one; inertials are added. What is fixed to the
+        world stays a body, and so do the bodies to ``keep``.
+
+        Raises: KeyError for a body to keep that is not there.
+        """
+        return self.changed(merge_fixed(self.completed, keep))
+
+    def scaled(self, factor: float) -> Robot:
+        """Another size: lengths times the factor, masses times its cube, times as they are; every typed number by its dimension.
+
+        Parameters of actuators and sensors, and extras, stay as they are. Raises: EditError unless the factor is positive.
+        """
+        return self.changed(scale(self.mechanism, float(factor)))
+
+    def mirrored(self, *, names: tuple[str, str] | None = None) -> Robot:
+        """The mirror image on the plane y = 0: the same coordinates give mirrored poses. ``names`` are two words, such as left and
+        right, each of which becomes the other one in every name.
+
+        Shapes that are no meshes are symmetric; meshes get a negative scale. Extras stay as they are.
+        """
+        image = mirror(self.mechanism)
+        return self.changed(image if names is None else with_names(image, swapped(names), is_part=False))
+
+    def randomized(self, seed: int, **spreads: float) -> Robot:
+        """A variant: each number times a factor drawn evenly from 1 - spread to 1 + spread. The same seed gives the same robot.
+
+        Spreads: ``mass`` (with the tensor), ``damping``, ``friction`` (of joints), ``stiffness``, ``armature``, ``contact_friction``.
+
+        Raises: EditError for an unknown name, and for a spread outside of 0 to 1.
+        """
+        return self.changed(vary(self.completed if spreads.get("mass") else self.mechanism, seed, spreads))
 
     def changed(self, mechanism: Mechanism, files: Files | None = None) -> Robot:
         """A robot of another mechanism, with the files of this one unless others are given."""

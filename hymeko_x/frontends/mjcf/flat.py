@@ -10,6 +10,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.formats.mjcf import NAME
 from hymeko_x.formats.mjcf.classes import Classes, merge
 from hymeko_x.formats.mjcf.notations import CHILDCLASS
+from hymeko_x.formats.mjcf.schema import attributes_of
 from hymeko_x.formats.mjcf.tree import COMMENT, parse_text, verbatim
 from hymeko_x.formats.mjcf.words import KEPT_SECTIONS
 from hymeko_x.frontends.mjcf import read
@@ -56,6 +57,10 @@ def _without_classes(root: Element) -> str:
         inside = element.attributes.pop("childclass", childclass)
         own = element.attributes.pop("class", None)
         tag = f"{element.tag}@equality" if section == "equality" and element.tag in ("joint", "tendon") else element.tag
-        element.attributes.update(merge(classes.of(tag, own or childclass), element.attributes))
+        base = classes.of(tag, own or childclass)
+        if section == "actuator":  # what all actuators have in common may be more than this one has
+            known = attributes_of(f"actuator/{element.tag}")
+            base = {name: text for name, text in base.items() if name in known}
+        element.attributes.update(merge(base, element.attributes))
         stack += [(child, section, inside) for child in element.children]
     return verbatim(root)

@@ -1,0 +1,153 @@
+"""A robot of another size: every number by its dimension, where lengths grow by s, masses by s^3, and times stay."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere
+from hymeko_x.ir.graph import Edge, Hypergraph
+from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.parts import Body, Coupling, Dof, DofKind, Frame, Joint, Limits, Loop, Mesh, Shape, Stance, Tendon
+from hymeko_x.ir.values import Pose
+from hymeko_x.robot.errors import EditError
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.geometry import Geometry
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc, RobotEdge
+    from hymeko_x.ir.parts import EdgePart, Inertial, VertexPart
+
+
+def scale(mechanism: Mechanism, s: float) -> Mechanism:
+    """The mechanism with lengths times ``s``. Raises: EditError unless the factor is a positive number."""
+    if not (math.isfinite(s) and s > 0):
+        raise EditError(f"robot '{mechanism.name}': a factor is a positive number, found {s!r}")
+    vertices = {key: _vertex(part, s) for key, part in mechanism.graph.vertices.items()}
+    edges = {key: _edge(edge, mechanism, s) for key, edge in mechanism.graph.edges.items()}
+    return replace(mechanism, graph=Hypergraph(vertices, edges))
+
+
+def _times(numbers: tuple[float, ...], factor: float) -> tuple[float, ...]:
+    return tuple([number * factor for number in numbers])
+
+
+def _vertex(part: VertexPart, s: float) -> VertexPart:
+    if isinstance(part, Body) and part.inertial is not None:
+        return replace(part, inertial=_inertial(part.inertial, s))
+    if isinstance(part, Frame):
+        return replace(part, size=_times(part.size, s))
+    if isinstance(part, Mesh):
+        return replace(part, scale=_times(part.scale, s))
+    return part
+
+
+def _inertial(inertial: Inertial, s: float) -> Inertial:
+    mass = None if inertial.mass is None else inertial.mass * s**3
+    tensor = None if inertial.tensor is None else _times(inertial.tensor, s**5)
+    return replace(inertial, mass=mass, com=_times(inertial.com, s), tensor=tensor, written=None)
+
+
+def _edge(edge: RobotEdge, mechanism: Mechanism, s: float) -> RobotEdge:
+    data = _edge_part(edge.data, s)
+    arcs = tuple([_arc(arc, edge.data, mechanism, s) for arc in edge.arcs])
+    if isinstance(data, Coupling) and arcs:
+        arcs = (arcs[0], *(_leader(arc, arcs[0], mechanism, s) for arc in arcs[1:]))
+    return Edge(data, arcs)
+
+
+def _edge_part(part: EdgePart, s: float) -> EdgePart:
+    if isinstance(part, Joint | Loop):
+        return replace(part, dofs=tuple([_dof(dof, s) for dof in part.dofs]))
+    if isinstance(part, Shape):
+        return replace(part, geometry=_geometry(part.geometry, s), mass=None if part.mass is None else part.mass * s**3)
+    if isinstance(part, Tendon) and part.kind == "spatial":
+        coefficients = {"damping": part.damping * s**3, "stiffness": part.stiffness * s**3, "friction": part.friction * s**4}
+        width = None if part.width is None else part.width * s
+        return replace(part, limits=_limits(part.limits, s, s**4), width=width, **coefficients)
+    return part
+
+
+def _geometry(geometry: Geometry, s: float) -> Geometry:
+    match geometry:
+        case Box(size):
+            return Box(_times(size, s))  # type: ignore[arg-type]
+        case Sphere(radius):
+            return Sphere(radius * s)
+        case Cylinder(radius, length):
+            return Cylinder(radius * s, length * s)
+        case Capsule(radius, length):
+            return Capsule(radius * s, length * s)
+        case Ellipsoid(radii):
+            return Ellipsoid(_times(radii, s))  # type: ignore[arg-type]
+        case Plane(half_size):
+            return Plane(_times(half_size, s))  # type: ignore[arg-type]
+        case _:
+            return geometry
+
+
+def _limits(limits: Limits, length: float, force: float) -> Limits:
+    def times(value: float | None, factor: float) -> float | None:
+        return None if value is None else value * factor
+
+    return Limits(
+        times(limits.lower, length),
+        times(limits.upper, length),
+        times(limits.velocity, length),
+        times(limits.effort, force),
+        times(limits.acceleration, length),
+        times(limits.jerk, length),
+    )
+
+
+def _dof(dof: Dof, s: float) -> Dof:
+    """Coordinates of a slide are lengths and its efforts forces; those of other dofs are angles and torques."""
+    length = _length(dof, s)
+    moment = s**5 / length**2
+    return replace(
+        dof,
+        limits=_limits(dof.limits, length, moment * length),
+        damping=dof.damping * moment,
+        friction=dof.friction * moment * length,
+        stiffness=dof.stiffness * moment,
+        spring_ref=dof.spring_ref * length,
+        armature=dof.armature * moment,
+        ref=dof.ref * length,
+        anchor=_times(dof.anchor, s),
+        pitch=dof.pitch * s,
+    )
+
+
+def _length(dof: Dof, s: float) -> float:
+    """The factor on the coordinate of a dof."""
+    return s if dof.kind is DofKind.SLIDE else 1.0
+
+
+def _arc(arc: RobotArc, part: EdgePart, mechanism: Mechanism, s: float) -> RobotArc:
+    if isinstance(arc.weight, Pose):
+        return replace(arc, weight=replace(arc.weight, xyz=_times(arc.weight.xyz, s)))
+    if isinstance(part, Stance) and isinstance(arc.weight, tuple) and arc.target in mechanism.joints:
+        return replace(arc, weight=tuple(_coordinates(mechanism.joints[arc.target].joint, arc.weight, s)))
+    return arc
+
+
+def _coordinates(joint: Joint, numbers: tuple[float, ...], s: float) -> list[float]:
+    factors: list[float] = []
+    for dof in joint.dofs:
+        factors += [s] * 3 + [1.0] * 4 if dof.kind is DofKind.FREE else [1.0] * 4 if dof.kind is DofKind.BALL else [_length(dof, s)]
+    return [number * factor for number, factor in zip(numbers, factors, strict=False)] + list(numbers[len(factors) :])
+
+
+def _leader(arc: RobotArc, follower: RobotArc, mechanism: Mechanism, s: float) -> RobotArc:
+    """Coefficient k of a coupling has the dimension of the follower divided by that of the leader to the power k."""
+    own, other = (_length_of(end, mechanism, s) for end in (follower, arc))
+    if not isinstance(arc.weight, tuple):
+        return arc
+    return replace(arc, weight=tuple([number * own / other**power for power, number in enumerate(arc.weight)]))
+
+
+def _length_of(arc: RobotArc, mechanism: Mechanism, s: float) -> float:
+    view = mechanism.joints.get(arc.target)
+    number = None if view is None else dof_number(view.joint, arc.role)
+    return 1.0 if view is None or number is None else _length(view.joint.dofs[number], s)
