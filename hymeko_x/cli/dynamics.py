@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.terminal import show
 from hymeko_x.diagnostics import Report
+from hymeko_x.disk import write_files
 
 if TYPE_CHECKING:
     import argparse
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from hymeko_x.dynamics.signals import Signal
 
 _FORMS = ("state-space", "second-order", "port-hamiltonian", "transfer-function")
+_LANGUAGES = ("python", "sympy", "casadi", "c", "octave", "simulink", "modelica", "fmu")
 _STYLES = ("text", "json", "latex", "markdown")
 
 
@@ -29,6 +32,8 @@ def dynamics_arguments(parser: argparse.ArgumentParser) -> None:
     where = "operating point of a mechanism: a named configuration, joint=value,..., or found (default: every joint at its reference)"
     parser.add_argument("--at", default="", metavar="WHERE", help=where)
     _base_argument(parser)
+    parser.add_argument("--to", choices=_LANGUAGES, help="write the equations as a file of this kind (octave and simulink: linearised)")
+    parser.add_argument("-o", "--output", type=Path, metavar="OUT", help="the file for --to (else standard output)")
     parser.add_argument("--symbolic", action="store_true", help="formulas in the parameters instead of numbers")
     parser.add_argument("--style", choices=_STYLES, default="text", help="how to print them (default text)")
     parser.add_argument("--json", action="store_const", dest="style", const="json", help="the same as --style json")
@@ -44,11 +49,26 @@ def run_dynamics(chosen: argparse.Namespace) -> int:
 
     report = Report()
     found = _dynamics(chosen, report)
+    if chosen.to is not None:
+        show(report)
+        return _write(found, chosen)
     text = printed(page_of(found, chosen.form, symbolic=chosen.symbolic, at=chosen.at), chosen.style)
     if not chosen.symbolic:
         report_unstable(found.state_space() if isinstance(found, Lumped) else found.state_space(chosen.at), report)
     show(report)
     print(text, end="")
+    return exits.DONE
+
+
+def _write(found: Lumped | Multibody, chosen: argparse.Namespace) -> int:
+    """Write the generated file, whole or not at all."""
+    from hymeko_x.dynamics.writers import written
+
+    content = written(found, chosen.to, at=chosen.at)
+    if chosen.output is None:
+        sys.stdout.buffer.write(content)
+    else:
+        write_files({str(chosen.output): content})
     return exits.DONE
 
 

@@ -1,0 +1,209 @@
+"""Every generated file is run: by Python, gcc, Octave where it is installed, pymoca, fmpy; Simulink's script is parsed back."""
+
+from __future__ import annotations
+
+import ctypes
+import io
+import re
+import shutil
+import subprocess
+import zipfile
+from pathlib import Path
+from types import ModuleType
+
+import fmpy
+import fmpy.validation
+import numpy as np
+import pymoca.parser
+import pytest
+import sympy
+
+import hymeko_x as hx
+from hymeko_x.dynamics import writers
+from hymeko_x.dynamics.numbers import floats
+from hymeko_x.dynamics.signals import constant
+from hymeko_x.dynamics.simulation import simulate
+from hymeko_x.dynamics.writers import LANGUAGES
+from tests.dynamics.networks import load
+from tests.dynamics.test_lumped import CONTROLLED, LISTING, RACK
+from tests.dynamics.test_mechanisms import CART_POLE, SPINNING
+
+SYSTEMS = {
+    "quarter_vehicle": LISTING.read_text(),
+    "rack": RACK,
+    "controlled": CONTROLLED,
+    "duffing": 'd : robot { m : mass { mass 1 } w : ground {} k : spring { stiffness 2 law "k*x + 5*x**3" } f : force {}'
+    ' c : damper { c 0.4 law "c*v*abs(v)" } @e : constitutive { + w - m ~ k ~ c ~ f } }',
+    "cart_pole": CART_POLE,
+    "top": SPINNING,
+}
+
+
+def written(found: hx.dynamics.Lumped | hx.dynamics.Multibody, language: str) -> str:
+    return writers.written(found, language).decode()
+
+
+@pytest.fixture(params=SYSTEMS)
+def found(request: pytest.FixtureRequest) -> hx.dynamics.Lumped | hx.dynamics.Multibody:
+    return hx.dynamics(load(SYSTEMS[request.param]))
+
+
+def samples(found: hx.dynamics.Lumped | hx.dynamics.Multibody) -> list[tuple[list[float], list[float], np.ndarray, np.ndarray]]:
+    """States, inputs, and what the equations give there."""
+    system = found.system
+    rng = np.random.default_rng(1)
+    p = system.values("parameters")
+    drawn = [(rng.normal(size=len(system.states)).tolist(), rng.normal(size=len(system.inputs)).tolist()) for _ in range(3)]
+    return [
+        (x, u, *(np.array(equations(x, u, p, floats()), dtype=float).reshape(-1) for equations in (system.rates, system.measured)))
+        for x, u in drawn
+    ]
+
+
+def run(text: str) -> ModuleType:
+    module = ModuleType("generated")
+    exec(compile(text, "generated.py", "exec"), module.__dict__)
+    return module
+
+
+def test_python_needs_numpy_only_and_computes_the_same(found: hx.dynamics.Lumped) -> None:
+    text = written(found, "python")
+    assert set(re.findall(r"^import (\w+)", text, re.MULTILINE)) == {"numpy"}
+    module = run(text)
+    for x, u, rates, outputs in samples(found):
+        np.testing.assert_allclose(module.rates(x, u), rates, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(module.outputs(x, u), outputs, rtol=1e-12, atol=1e-12)
+    assert [variable.name for variable in found.system.states] == module.STATES
+
+
+def test_casadi_computes_the_same_with_derivatives(found: hx.dynamics.Lumped) -> None:
+    module = run(written(found, "casadi"))
+    for x, u, rates, _ in samples(found):
+        np.testing.assert_allclose(np.array(module.dynamics(x, u, module.P)[0])[:, 0], rates, rtol=1e-12, atol=1e-12)
+        a = np.array(module.linear(x, u, module.P)[0])
+        step = 1e-6 * np.eye(len(x))
+        column = (np.array(module.dynamics(x + step[0], u, module.P)[0]) - np.array(module.dynamics(x - step[0], u, module.P)[0])) / 2e-6
+        np.testing.assert_allclose(a[:, 0], column[:, 0], rtol=1e-6, atol=1e-6 * np.abs(a).max())
+
+
+def test_sympy_has_the_same_formulas(found: hx.dynamics.Lumped) -> None:
+    if len(found.system.states) > 6:
+        pytest.skip("formulas of a free body fill pages")
+    module = run(written(found, "sympy"))
+    for x, u, rates, outputs in samples(found):
+        values = dict(zip((*module.x, *module.u, *module.p), (*x, *u, *module.P), strict=True))
+        np.testing.assert_allclose(np.array(module.rates.subs(values).tolist(), dtype=float)[:, 0], rates, rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(np.array(module.outputs.subs(values).tolist(), dtype=float)[:, 0], outputs, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed")
+def test_c_compiles_and_computes_the_same(found: hx.dynamics.Lumped, tmp_path: Path) -> None:
+    (tmp_path / "dynamics.c").write_text(written(found, "c"))
+    subprocess.run(["gcc", "-std=c99", "-O2", "-shared", "-fPIC", "dynamics.c", "-o", "dynamics.so", "-lm"], cwd=tmp_path, check=True)
+    library = ctypes.CDLL(str(tmp_path / "dynamics.so"))
+    p = found.system.values("parameters")
+    for x, u, rates, outputs in samples(found):
+        arrays = [(ctypes.c_double * max(1, len(values)))(*values) for values in (x, u, p)]
+        results = [(ctypes.c_double * max(1, len(values)))() for values in (rates, outputs)]
+        pointer = ctypes.POINTER(ctypes.c_double)
+        arguments = (pointer * 3)(*[ctypes.cast(array, pointer) for array in arrays])
+        answers = (pointer * 2)(*[ctypes.cast(array, pointer) for array in results])
+        work = (ctypes.c_double * 10_000)()
+        assert library.dynamics(arguments, answers, None, work, 0) == 0
+        np.testing.assert_allclose(list(results[0]), rates, rtol=1e-12, atol=1e-12)
+        if len(outputs):
+            np.testing.assert_allclose(list(results[1]), outputs, rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.skipif(shutil.which("octave") is None, reason="Octave is not installed (Debian: apt install octave octave-control)")
+def test_octave_computes_the_step_response(tmp_path: Path) -> None:
+    car = hx.dynamics(hx.load(LISTING))
+    (tmp_path / "car.m").write_text(written(car, "octave") + "disp(y(end)); disp(poles');\n")
+    out = subprocess.run(["octave", "-q", "car.m"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
+    assert float(out.split()[0]) == pytest.approx(1.0, abs=1e-3)
+
+
+def matrix(text: str, name: str) -> np.ndarray:
+    found = re.search(rf"^{name} = (.*);$", text, re.MULTILINE)
+    assert found is not None
+    if zeros := re.fullmatch(r"zeros\((\d+), (\d+)\)", found[1]):
+        return np.zeros((int(zeros[1]), int(zeros[2])))
+    return np.array([[float(x) for x in row.split()] for row in found[1].strip("[]").split(";")])
+
+
+@pytest.mark.parametrize("language", ["octave", "simulink"])
+def test_the_matrices_of_the_scripts_are_those_of_the_system(found: hx.dynamics.Lumped, language: str) -> None:
+    text = written(found, language)
+    for name, ours in zip("ABCD", found.state_space().floats, strict=True):
+        np.testing.assert_array_equal(matrix(text, name), ours)
+
+
+def test_the_wires_of_the_simulink_model_are_the_equations(found: hx.dynamics.Lumped) -> None:
+    """Follow the wires back: the integrator gets A x + B u, the outputs C x + D u; every line joins blocks that exist."""
+    text = written(found, "simulink")
+    blocks = {block.replace("''", "'"): kind for kind, block in re.findall(r"add_block\('([^']*)', \[model '/((?:[^']|'')*)'\]", text)}
+    lines = [
+        (a.replace("''", "'"), b.replace("''", "'")) for a, b in re.findall(r"add_line\(model, '((?:[^']|'')*)', '((?:[^']|'')*)'", text)
+    ]
+    sources = {end: begin for begin, end in lines}
+    assert len(sources) == len(lines)
+    assert all(port.rpartition("/")[0] in blocks for line in lines for port in line)
+
+    def formula(block: str) -> str:
+        kind = blocks[block].rpartition("/")[2]
+        if kind in ("Integrator", "Mux"):
+            return block
+        if kind == "Gain":
+            return f"{block} {formula(sources[f'{block}/1'].rpartition('/')[0])}"
+        assert kind == "Sum"
+        return " + ".join(sorted(formula(sources[f"{block}/{k}"].rpartition("/")[0]) for k in (1, 2)))
+
+    assert formula(sources["x/1"].rpartition("/")[0]) == "A x + B u"
+    assert formula(sources["outputs/1"].rpartition("/")[0]) == "C x + D u"
+    assert [sources[f"u/{k}"] for k, _ in enumerate(found.state_space().inputs, 1)] == [f"{v.name}/1" for v in found.state_space().inputs]
+
+
+def test_modelica_is_parsed_and_has_the_variables(found: hx.dynamics.Lumped) -> None:
+    tree = pymoca.parser.parse(written(found, "modelica"))
+    (model,) = [found for found in tree.classes.values() if found.type == "model"]
+    kinds = [{*symbol.prefixes} for symbol in model.symbols.values()]
+    system = found.system
+    assert sum("input" in kind for kind in kinds) == len(system.inputs)
+    assert sum("output" in kind for kind in kinds) == len(system.outputs)
+    assert sum("parameter" in kind for kind in kinds) == len(system.parameters)
+    heads = [str(getattr(equation.left, "operator", "")) for equation in model.equations]
+    assert heads.count("der") == len(system.states)
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="gcc is not installed")
+def test_an_fmu_is_valid_and_simulates_as_we_do(tmp_path: Path) -> None:
+    found = hx.dynamics(load(SYSTEMS["duffing"]))
+    (tmp_path / "source.fmu").write_bytes(writers.written(found, "fmu"))
+    folder = Path(fmpy.extract(str(tmp_path / "source.fmu"), str(tmp_path / "unzipped")))
+    assert fmpy.validation.validate_fmu(str(tmp_path / "source.fmu")) == []
+    (model,) = [configuration.modelIdentifier for configuration in fmpy.read_model_description(str(folder)).buildConfigurations]
+    binaries = folder / "binaries" / fmpy.platform_tuple
+    binaries.mkdir(parents=True)
+    warnings = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC"]
+    subprocess.run(["gcc", *warnings, "sources/model.c", "-o", str(binaries / f"{model}.so"), "-lm"], cwd=folder, check=True)
+    start, names = {"m.position": 0.3, "f.effort": 1.5}, ["m.position", "y.m.position"]
+    result = fmpy.simulate_fmu(str(folder), start_values=start, stop_time=2.0, output_interval=0.5, relative_tolerance=1e-8, output=names)
+    ours = simulate(found.system, {"f.effort": constant(1.5)}, 2.0, 0.5, [0.3, 0.0])
+    np.testing.assert_allclose(result["m.position"], ours.states[:, 0], atol=1e-5)
+    np.testing.assert_array_equal(result["m.position"], result["y.m.position"])
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_generated_file_says_where_it_comes_from_and_is_the_same_again(language: str) -> None:
+    car = hx.dynamics(hx.load(LISTING))
+    content = writers.written(car, language)
+    if language == "fmu":
+        content = zipfile.ZipFile(io.BytesIO(content)).read("sources/model.c")
+    assert b"quarter_vehicle_model: equations of motion, written by hymeko-x" in content
+    assert writers.written(hx.dynamics(hx.load(LISTING)), language) == writers.written(car, language)
+
+
+def test_the_sympy_file_is_exact() -> None:
+    module = run(written(hx.dynamics(hx.load(LISTING)), "sympy"))
+    values = dict(zip(module.p, map(sympy.Rational, map(str, module.P)), strict=True))
+    assert sympy.Matrix([[0, 1], [-1000, -20]]) == module.rates.jacobian(module.x).subs(values)
