@@ -44,7 +44,25 @@ def dynamics(
 
     if has_network(robot):
         return Lumped(network_of(robot))
+    if report is not None:
+        _report_left_out(robot, report)
     return multibody_of(_with_inertias(robot, files, report), base=base, gravity=gravity)
+
+
+def _report_left_out(robot: Mechanism, report: Report) -> None:
+    """Warn (HX408) of every element that acts on a robot's motion and has no part in its equations."""
+    from hymeko_x import codes
+    from hymeko_x.ir import parts
+
+    words = [(key, f"{key} is a loop") for key, loop, _ in robot.edges(parts.Loop) if loop.active]
+    words += [(key, f"{key} pulls") for key, tendon, _ in robot.edges(parts.Tendon) if tendon.stiffness or tendon.damping]
+    for key, joint, _ in robot.edges(parts.Joint):
+        if any(dof.friction for dof in joint.dofs):
+            words.append((key, f"{key} has Coulomb friction"))
+        if any(dof.stiffness and dof.kind is parts.DofKind.BALL for dof in joint.dofs):
+            words.append((key, f"{key} has a spring on a ball"))
+    for key, what in words:
+        report.warn(codes.NO_FORM, f"{what}, which is not in the equations", robot.origin(key), element=str(key))
 
 
 def _with_inertias(robot: Mechanism, files: Files | None, report: Report | None) -> Mechanism:

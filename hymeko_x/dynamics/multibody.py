@@ -11,6 +11,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.couplings import Expanded, Follower, expanded, followers_of, independent
 from hymeko_x.dynamics.forms import SecondOrder
+from hymeko_x.dynamics.loops import closed_forward, constraint, freedom
 from hymeko_x.dynamics.numbers import add, dot, factorize, floats, graphs, solve, symbols, times
 from hymeko_x.dynamics.operating import OperatingPoint, linearized, named_positions, operating_point, sympy_matrix
 from hymeko_x.dynamics.recursion import GRAVITY, Constants, forward_dynamics, inverse_dynamics, mass_matrix
@@ -156,6 +157,21 @@ class Multibody(Struct, frozen=True, dict=True):
         m = sympy_matrix(mass)
         a, b = space.A, space.B
         return SecondOrder(space.states[:n], space.inputs, m, -m * a[n:, n:], -m * a[n:, :n], m * b[n:, :], m * space.offset[n:, :])
+
+    # ---- closed loops ------------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def closure(self) -> Any:
+        """The casadi function (q, v) -> (phi, J, J' v) of the loops between all coordinates."""
+        return constraint(self)
+
+    def closed_forward(self, q: Sequence[float], v: Sequence[float], tau: Sequence[float], rate: float = 0.0) -> tuple[Floats, Floats]:
+        """The accelerations and the closures' forces of a mechanism with loops, without damping and springs; ``rate`` (1/s) stabilises."""
+        return closed_forward(self, q, v, tau, rate)
+
+    def freedom(self, q: Sequence[float]) -> int:
+        """The degrees of freedom that the loops leave at q."""
+        return freedom(self, q)
 
     # ---- over time ---------------------------------------------------------------------------------------------------------
 

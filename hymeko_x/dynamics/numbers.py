@@ -66,18 +66,20 @@ def graphs() -> Numbers:
     return Numbers("casadi", float, MappingProxyType({name: getattr(casadi, renamed.get(name, name)) for name in _NAMES}))
 
 
+_PLAIN = frozenset({int, float})
+
+
 def is_zero(x: Number) -> bool:
     """Whether a number is zero by its form, so that a product with it need not be computed."""
     kind = type(x)
-    if kind is float or kind is int:
+    if kind in _PLAIN:
         return bool(x == 0)
-    return getattr(x, "is_Number", False) is True and bool(x == 0)
+    return kind.__module__ != "numpy" and getattr(x, "is_Number", False) is True and bool(x == 0)
 
 
 def is_one(x: Number) -> bool:
     """Whether a number is one by its form."""
-    kind = type(x)
-    return (kind is float or kind is int) and bool(x == 1)
+    return type(x) in _PLAIN and bool(x == 1)
 
 
 def add(a: Number, b: Number) -> Number:

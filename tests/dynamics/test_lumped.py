@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import control
@@ -146,6 +147,27 @@ def test_the_port_hamiltonian_form_is_the_same_system(seed: int) -> None:
     ours = system.rates([*case.positions, *case.velocities, z], [velocity], system.values("parameters"), floats())
     np.testing.assert_allclose(rates[-n:], np.array(ours[n : 2 * n]) * list(network.masses.values()), atol=1e-9)
     np.testing.assert_allclose(rates[:-n], incidence @ case.velocities + road * velocity, atol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_midpoint_rule_keeps_the_power_balance(seed: int) -> None:
+    """What the energy grows by is what enters through the ports less what the dampers take; without dampers and inputs nothing."""
+    case = random_network(seed)
+    form = hx.dynamics(load(case.text.replace("ground : ground {}", 'ground : port { type "flow" }'))).port_hamiltonian()
+    rng = np.random.default_rng(seed)
+    start, u, h = rng.normal(size=len(form.states)), rng.normal(size=(200, 1)), 0.01
+    x, y, energy = form.simulate(start, u, h)
+    r, p, s, q = (np.array(m.tolist(), dtype=float) for m in (form.R, form.P, form.S, form.gradient.jacobian(form.symbols)))
+    rest = np.array(form.gradient.subs(dict.fromkeys(form.symbols, 0)).tolist(), dtype=float)[:, 0]
+    e = (x[1:] + x[:-1]) / 2 @ q.T + rest
+    whole = np.block([[r, p], [p.T, s]])
+    both = np.hstack([e, u])
+    balance = h * (np.einsum("ni,ni->n", y, u) - np.einsum("ni,ij,nj->n", both, whole, both))
+    assert np.ptp(energy) > 1e-3
+    np.testing.assert_allclose(np.diff(energy), balance, atol=1e-8 * np.abs(energy).max())
+    quiet = hx.dynamics(load(re.sub(r" ~ d\d", "", case.text))).port_hamiltonian()
+    _, _, kept = quiet.simulate(start, np.zeros((1000, 0)), h)
+    np.testing.assert_allclose(kept, kept[0], rtol=1e-8)
 
 
 # ---- what networks are made of -------------------------------------------------------------------------------------------
