@@ -166,7 +166,7 @@ def test_the_midpoint_rule_keeps_the_power_balance(seed: int) -> None:
     assert np.ptp(energy) > 1e-3
     np.testing.assert_allclose(np.diff(energy), balance, atol=1e-8 * np.abs(energy).max())
     quiet = hx.dynamics(load(re.sub(r" ~ d\d", "", case.text))).port_hamiltonian()
-    _, _, kept = quiet.simulate(start, np.zeros((1000, 0)), h)
+    _, _, kept = quiet.simulate(start, np.zeros((1000, len(quiet.inputs))), h)
     np.testing.assert_allclose(kept, kept[0], rtol=1e-8)
 
 
