@@ -45,9 +45,9 @@ def files_of(tables: Tables) -> Iterator[tuple[str, bytes]]:
 
 
 def matrix(rows: Sequence[PairRow]) -> str:
-    """The pairs as a Markdown table: of the files that the reference reader accepts, how many are the same robot afterwards."""
+    """The pairs as a Markdown table: of the files that the reference reader accepts, how many are the same robot, and how many complete."""
     sources, targets = (sorted({getattr(row, side) for row in rows}) for side in ("source", "target"))
-    cells = {(row.source, row.target): f"{row.same} of {row.accepted} ({row.share})" for row in rows}
+    cells = {(row.source, row.target): f"{row.same} of {row.accepted} ({row.share}), {row.exact} complete" for row in rows}
     lines = [["from \\ into", *targets], ["---"] * (len(targets) + 1)]
     lines += [[source, *(cells.get((source, target), "") for target in targets)] for source in sources]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
@@ -70,7 +70,8 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
         f"{accepted} accepted by the reference reader of their format.",
         f"Of {asked} conversions of accepted files {same} give the same robot ({share}).",
         "## Pairs of formats",
-        "Of the files that the reference reader of the source accepts, those that convert into the same robot.",
+        "Of the files that the reference reader of the source accepts, those that convert into the same robot as far as both formats can "
+        "say, and of these the complete ones: the target's own words say everything.",
         matrix(rows),
         table(_PAIR_HEAD, _pair_lines(rows)),
         "*all in its words*: the same robots of which the target says everything natively; *all*: those that have everything with what "
@@ -87,12 +88,21 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
         table(["from", "into", "kind", "robots"], _top(statistics.kinds(tables, "lost"), 5)),
         "## In what results differ",
         table(["from", "into", "quantity", "robots"], _top(statistics.kinds(tables, "failed"), 5)),
+        *_unsaid(tables),
         "## Every accepted file that is not the same",
         table(["file", "from", "into", "cause"], statistics.failures(tables).rows()),
         "## Figures",
         *(f"![{name}]({name}.svg)" for name in ("pairs", "lengths", "ratios", "sizes")),
     ]
     return "\n\n".join(parts) + "\n"
+
+
+def _unsaid(tables: Tables) -> list[str]:
+    """What engines see in one file and cannot be said in the other, where the run asked for it."""
+    if "unsaid" not in tables.legs.columns:
+        return []
+    head = "## What a format cannot say of the other robot, as the engines see it"
+    return [head, table(["from", "into", "quantity", "robots"], _top(statistics.kinds(tables, "unsaid"), 5))]
 
 
 _PAIR_HEAD = ["from", "into", "accepted", "converted", "same", "different", "not comparable", "all in its words", "all", "not in its words"]

@@ -56,8 +56,9 @@ class Leg(Struct, frozen=True):
     """One conversion: the lengths of the result, what its format cannot represent by kind, the diagnostics by code, and the verdict.
 
     The lengths are those of the file without what it carries for the way back, which has ``residue`` bytes. Of the ``losses``,
-    ``carried`` travel in there. ``verdict`` is empty where nothing was verified. ``failed`` are the verifier's quantities that
-    differ, with the place of the worst.
+    ``carried`` travel in there, and ``physical`` concern the robot's physics or what only its format understands, not names, forms,
+    appearance and comments. ``verdict`` is empty where nothing was verified. ``failed`` are the verifier's quantities that differ,
+    with the place of the worst; ``unsaid`` those that one of the formats cannot represent, with the number of elements.
     """
 
     key: str
@@ -74,11 +75,13 @@ class Leg(Struct, frozen=True):
     residue: int = 0
     losses: int | None = None
     carried: int = 0
+    physical: int | None = None
     lost: Mapping[str, int] | None = None
     diagnostics: Mapping[str, int] | None = None
     verdict: str = ""
     verdict_reason: str = ""
     failed: Mapping[str, str] | None = None
+    unsaid: Mapping[str, int] | None = None
 
 
 class Cost(Struct, frozen=True):
@@ -111,7 +114,7 @@ def outcome_from_json(document: Mapping[str, Any]) -> Outcome:
 
 def with_verdict(leg: Leg, verdict: Leg) -> Leg:
     """A conversion with its verdict."""
-    return replace(leg, verdict=verdict.verdict, verdict_reason=verdict.verdict_reason, failed=verdict.failed)
+    return replace(leg, verdict=verdict.verdict, verdict_reason=verdict.verdict_reason, failed=verdict.failed, unsaid=verdict.unsaid)
 
 
 # ---- the same as three tables -----------------------------------------------------------------------------------------

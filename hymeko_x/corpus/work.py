@@ -24,6 +24,7 @@ from hymeko_x.corpus.plan import CONVERT, ENGINE, READ, forget_peak, peak_megaby
 from hymeko_x.corpus.rows import DONE, REFUSED, Cost, Leg, Robot
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.ir.parts import Body, Joint, Shape
+from hymeko_x.reporting.aspects import Aspect, aspect_of
 from hymeko_x.rewrite import Options
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ NOTES = "steps.jsonl"
 """The file in the scratch folder that the steps are written to."""
 
 _PACKAGE = re.compile(rb"(?:package|model)://([^/\"'\s]+)")
+_PHYSICAL = (Aspect.PHYSICS, Aspect.SETTINGS)
 _INDEX = re.compile(r"\[[^\]]*\]")
 
 
@@ -171,6 +173,7 @@ def _convert(desk: Desk, target: str) -> Leg:
         residue=0 if result.bare is None else len(result.package.main) - len(result.bare),
         losses=None if result.losses is None else len(result.losses),
         carried=sum(loss.fate == "kept" for loss in result.losses or ()),
+        physical=None if result.losses is None else sum(aspect_of(loss) in _PHYSICAL for loss in result.losses),
         lost=_by_kind(result.losses or ()),
         diagnostics=_by_code(report),
         **asdict(lengths(result.package.main if result.bare is None else result.bare, target)),
@@ -190,7 +193,9 @@ def _verify(desk: Desk, target: str) -> Leg:
     verdict = _verdict(desk, desk.model, output)
     shutil.rmtree(output.parent, ignore_errors=True)
     failed = {check.quantity: check.at for check in verdict.failed}
-    return replace(leg, verdict=verdict.verdict, verdict_reason=_clean(verdict.reason, desk.folder, desk.scratch), failed=failed)
+    unsaid = {gap.quantity: gap.count for gap in verdict.gaps}
+    reason = _clean(verdict.reason, desk.folder, desk.scratch)
+    return replace(leg, verdict=verdict.verdict, verdict_reason=reason, failed=failed, unsaid=unsaid)
 
 
 def _verdict(desk: Desk, model: KinematicModel, output: Path) -> Verdict:

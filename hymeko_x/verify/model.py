@@ -294,7 +294,7 @@ class KinematicModel(Struct, frozen=True, eq=False, dict=True):
 
     ``precision`` is the relative accuracy of its numbers (double or float32); ``is_independent`` is False when the reader is
     this project's own; ``notes`` are findings of the reader that the verdict repeats. ``features`` are those that format and
-    reader represent, except those in ``unrepresented`` for dofs of one kind.
+    reader represent, except those in ``unrepresented`` for dofs of one kind; ``unread`` are those that only the reader lacks.
     """
 
     name: str
@@ -309,6 +309,7 @@ class KinematicModel(Struct, frozen=True, eq=False, dict=True):
     tied_tendons: tuple[Record, ...] = ()
     features: frozenset[Feature] = frozenset(Feature)
     unrepresented: frozenset[tuple[Feature, Kind]] = frozenset()
+    unread: frozenset[Feature] = frozenset()
     precision: float = 1e-15
     is_independent: bool = True
     notes: tuple[str, ...] = ()

@@ -61,7 +61,8 @@ def test_every_file_and_every_pair_has_its_row(undisturbed: Path) -> None:
     }
     legs = {(row["key"][5:], row["target"]): (row["status"], row["verdict"]) for row in tables.legs.iter_rows(named=True)}
     assert legs == {
-        **{(f"arm{count}.urdf", target): ("done", "same") for count in range(1, 6) for target in ("hymeko", "mjcf")},
+        **{(f"arm{count}.urdf", "hymeko"): ("done", "same") for count in range(1, 6)},
+        **{(f"arm{count}.urdf", "mjcf"): ("done", "same as far as mjcf can say") for count in range(1, 6)},
         **{("broken.urdf", target): ("unread", "") for target in ("hymeko", "mjcf")},
         ("large.xml", "urdf"): ("done", "not comparable"),
         ("one.hymeko", "urdf"): ("done", "same"),

@@ -79,6 +79,37 @@ def test_the_panda_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.
     ]
 
 
+@pytest.mark.corpus
+def test_the_go2_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert reported(real(real_robot, "go2/robot.xml"), capsys) == [
+        "wrote out.urdf (19 bodies, 19 joints) and 16 files in meshes/",
+        "dropped: 12 actuators: 'FR_hip_leg', 'FR_thigh_leg', ...",
+        "dropped: 6 frames: 'imu', 'center', ...",
+        "dropped: armature of 12 joints, 0.01 kg m^2: 'FR_hip_leg_joint', 'FR_thigh_leg_joint', ...",
+        "dropped: friction of 56 shapes, up to 0.8: 'body/visual', 'body/visual#2', ...",
+        "dropped: connection of 4 shapes: 'FR_calf/visual#3', 'FL_calf/visual#3', ...",
+        "approximated: geometry of 4 shapes (mesh -> cylinder): 'FR_calf/visual#3', 'FL_calf/visual#3', ...",
+        "approximated: position of 4 shapes, off by up to 0.153 m: 'FR_calf/visual#3', 'FL_calf/visual#3', ...",
+        "approximated: orientation of 4 shapes, off by up to 0.21 rad: 'FR_calf/visual#3', 'FL_calf/visual#3', ...",
+        "dropped: 5 settings that only mjcf has: <compiler>, <option>, <default>, <keyframe>",
+        "no physics: 23 shapes described in another form; appearance of 8 shapes, 5 frames; 5 comments and declarations",
+        "-v lists each with its place, --report FILE.json has all",
+    ]
+
+
+@pytest.mark.corpus
+def test_cassie_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """From SDF, the format in which a package has it with its loops."""
+    source = real_robot(next(file for file in catalog.development_files("sdf") if file.path.endswith("cassie_v2.sdf")))
+    assert reported(source, capsys)[:5] == [
+        "wrote out.urdf (23 bodies, 23 joints)",
+        "dropped: 4 loops: 'left-pitch-rod-joint', 'right-pitch-rod-joint', ...",
+        "dropped: stiffness of 4 joints, up to 1500 N m/rad: 'left-knee-shin-joint', 'left-tarsus-spring-joint', ...",
+        "dropped: 31 settings that only sdf has: <self_collide>, <plugin>, <xyz>, <surface>, ...",
+        "no physics: 2 joints described in another form",
+    ]
+
+
 def test_a_quiet_report_has_nothing_but_errors(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "biped.xml").write_text(biped())
     assert reported("biped.xml", capsys, "-q") == []

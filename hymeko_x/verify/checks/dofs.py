@@ -163,7 +163,7 @@ def _check_references(pair: Pair) -> Iterator[Check]:
         yield from found.checks()
     else:
         side = pair.a if Feature.REFS not in pair.a.features else pair.b
-        pair.add_gap(side, Feature.REFS.value, [f"{label} is shifted by {shift:.6g}" for label, shift in shifted])
+        pair.add_gap(side, Feature.REFS, [f"{label} is shifted by {shift:.6g}" for label, shift in shifted])
 
 
 # ---- couplings -------------------------------------------------------------------------------------------------------
@@ -191,7 +191,7 @@ def _representable_followers(pair: Pair) -> Iterator[int]:
     """The first robot's dofs that follow in a way that the second's format represents; a gap for the others."""
     curved = [] if Feature.CURVES in pair.b.features else [coupling for coupling in pair.a.couplings if not coupling.straight]
     yield from (coupling.follower for coupling in pair.a.couplings if coupling not in curved)
-    pair.add_gap(pair.b, Feature.CURVES.value, [pair.a.dof_label(coupling.follower) for coupling in curved])
+    pair.add_gap(pair.b, Feature.CURVES, [pair.a.dof_label(coupling.follower) for coupling in curved])
 
 
 # ---- shared ----------------------------------------------------------------------------------------------------------
@@ -208,7 +208,7 @@ def _add_unrepresented(pair: Pair, feature: Feature, has_it: Callable[[Dof], boo
         found = [d for d, dof in enumerate(model.dofs) if has_it(dof) and not other.represents(feature, dof.kind)]
         kinds = sorted({model.dofs[d].kind.value for d in found})
         where = "" if feature not in other.features else f" of {' and '.join(kinds)} joints"
-        pair.add_gap(other, f"{feature.value}{where}", [model.dof_label(d) for d in found])
+        pair.add_gap(other, feature, [model.dof_label(d) for d in found], f"{feature.value}{where}")
 
 
 def _both_represent(pair: Pair, feature: Feature, d: int, e: int) -> bool:

@@ -58,7 +58,7 @@ def _pair_loops(pair: Pair) -> tuple[list[LoopPair], list[str]]:
     """
     if Feature.LOOPS not in pair.b.features:
         labels = [f"'{loop.name}'" if loop.name else f"between {_ends_of(pair.a, loop)}" for loop in pair.a.loops]
-        pair.add_gap(pair.b, Feature.LOOPS.value, labels)
+        pair.add_gap(pair.b, Feature.LOOPS, labels)
         return [], []
     back = {j: i for i, j in pair.match.bodies}
     there = dict(pair.match.bodies)

@@ -104,11 +104,12 @@ class Pair(Struct, frozen=True, eq=False, dict=True):
         """A gap for each side that has something which the other's format or reader does not represent."""
         for model, other in ((self.a, self.b), (self.b, self.a)):
             if feature not in other.features:
-                self.add_gap(other, feature.value, names(model))
+                self.add_gap(other, feature, names(model))
 
-    def add_gap(self, other: KinematicModel, quantity: str, names: Sequence[str]) -> None:
+    def add_gap(self, other: KinematicModel, feature: Feature | None, names: Sequence[str], quantity: str = "") -> None:
         """A gap of this side: it does not represent these elements of the other one. A note where only its reader does not."""
-        if names and not other.is_independent:
+        quantity = quantity or (feature.value if feature else "")
+        if names and (feature in other.unread or not other.is_independent):
             self.notes.append(f"{quantity}: {len(names)} were not compared, because the reader of {other.format} does not read them")
         elif names:
             self.gaps.append(Gap(other.format, quantity, len(names), tuple(names[:MOST_SHOWN])))

@@ -87,7 +87,7 @@ def _summed_up(pair: Pair, word: str, results: Sequence[tuple[int, _Result]]) ->
     if any(result.meshes for _, result in results) or any(shape.kind == "mesh" for i, _ in results for shape in pair.a.bodies[i].shapes):
         yield from meshes.checks()
     lost = [f"{label} of {pair.a.body_label(i)}" for i, result in results for label in result.lost]
-    pair.add_gap(pair.b, f"{word} meshes that cannot be loaded", lost)
+    pair.add_gap(pair.b, None, lost, f"{word} meshes that cannot be loaded")
     missing = [result.missing for _, result in results if result.missing]
     if missing:
         pair.notes.append(f"{word} meshes of {len(missing)} bodies: {missing[0]}")
@@ -139,7 +139,7 @@ def _without_stand_ins(pair: Pair, missing: Sequence[Shape], poor: Sequence[Shap
         if stands:
             pair.notes.append(f"shapes: {side.format} has no {shape.kind}; a {kind} stands for {_label(shape)}")
         else:
-            pair.add_gap(side, f"shapes of kind {shape.kind}", [_label(shape)])
+            pair.add_gap(side, None, [_label(shape)], f"shapes of kind {shape.kind}")
     return waiting
 
 

@@ -50,6 +50,8 @@ if TYPE_CHECKING:
 
 FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
 _SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS})
+UNREAD = _SHAPES | {Feature.FRICTION, Feature.EFFORT_LIMITS, Feature.SPRINGS, Feature.REFS, Feature.SENSORS}
+"""What SDF represents and this reader leaves out."""
 _TURNS = {"ball_rpy": Kind.BALL, "quaternion_floating": Kind.FREE, "rpy_floating": Kind.FREE}
 _ROLES = {Role.VISUAL: GeometryRole.kIllustration, Role.COLLISION: GeometryRole.kProximity}
 _LEAST = 2e-10
@@ -134,6 +136,7 @@ def _model(plant: Any, scene: Any | None, path: Path, screws: Mapping[int, Array
         bodies=_without_world_link([world_body(shapes=tuple(_shapes(plant, scene, WORLD))), *bodies]),
         loops=tuple(_loop(joint, numbers, words) for joint in closing),
         features=FEATURES if scene is None else FEATURES | _SHAPES,
+        unread=UNREAD,
     )
     return replace(model, couplings=tuple(_couplings(path, model)))
 

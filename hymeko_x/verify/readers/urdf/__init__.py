@@ -81,6 +81,7 @@ def read_text(data: bytes, path: Path, lookup: Lookup) -> KinematicModel:
         engine=f"urdfdom in Pinocchio {pin.__version__}, yourdfpy",
         bodies=_bodies(model, second),
         features=FEATURES if second.shapes is not None else FEATURES - {Feature.VISUALS, Feature.COLLISIONS},
+        unread=frozenset({Feature.VISUALS, Feature.COLLISIONS}),
         unrepresented=UNREPRESENTED,
         notes=second.notes,
     )
