@@ -48,7 +48,7 @@ def check(data: bytes, suffix: str) -> None:
     assert np.abs(points - part.points).max() <= 2e-6 * np.abs(points).max()
     if model.mesh_texcoordnum[0]:
         assert part.uv is not None
-        assert model.mesh_texcoord == pytest.approx(part.uv * (1, -1) + (0, 1), abs=1e-6)
+        assert model.mesh_texcoord == pytest.approx(part.uv * (1, -1) + (0, 1), abs=1e-6, rel=1e-6)
         assert model.mesh_facetexcoord.tolist() == (part.faces if part.corners is None else part.corners).tolist()
     else:
         assert part.uv is None
