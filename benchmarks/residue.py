@@ -42,7 +42,7 @@ def _ratio(path: Path, own: Format, target: Format) -> float:
 
     def convert() -> bytes:
         robot = pipeline.read(source, own, Report())
-        return pipeline.convert(robot, target, Options(), files, Report(), REFERENCE).package.main
+        return pipeline.convert(robot, target, Options(keep="inside"), files, Report(), REFERENCE).package.main
 
     text = convert()
     back, there = best_of(lambda: pipeline.read(Source("back", text, files), target, Report()), convert, 2)

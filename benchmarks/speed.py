@@ -69,7 +69,7 @@ def _compare(way: Way, names: tuple[str, ...]) -> bool:
         if text is None or not _mujoco_takes(text):
             print(f"{path.name}: MuJoCo does not take it without meshes")
             continue
-        own = text if way.own is way.robots else hx.dumps(hx.loads(text, way.robots.name), way.own.name, pure=True)
+        own = text if way.own is way.robots else hx.dumps(hx.loads(text, way.robots.name), way.own.name)
         theirs, write, measured = in_turns(lambda: _mujoco(text), lambda: _write(own, way), lambda: _measure(own, way))  # noqa: B023
         writes.append(write / theirs)
         measures.append(measured / theirs)
@@ -126,7 +126,7 @@ def _write(text: str, way: Way) -> object:
 
 def _measure(text: str, way: Way) -> object:
     robot = pipeline.read(Source("robot", text.encode(), NoFiles()), way.own, Report())
-    return pipeline.convert(robot, way.target, Options(), NoFiles(), Report())
+    return pipeline.convert(robot, way.target, Options(keep="beside"), NoFiles(), Report())
 
 
 if __name__ == "__main__":

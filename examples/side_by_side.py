@@ -28,7 +28,7 @@ def main() -> None:
     """Print the page."""
     file = next(file for file in catalog.development_files("urdf") if file.path.endswith("newton/examples/assets/quadruped.urdf"))
     robot = hx.load(cache.fetch(file.package, cache.cache_root(os.environ)) / file.path)
-    texts = {name: hx.dumps(robot, name, pure=True) for name, _ in FORMATS}
+    texts = {name: hx.dumps(robot, name) for name, _ in FORMATS}
     print(HEAD.format(path=file.path, package=file.package.name), end="")
     for name, text in texts.items():
         print(f"| {name} | {characters(text)} | {characters(text) / characters(texts['urdf']):.0%} |")

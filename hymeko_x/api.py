@@ -9,13 +9,15 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, TypedDict, Unpack
 
+from msgspec.structs import replace
+
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.delivery import Delivery, report_unwritten, unchanged
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.holder import mechanism_of
 from hymeko_x.rewrite import Options
-from hymeko_x.source import ManyFiles, NoFiles, Source
+from hymeko_x.source import KEPT_SUFFIX, Kept, ManyFiles, NoFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -49,23 +51,25 @@ class Reading(Finding, total=False):
     """The values of ``$(env NAME)`` in a xacro file."""
     variants: Mapping[str, str] | None
     """Which variant of a variant set of USD to read, by set."""
+    ignore_kept: bool
+    """Whether what is kept for the file, beside it or inside of it, is left out."""
 
 
 class Writing(TypedDict, total=False):
     """How a robot is written."""
 
     base: Literal["fixed", "free"] | None
-    """What becomes of a base that the source leaves open (None = usual for the format)."""
+    """What becomes of a base that the source leaves open (None = usual for the format). It belongs to the robot from then on."""
     actuators: Literal["none", "motor", "position", "velocity"] | None
-    """The actuators to write (None = those that the robot has)."""
+    """The actuators to give it (None = those that it has). They belong to the robot from then on."""
     layout: Literal["single", "layered"] | None
     """USD: one file, or an interface with files for geometry, materials and physics behind it."""
     nested: bool | None
     """USD: whether each body stands inside of its parent."""
     split: bool
     """xacro: whether the macros go into a file of their own."""
-    pure: bool
-    """Whether the output carries no residue of what its format cannot represent."""
+    keep: Literal["beside", "inside"] | None
+    """Where to keep what the format cannot represent, so that it comes back: in a file beside the output, or inside of it."""
     lenient: bool
     """Whether to go on where writing makes errors; else they raise Stopped, and nothing is written."""
 
@@ -102,13 +106,22 @@ def open(
 
 
 def loads(
-    data: bytes | str, format: str | None = None, *, files: Files | None = None, report: Report | None = None, lenient: bool = False
+    data: bytes | str,
+    format: str | None = None,
+    *,
+    files: Files | None = None,
+    report: Report | None = None,
+    lenient: bool = False,
+    kept: str | None = None,
+    ignore_kept: bool = False,
 ) -> Mechanism:
-    """The robot in a text or in bytes. ``files`` are those that it may refer to (none by default).
+    """The robot in a text or in bytes. ``files`` are those that it may refer to (none by default), ``kept`` is the text of its kept file.
 
     Raises: as :func:`load`.
     """
-    source = Source("<text>", data.encode() if isinstance(data, str) else data, NoFiles() if files is None else files)
+    data = data.encode() if isinstance(data, str) else data
+    beside = Kept(kept, f"<text>{KEPT_SUFFIX}") if kept else None
+    source = Source("<text>", data, NoFiles() if files is None else files, kept=beside, ignores_kept=ignore_kept)
     return pipeline.read(source, _input_format(source, format), Report() if report is None else report, lenient=lenient)
 
 
@@ -154,8 +167,10 @@ def dumps(
 
     Files that would stand beside the text (layers of USD, macros of xacro) are named in a warning.
 
-    Raises: Refusal when the format cannot be written.
+    Raises: Refusal when the format cannot be written; ValueError for ``keep="beside"``, where there is no file to be beside of.
     """
+    if writing.get("keep") == "beside":
+        raise ValueError('a text has nothing beside it: keep="inside" keeps within the text, and dump() writes files')
     report = Report() if report is None else report
     files = _files_of(robot, packages, search_path, confine)
     mechanism = mechanism_of(robot)
@@ -176,24 +191,24 @@ def convert(
     layout: Literal["single", "layered"] | None = None,
     nested: bool | None = None,
     split: bool = False,
-    pure: bool = False,
+    keep: Literal["beside", "inside"] | None = None,
     lenient: bool = False,
     **reading: Unpack[Reading],
 ) -> pipeline.Result:
     """Convert a file with its meshes; return the mechanism, the package, the diagnostics and the losses.
 
-    :class:`Reading` and :class:`Writing` list the options. The output carries what its format cannot represent, unless it is ``pure``.
+    :class:`Reading` and :class:`Writing` list the options.
 
     Raises: Refusal when the input cannot be read or has errors, or the output cannot be written; then nothing was changed.
     """
     report = Report()
     given = _source(source, **reading)
     read_as = _input_format(given, from_format)
-    robot = pipeline.read(given, read_as, report, lenient=lenient)
-    options = Options(base, actuators, layout, nested, split, pure, lenient, Path(target).stem)
     format = formats.of_output(os.fspath(target), to_format)
+    robot, passed = pipeline.read_for(format, given, read_as, report, lenient=lenient)
+    options = Options(base, actuators, layout, nested, split, keep, lenient, Path(target).stem)
     own = unchanged(given, read_as, format)
-    delivery = Delivery(robot, format, options, given.files, _place(target, assets), os.fspath(target), own)
+    delivery = Delivery(robot, format, options, given.files, _place(target, assets), os.fspath(target), own, passed)
     result = delivery.convert(report)
     delivery.put(result)
     return result
@@ -237,6 +252,7 @@ def _source(
     arguments: Mapping[str, str] | None = None,
     environment: Mapping[str, str] | None = None,
     variants: Mapping[str, str] | None = None,
+    ignore_kept: bool = False,
 ) -> Source:
     given = disk.open_source(
         os.fspath(path),
@@ -244,7 +260,8 @@ def _source(
         search_path=tuple(map(Path, search_path)),
         confine=None if confine is None else Path(confine),
     )
-    return Source(given.name, given.data, given.files, dict(arguments or {}), dict(environment or {}), dict(variants or {}))
+    chosen = {"arguments": dict(arguments or {}), "environment": dict(environment or {}), "variants": dict(variants or {})}
+    return replace(given, **chosen, ignores_kept=ignore_kept)
 
 
 def _input_format(source: Source, format: str | None) -> formats.Format:

@@ -191,18 +191,28 @@ INERTIA_REPAIRED = Code(
 )
 RESIDUE_SUPERSEDED = Code(
     "HX105",
-    "what was carried no longer applies",
-    "The file carries what its format cannot say, each entry bound to what the file said when it was written. Somebody has changed that since, and the change wins.",
+    "what was kept no longer applies",
+    "What the format cannot represent was kept, each entry with what the file said when it was written. Somebody has changed that since, and the change wins.",
 )
 RESIDUE_FOLLOWED = Code(
     "HX106",
     "a renamed element was recognised",
-    "The file carries something for an element that is not there any more, and exactly one new element says the same: it was taken for the old one.",
+    "Something is kept for an element that is not in the file any more, and exactly one new element is like it: it was taken for the old one.",
 )
 RESIDUE_UNREADABLE = Code(
     "HX107",
-    "what is carried cannot be read",
-    "The file carries what its format cannot say, but the text is damaged or of a newer version. The file is read as if it carried nothing.",
+    "what is kept cannot be read",
+    "The text that was kept for the file is damaged or of another version. The file is read as if nothing were kept.",
+)
+KEPT_USED = Code(
+    "HX112",
+    "what was kept for the file was used",
+    "The file was converted with --keep. What its format cannot represent was found beside it or inside of it, and is part of the robot again. --ignore-kept reads the file alone.",
+)
+KEPT_LEFT = Code(
+    "HX113",
+    "what is kept for the input does not go along",
+    "Within one format all that the output needs stands in the input itself. What is kept for the input beside it or inside of it goes along with --keep or --keep=inside.",
 )
 EDIT_REWRITTEN = Code(
     "HX108",

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 class Delivery(Struct, frozen=True):
     """A mechanism, and how and where its output goes; ``path`` is empty where only the main file is wanted.
 
-    ``own`` is the source that the mechanism was read from as it is, if that is of the same format.
+    ``own`` is the source that the mechanism was read from as it is, if that is of the same format. ``passed`` is what was kept for its
+    source and is passed on, as in :func:`hymeko_x.pipeline.convert`.
     """
 
     mechanism: Mechanism
@@ -34,23 +35,33 @@ class Delivery(Struct, frozen=True):
     place: Place
     path: str
     own: Source | None = None
+    passed: str | None = None
 
     def convert(self, report: Report, *, measured: bool = True) -> Result:
         """The result to write. Its files go below a folder named like the main file when those of another output are in the way.
 
         Without ``measured`` it is not read back. Raises: as :func:`hymeko_x.pipeline.convert`.
         """
-        if self.own is not None and self.path and replace(self.options, beside="", lenient=False) == Options():
-            package = copied(self.own, self.format, self.mechanism, self.place, report)
-            if package is not None and self._in_the_way(package, f"{safe_name(self.options.beside)}/") is None:
-                return Result(self.mechanism, package, report, ())
+        package = self._copied(report)
+        if package is not None and self._in_the_way(package, f"{safe_name(self.options.beside)}/") is None:
+            package = pipeline.with_kept(package, self.passed or "", self.options, report)
+            return Result(self.mechanism, package, report, ())
         place = replace(self.place, in_the_way=self._in_the_way if self.path else None)
-        return pipeline.convert(self.mechanism, self.format, self.options, self.files, report, place, measured=measured)
+        return pipeline.convert(self.mechanism, self.format, self.options, self.files, report, place, measured=measured, passed=self.passed)
+
+    def _copied(self, report: Report) -> Package | None:
+        """The output with the source's own text, where that is the robot and holds neither more nor less than is to be kept."""
+        if self.own is None or not self.path or replace(self.options, beside="", keep=None, lenient=False) != Options():
+            return None
+        is_inside = bool(self.passed) and self.own.kept is None
+        if is_inside or (self.passed and self.options.keep == "inside"):
+            return None
+        return copied(self.own, self.format, self.mechanism, self.place, report)
 
     def below(self, folder: str) -> Package:
         """The output with every file beside the main one below this folder, which ends in a slash. Raises: as :meth:`convert`."""
         options = replace(self.options, within=folder)
-        return pipeline.convert(self.mechanism, self.format, options, self.files, Report(), self.place).package
+        return pipeline.convert(self.mechanism, self.format, options, self.files, Report(), self.place, passed=self.passed).package
 
     def put(self, result: Result) -> None:
         """Write what :meth:`convert` made, whole or not at all. Raises: Refusal HX002."""

@@ -18,7 +18,7 @@ from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Origin, Refusal, refuse
-from hymeko_x.source import Package, PackageFiles, Source
+from hymeko_x.source import KEPT_SUFFIX, Kept, Package, PackageFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -34,13 +34,18 @@ Within = Callable[[str], Package]
 def open_source(
     path: str, *, packages: Mapping[str, Path] | None = None, search_path: tuple[Path, ...] = (), confine: Path | None = None
 ) -> Source:
-    """The input at ``path`` with the files that it may refer to.
+    """The input at ``path`` with the files that it may refer to, and with its kept file if there is one.
 
     Raises: Refusal HX001 when it cannot be read or is outside ``confine``, HX007 when it is larger than 1 GiB.
     """
-    place = Path(path)
-    files = DiskFiles(place.parent, packages or {}, search_path, confine)
-    origin = Origin(path)
+    files = DiskFiles(Path(path).parent, packages or {}, search_path, confine)
+    beside = f"{path}{KEPT_SUFFIX}"
+    kept = Kept(_read(beside, confine).decode("utf-8", "replace"), beside) if Path(beside).is_file() else None
+    return Source(path, _read(path, confine), files, kept=kept)
+
+
+def _read(path: str, confine: Path | None) -> bytes:
+    place, origin = Path(path), Origin(path)
     try:
         if place.is_dir():
             raise refuse(codes.CANNOT_READ, "this is a folder, and a file was expected", origin)
@@ -50,7 +55,7 @@ def open_source(
             raise refuse(codes.CANNOT_READ, f"the file is outside '{confine}', to which reading is confined", origin)
         if place.stat().st_size > MOST_BYTES:
             raise refuse(codes.TOO_LARGE, f"the file has {place.stat().st_size} bytes; at most {MOST_BYTES} are read", origin)
-        return Source(path, _content(place, origin), files)
+        return _content(place, origin)
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_READ, f"cannot be read: {_reason(error)}", origin) from error
 
@@ -69,11 +74,14 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
 
     First everything is there as temporary siblings, then all is renamed, the main file last. ``within`` gives the same
     output with its assets below a folder: such a main file stands in while assets are replaced that the old one refers to.
+    What an earlier run has kept beside the file is removed first, and what this one keeps comes last: no file is ever beside
+    what was kept for another one.
 
     Raises: Refusal HX002; then no file of an earlier run has been touched, unless the very renaming failed.
     """
     target, contents = Path(path), PackageFiles(package, files)
-    assets, main = Staging(), Staging()
+    beside = target.with_name(f"{target.name}{KEPT_SUFFIX}")
+    assets, main, kept = Staging(), Staging(), Staging()
     try:
         if not target.parent.is_dir():
             raise FileNotFoundError(errno.ENOENT, f"there is no folder '{target.parent}'")
@@ -81,7 +89,12 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
             data = contents.read(name)
             assets.make_folders(place.parent)
             assets.add(place, data)
-        if _is_stream(target):
+        is_stream = _is_stream(target)
+        if package.kept and is_stream:
+            raise ValueError("this is a pipe or a device, which has no file beside it; --keep=inside keeps within the output")
+        if package.kept:
+            kept.add(beside, package.kept.encode("utf-8", "surrogatepass"))
+        if is_stream:
             target.write_bytes(package.main)
         else:
             main.add(target, package.main)
@@ -89,12 +102,16 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
             if within is not None and target.is_file() and assets.replace_others():
                 _put_stand_in(target, files, within)
             assets.put()
+            if not is_stream:
+                beside.unlink(missing_ok=True)
             main.put()
+            kept.put()
             for stand_in in _stand_ins(target):  # ours, and that of a run that was killed
                 rmtree(stand_in, ignore_errors=True)
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
     finally:
+        kept.clean()
         main.clean()
         assets.clean()
 

@@ -17,15 +17,16 @@ from hymeko_x.collector import uncollected
 from hymeko_x.compare.geometry import meshes_as_files, with_points_of_files, without_points
 from hymeko_x.compare.leaves import leaves_again, leaves_between
 from hymeko_x.compare.ledger import losses_between
-from hymeko_x.diagnostics import Origin, Refusal, Report, Stopped, refuse
+from hymeko_x.diagnostics import Refusal, Report, Stopped, refuse
 from hymeko_x.ir.mechanism import LUMPED_KINDS
 from hymeko_x.ir.parts import Body, Mesh, Texture
 from hymeko_x.residue.align import align
 from hymeko_x.residue.delta import residue_between
+from hymeko_x.residue.kept import restored
 from hymeko_x.residue.realign import alignment_differences
-from hymeko_x.residue.text import BadResidue, parse_residue, print_residue
-from hymeko_x.rewrite import Options, legalize
-from hymeko_x.source import PackageFiles, PlacedFiles, Source
+from hymeko_x.residue.text import print_residue
+from hymeko_x.rewrite import Options, choose, legalize
+from hymeko_x.source import Kept, PackageFiles, PlacedFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -41,7 +42,7 @@ class Reader(Protocol):
     """The function ``read`` of every frontend."""
 
     def __call__(self, source: Source, report: Report) -> Reading:
-        """The mechanism that the source describes, and the residue that it carries. Raises: Refusal."""
+        """The mechanism that the source describes, and the residue that is kept inside of it. Raises: Refusal."""
         ...
 
 
@@ -70,16 +71,15 @@ HERE = Place()
 
 
 class Result(Struct, frozen=True):
-    """The result of a conversion. ``losses`` is None when nothing was measured: the target cannot be read back.
+    """The result of a conversion: the mechanism as the options ask for it, and what was written.
 
-    ``bare`` is the main file without the residue that it carries; None when nothing was measured or the file is to be pure.
+    ``losses`` is None when nothing was measured: the target cannot be read back.
     """
 
     mechanism: Mechanism
     package: Package
     report: Report
     losses: tuple[Loss, ...] | None
-    bare: bytes | None = None
 
 
 class _Printed(NamedTuple):
@@ -97,7 +97,7 @@ class _Printed(NamedTuple):
 
 
 def read(source: Source, format: Format, report: Report, *, lenient: bool = False) -> Mechanism:
-    """The mechanism in a source of this format, with what its residue restores.
+    """The mechanism in a source of this format, with what is kept for it.
 
     Raises: Refusal when the input cannot be read at all; Stopped when it has errors, unless ``lenient``.
     """
@@ -110,10 +110,31 @@ def read(source: Source, format: Format, report: Report, *, lenient: bool = Fals
 @uncollected()
 def read_anyway(source: Source, format: Format, report: Report) -> Mechanism:
     """As :func:`read`, whatever errors there are: for those who look at the errors. Raises: Refusal when nothing can be read."""
-    image, carried = reader(format)(source, report)
-    if not carried:
-        return image
-    return with_points_of_files(restored(image, carried, Origin(source.name), report), _fetch(source.files))
+    image, kept = _native(source, format, report)
+    return image if kept is None else with_points_of_files(restored(image, kept, report), _fetch(source.files))
+
+
+@uncollected()
+def read_for(target: Format, source: Source, format: Format, report: Report, *, lenient: bool = False) -> tuple[Mechanism, str | None]:
+    """The mechanism to convert into a target; and within one format, what is kept for the source, which fits the output as it is.
+
+    All that a conversion within one format needs stands in the file itself.
+
+    Raises: as :func:`read`.
+    """
+    if format.family != target.family:
+        return read(source, format, report, lenient=lenient), None
+    since = len(report)
+    image, kept = _native(source, format, report)
+    stop_on_errors(report, since, lenient=lenient)
+    return image, "" if kept is None else kept.text
+
+
+def _native(source: Source, format: Format, report: Report) -> tuple[Mechanism, Kept | None]:
+    """The mechanism as the file itself describes it, and what is kept for it: inside of it, else beside it."""
+    image, inside = reader(format)(source, report)
+    kept = Kept(inside, source.name) if inside else source.kept
+    return image, None if source.ignores_kept else kept
 
 
 def stop_on_errors(report: Report, since: int, *, lenient: bool) -> None:
@@ -133,29 +154,49 @@ def write(mechanism: Mechanism, format: Format, options: Options, files: Files, 
 
     Raises: Refusal when the format cannot be written; Stopped when that made errors, unless the options are lenient.
     """
-    return _printed(mechanism, format, options, files, report, place).package
+    return _printed(choose(mechanism, options, report), format, options, files, report, place).package
 
 
 @uncollected()
 def convert(
-    mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place = HERE, *, measured: bool = True
+    mechanism: Mechanism,
+    format: Format,
+    options: Options,
+    files: Files,
+    report: Report,
+    place: Place = HERE,
+    *,
+    measured: bool = True,
+    passed: str | None = None,
 ) -> Result:
-    """Write a mechanism, read the result back if the format has a reader, measure the losses, and let the file carry them.
+    """Write a mechanism, read the result back if the format has a reader, measure the losses, and keep them if the options ask for it.
 
-    With the option ``pure`` it carries no residue; without ``measured`` it is only written.
+    ``passed`` is what was kept for the source and is passed on instead (None: what there is to keep is measured). Without ``measured`` the
+    mechanism is only written.
 
     Raises: as :func:`write`, and HX901 when our own reader refuses the output.
     """
+    mechanism = choose(mechanism, options, report)
     package, printed, is_moved = _printed(mechanism, format, options, files, report, place)
     if format.frontend is None or not measured:
         return Result(mechanism, package, report, None)
-    carry = None if options.pure else package.carry
     image = read_back(package, format, files)
     contents = None if place.assets == "reference" else PackageFiles(package, PlacedFiles(mechanism.places, files))
-    losses, residue = _compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_carried=carry is not None)
-    if carry is None:
-        return Result(mechanism, package, report, losses)
-    return Result(mechanism, replace(package, main=carry(residue)) if residue else package, report, losses, package.main)
+    is_kept = options.keep is not None and passed is None and not format.is_exact
+    losses, residue = _compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_kept=is_kept)
+    return Result(mechanism, with_kept(package, residue if passed is None else passed, options, report), report, losses)
+
+
+def with_kept(package: Package, text: str, options: Options, report: Report) -> Package:
+    """The package with this text of a residue where the options want it."""
+    if not text:
+        return package
+    if options.keep is None:
+        report.note(codes.KEPT_LEFT, "what is kept for the input stays there", hint="--keep takes it along")
+        return package
+    if options.keep == "beside" or package.carry is None:
+        return replace(package, kept=text)
+    return replace(package, main=package.carry(text))
 
 
 def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
@@ -164,7 +205,7 @@ def _printed(mechanism: Mechanism, format: Format, options: Options, files: File
     _check_is_robot(mechanism, format, report)
     files = PlacedFiles(mechanism.places, files) if mechanism.places else files
     complete = completed(with_stand_ins(mechanism, format, files, report), format, files, report)
-    legal = legalize(complete, format.name, options, report)
+    legal = legalize(complete, format.name, report)
     printed = _placed_and_printed(legal, format, options, files, report, place)
     stop_on_errors(report, since, lenient=options.lenient)
     folder = f"{safe_name(options.beside)}/"
@@ -210,9 +251,9 @@ def read_back(package: Package, format: Format, files: Files) -> Mechanism:
 
 
 def _compared(
-    mechanism: Mechanism, printed: Mechanism, image: Mechanism, format: Format, contents: Files | None, *, is_moved: bool, is_carried: bool
+    mechanism: Mechanism, printed: Mechanism, image: Mechanism, format: Format, contents: Files | None, *, is_moved: bool, is_kept: bool
 ) -> tuple[tuple[Loss, ...], str]:
-    """The losses, and the text of the residue if the file is to carry one: empty where the image is the mechanism.
+    """The losses, and the text of the residue if it is to be kept: empty where the image is the mechanism.
 
     ``contents`` are the files of the output (None where the main file goes alone): points that the mechanism holds and that are in one of
     them are no difference. Where files are moved, the residue has nothing that leads back to those in the way.
@@ -221,8 +262,8 @@ def _compared(
     as_files = mechanism if contents is None else meshes_as_files(mechanism, aligned, _fetch(contents))
     moved = with_references_of(printed, as_files)
     leaves = leaves_between(moved, aligned)
-    losses = losses_between(moved, aligned, alignment_differences(alignment), format, leaves, is_carried=is_carried)
-    if not is_carried:
+    losses = losses_between(moved, aligned, alignment_differences(alignment), format, leaves, is_carried=is_kept)
+    if not is_kept:
         return losses, ""
     source = without_points(mechanism, as_files)
     if is_moved:
@@ -239,18 +280,6 @@ def _fetch(files: Files) -> Callable[[str], bytes | None]:
 # ---- steps of the stages ---------------------------------------------------------------------------------------------------------
 
 
-def restored(image: Mechanism, carried: str, origin: Origin, report: Report) -> Mechanism:
-    """The mechanism that a file describes together with what its residue has of the one that it was made from."""
-    from hymeko_x.residue.merge import restore
-
-    try:
-        residue = parse_residue(carried)
-    except (BadResidue, Refusal) as error:
-        report.warn(codes.RESIDUE_UNREADABLE, f"what the file carries cannot be read, and is left out: {error}", origin)
-        return image
-    return restore(image, residue, report)
-
-
 def completed(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
     """The mechanism with what only the engine of the format that it came from computes, where it goes to another format."""
     native = formats.native_format(mechanism)
@@ -264,7 +293,7 @@ def fully_completed(mechanism: Mechanism, files: Files, report: Report) -> Mecha
         return mechanism
 
     def printed() -> tuple[Mechanism, bytes]:
-        legal = legalize(mechanism, native.name, Options(), Report())
+        legal = legalize(mechanism, native.name, Report())
         return legal, writer(native)(legal, Options(), Report()).main
 
     found: Mechanism = formats.loaded(native.completes)(mechanism, printed, files, report)

@@ -45,12 +45,24 @@ class NoFiles:
         raise FileNotFoundError(path)
 
 
+KEPT_SUFFIX = ".keep.hymeko"
+"""What follows the name of a file in the name of the kept file beside it."""
+
+
+class Kept(NamedTuple):
+    """What is kept for a file of the robot that it was made from: the text of a residue, and the name of the file that has it."""
+
+    text: str
+    file: str
+
+
 class Source(Struct, frozen=True):
     """One input: its name as the user typed it (used in messages), its bytes, and the files around it.
 
     ``arguments`` are the user's values for a format that takes some (xacro's NAME:=VALUE), ``environment`` the
     variables that the user passes on to it (xacro's `$(env NAME)`); the program's own environment stays closed. ``variants``
-    are the choices for a format that leaves some open (USD's variant sets).
+    are the choices for a format that leaves some open (USD's variant sets). ``kept`` is what the kept file beside it holds;
+    with ``ignores_kept`` neither this is used nor what is kept inside of the file.
     """
 
     name: str
@@ -59,10 +71,12 @@ class Source(Struct, frozen=True):
     arguments: Mapping[str, str] = field(default_factory=dict)
     environment: Mapping[str, str] = field(default_factory=dict)
     variants: Mapping[str, str] = field(default_factory=dict)
+    kept: Kept | None = None
+    ignores_kept: bool = False
 
 
 class Reading(NamedTuple):
-    """What a frontend reads: the mechanism, and the text of the residue that the file carries (empty = none)."""
+    """What a frontend reads: the mechanism, and the text of the residue that is kept inside the file (empty = none)."""
 
     mechanism: Mechanism
     carried: str = ""
@@ -73,7 +87,8 @@ class Package(Struct, frozen=True):
 
     ``copies`` names files that are to be copied as they are: relative path -> path in the source's ``files``. ``carry`` prints the
     main file again with the text of a residue where other readers of the format ignore it; None for a format that represents
-    everything. ``enclose`` gives the package with files inside of the main one; None where they stand beside it.
+    everything. ``enclose`` gives the package with files inside of the main one; None where they stand beside it. ``kept`` is the text of
+    the kept file beside the main one; where it is empty there is none.
     """
 
     main: bytes
@@ -81,6 +96,7 @@ class Package(Struct, frozen=True):
     copies: Mapping[str, str] = field(default_factory=dict)
     carry: Callable[[str], bytes] | None = None
     enclose: Callable[[Mapping[str, bytes]], Package] | None = None
+    kept: str = ""
 
 
 class PackageFiles(Struct, frozen=True):

@@ -142,7 +142,7 @@ def test_a_loss_is_measured_by_reading_the_result_back(
     main_file = ARM.replace('effort="10"', 'effort="9"').encode()
     lossy = Package(main_file, carry=lambda residue: main_file)
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
-    assert main(["convert", "arm.urdf", "lossy.xacro", "--json"]) == exits.DONE
+    assert main(["convert", "arm.urdf", "lossy.xacro", "--json", "--keep=inside"]) == exits.DONE
     said = capsys.readouterr()
     assert json.loads(said.out)["losses"] == [
         {
@@ -198,9 +198,9 @@ def test_fail_on_stops_at_its_level_and_at_worse(
     if lost:
         lossy = Package((folder / "arm.urdf").read_text().replace('effort="10"', 'effort="9"').encode())
         monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
-    (folder / "out.urdf").write_text("before")
-    assert main(["convert", "arm.urdf", "out.urdf", "--pure", "--fail-on", limit, "--report", "report.json"]) == expected
-    assert ((folder / "out.urdf").read_text() == "before") == (expected == exits.FAIL_ON)
+    (folder / "out.xacro").write_text("before")
+    assert main(["convert", "arm.urdf", "out.xacro", "--fail-on", limit, "--report", "report.json"]) == expected
+    assert ((folder / "out.xacro").read_text() == "before") == (expected == exits.FAIL_ON)
     assert (folder / "report.json").exists()
 
 
@@ -338,10 +338,10 @@ def test_what_vanishes_is_dropped_and_what_changes_is_approximated(folder: Path,
         ARM.replace('<link name="tip">', '<link name="tip"><visual><geometry><sphere radius="1"/></geometry></visual>').encode()
     )
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: lossy)
-    assert [loss.fate for loss in hx.convert("arm.urdf", "more.urdf", pure=True).losses or ()] == ["approximated"]
+    assert [loss.fate for loss in hx.convert("arm.urdf", "more.xacro").losses or ()] == ["approximated"]
     (folder / "arm.urdf").write_bytes(lossy.main)
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: Package(ARM.encode()))
-    assert [loss.fate for loss in hx.convert("arm.urdf", "less.urdf", pure=True).losses or ()] == ["dropped"]
+    assert [loss.fate for loss in hx.convert("arm.urdf", "less.xacro").losses or ()] == ["dropped"]
 
 
 # ---- diff and info -------------------------------------------------------------------------------------------------------

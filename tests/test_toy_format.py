@@ -61,18 +61,18 @@ def toy(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 
 def test_it_is_imported_and_exported(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["import", "arm.toy", "-o", "arm.hymeko"]) == exits.DONE
-    assert main(["export", "arm.hymeko", "--to", "toy", "--pure"]) == exits.DONE
+    assert main(["export", "arm.hymeko", "--to", "toy"]) == exits.DONE
     assert capsys.readouterr().out == ARM
 
 
 def test_its_losses_are_measured_and_kept_and_restored(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["convert", "arm.urdf", "out.toy", "--json"]) == exits.DONE
+    assert main(["convert", "arm.urdf", "out.toy", "--json", "--keep=inside"]) == exits.DONE
     losses = json.loads(capsys.readouterr().out)["losses"]
     assert [(loss["element"], loss["field"], loss["fate"]) for loss in losses] == [("joint 'upper'", "dofs[0]", "kept")]
     assert Path("out.toy").read_text().startswith("arm\nbase upper\nupper fore\n#carried : residue {\n")
     assert hx.load("out.toy") == hx.load("arm.urdf")
-    hx.convert("arm.urdf", "pure.toy", pure=True)
-    assert Path("pure.toy").read_text() == ARM
+    hx.convert("arm.urdf", "clean.toy")
+    assert Path("clean.toy").read_text() == ARM
 
 
 def test_it_is_compared(capsys: pytest.CaptureFixture[str]) -> None:

@@ -81,7 +81,7 @@ def roundtrip_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `roundtrip`."""
     parser.add_argument("input", metavar="FILE", help="a robot in any format")
     parser.add_argument("--through", default="all", metavar="F[,F...]", help="the formats on the way, in order (default: all others)")
-    parser.add_argument("--keep", metavar="DIR", help="keep the files of every leg in this folder")
+    parser.add_argument("-o", "--output", metavar="DIR", help="leave the files of every leg in this folder")
     parser.add_argument("--json", action="store_true", help="print JSON")
     engine_arguments(parser)
     input_arguments(parser)
@@ -95,7 +95,7 @@ def run_roundtrip(chosen: argparse.Namespace) -> int:
     stops = [*_stops(chosen.through, given.format), given.format]
     show(report)
     with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(chosen.keep or temporary)
+        folder = Path(chosen.output or temporary)
         folder.mkdir(parents=True, exist_ok=True)
         legs = list(_legs(chosen, given.mechanism, stops, folder))
     size = os.path.getsize(chosen.input)
@@ -123,7 +123,7 @@ def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], 
     for number, format in enumerate(stops, start=1):
         after = folder / f"leg{number}" / f"robot{format.suffixes[0]}"
         after.parent.mkdir(exist_ok=True)
-        result = api.convert(before, after, to_format=format.name, packages=packages, lenient=chosen.lenient)
+        result = api.convert(before, after, to_format=format.name, packages=packages, keep="beside", lenient=chosen.lenient)
         back = api.load(after, format.name, packages=packages, lenient=chosen.lenient)
         losses = None if result.losses is None else len(result.losses)
         differences = len(diff(original, back, _TOLERANCE))

@@ -53,7 +53,7 @@ def import_arguments(parser: argparse.ArgumentParser) -> None:
 def run_import(chosen: argparse.Namespace) -> int:
     """Read the file and print it as HyMeKo, which represents everything: losses are measured only on request."""
     report = Report()
-    given = read_input(chosen.input, chosen, report)
+    given = read_input(chosen.input, chosen, report, formats.OWN)
     return deliver(given, Output(formats.OWN, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))
 
 
@@ -73,7 +73,7 @@ def run_export(chosen: argparse.Namespace) -> int:
         raise UsageError("say which format to write: --to FORMAT, or -o FILE with its suffix")
     format = formats.of_output(chosen.output, chosen.to_format)
     report = Report()
-    return deliver(read_input(chosen.input, chosen, report), Output(format, chosen.output), chosen, report)
+    return deliver(read_input(chosen.input, chosen, report, format), Output(format, chosen.output), chosen, report)
 
 
 def convert_arguments(parser: argparse.ArgumentParser) -> None:
@@ -99,7 +99,7 @@ def run_convert(chosen: argparse.Namespace) -> int:
         raise UsageError("--verify reads the files again with other engines, so that neither can be a pipe")
     format = formats.of_output(chosen.output, chosen.to_format)
     report = Report()
-    given = read_input(chosen.input, chosen, report)
+    given = read_input(chosen.input, chosen, report, format)
     own = unchanged(given.source, given.format, format)
     code = deliver(given, Output(format, chosen.output), chosen, report, own=own)
     return _verified(chosen.input, chosen.output, chosen) if chosen.verify and code == exits.DONE else code
@@ -124,7 +124,10 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     layouts = "USD: one file, or an interface with files for geometry, materials and physics behind it"
     parser.add_argument("--layout", choices=("single", "layered"), help=layouts)
     parser.add_argument("--nested", action="store_true", default=None, help="USD: put each body inside of its parent")
-    parser.add_argument("--pure", action="store_true", help="write no residue of what the format cannot say itself")
+    beside = "keep what the format cannot represent in OUT.keep.hymeko beside the output, so that it comes back"
+    parser.add_argument("--keep", "--keep=beside", dest="keep", action="store_const", const="beside", help=beside)
+    inside = "the same, inside the output, where other programs ignore it"
+    parser.add_argument("--keep=inside", dest="keep", action="store_const", const="inside", help=inside)
     parser.add_argument("--split", action="store_true", help="xacro: put the macros into a file of their own")
     report_arguments(parser)
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
@@ -139,9 +142,12 @@ def deliver(
     """
     path = "" if output.path == "-" else output.path
     _check_applicable(output.format, chosen)
+    if chosen.keep == "beside" and not path:
+        raise UsageError("standard output has nothing beside it: use --keep=inside, or -o FILE")
     layout = chosen.layout, chosen.nested, chosen.split
-    options = Options(chosen.base, chosen.actuators, *layout, chosen.pure, chosen.lenient, Path(path).stem)
-    delivery = Delivery(given.mechanism, output.format, options, given.source.files, _place(output, chosen.assets), path, own)
+    options = Options(chosen.base, chosen.actuators, *layout, chosen.keep, chosen.lenient, Path(path).stem)
+    place = _place(output, chosen.assets)
+    delivery = Delivery(given.mechanism, output.format, options, given.source.files, place, path, own, given.passed)
     result = delivery.convert(report, measured=measured)
     if output.path == "-":
         report_unwritten(result.package, "standard output", report)

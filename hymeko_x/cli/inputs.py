@@ -22,11 +22,12 @@ if TYPE_CHECKING:
 
 
 class Input(NamedTuple):
-    """One input as it was read."""
+    """One input as it was read; ``passed`` is what is kept for it and is passed on, as in :func:`hymeko_x.pipeline.convert`."""
 
     mechanism: Mechanism
     format: Format
     source: Source
+    passed: str | None = None
 
 
 def input_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,6 +41,7 @@ def input_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--variant", action="append", default=[], type=_variant, metavar="SET=NAME", help=picked)
     passed = "an environment variable that a xacro file may see (repeatable)"
     parser.add_argument("--env", action="append", default=[], type=_variable, metavar="NAME[=VALUE]", help=passed)
+    parser.add_argument("--ignore-kept", action="store_true", help="leave out what is kept for the file, beside it or inside of it")
 
 
 def lenient_argument(parser: argparse.ArgumentParser) -> None:
@@ -47,8 +49,8 @@ def lenient_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--lenient", action="store_true", help="go on where the input has errors, with what each error says")
 
 
-def read_input(path: str, chosen: argparse.Namespace, report: Report, *, anyway: bool = False) -> Input:
-    """Read a file, or standard input for `-`; ``anyway``: whatever errors it has.
+def read_input(path: str, chosen: argparse.Namespace, report: Report, target: Format | None = None, *, anyway: bool = False) -> Input:
+    """Read a file, or standard input for `-`; for a conversion, into the target. ``anyway``: whatever errors it has.
 
     Raises: Refusal when it cannot be read; Stopped when it has errors, without `--lenient`.
     """
@@ -61,10 +63,14 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report, *, anyway:
         raise UsageError(f"{option} is for formats that take arguments, and {source.name} is {format.name}")
     if chosen.variant and not format.has_variants:
         raise UsageError(f"--variant is for formats that have variants, and {source.name} is {format.name}")
-    source = replace(source, variants=dict(chosen.variant), arguments=dict(chosen.arg), environment=dict(chosen.env))
+    values = {"variants": dict(chosen.variant), "arguments": dict(chosen.arg), "environment": dict(chosen.env)}
+    source = replace(source, **values, ignores_kept=chosen.ignore_kept)
     if anyway:
         return Input(pipeline.read_anyway(source, format, report), format, source)
-    return Input(pipeline.read(source, format, report, lenient=chosen.lenient), format, source)
+    if target is None:
+        return Input(pipeline.read(source, format, report, lenient=chosen.lenient), format, source)
+    mechanism, passed = pipeline.read_for(target, source, format, report, lenient=chosen.lenient)
+    return Input(mechanism, format, source, passed)
 
 
 def source_of(path: str, chosen: argparse.Namespace) -> Source:

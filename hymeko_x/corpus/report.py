@@ -75,7 +75,7 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
         matrix(rows),
         table(_PAIR_HEAD, _pair_lines(rows)),
         "*all in its words*: the same robots of which the target says everything natively; *all*: those that have everything with what "
-        "the file carries for the way back; *not in its words*: the median number of fields and elements that are only carried.",
+        "is kept beside them for the way back; *not in its words*: the median number of fields and elements that are only kept.",
         "## Lengths (the paper's table 4)",
         "Characters without white space and comments; mean and standard deviation, of the robots that were found in each format.",
         table(["found in", "robots", "HyMeKo", "compared with", "length"], _length_lines(short)),
@@ -84,7 +84,7 @@ def _report(tables: Tables, short: Sequence[Shortness], rows: Sequence[PairRow])
         "one-sided Wilcoxon signed-rank test; effect: rank-biserial correlation.",
         *(part for measure in MEASURES for part in (f"### In {_WORDS[measure]}", table(_SHORT_HEAD, _short_lines(short, measure)))),
         "## What a format's own words do not say",
-        "It travels in the file where other readers pass over it, and is left out with `--pure`.",
+        "It is left out, or with `--keep` stands beside the file and comes back.",
         table(["from", "into", "kind", "robots"], _top(statistics.kinds(tables, "lost"), 5)),
         "## In what results differ",
         table(["from", "into", "quantity", "robots"], _top(statistics.kinds(tables, "failed"), 5)),

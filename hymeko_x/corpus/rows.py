@@ -55,8 +55,8 @@ class Robot(Struct, frozen=True):
 class Leg(Struct, frozen=True):
     """One conversion: the lengths of the result, what its format cannot represent by kind, the diagnostics by code, and the verdict.
 
-    The lengths are those of the file without what it carries for the way back, which has ``residue`` bytes. Of the ``losses``,
-    ``carried`` travel in there, and ``physical`` concern the robot's physics or what only its format understands, not names, forms,
+    The lengths are those of the file; what is kept beside it for the way back has ``residue`` bytes. Of the ``losses``,
+    ``carried`` are in there, and ``physical`` concern the robot's physics or what only its format understands, not names, forms,
     appearance and comments. ``verdict`` is empty where nothing was verified. ``failed`` are the verifier's quantities that differ,
     with the place of the worst; ``unsaid`` those that one of the formats cannot represent, with the number of elements.
     """

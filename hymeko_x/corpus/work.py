@@ -162,7 +162,7 @@ def _convert(desk: Desk, target: str) -> Leg:
     output.parent.mkdir()
     try:
         place = pipeline.Place(str(output.parent), "copy")
-        result = pipeline.convert(desk.mechanism, formats.by_name(target), Options(), desk.source.files, report, place)
+        result = pipeline.convert(desk.mechanism, formats.by_name(target), Options(keep="beside"), desk.source.files, report, place)
         disk.write_package(result.package, str(output), desk.source.files)
     except Refusal as refusal:
         status = "failed" if refusal.diagnostic.code == codes.BUG else REFUSED
@@ -170,13 +170,13 @@ def _convert(desk: Desk, target: str) -> Leg:
     return replace(
         leg,
         files=len(result.package.files) + len(result.package.copies),
-        residue=0 if result.bare is None else len(result.package.main) - len(result.bare),
+        residue=len(result.package.kept.encode()),
         losses=None if result.losses is None else len(result.losses),
         carried=sum(loss.fate == "kept" for loss in result.losses or ()),
         physical=None if result.losses is None else sum(aspect_of(loss) in _PHYSICAL for loss in result.losses),
         lost=_by_kind(result.losses or ()),
         diagnostics=_by_code(report),
-        **asdict(lengths(result.package.main if result.bare is None else result.bare, target)),
+        **asdict(lengths(result.package.main, target)),
     )
 
 

@@ -70,12 +70,12 @@ def _with_inertias(robot: Mechanism, files: Files | None, report: Report | None)
     from hymeko_x import pipeline
     from hymeko_x.assets.resolve import DiskFiles
     from hymeko_x.diagnostics import Report
-    from hymeko_x.rewrite.context import Context, Options
+    from hymeko_x.rewrite.context import Context
     from hymeko_x.rewrite.inertia import fill_tensors
 
     told = Report() if report is None else report
     beside = DiskFiles(Path(robot.source.file).parent, {}, (), None) if files is None else files
-    return fill_tensors(pipeline.fully_completed(robot, beside, told), Context(Options(), told))
+    return fill_tensors(pipeline.fully_completed(robot, beside, told), Context(told))
 
 
 class _Callable(ModuleType):

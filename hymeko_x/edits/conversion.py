@@ -61,7 +61,7 @@ class Conversion:
         self._report_found(options, guess)
         residue = residue_of(self.mechanism, guess.image)
         names = renames(self.edited, guess.image)
-        restored = restore(with_old_names(self._with_inertials(guess.image), names), residue, self.report)
+        restored = restore(with_old_names(self._with_inertials(guess.image), names), residue, self.report).mechanism
         ours = dict(residue.alignment.names)
         return with_new_names(restored, {new: ours.get(old, old) for new, old in names.items()})
 

@@ -114,7 +114,7 @@ def _is_same_robot(package: Package, source: Source, format: Format, mechanism: 
     files = Elsewhere(PackageFiles(package, source.files), DiskFiles(Path(folder)), source.files)
     try:
         name = os.path.join(folder, os.path.basename(source.name))
-        found = pipeline.read_anyway(replace(source, name=name, data=package.main, files=files), format, Report())
+        found = pipeline.read_anyway(replace(source, name=name, data=package.main, files=files, kept=None), format, Report())
     except Refusal:
         return False
     return not diff(mechanism, align(found, mechanism)[1], TOLERANCE)

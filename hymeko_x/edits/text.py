@@ -158,6 +158,6 @@ class _Attempt:
 
 def printed(mechanism: Mechanism, format: Format, report: Report, *, flat: bool = False) -> Package:
     """The text of a mechanism in a format, which refers to every file where it is; ``flat`` as the format's row has it."""
-    legal = legalize(mechanism, format.name, Options(), report)
+    legal = legalize(mechanism, format.name, report)
     write: pipeline.Writer = formats.loaded(format.flat) if flat and format.flat else pipeline.writer(format)
     return write(legal, Options(), report)

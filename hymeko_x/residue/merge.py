@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 from msgspec.structs import replace
 
@@ -39,13 +39,26 @@ _HOLDS: Mapping[type, int] = MappingProxyType({Mount: -1, Sense: -1, Drive: 1})
 """The sign of the arc to the thing that an edge places."""
 
 
-def restore(image: Mechanism, residue: Residue, report: Report) -> Mechanism:
+class Restored(NamedTuple):
+    """A restored mechanism, and how much came from the residue: values, elements, and extras."""
+
+    mechanism: Mechanism
+    values: int
+    elements: int
+    extras: int
+
+
+def restore(image: Mechanism, residue: Residue, report: Report) -> Restored:
     """The source, with what was done to its image since. What no longer applies is reported."""
     names = renamed_since(image, residue)
     for new, old in names.items():
         report.note(codes.RESIDUE_FOLLOWED, f"{old} is called '{new.name}' now", element=str(new))
     aligned = realign(with_old_names(image, names), residue.alignment)
-    return with_new_names(_Merge(aligned, residue, report).result(), names)
+    merge = _Merge(aligned, residue, report)
+    merged = merge.result()
+    elements = sum(key in merged.graph for key, _ in residue.additions)
+    extras = sum(key == ROOT or key in merged.graph for key, _ in residue.sides.extras)
+    return Restored(with_new_names(merged, names), merge.values, elements, extras)
 
 
 @dataclass(slots=True)
@@ -57,6 +70,8 @@ class _Merge:
     report: Report
     vertices: dict[Id, VertexPart] = field(init=False)
     edges: dict[Id, RobotEdge] = field(init=False)
+    values: int = 0
+    """How many values of the source have been put in."""
 
     def result(self) -> Mechanism:
         """All steps, in their order."""
@@ -79,24 +94,33 @@ class _Merge:
             grouped[change.element].append(change)
         for key, changes in grouped.items():
             if key == ROOT:
-                name = str(changes[0].value) if changes[0].guard == digest(name) else name
+                name = self._changed_name(name, changes[0])
             elif key in self.vertices:
                 self.vertices[key] = self._changed(key, self.vertices[key], changes)
             elif key in self.edges:
                 self.edges[key] = self._changed(key, self.edges[key], changes)
             else:
-                self._note(key, "is gone; what was carried for it stays away")
+                self._note(key, "is gone, and with it what was kept for it")
         return name
+
+    def _changed_name(self, name: str, change: Change) -> str:
+        if change.guard != digest(name):
+            self._note(ROOT, f"is called '{name}' now")
+            return name
+        self.values += 1
+        return str(change.value)
 
     def _changed(self, key: Id, part: P, changes: list[Change]) -> P:
         edited = [change for change in changes if not self._still_holds(key, part, change)]
         if edited:
             self._note(key, f"was edited: {', '.join(dict.fromkeys(_path_text(change.path) for change in edited))} stays as it is now")
         barred = _barred(part, changes, edited) if edited else set()
-        changed = _with_changes(part, [change for change in changes if change.path not in barred])
+        valid = [change for change in changes if change.path not in barred]
+        changed = _with_changes(part, valid)
         if changed is not None:
+            self.values += len(valid)
             return changed
-        self._note(key, "stays as it is: what was carried for it is damaged")
+        self._note(key, "stays as it is: what was kept for it is damaged")
         return part
 
     def _still_holds(self, key: Id, part: object, change: Change) -> bool:
@@ -140,7 +164,7 @@ class _Merge:
             if key in withheld:
                 continue
             if key in self.vertices or key in self.edges:
-                self._note(key, "is there already; what was carried under this name stays away")
+                self._note(key, "is there already; what was kept under this name stays away")
             elif isinstance(part, Edge):
                 waiting.append((key, part))
             else:

@@ -9,13 +9,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
+from hymeko_x.rewrite.choices import choose
 from hymeko_x.rewrite.context import Context, Options, Rule
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
 
-__all__ = ["Context", "Options", "Rule", "legalize", "rules_of"]
+__all__ = ["Context", "Options", "Rule", "choose", "legalize", "rules_of"]
 
 
 def rules_of(target: str, *, native: bool = False) -> tuple[Rule, ...]:
@@ -28,9 +29,9 @@ def rules_of(target: str, *, native: bool = False) -> tuple[Rule, ...]:
     return found
 
 
-def legalize(mechanism: Mechanism, target: str, options: Options, report: Report) -> Mechanism:
+def legalize(mechanism: Mechanism, target: str, report: Report) -> Mechanism:
     """The mechanism rewritten so that the target's backend can print all of it. Idempotent."""
-    context = Context(options, report)
+    context = Context(report)
     for rule in rules_of(target, native=formats.by_name(target) is formats.native_format(mechanism)):
         mechanism = rule(mechanism, context)
     return mechanism

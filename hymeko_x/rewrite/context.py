@@ -1,4 +1,4 @@
-"""What a rule is given besides the mechanism: the options of the user, and the report."""
+"""What the user chose for the output, and what a rule is given besides the mechanism."""
 
 from __future__ import annotations
 
@@ -15,10 +15,11 @@ if TYPE_CHECKING:
 class Options(Struct, frozen=True):
     """What the user chose for the output.
 
-    ``base``: what becomes of an open base (None = the target's own default). ``actuators``: which kind to give every
-    driven dof, ``none`` to write none, None to write those that the mechanism has and the target knows. ``layout`` and
+    ``base``: what becomes of an open base (None = it stays open). ``actuators``: which kind to give every driven dof, ``none`` to
+    have none, None to keep those of the mechanism. Both belong to the robot from then on: `rewrite.choose`. ``layout`` and
     ``nested``: how a stage of USD is laid out (None = one file with flat bodies). ``split``: whether the macros of xacro
-    go into a file of their own. ``pure``: whether the output carries no residue. ``lenient``: whether errors are passed over.
+    go into a file of their own. ``keep``: where what the format cannot represent is kept: ``beside`` the output, or ``inside`` it.
+    ``lenient``: whether errors are passed over.
     ``beside``: how files of our own that may stand beside the output begin, which is its own name; empty = there is no place.
     ``within``: the folder below the output's own that holds every file beside it, and ends in a slash; empty = each where it belongs.
     """
@@ -28,16 +29,15 @@ class Options(Struct, frozen=True):
     layout: Literal["single", "layered"] | None = None
     nested: bool | None = None
     split: bool = False
-    pure: bool = False
+    keep: Literal["beside", "inside"] | None = None
     lenient: bool = False
     beside: str = ""
     within: str = ""
 
 
 class Context(Struct, frozen=True):
-    """The circumstances of one rewriting: the user's options, and the report of what is changed."""
+    """The circumstances of one rewriting: the report of what is changed."""
 
-    options: Options
     report: Report
 
 

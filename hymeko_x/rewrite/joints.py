@@ -88,13 +88,13 @@ def name_dofs(mechanism: Mechanism, context: Context) -> Mechanism:
     """Every dof gets a name of its own: the joint's where it is the only one, else that with what moves (``_TX``, ``_RZ``)."""
     edges: dict[Id, RobotEdge] = {}
     moved: dict[tuple[Id, int], tuple[Id, str]] = {}
-    alone = {_only_name(view) for view in mechanism.joints.values() if len(view.joint.dofs) == 1}
+    alone = {full_name(view, 0) for view in mechanism.joints.values() if len(view.joint.dofs) == 1}
     seen: set[str] = set()
     for view in mechanism.joints.values():
         dofs = view.joint.dofs
         new = []
         for number, dof in enumerate(dofs):
-            wanted = dof.name or f"{view.id.name}{_suffix(dof, dofs)}"
+            wanted = full_name(view, number)
             name = free_name(wanted, (seen if len(dofs) == 1 else alone | seen).__contains__)
             if wanted != name:
                 _warn_of_name(mechanism, view.id, wanted, name, context.report)
@@ -185,19 +185,18 @@ def _three_slides_and_ball(dof: Dof) -> list[Dof]:
     return [*slides, replace(same, kind=DofKind.BALL, axis=X, name=f"{prefix}_R" if prefix else None)]
 
 
-def _suffix(dof: Dof, among: tuple[Dof, ...]) -> str:
-    """``_TX`` for a slide along x, ``_RZ`` for a hinge about z, ``_R`` for a ball; numbered where the axis has no letter."""
-    if len(among) == 1:
-        return ""
+def full_name(view: JointView, number: int) -> str:
+    """The name of a dof: its own, the joint's where it is the only one, else that with what moves.
+
+    That is ``_TX`` for a slide along x, ``_RZ`` for a hinge about z, ``_R`` for a ball; numbered where the axis has no letter.
+    """
+    dofs = view.joint.dofs
+    dof = dofs[number]
+    if dof.name or len(dofs) == 1:
+        return dof.name or view.id.name
     move = "T" if dof.kind is DofKind.SLIDE else "R"
-    if dof.kind in (DofKind.BALL, DofKind.FREE):
-        return f"_{move}"
-    return f"_{move}{_LETTERS.get(dof.axis, among.index(dof) + 1)}"
-
-
-def _only_name(view: JointView) -> str:
-    """The name of the only dof of a joint: its own where it has one, else the joint's."""
-    return view.joint.dofs[0].name or view.id.name
+    where = "" if dof.kind in (DofKind.BALL, DofKind.FREE) else _LETTERS.get(dof.axis, dofs.index(dof) + 1)
+    return f"{view.id.name}_{move}{where}"
 
 
 def _warn_of_name(mechanism: Mechanism, joint: Id, wanted: str, name: str, report: Report) -> None:
@@ -250,7 +249,7 @@ def make_limits_intervals(mechanism: Mechanism, context: Context) -> Mechanism:
     edges: dict[Id, RobotEdge] = {}
     for view in mechanism.joints.values():
         findings: Findings = []
-        dofs = tuple(_legal_dof(dof, findings) for dof in view.joint.dofs)
+        dofs = tuple(legal_dof(dof, findings) for dof in view.joint.dofs)
         for serious, words in findings:
             tell = context.report.warn if serious else context.report.note
             tell(codes.REWRITTEN, f"{view.id}: {words}", mechanism.origin(view.id), element=str(view.id))
@@ -259,7 +258,8 @@ def make_limits_intervals(mechanism: Mechanism, context: Context) -> Mechanism:
     return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
 
 
-def _legal_dof(dof: Dof, findings: Findings) -> Dof:
+def legal_dof(dof: Dof, findings: Findings) -> Dof:
+    """The dof with position limits that are an interval or none, and an effort limit that is positive or none."""
     lower, upper = _interval(dof, findings)
     old, effort = dof.limits, _effort(dof.limits, findings)
     if (lower, upper, effort) == (old.lower, old.upper, old.effort):

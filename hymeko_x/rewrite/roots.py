@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.names import names_in_use, rename
-from hymeko_x.ir.parts import Body, Dof, DofKind, Joint, World
+from hymeko_x.ir.parts import Body, Joint, World
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.rewrite.context import Context
 
 
@@ -26,7 +25,7 @@ def put_world_link_into_world(mechanism: Mechanism, context: Context) -> Mechani
     if not isinstance(body, Body):
         return mechanism
     if _WORLD_LINK not in mechanism.parent_joint and _massless(body):
-        return rename(_with_world(mechanism), {_WORLD_LINK: WORLD})
+        return rename(with_world(mechanism), {_WORLD_LINK: WORLD})
     new = names_in_use(mechanism).take("body", "world_link")
     why = "has a mass" if not _massless(body) else "is not the root"
     context.report.warn(
@@ -38,46 +37,17 @@ def put_world_link_into_world(mechanism: Mechanism, context: Context) -> Mechani
     return rename(mechanism, {_WORLD_LINK: new})
 
 
-def choose_base(mechanism: Mechanism, context: Context) -> Mechanism:
-    """An open base gets a free joint where the user wants it to float; else it stays fixed where it is, which is reported."""
-    above = mechanism.parent_joint
-    open_bases = [root for root in mechanism.roots if root not in above]
-    if context.options.base == "free":
-        return _floating(mechanism, open_bases, context.report)
-    if context.options.base is None:
-        for root in open_bases:
-            context.report.note(
-                codes.REWRITTEN,
-                f"{root} has no parent joint; it is fixed to the world",
-                mechanism.origin(root),
-                element=str(root),
-                hint="--base free makes it floating, --base fixed silences this note",
-            )
+def report_open_bases(mechanism: Mechanism, context: Context) -> Mechanism:
+    """An open base stays fixed where it is, which is reported."""
+    for root in (root for root in mechanism.roots if root not in mechanism.parent_joint):
+        context.report.note(
+            codes.REWRITTEN,
+            f"{root} has no parent joint; it is fixed to the world",
+            mechanism.origin(root),
+            element=str(root),
+            hint="--base free makes it floating, --base fixed silences this note",
+        )
     return mechanism
-
-
-def _floating(mechanism: Mechanism, open_bases: list[Id], report: Report) -> Mechanism:
-    if not open_bases:
-        _report_fixed_bases(mechanism, report)
-        return mechanism
-    names = names_in_use(mechanism)
-    free = Joint((Dof(DofKind.FREE),))
-    edges = {names.take("joint", f"{root.name}_free"): joint_edge(free, WORLD, root) for root in open_bases}
-    mechanism = _with_world(mechanism)
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
-
-
-def _report_fixed_bases(mechanism: Mechanism, report: Report) -> None:
-    """Report the joints that fix bases to the world; none when the base floats already."""
-    for joint in mechanism.children.get(WORLD, ()):
-        if not joint.joint.dofs:
-            report.warn(
-                codes.REWRITTEN,
-                f"{joint.child} does not float: {joint.id} fixes it to the world",
-                mechanism.origin(joint.id),
-                element=str(joint.child),
-                hint="remove that joint or the link 'world' to let the robot float",
-            )
 
 
 def _massless(body: Body) -> bool:
@@ -85,7 +55,8 @@ def _massless(body: Body) -> bool:
     return inertial is None or (not inertial.mass and not any(inertial.tensor or ()))
 
 
-def _with_world(mechanism: Mechanism) -> Mechanism:
+def with_world(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with a world."""
     if WORLD in mechanism.graph.vertices:
         return mechanism
     return mechanism.with_graph(mechanism.graph.replace(vertices={WORLD: World()}))
@@ -94,20 +65,9 @@ def _with_world(mechanism: Mechanism) -> Mechanism:
 # ---- for formats without one -------------------------------------------------------------------------------------------
 
 
-def hold_or_free_open_bases(mechanism: Mechanism, context: Context) -> Mechanism:
-    """Where the user chose a base, each open base gets a fixed or a free joint to the world."""
-    if context.options.base is None:
-        return mechanism
-    joint = Joint((Dof(DofKind.FREE),)) if context.options.base == "free" else Joint()
-    names = names_in_use(mechanism)
-    open_bases = [root for root in mechanism.roots if root not in mechanism.parent_joint and not stands_for_world(root, mechanism)]
-    edges = {names.take("joint", f"{root.name}_base"): joint_edge(joint, WORLD, root) for root in open_bases}
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
-
-
 def stands_for_world(root: Id, mechanism: Mechanism) -> bool:
     """Whether a root is the link without mass that stands for the world."""
-    return root.name.partition("#")[0] == WORLD.name and mechanism.vertex(root, Body).inertial is None
+    return root.name.partition("#")[0] == WORLD.name and _massless(mechanism.vertex(root, Body))
 
 
 def make_world_a_link(mechanism: Mechanism, _context: Context) -> Mechanism:

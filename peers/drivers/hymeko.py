@@ -22,7 +22,7 @@ def work(job: dict[str, Any]) -> None:
     if "out" not in job:
         hx.load(job["source"])
     elif job.get("measure", False):
-        hx.convert(job["source"], job["out"])
+        hx.convert(job["source"], job["out"], keep="beside")
     else:
         _write(job["source"], job["out"])
 

@@ -16,7 +16,7 @@ from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends import urdf
 from hymeko_x.ir.mechanism import Mechanism
-from hymeko_x.rewrite import Options, legalize
+from hymeko_x.rewrite import Options, choose, legalize
 from hymeko_x.source import Source
 from tests.robots import MemoryFiles
 
@@ -43,7 +43,7 @@ class Converted(Struct, frozen=True):
 def convert(source: Source, options: Options = FIXED) -> Converted:
     report = Report()
     mechanism = urdf.read(source, report).mechanism
-    legal = legalize(mechanism, "mjcf", options, report)
+    legal = legalize(choose(mechanism, options, report), "mjcf", report)
     packed, files, copies = pack(legal, formats.MJCF, source.files, None, report)
     assets = files | {name: source.files.read(path) for name, path in copies.items()}
     return Converted(mechanism, legal, mjcf.write(packed, options, report).main.decode(), assets, report)

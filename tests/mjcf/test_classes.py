@@ -29,7 +29,7 @@ QUADRUPED = (
 
 
 def test_what_legs_share_is_in_classes_called_after_their_parts() -> None:
-    text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf", pure=True)
+    text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf")
     head = text[text.index("  <default>") : text.index("  <asset>")]
     assert (
         head
@@ -61,7 +61,7 @@ def test_what_legs_share_is_in_classes_called_after_their_parts() -> None:
 
 
 def test_actuators_share_a_class_as_well() -> None:
-    text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf", actuators="position", pure=True)
+    text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf", actuators="position")
     assert '    <position kp="400" dampratio="1"/>\n' in text[: text.index("<asset>")]
     assert '<position name="lf_hip" joint="lf_hip" ctrlrange="-1.0625 1.0625"/>' in text
 
@@ -70,7 +70,7 @@ def test_whoever_is_different_says_so_but_never_half_of_a_size() -> None:
     """An element with fewer numbers than its class would inherit the rest of them."""
     box = '<visual><geometry><box size="1 2 3"/></geometry></visual>'
     ball = '<visual><geometry><sphere radius="1"/></geometry></visual>'
-    text = hx.dumps(hx.loads(f'<robot name="r"><link name="a">{box * 3}{ball}</link></robot>', "urdf"), "mjcf", pure=True)
+    text = hx.dumps(hx.loads(f'<robot name="r"><link name="a">{box * 3}{ball}</link></robot>', "urdf"), "mjcf")
     assert '<geom contype="0" conaffinity="0" group="2" type="box"/>' in text
     assert '<geom class="visual" type="sphere" size="1"/>' in text
 
@@ -88,9 +88,9 @@ def test_an_edit_in_a_class_comes_home_and_the_class_does_not(tmp_path: Path) ->
 def models(robot: Path, folder: Path, monkeypatch: pytest.MonkeyPatch, **how: object) -> tuple[mujoco.MjModel, mujoco.MjModel]:
     """The compiled models with and without classes."""
     with_classes, without = folder / "with.xml", folder / "without.xml"
-    hx.convert(robot, with_classes, pure=True, **how)  # type: ignore[arg-type]
+    hx.convert(robot, with_classes, **how)  # type: ignore[arg-type]
     monkeypatch.setattr(classes, "shared_attributes", lambda leaves: classes.Defaults())
-    hx.convert(robot, without, pure=True, **how)  # type: ignore[arg-type]
+    hx.convert(robot, without, **how)  # type: ignore[arg-type]
     return mujoco.MjModel.from_xml_path(str(with_classes)), mujoco.MjModel.from_xml_path(str(without))
 
 

@@ -13,7 +13,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.mjcf.complete import complete
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.parts import Body, Capsule, Inertial, NoShape, Shape
-from hymeko_x.rewrite import Options, legalize
+from hymeko_x.rewrite import legalize
 from hymeko_x.source import NoFiles
 
 CUBE = "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1"
@@ -102,7 +102,7 @@ def test_a_geometry_that_only_mujoco_knows_is_left_out_elsewhere_with_a_warning(
     head = '<asset><hfield name="h" nrow="2" ncol="2" size="1 1 1 1"/></asset>'
     text = f'<mujoco>{head}<worldbody><geom name="g" type="hfield" hfield="h"/><geom size="1"/></worldbody></mujoco>'
     report = Report()
-    legal = legalize(read_text(text), "urdf", Options(), report)
+    legal = legalize(read_text(text), "urdf", report)
     assert not [shape for _, shape, _ in legal.edges(Shape) if isinstance(shape.geometry, NoShape)]
     assert any("has a geometry that only MuJoCo XML can represent; it is left out" in str(said) for said in report)
 

@@ -16,7 +16,7 @@ from hymeko_x.frontends.mjcf import complete as complete_module
 from hymeko_x.frontends.mjcf.complete import are_solids_alone, complete
 from hymeko_x.ir.mechanism import Id, Mechanism
 from hymeko_x.ir.parts import Body
-from hymeko_x.rewrite import Options, legalize
+from hymeko_x.rewrite import legalize
 from hymeko_x.source import Files, NoFiles
 
 FILES = development_files("mjcf")
@@ -29,7 +29,7 @@ def unweighed(mechanism: Mechanism) -> list[Id]:
 
 
 def weighed_whole(mechanism: Mechanism, files: Files) -> Mechanism:
-    native = legalize(mechanism, "mjcf", Options(), Report())
+    native = legalize(mechanism, "mjcf", Report())
     return complete(mechanism, lambda: (native, write(native).encode()), files, Report())
 
 

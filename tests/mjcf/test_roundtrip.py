@@ -13,7 +13,7 @@ from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Body, Inertial, InertialWritten
 from hymeko_x.ir.values import Z, pose, quat_about, rotate_tensor
-from hymeko_x.rewrite import Options, legalize
+from hymeko_x.rewrite import legalize
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -151,14 +151,14 @@ def test_real_models_are_the_same_bit_for_bit(robot: Path) -> None:
 def test_no_rule_touches_what_came_from_mjcf(robot: Path) -> None:
     report = Report()
     mechanism = read(robot)
-    assert legalize(mechanism, "mjcf", Options(), report) == mechanism
+    assert legalize(mechanism, "mjcf", report) == mechanism
     assert list(report) == []
 
 
 def test_inertias_that_mujoco_is_told_to_mend_stay() -> None:
     inertial = '<body><joint/><inertial pos="0 0 0" mass="1" diaginertia="1 1 9"/></body>'
     robot = read_text(f'<mujoco><compiler balanceinertia="true"/><worldbody>{inertial}</worldbody></mujoco>')
-    assert 'diaginertia="1 1 9"' in write(legalize(robot, "mjcf", Options(), Report()))
+    assert 'diaginertia="1 1 9"' in write(legalize(robot, "mjcf", Report()))
 
 
 # ---- files that are large or deep ---------------------------------------------------------------------------------------------

@@ -53,13 +53,13 @@ from hymeko_x.ir.values import (
     scaled,
     unit,
 )
-from hymeko_x.rewrite import Options, legalize
+from hymeko_x.rewrite import Options, choose, legalize
 from tests.robots import SOLID, body, chain, hinge, joint
 
 
 def printed(mechanism: Mechanism, options: Options = Options(base="fixed")) -> str:  # noqa: B008 - a frozen value
     report = Report()
-    return mjcf.write(legalize(mechanism, "mjcf", options, report), options, report).main.decode()
+    return mjcf.write(legalize(choose(mechanism, options, report), "mjcf", report), options, report).main.decode()
 
 
 def compiled(mechanism: Mechanism, options: Options = Options(base="fixed")) -> mujoco.MjModel:  # noqa: B008 - a frozen value
@@ -408,4 +408,4 @@ def test_a_chain_of_many_bodies_is_printed_without_recursion() -> None:
 def test_a_layer_without_a_texture_says_nothing() -> None:
     text = "r : robot { steel : material {} weave : texture {} b { shape { box [1 1 1], -> steel } } @layered : layer { - steel } }"
     robot = hx.loads(text, "hymeko")
-    assert "texture=" not in hx.dumps(robot, "mjcf", pure=True)
+    assert "texture=" not in hx.dumps(robot, "mjcf")

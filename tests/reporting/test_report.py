@@ -39,7 +39,7 @@ def real(real_robot: RealRobots, end: str) -> Path:
 
 def reported(source: Path | str, capsys: pytest.CaptureFixture[str], *options: str) -> list[str]:
     """The report of a conversion to URDF in the working folder."""
-    assert main(["convert", str(source), "out.urdf", "--pure", *options]) == exits.DONE
+    assert main(["convert", str(source), "out.urdf", *options]) == exits.DONE
     return capsys.readouterr().err.replace(str(source), "IN").splitlines()
 
 
@@ -191,7 +191,7 @@ def test_values_of_a_loss_are_numbers_and_errors_have_a_size(
 
 def test_the_json_report_follows_its_schema(folder: Path) -> None:
     (folder / "biped.xml").write_text(biped())
-    assert main(["convert", "biped.xml", "out.urdf", "--pure", "--report", "all.json"]) == exits.DONE
+    assert main(["convert", "biped.xml", "out.urdf", "--report", "all.json"]) == exits.DONE
     found = json.loads((folder / "all.json").read_text())
     jsonschema.validate(found, SCHEMA)
     assert found["counts"] == {fate: sum(row["fate"] == fate for row in found["losses"]) for fate in ("kept", "approximated", "dropped")}
@@ -224,8 +224,8 @@ def test_the_schema_refuses_what_is_no_report() -> None:
 
 def test_the_sarif_report_has_a_result_for_each_diagnostic_and_each_loss(folder: Path) -> None:
     (folder / "a biped.xml").write_text(biped())
-    assert main(["convert", "a biped.xml", "out.urdf", "--pure", "--report", "all.json"]) == exits.DONE
-    assert main(["convert", "a biped.xml", "out.urdf", "--pure", "--report", "all.sarif"]) == exits.DONE
+    assert main(["convert", "a biped.xml", "out.urdf", "--report", "all.json"]) == exits.DONE
+    assert main(["convert", "a biped.xml", "out.urdf", "--report", "all.sarif"]) == exits.DONE
     flat = json.loads((folder / "all.json").read_text())
     found = json.loads((folder / "all.sarif").read_text())
     (run,) = found["runs"]

@@ -101,12 +101,12 @@ def _refused(refusal: Refusal) -> Outcome:
 
 
 def _files_of(robot: Mechanism, target: str, files: Files, report: Report) -> Outcome:
-    package = pipeline.write(robot, formats.by_name(target), Options(pure=True), files, report)
+    package = pipeline.write(robot, formats.by_name(target), Options(), files, report)
     return package.main, tuple(package.files.items())
 
 
 def _ledger_of(robot: Mechanism, target: str, files: Files, report: Report) -> Outcome:
-    result = pipeline.convert(robot, formats.by_name(target), Options(pure=True), files, report)
+    result = pipeline.convert(robot, formats.by_name(target), Options(), files, report)
     return tuple((loss.element, loss.field, loss.before, loss.after) for loss in result.losses or ())
 
 

@@ -29,7 +29,7 @@ def test_other_readers_see_the_same(
     carrying, pure = (tmp_path / name / f"robot{SUFFIXES[target]}" for name in ("carrying", "pure"))
     for path in (carrying, pure):
         path.parent.mkdir()
-        path.write_text(hx.dumps(robot, target, pure=path is pure))
+        path.write_text(hx.dumps(robot, target, keep=None if path is pure else "inside"))
     assert "residue" in carrying.read_text()
     assert "residue" not in pure.read_text()
     with warnings.catch_warnings(), caplog.at_level(logging.WARNING):
@@ -40,14 +40,14 @@ def test_other_readers_see_the_same(
 
 
 def test_the_only_trace_in_a_model_is_one_text() -> None:
-    spec = mujoco.MjSpec.from_string(hx.dumps(hx.loads(URDF, "urdf"), "mjcf"))
+    spec = mujoco.MjSpec.from_string(hx.dumps(hx.loads(URDF, "urdf"), "mjcf", keep="inside"))
     assert [text.name for text in spec.texts] == ["hymeko-x residue"]
     assert spec.compile().ntext == 1
 
 
 def test_mujoco_sees_the_same_urdf() -> None:
     robot = hx.loads(PLAIN_MJCF, "mjcf")
-    carrying, pure = (mujoco.MjModel.from_xml_string(hx.dumps(robot, "urdf", pure=is_pure)) for is_pure in (False, True))
+    carrying, pure = (mujoco.MjModel.from_xml_string(hx.dumps(robot, "urdf", keep=keep)) for keep in ("inside", None))
     assert differences(pure, carrying) == []
 
 
@@ -67,5 +67,5 @@ def test_other_readers_see_the_same_real_robot(robot: Path, target: str, tmp_pat
     carrying, pure = (tmp_path / name / f"robot{SUFFIXES[target]}" for name in ("carrying", "pure"))
     for path in (carrying, pure):
         path.parent.mkdir()
-        hx.convert(robot, path, to_format=target, pure=path is pure)
+        hx.convert(robot, path, to_format=target, keep=None if path is pure else "inside")
     ASSERTS[target](carrying, pure)

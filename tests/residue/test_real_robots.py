@@ -32,7 +32,7 @@ def assert_comes_back(robot: Path, target: str, folder: Path) -> None:
     report = Report()
     source = hx.load(robot)
     there = folder / f"there{SUFFIXES[target]}"
-    hx.convert(robot, there, to_format=target)
+    hx.convert(robot, there, to_format=target, keep="beside")
     assert unequal(source, hx.load(there, target, report=report)) == []
     assert [str(said) for said in report if said.code.id in ("HX105", "HX106", "HX107")] == []
 

@@ -57,7 +57,7 @@ def test_every_change_of_a_real_robot_is_seen(robot: Path) -> None:
 def test_without_a_ledger_silence_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """A writer that always says the same is only found out by what is measured."""
     robot = pipeline.read(Source("robot", URDF.encode(), NoFiles()), formats.URDF, Report())
-    frozen = pipeline.write(robot, formats.URDF, Options(pure=True), NoFiles(), Report())
+    frozen = pipeline.write(robot, formats.URDF, Options(), NoFiles(), Report())
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: Package(frozen.main))
     assert len(silent(URDF.encode(), "urdf", ["urdf"], most=20)) < 3
     monkeypatch.setattr(pipeline, "losses_between", lambda *_, **__: ())

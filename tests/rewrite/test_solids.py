@@ -15,7 +15,7 @@ from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import Id, Mechanism, shape_edge
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Geometry, Inertial, MeshShape, Plane, Role, Shape, Sphere
 from hymeko_x.ir.values import IDENTITY, Pose, Tensor, pose_from_rpy
-from hymeko_x.rewrite import Options, legalize
+from hymeko_x.rewrite import legalize
 from hymeko_x.source import Source
 from tests.robots import MemoryFiles
 
@@ -36,7 +36,7 @@ def heavy(*shapes: tuple[Geometry, Pose, Role], mass: float = 2.0) -> Mechanism:
 
 
 def tensor_of(mechanism: Mechanism, target: str = "urdf") -> Tensor | None:
-    inertial = legalize(mechanism, target, Options(), Report()).vertex(A, Body).inertial
+    inertial = legalize(mechanism, target, Report()).vertex(A, Body).inertial
     assert inertial is not None
     return inertial.tensor
 
@@ -82,7 +82,7 @@ def test_the_tensors_of_the_published_listing_are_written() -> None:
     text = b"scara { base { mass = 2.0 translation = [0.0, 0.0, 0.3] geometry { type = cylinder dimensions = [0.1, 0.6] } } }"
     mechanism = hymeko.read(Source("scara.hymeko", text, MemoryFiles()), Report()).mechanism
     report = Report()
-    inertial = legalize(mechanism, "urdf", Options(), report).vertex(Id("body", "base"), Body).inertial
+    inertial = legalize(mechanism, "urdf", report).vertex(Id("body", "base"), Body).inertial
     assert inertial is not None
     assert (inertial.mass, inertial.com) == (2.0, (0.0, 0.0, 0.3))
     assert inertial.tensor == pytest.approx((0.065, 0.065, 0.01, 0.0, 0.0, 0.0))
@@ -104,6 +104,6 @@ def test_what_nobody_said_is_unsaid_again_after_the_way_back(name: str, tmp_path
 
 
 def test_a_plane_gives_no_tensor_even_where_it_became_a_thin_box() -> None:
-    legal = legalize(heavy((Plane((1.0, 1.0)), IDENTITY, Role.VISUAL)), "urdf", Options(), Report())
-    assert legalize(legal, "urdf", Options(), Report()).graph == legal.graph
+    legal = legalize(heavy((Plane((1.0, 1.0)), IDENTITY, Role.VISUAL)), "urdf", Report())
+    assert legalize(legal, "urdf", Report()).graph == legal.graph
     assert tensor_of(legal) is None

@@ -17,7 +17,7 @@ ROBOT = """<robot name="r"><link name="a">
 def written(fragment: str, folder: Path) -> str:
     """The robot with a fragment as SDF, on one line."""
     (folder / "r.urdf").write_text(ROBOT.format(fragment), "utf-8")
-    hx.convert(str(folder / "r.urdf"), str(folder / "r.sdf"), pure=True)
+    hx.convert(str(folder / "r.urdf"), str(folder / "r.sdf"))
     return "".join(line.strip() for line in (folder / "r.sdf").read_text("utf-8").splitlines())
 
 
@@ -53,6 +53,6 @@ def test_what_is_carried_brings_the_fragments_back(tmp_path: Path) -> None:
         '<gazebo reference="a"><mu1>0.5</mu1><kp>1e6</kp><sensor name="i" type="imu"/></gazebo><gazebo><plugin name="p"/></gazebo>'
     )
     (tmp_path / "r.urdf").write_text(text, "utf-8")
-    hx.convert(str(tmp_path / "r.urdf"), str(tmp_path / "r.sdf"))
-    hx.convert(str(tmp_path / "r.sdf"), str(tmp_path / "back.urdf"))
+    hx.convert(str(tmp_path / "r.urdf"), str(tmp_path / "r.sdf"), keep="inside")
+    hx.convert(str(tmp_path / "r.sdf"), str(tmp_path / "back.urdf"), keep="inside")
     assert hx.load(str(tmp_path / "back.urdf")) == hx.load(str(tmp_path / "r.urdf"))

@@ -15,7 +15,7 @@ from tests.sdf.samples import SAMPLES
 def again(text: str) -> bytes:
     """The file as it is written after reading."""
     mechanism = pipeline.read(Source("a.sdf", text.encode()), formats.SDF, Report())
-    return pipeline.write(mechanism, formats.SDF, Options(pure=True), NoFiles(), Report()).main
+    return pipeline.write(mechanism, formats.SDF, Options(), NoFiles(), Report()).main
 
 
 @pytest.mark.parametrize("name", SAMPLES)

@@ -28,7 +28,7 @@ def arm(tmp_path: Path) -> Path:
 
 
 def test_poses_are_relative_to_the_joint_and_the_parent(arm: Path) -> None:
-    hx.convert(str(arm / "arm.urdf"), str(arm / "arm.sdf"), pure=True)
+    hx.convert(str(arm / "arm.urdf"), str(arm / "arm.sdf"))
     text = (arm / "arm.sdf").read_text("utf-8")
     assert '<pose relative_to="base">0 0 0.5 0.1 0.2 0.3</pose>' in text
     assert '<pose relative_to="shoulder">0 0 0 0 0 0</pose>' in text
@@ -36,13 +36,13 @@ def test_poses_are_relative_to_the_joint_and_the_parent(arm: Path) -> None:
 
 
 def test_what_is_carried_brings_the_robot_back(arm: Path) -> None:
-    hx.convert(str(arm / "arm.urdf"), str(arm / "arm.sdf"))
+    hx.convert(str(arm / "arm.urdf"), str(arm / "arm.sdf"), keep="inside")
     assert hx.load(str(arm / "arm.sdf")) == hx.load(str(arm / "arm.urdf"))
 
 
 def test_drake_sees_the_same_robot(arm: Path) -> None:
     pytest.importorskip("pydrake")
-    hx.convert(str(arm / "arm.urdf"), str(arm / "arm.sdf"))
+    hx.convert(str(arm / "arm.urdf"), str(arm / "arm.sdf"), keep="inside")
     assert hx.verify(str(arm / "arm.urdf"), str(arm / "arm.sdf"), samples=10).is_same
 
 
@@ -54,7 +54,7 @@ MUJOCO = """<mujoco model="scene"><worldbody><light name="sun" pos="0 0 3"/><geo
 
 def test_a_scene_with_lights_becomes_a_world(tmp_path: Path) -> None:
     (tmp_path / "scene.xml").write_text(MUJOCO, "utf-8")
-    hx.convert(str(tmp_path / "scene.xml"), str(tmp_path / "scene.sdf"))
+    hx.convert(str(tmp_path / "scene.xml"), str(tmp_path / "scene.sdf"), keep="inside")
     text = (tmp_path / "scene.sdf").read_text("utf-8")
     assert '<world name="default">' in text
     assert '<light name="sun" type="spot">' in text
@@ -73,7 +73,7 @@ def test_a_model_goes_to_other_formats_and_back(tmp_path: Path) -> None:
     )
     pytest.importorskip("pydrake")
     for name in ("m.urdf", "m.xml", "m.usda", "m.hymeko"):
-        hx.convert(str(file), str(tmp_path / name))
+        hx.convert(str(file), str(tmp_path / name), keep="inside")
         assert hx.load(str(tmp_path / name)) == hx.load(str(file)), name
         verdict = hx.verify(str(file), str(tmp_path / name), samples=10)
         assert verdict.is_same, f"{name}: {[check for check in verdict.checks if not check.passed]}"

@@ -14,7 +14,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import Id, Mechanism, joint_edge
 from hymeko_x.ir.values import pose
-from hymeko_x.rewrite import Options, legalize
+from hymeko_x.rewrite import Options, choose, legalize
 from hymeko_x.source import Source
 from hymeko_x.testing import mechanisms, urdf_mechanisms
 from hymeko_x.testing.values import VECTORS
@@ -44,9 +44,9 @@ def test_a_rotation_that_was_not_written_as_rpy_comes_back_to_the_last_bits(
 @settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow])
 def test_every_mechanism_can_be_written_after_legalising_and_the_text_is_well_formed(mechanism: Mechanism, base: str | None) -> None:
     own_words = replace(mechanism, extras={})  # the generated ones are not XML
-    legal = legalize(own_words, "urdf", Options(base=base), Report())  # type: ignore[arg-type]
+    legal = legalize(choose(own_words, Options(base=base), Report()), "urdf", Report())  # type: ignore[arg-type]
     text = write(legal, Options(), Report()).main
     assert not [message for message in said(text) if "HX005" in message]
     result = read(Source("r.urdf", text), Report()).mechanism
     assert {key for key, _ in legal.vertices(parts.Body)} == {key for key, _ in result.vertices(parts.Body)}
-    assert legalize(legal, "urdf", Options(base=base), Report()).graph == legal.graph  # type: ignore[arg-type]
+    assert legalize(legal, "urdf", Report()).graph == legal.graph

@@ -52,7 +52,7 @@ def read_file(path: Path) -> Mechanism:
 
 def written(mechanism: Mechanism, format: str = "usd") -> bytes:
     """The mechanism as USD."""
-    return pipeline.convert(mechanism, formats.by_name(format), Options(), NoFiles(), Report()).package.main
+    return pipeline.convert(mechanism, formats.by_name(format), Options(keep="inside"), NoFiles(), Report()).package.main
 
 
 def again(mechanism: Mechanism) -> Mechanism:

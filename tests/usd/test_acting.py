@@ -121,8 +121,8 @@ LAWS = (
 def other_laws(source: Path, folder: Path) -> list[str]:
     """How actuators drive otherwise in the MJCF of the stage without residue that the source becomes, by name."""
     stage, back = folder / "stage.usda", folder / "back.xml"
-    hx.convert(source, stage, pure=True)
-    hx.convert(stage, back, pure=True)
+    hx.convert(source, stage)
+    hx.convert(stage, back)
     a, b = (mujoco.MjModel.from_xml_path(str(path)) for path in (source, back))
     assert a.nu == b.nu > 0
     pairs = [(i, b.actuator(a.actuator(i).name).id) for i in range(a.nu)]

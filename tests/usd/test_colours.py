@@ -19,7 +19,7 @@ COLLISION = '<collision><geometry><mesh filename="a.dae" scale="2 2 2"/></geomet
 def converted(folder: Path, data: bytes, collision: str = COLLISION) -> Usd.Stage:
     (folder / "a.dae").write_bytes(data)
     (folder / "r.urdf").write_text(URDF.format(collision=collision))
-    hx.convert(folder / "r.urdf", folder / "r.usdc")
+    hx.convert(folder / "r.urdf", folder / "r.usdc", keep="inside")
     return Usd.Stage.Open(str(folder / "r.usdc"))
 
 
@@ -55,13 +55,13 @@ def test_a_file_without_colours_is_shown_in_the_colour_of_its_shape(tmp_path: Pa
 def test_the_robot_comes_back_with_the_one_visual_that_it_had(tmp_path: Path) -> None:
     for collision in (COLLISION, ""):
         converted(tmp_path, dae(), collision)
-        hx.convert(tmp_path / "r.usdc", tmp_path / "back.urdf")
+        hx.convert(tmp_path / "r.usdc", tmp_path / "back.urdf", keep="inside")
         assert hx.diff(hx.load(tmp_path / "r.urdf"), hx.load(tmp_path / "back.urdf")) == ()
         assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.usdc").is_same
 
 
 def test_the_colours_reach_mjcf_too(tmp_path: Path) -> None:
     converted(tmp_path, dae())
-    hx.convert(tmp_path / "r.usdc", tmp_path / "r.xml", pure=True)
+    hx.convert(tmp_path / "r.usdc", tmp_path / "r.xml")
     text = (tmp_path / "r.xml").read_text()
     assert all(f'rgba="{colour} 1"' in text for colour in ("1 0 0", "0 1 0", "0 0 1"))

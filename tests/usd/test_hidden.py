@@ -64,7 +64,7 @@ def test_it_stays_hidden_elsewhere_is_named_as_lost_and_comes_back(target: str, 
 
 def test_a_rod_keeps_its_tensor_for_every_reader_of_usd(tmp_path: Path) -> None:
     (tmp_path / "r.urdf").write_text(ROD)
-    hx.convert(tmp_path / "r.urdf", tmp_path / "r.usda", pure=True)
+    hx.convert(tmp_path / "r.urdf", tmp_path / "r.usda")
     found = Usd.Stage.Open(str(tmp_path / "r.usda"))
     (body,) = [prim for prim in found.Traverse() if prim.HasAPI(UsdPhysics.MassAPI)]
     moments = sorted(UsdPhysics.MassAPI(body).GetDiagonalInertiaAttr().Get())

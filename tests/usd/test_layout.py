@@ -25,7 +25,7 @@ from tests.usd.test_usd_write import ARM, arm
 
 
 def packed(format: str, layout: Literal["single", "layered"] | None = None, nested: bool | None = None) -> Package:
-    options = Options(layout=layout, nested=nested)
+    options = Options(layout=layout, nested=nested, keep="inside")
     return pipeline.convert(arm(), formats.by_name(format), options, NoFiles(), Report()).package
 
 
@@ -86,7 +86,7 @@ def test_what_is_too_long_for_a_text_stands_in_a_crate_beside_it(tmp_path: Path)
     source = tmp_path / "robot.urdf"
     source.write_text(f'<robot name="r"><link name="a">{shape.format("grid")}{shape.format("tetra")}</link></robot>')
     out = tmp_path / "out.usda"
-    assert main(["convert", str(source), str(out)]) == 0
+    assert main(["convert", str(source), str(out), "--keep=inside"]) == 0
     text = out.read_text()
     assert (text.count("point3f[] points"), len(text) < 10_000) == (1, True)
     stage = Usd.Stage.Open(str(out))
@@ -94,7 +94,7 @@ def test_what_is_too_long_for_a_text_stands_in_a_crate_beside_it(tmp_path: Path)
     assert hx.load(out) == hx.load(source)
     assert hx.verify(source, out).is_same
     whole = tmp_path / "whole.usda"
-    whole.write_text(hx.dumps(hx.load(source), "usd"))
+    whole.write_text(hx.dumps(hx.load(source), "usd", keep="inside"))
     assert hx.load(whole) == hx.load(source)
 
 
@@ -125,12 +125,12 @@ LONG = """robot : robot {
 def test_prims_keep_their_order_where_only_some_have_long_arrays(tmp_path: Path) -> None:
     points = " ".join(f"{number} {number * number} {number % 7}" for number in range(90))
     faces = " ".join(f"{number} {number + 1} {number + 2}" for number in range(88))
-    hx.dump(hx.loads(LONG % (points, faces), "hymeko"), tmp_path / "r.usda", pure=True)
+    hx.dump(hx.loads(LONG % (points, faces), "hymeko"), tmp_path / "r.usda")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     assert (tmp_path / "r_meshes.usdc").exists()
     assert [prim.GetName() for prim in stage.Traverse() if prim.HasAPI(UsdPhysics.RigidBodyAPI)] == ["a", "b"]
     source = hx.load(tmp_path / "r.usda")
-    hx.dump(source, tmp_path / "again.usda", pure=True)
+    hx.dump(source, tmp_path / "again.usda")
     assert hx.diff(source, hx.load(tmp_path / "again.usda")) == ()
 
 

@@ -59,7 +59,7 @@ def mesh(found: Usd.Stage, path: str, points: object, corners: list[int]) -> Usd
 def test_mujoco_reads_what_the_stage_has(tmp_path: Path) -> None:
     source = stage(tmp_path / "home")
     (tmp_path / "away").mkdir()
-    hx.convert(source, tmp_path / "away" / "r.xml", pure=True)
+    hx.convert(source, tmp_path / "away" / "r.xml")
     assert "vertex=" not in (tmp_path / "away" / "r.xml").read_text()
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "away" / "r.xml"))
     assert model.mesh_vertnum.tolist() == [len(POINTS), 5]
@@ -75,10 +75,10 @@ def test_that_points_have_become_a_file_is_no_loss_and_nothing_of_them_is_carrie
     source = stage(tmp_path / "home")
     for folder in ("away", "back"):
         (tmp_path / folder).mkdir()
-    result = hx.convert(source, tmp_path / "away" / target)
+    result = hx.convert(source, tmp_path / "away" / target, keep="inside")
     assert [loss for loss in result.losses or () if loss.field in ("vertices", "faces", "texcoords", "texfaces", "uri")] == []
     assert (tmp_path / "away" / target).stat().st_size < 5000
-    hx.convert(tmp_path / "away" / target, tmp_path / "back" / "r.usda")
+    hx.convert(tmp_path / "away" / target, tmp_path / "back" / "r.usda", keep="inside")
     assert hx.diff(hx.load(source), hx.load(tmp_path / "back" / "r.usda")) == ()
     assert hx.verify(source, tmp_path / "back" / "r.usda").verdict == "same"
 
@@ -89,11 +89,11 @@ def test_a_point_that_is_not_as_it_was_is_a_loss(tmp_path: Path, monkeypatch: py
     written = meshes.obj_bytes
     monkeypatch.setattr(meshes, "obj_bytes", lambda part: written(part).replace(b"v 0.3", b"v 0.4"))
     source = stage(tmp_path / "home")
-    result = hx.convert(source, tmp_path / "home" / "r.xml")
+    result = hx.convert(source, tmp_path / "home" / "r.xml", keep="inside")
     assert {(loss.element, loss.field) for loss in result.losses or () if loss.element == "mesh 'ball'"} >= {("mesh 'ball'", "vertices")}
 
 
 def test_on_standard_output_a_model_stands_alone(tmp_path: Path) -> None:
-    text = hx.dumps(hx.load(stage(tmp_path / "home")), "mjcf")
+    text = hx.dumps(hx.load(stage(tmp_path / "home")), "mjcf", keep="inside")
     assert "ball" in text
     assert "ball.obj" not in text

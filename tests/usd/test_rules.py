@@ -34,7 +34,7 @@ def complaints_about(robot: Path, layout: Literal["single", "layered"], folder: 
     for suffix in (".usda", ".usdc", ".usdz"):
         stage = folder / suffix[1:] / f"{robot.stem}{suffix}"
         stage.parent.mkdir()
-        hx.convert(robot, stage, layout=layout)
+        hx.convert(robot, stage, layout=layout, keep="inside")
         if said := complaints(stage):
             found[suffix] = said
     return found
@@ -69,7 +69,7 @@ EGG = """<mujoco model="egg"><worldbody><body name="egg"><freejoint/>
 
 def test_an_ellipsoid_collides_as_the_hull_of_a_mesh_and_is_an_ellipsoid_again(tmp_path: Path) -> None:
     (tmp_path / "egg.xml").write_text(EGG, encoding="utf-8")
-    hx.convert(tmp_path / "egg.xml", tmp_path / "egg.usda", pure=True)
+    hx.convert(tmp_path / "egg.xml", tmp_path / "egg.usda")
     assert complaints(tmp_path / "egg.usda") == []
     stage = Usd.Stage.Open(str(tmp_path / "egg.usda"))
     prims = {prim.GetName(): prim for prim in stage.Traverse()}
@@ -98,7 +98,7 @@ FAULTS = {
 def test_the_verifier_finds_a_fault_in_the_writers_table_of_shapes(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "egg.xml").write_text(EGG, encoding="utf-8")
     monkeypatch.setattr(shapes, name, FAULTS[name])
-    hx.convert(tmp_path / "egg.xml", tmp_path / "egg.usda", pure=True)
+    hx.convert(tmp_path / "egg.xml", tmp_path / "egg.usda")
     assert hx.verify(tmp_path / "egg.xml", tmp_path / "egg.usda").verdict == "different"
 
 
@@ -108,7 +108,7 @@ def test_a_sphere_that_its_author_scaled_stays_a_sphere(tmp_path: Path) -> None:
     sphere = f'def Sphere "s" (\n  prepend apiSchemas = ["PhysicsCollisionAPI"]\n)\n{scaled}'
     body = f'def Xform "b" (\n  prepend apiSchemas = ["PhysicsRigidBodyAPI"]\n)\n{{\n{sphere}}}\n'
     source.write_text(f'#usda 1.0\n(\n  defaultPrim = "b"\n  metersPerUnit = 1\n  upAxis = "Z"\n)\n{body}', encoding="utf-8")
-    hx.convert(source, tmp_path / "back.usda")
+    hx.convert(source, tmp_path / "back.usda", keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "back.usda"))
     assert [prim.GetTypeName() for prim in stage.Traverse() if prim.GetName() == "s"] == ["Sphere"]
 
@@ -119,8 +119,8 @@ def test_a_closure_of_the_world_with_itself_is_left_out_and_there_again_with_the
         "r : robot { a { mass 1 inertia [1 1 1] } @j { + world - a } @l : loop.weld { ~ world ~ world } }\n", encoding="utf-8"
     )
     assert [key.name for key, _, _ in hx.load(source).edges(Loop)] == ["l"]
-    report = hx.convert(source, stage)
+    report = hx.convert(source, stage, keep="inside")
     assert complaints(stage) == []
     assert "loop 'l'" in {loss.element for loss in report.losses or ()}
-    hx.convert(stage, back)
+    hx.convert(stage, back, keep="inside")
     assert diff(hx.load(source), hx.load(back)) == ()

@@ -215,7 +215,7 @@ def read_residue(text: str) -> Mechanism:
 @pytest.mark.parametrize("suffix", [".usda", ".usdc", ".usdz"])
 def test_the_rules_of_usdchecker_have_nothing_against_subsets(tmp_path: Path, suffix: str, layout: Literal["single", "layered"]) -> None:
     out = tmp_path / f"r{suffix}"
-    hx.convert(lay(tmp_path, *TWO), out, layout=layout)
+    hx.convert(lay(tmp_path, *TWO), out, layout=layout, keep="inside")
     assert complaints(out) == []
     assert bound(Usd.Stage.Open(str(out))) == {"hull": {"part": ([1, 2], "red"), "tip": ([4, 5], "blue")}}
 
@@ -227,8 +227,8 @@ def test_the_rules_of_usdchecker_have_nothing_against_subsets(tmp_path: Path, su
 @pytest.mark.parametrize("apis", [GREY, SOLID])
 def test_other_formats_give_the_stage_back(tmp_path: Path, target: str, apis: str) -> None:
     source = lay(tmp_path, *TWO, apis=apis)
-    hx.convert(source, tmp_path / target)
-    hx.convert(tmp_path / target, tmp_path / "back.usda")
+    hx.convert(source, tmp_path / target, keep="inside")
+    hx.convert(tmp_path / target, tmp_path / "back.usda", keep="inside")
     assert hx.diff(hx.load(source), hx.load(tmp_path / "back.usda")) == ()
     assert hx.verify(source, tmp_path / target).is_same
 
@@ -250,12 +250,12 @@ f 1 4 6
 
 
 def test_in_urdf_the_file_of_a_mesh_has_its_materials(tmp_path: Path) -> None:
-    hx.convert(lay(tmp_path, *TWO), tmp_path / "r.urdf", pure=True)
+    hx.convert(lay(tmp_path, *TWO), tmp_path / "r.urdf")
     text = (tmp_path / "shapes" / "hull.obj").read_text()
     assert text.startswith("mtllib hull.mtl\n")
     assert text.endswith(OBJ)
     assert (tmp_path / "shapes" / "hull.mtl").read_text() == "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n"
-    hx.convert(tmp_path / "r.urdf", tmp_path / "back.usdc", pure=True)
+    hx.convert(tmp_path / "r.urdf", tmp_path / "back.usdc")
     out = Usd.Stage.Open(str(tmp_path / "back.usdc"))
     assert sorted(bound(out)["hull"].values()) == [([0, 3, 6, 7], "grey_2"), ([1, 2], "red_2"), ([4, 5], "blue_2")]
     assert [len(prim.GetAttribute("points").Get()) for prim in meshes(out)] == [6]
@@ -264,7 +264,7 @@ def test_in_urdf_the_file_of_a_mesh_has_its_materials(tmp_path: Path) -> None:
 def test_two_looks_of_a_mesh_are_two_files_in_urdf(tmp_path: Path) -> None:
     robot = read_text(stage(*TWO))
     twin = {Id("shape", "twin"): robot.graph.edges[Id("shape", "hull")]}
-    hx.dump(replace(robot, graph=robot.graph.replace(edges=twin)), tmp_path / "r.urdf")
+    hx.dump(replace(robot, graph=robot.graph.replace(edges=twin)), tmp_path / "r.urdf", keep="inside")
     files = {path.name: path.read_text().count("usemtl") for path in (tmp_path / "shapes").glob("*.obj")}
     assert files == {"hull.obj": 5, "hull_2.obj": 0}
 
@@ -273,7 +273,7 @@ def test_in_mjcf_each_look_is_a_geom(tmp_path: Path) -> None:
     import mujoco
 
     for apis, collides in ((GREY, 0), (SOLID, 1)):
-        hx.convert(lay(tmp_path, *TWO, apis=apis), tmp_path / "r.xml", pure=True)
+        hx.convert(lay(tmp_path, *TWO, apis=apis), tmp_path / "r.xml")
         model = mujoco.MjModel.from_xml_path(str(tmp_path / "r.xml"))
         seen = [geom for geom in range(model.ngeom) if not model.geom_contype[geom]]
         colours = {tuple(model.mat_rgba[model.geom_matid[geom]][:3]): model.mesh_facenum[model.geom_dataid[geom]] for geom in seen}
@@ -302,7 +302,7 @@ BROKEN = """r : robot {
 @pytest.mark.parametrize("format", ["urdf", "xacro", "mjcf", "usd"])
 def test_subsets_of_what_is_not_there_are_carried(format: str) -> None:
     robot = hx.loads(BROKEN, "hymeko")
-    assert hx.diff(robot, hx.loads(hx.dumps(robot, format), format)) == ()
+    assert hx.diff(robot, hx.loads(hx.dumps(robot, format, keep="inside"), format)) == ()
 
 
 # ---- real robots ------------------------------------------------------------------------------------------------------------------
@@ -313,7 +313,7 @@ PANDA = [file for file in development_files("urdf") if file.path.endswith("panda
 @pytest.mark.corpus
 @pytest.mark.parametrize("robot", PANDA, ids=lambda file: file.id, indirect=True)
 def test_a_real_robot_has_one_mesh_for_each_file(robot: Path, tmp_path: Path) -> None:
-    hx.convert(robot, tmp_path / "r.usdc")
+    hx.convert(robot, tmp_path / "r.usdc", keep="inside")
     source, out = hx.load(robot), Usd.Stage.Open(str(tmp_path / "r.usdc"))
     assert len(meshes(out)) == sum(view.mesh is not None for views in source.shapes.values() for view in views)
     assert sum(prim.GetTypeName() == "GeomSubset" for prim in out.Traverse()) > 10

@@ -67,8 +67,8 @@ def robot(tmp_path: Path) -> Path:
 def through_usd(source: Path, folder: Path, suffix: str = ".usda") -> Path:
     """The MJCF of a stage that carries no residue."""
     stage, result = folder / f"{source.stem}_pure{suffix}", folder / f"{source.stem}_back.xml"
-    hx.convert(source, stage, pure=True)
-    hx.convert(stage, result, pure=True)
+    hx.convert(source, stage)
+    hx.convert(stage, result)
     return result
 
 
@@ -118,7 +118,7 @@ def moved(model: Any, first: Any, seed: int) -> tuple[Any, Any]:
 
 def test_a_tendon_is_written_as_mujocos_schema_names_it(robot: Path, tmp_path: Path) -> None:
     stage = tmp_path / "cables.usda"
-    hx.convert(robot, stage)
+    hx.convert(robot, stage, keep="inside")
     found = Usd.Stage.Open(str(stage))
     assert said(found.GetPrimAtPath("/cables/tendons/cable")) == {
         "mjc:type": "spatial",
@@ -156,7 +156,7 @@ def test_a_tendon_is_written_as_mujocos_schema_names_it(robot: Path, tmp_path: P
 def test_a_site_of_a_cable_is_a_ball_that_nobody_sees_and_others_are_mere_places(robot: Path, tmp_path: Path) -> None:
     robot.write_text(ROBOT.replace('<site name="t"', '<site name="alone" size=".02"/><site name="t" size=".03"'))
     stage = tmp_path / "cables.usda"
-    hx.convert(robot, stage)
+    hx.convert(robot, stage, keep="inside")
     opened_stage = Usd.Stage.Open(str(stage))
     sites = [prim for prim in opened_stage.Traverse() if "MjcSiteAPI" in prim.GetPrimTypeInfo().GetAppliedAPISchemas()]
     assert {prim.GetName(): (str(prim.GetTypeName()), UsdGeom.Imageable(prim).ComputePurpose()) for prim in sites} == {
@@ -197,8 +197,8 @@ def test_tendons_and_what_acts_on_them_come_back_from_a_stage_without_residue(su
 
 def test_tendons_come_back_exactly_from_a_stage(robot: Path, tmp_path: Path) -> None:
     stage, result = tmp_path / "cables.usda", tmp_path / "back.xml"
-    hx.convert(robot, stage)
-    hx.convert(stage, result)
+    hx.convert(robot, stage, keep="inside")
+    hx.convert(stage, result, keep="inside")
     assert diff(hx.load(robot), hx.load(result)) == ()
     assert hx.verify(robot, stage).is_same
     assert hx.verify(robot, result).is_same
@@ -441,6 +441,6 @@ def robot_with(tendon: Edge[Id, Any, Any]) -> Mechanism:
 @given(tendons())
 def test_any_tendon_comes_back_from_what_is_written_of_it(tendon: Edge[Id, Any, Any]) -> None:
     mechanism = robot_with(tendon)
-    main = pipeline.convert(mechanism, formats.by_name("usd"), Options(pure=True), NoFiles(), Report()).package.main
+    main = pipeline.convert(mechanism, formats.by_name("usd"), Options(), NoFiles(), Report()).package.main
     found = pipeline.read(Source("r.usda", main, NoFiles()), formats.USD, Report())
     assert found.graph.edges[Id("tendon", "t")] == tendon

@@ -104,7 +104,7 @@ EXPECTED = {(0, 0, 0, 0, 0), (1, 0, 0, 1, 0), (1, 1, 0, 1, 1), (0, 1, np.float32
 @pytest.mark.parametrize("target", ["r.usda", "r.usdc"])
 def test_an_obj_file_brings_its_image_and_the_place_of_every_corner(tmp_path: Path, target: str) -> None:
     (tmp_path / "out").mkdir()
-    hx.convert(lay_obj(tmp_path), tmp_path / "out" / target)
+    hx.convert(lay_obj(tmp_path), tmp_path / "out" / target, keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "out" / target))
     (prim,) = meshes(stage)
     assert shown_file(prim) == str(tmp_path / "out" / "textures" / "wood.png")
@@ -116,23 +116,23 @@ def test_an_obj_file_brings_its_image_and_the_place_of_every_corner(tmp_path: Pa
 
 
 def test_the_robot_is_the_same_and_comes_back_as_it_was(tmp_path: Path) -> None:
-    hx.convert(lay_obj(tmp_path), tmp_path / "r.usda")
-    hx.convert(tmp_path / "r.usda", tmp_path / "back.urdf")
+    hx.convert(lay_obj(tmp_path), tmp_path / "r.usda", keep="inside")
+    hx.convert(tmp_path / "r.usda", tmp_path / "back.urdf", keep="inside")
     assert hx.diff(hx.load(tmp_path / "r.urdf"), hx.load(tmp_path / "back.urdf")) == ()
     assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.usda").is_same
 
 
 def test_a_stage_of_others_leaves_as_obj_with_its_image(tmp_path: Path) -> None:
-    hx.convert(lay_obj(tmp_path), tmp_path / "r.usda", pure=True)
+    hx.convert(lay_obj(tmp_path), tmp_path / "r.usda")
     (tmp_path / "out").mkdir()
-    hx.convert(tmp_path / "r.usda", tmp_path / "out" / "r.urdf")
+    hx.convert(tmp_path / "r.usda", tmp_path / "out" / "r.urdf", keep="inside")
     mesh = next((tmp_path / "out").rglob("*.obj"))
     part, ((appearance, rows),) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
     assert corners_of(part) == EXPECTED
     assert (appearance.image, len(rows)) == (image(), len(part.faces))
     assert hx.verify(tmp_path / "r.usda", tmp_path / "out" / "r.urdf").is_same
     (tmp_path / "again").mkdir()
-    hx.convert(tmp_path / "out" / "r.urdf", tmp_path / "again" / "r.usda")
+    hx.convert(tmp_path / "out" / "r.urdf", tmp_path / "again" / "r.usda", keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "again" / "r.usda"))
     assert [corners(prim) for prim in meshes(stage)] == [EXPECTED]
     assert [Path(shown_file(prim) or "").read_bytes() for prim in meshes(stage)] == [image()]
@@ -141,14 +141,14 @@ def test_a_stage_of_others_leaves_as_obj_with_its_image(tmp_path: Path) -> None:
 def test_a_stage_leaves_for_mujoco_with_its_image(tmp_path: Path) -> None:
     import mujoco
 
-    hx.convert(lay_obj(tmp_path), tmp_path / "r.usda", pure=True)
-    hx.convert(tmp_path / "r.usda", tmp_path / "r.xml")
+    hx.convert(lay_obj(tmp_path), tmp_path / "r.usda")
+    hx.convert(tmp_path / "r.usda", tmp_path / "r.xml", keep="inside")
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "r.xml"))
     assert (model.ntex, model.mesh_texcoordnum[0] > 0, model.mat_texid[model.geom_matid[0], 1]) == (1, True, 0)
 
 
 def test_a_file_in_an_image_and_a_colour_is_one_mesh_with_a_subset_for_each(tmp_path: Path) -> None:
-    hx.convert(lay_obj(tmp_path, IMAGE_FACES + RED_FACES), tmp_path / "r.usda")
+    hx.convert(lay_obj(tmp_path, IMAGE_FACES + RED_FACES), tmp_path / "r.usda", keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     (prim,) = meshes(stage)
     wood, paint = (part.GetPrim() for part in UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets())
@@ -163,7 +163,7 @@ def test_a_file_in_an_image_and_a_colour_is_one_mesh_with_a_subset_for_each(tmp_
     ("suffix", "kind", "there"), [(".jpg", "JPEG", "wood.jpg"), (".tif", "TIFF", "wood.png"), (".gif", "GIF", "wood.png")]
 )
 def test_png_and_jpeg_stay_what_they_are_and_other_images_become_png(tmp_path: Path, suffix: str, kind: str, there: str) -> None:
-    hx.convert(lay_obj(tmp_path, suffix=suffix, kind=kind), tmp_path / "r.usda")
+    hx.convert(lay_obj(tmp_path, suffix=suffix, kind=kind), tmp_path / "r.usda", keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     assert shown_file(meshes(stage)[0]) == str(tmp_path / "textures" / there)
     if there.endswith("jpg"):
@@ -173,7 +173,7 @@ def test_png_and_jpeg_stay_what_they_are_and_other_images_become_png(tmp_path: P
 def test_an_image_on_the_disk_of_its_author_is_found_beside_the_mesh(tmp_path: Path) -> None:
     source = lay_obj(tmp_path)
     (tmp_path / "a.mtl").write_text("newmtl wood\nmap_Kd D:\\robots\\wood.png\n")
-    hx.convert(source, tmp_path / "r.usda")
+    hx.convert(source, tmp_path / "r.usda", keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     assert shown_file(meshes(stage)[0]) == str(tmp_path / "textures" / "wood.png")
 
@@ -181,7 +181,7 @@ def test_an_image_on_the_disk_of_its_author_is_found_beside_the_mesh(tmp_path: P
 def test_without_its_image_a_file_has_its_colour_and_a_warning(tmp_path: Path) -> None:
     source = lay_obj(tmp_path)
     (tmp_path / "wood.png").unlink()
-    report = hx.convert(source, tmp_path / "r.usda").report
+    report = hx.convert(source, tmp_path / "r.usda", keep="inside").report
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     assert surface_of(meshes(stage)[0]).GetInput("diffuseColor").Get()[0] == pytest.approx(0.8)
     assert [entry.message for entry in report.diagnostics if "image" in entry.message] == [
@@ -192,7 +192,7 @@ def test_without_its_image_a_file_has_its_colour_and_a_warning(tmp_path: Path) -
 def test_a_damaged_image_is_one_warning(tmp_path: Path) -> None:
     source = lay_obj(tmp_path)
     (tmp_path / "wood.png").write_bytes(image()[:45])
-    report = hx.convert(source, tmp_path / "r.usda").report
+    report = hx.convert(source, tmp_path / "r.usda", keep="inside").report
     assert [entry.message.split(":")[:2] for entry in report.diagnostics if "image" in entry.message] == [
         ["mesh 'a'", " its image 'wood.png' cannot be read"]
     ]
@@ -202,7 +202,7 @@ def test_the_image_of_a_urdf_material_is_laid_on_by_the_coordinates_of_the_mesh(
     (tmp_path / "a.obj").write_text(PYRAMID + IMAGE_FACES.partition("\n")[2])
     (tmp_path / "wood.png").write_bytes(image())
     source = lay(tmp_path, ".obj", '<material name="w"><texture filename="wood.png"/></material>')
-    hx.convert(source, tmp_path / "r.usda")
+    hx.convert(source, tmp_path / "r.usda", keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     assert corners(meshes(stage)[0]) == EXPECTED
 
@@ -214,7 +214,7 @@ def test_a_mjcf_mesh_keeps_its_coordinates(tmp_path: Path) -> None:
         '<mujoco><asset><texture type="2d" name="t" file="wood.png"/><material name="m" texture="t"/><mesh name="a" file="a.obj"/></asset>'
         '<worldbody><body name="b"><freejoint/><geom type="mesh" mesh="a" material="m" mass="1"/></body></worldbody></mujoco>'
     )
-    hx.convert(tmp_path / "r.xml", tmp_path / "r.usda")
+    hx.convert(tmp_path / "r.xml", tmp_path / "r.usda", keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     assert len(corners(meshes(stage)[0])) == len(EXPECTED)
 
@@ -225,7 +225,7 @@ def test_a_glb_file_brings_its_image(tmp_path: Path) -> None:
     appearances = trimesh.visual.material.PBRMaterial(name="wood", baseColorTexture=Image.open(io.BytesIO(image())))
     box.visual = trimesh.visual.TextureVisuals(uv=places, material=appearances)
     (tmp_path / "a.glb").write_bytes(trimesh.Scene(box).export(file_type="glb"))
-    hx.convert(lay(tmp_path, ".glb"), tmp_path / "r.usda")
+    hx.convert(lay(tmp_path, ".glb"), tmp_path / "r.usda", keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     (prim,) = meshes(stage)
     expected = {(*map(np.float32, point), *map(np.float32, place)) for point, place in zip(box.vertices, places, strict=True)}
@@ -256,7 +256,7 @@ COLLADA = """<COLLADA><library_images><image id="i"><init_from>wood.png</init_fr
 def test_a_collada_file_brings_its_image(tmp_path: Path) -> None:
     (tmp_path / "a.dae").write_text(COLLADA)
     (tmp_path / "wood.png").write_bytes(image())
-    hx.convert(lay(tmp_path, ".dae"), tmp_path / "r.usda")
+    hx.convert(lay(tmp_path, ".dae"), tmp_path / "r.usda", keep="inside")
     stage = Usd.Stage.Open(str(tmp_path / "r.usda"))
     (prim,) = meshes(stage)
     assert corners(prim) == {(0, 0, 0, 0.25, 0.75), (1, 0, 0, 1, 0), (1, 1, 0, 0.5, 1)}
@@ -307,14 +307,14 @@ def Xform "r" {
 def test_an_image_that_is_said_more_of_is_typed_and_stays_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "s.usda").write_text(OTHERS)
     (tmp_path / "wood.png").write_bytes(image())
-    hx.convert(tmp_path / "s.usda", tmp_path / "back.usda", pure=True)
+    hx.convert(tmp_path / "s.usda", tmp_path / "back.usda")
     before, after = (Usd.Stage.Open(str(tmp_path / name)) for name in ("s.usda", "back.usda"))
     for prim in before.Traverse():
         there = after.GetPrimAtPath(prim.GetPath())
         for attribute in prim.GetAuthoredAttributes():
             assert there.GetAttribute(attribute.GetName()).Get() == attribute.Get(), attribute.GetPath()
     assert not after.GetAttributeAtPath("/r/a/m.primvars:st:indices")
-    hx.convert(tmp_path / "s.usda", tmp_path / "r.urdf", pure=True)
+    hx.convert(tmp_path / "s.usda", tmp_path / "r.urdf")
     mesh = next((tmp_path / "shapes").glob("*.obj"))
     part, ((appearance, rows),) = read_colours(mesh.read_bytes(), ".obj", lambda name: (mesh.parent / name).read_bytes())
     assert corners_of(part) == {(0, 0, 0, 0, 0), (1, 0, 0, 1, 0), (1, 1, 0, 1, 1), (0, 1, 0, 0, 1)}
@@ -326,23 +326,25 @@ def test_an_image_that_is_said_more_of_is_typed_and_stays_as_it_is(tmp_path: Pat
 def test_the_rules_of_usdchecker_find_every_image(tmp_path: Path, suffix: str, layout: Literal["single", "layered"]) -> None:
     (tmp_path / "out").mkdir()
     stage = tmp_path / "out" / f"r{suffix}"
-    hx.convert(lay_obj(tmp_path, IMAGE_FACES + RED_FACES), stage, layout=layout)
+    hx.convert(lay_obj(tmp_path, IMAGE_FACES + RED_FACES), stage, layout=layout, keep="inside")
     assert complaints(stage) == []
     assert (tmp_path / "out" / "textures").exists() == (suffix != ".usdz")
 
 
-@pytest.mark.parametrize("pure", [True, False])
+@pytest.mark.parametrize("keep", [None, "inside", "beside"])
 @pytest.mark.parametrize("layout", ["single", "layered"])
-def test_an_image_comes_out_of_a_package_again(tmp_path: Path, layout: Literal["single", "layered"], *, pure: bool) -> None:
+def test_an_image_comes_out_of_a_package_again(
+    tmp_path: Path, layout: Literal["single", "layered"], keep: Literal["beside", "inside"] | None
+) -> None:
     (tmp_path / "a.obj").write_text(PYRAMID + IMAGE_FACES.partition("\n")[2])
     (tmp_path / "wood.png").write_bytes(image())
     hx.convert(
-        lay(tmp_path, ".obj", '<material name="w"><texture filename="wood.png"/></material>'), tmp_path / "r.usdz", pure=pure, layout=layout
+        lay(tmp_path, ".obj", '<material name="w"><texture filename="wood.png"/></material>'), tmp_path / "r.usdz", keep=keep, layout=layout
     )
     (tmp_path / "wood.png").unlink()
-    hx.convert(tmp_path / "r.usdz", tmp_path / "back.urdf")
+    hx.convert(tmp_path / "r.usdz", tmp_path / "back.urdf", keep="inside")
     (texture,) = (part for _, part in hx.load(tmp_path / "back.urdf").vertices(Texture))
-    assert texture.uri == ("textures/wood.png" if pure else "wood.png")
+    assert texture.uri == ("wood.png" if keep else "textures/wood.png")
     assert (tmp_path / texture.uri).read_bytes() == image()
 
 
@@ -351,7 +353,7 @@ def test_an_image_comes_out_of_a_package_again(tmp_path: Path, layout: Literal["
 
 def test_a_colour_to_look_through_reaches_a_stage_and_comes_back_in_the_mesh_file(tmp_path: Path) -> None:
     source = lay_glass(tmp_path)
-    hx.convert(source, tmp_path / "there.usda", pure=True)
+    hx.convert(source, tmp_path / "there.usda")
     out = Usd.Stage.Open(str(tmp_path / "there.usda"))
     surfaces = [surface_of(prim) for prim in out.Traverse(Usd.TraverseInstanceProxies()) if prim.IsA(UsdGeom.Subset)]
     assert [[surface.GetInput(name).Get() for name in ("diffuseColor", "opacity")] for surface in surfaces] == [
@@ -359,22 +361,22 @@ def test_a_colour_to_look_through_reaches_a_stage_and_comes_back_in_the_mesh_fil
         [(1, 0, 0), 1],
     ]
     for names in ("", "_2"):  # the URDF file names the materials of the stage as well
-        hx.convert(tmp_path / "there.usda", tmp_path / "back.urdf", pure=True)
+        hx.convert(tmp_path / "there.usda", tmp_path / "back.urdf")
         (library,) = (tmp_path / "shapes").glob("*.mtl")
         assert library.read_text() == GLASS.replace("glass", f"glass{names}").replace("paint", f"paint{names}")
-        hx.convert(tmp_path / "back.urdf", tmp_path / "there.usda", pure=True)
+        hx.convert(tmp_path / "back.urdf", tmp_path / "there.usda")
 
 
 def test_a_colour_to_look_through_is_one_in_mjcf_and_the_way_home_is_exact(tmp_path: Path) -> None:
     import mujoco
 
     source = lay_glass(tmp_path)
-    hx.convert(source, tmp_path / "there.xml")
+    hx.convert(source, tmp_path / "there.xml", keep="inside")
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "there.xml"))
     assert sorted(model.mat_rgba[model.geom_matid].tolist()) == [[0.5, 0.5, 0.5, 0.25], [1, 0, 0, 1]]
     for target in ("there.xml", "there.usdc"):
-        hx.convert(source, tmp_path / target)
-        hx.convert(tmp_path / target, tmp_path / "back.urdf")
+        hx.convert(source, tmp_path / target, keep="inside")
+        hx.convert(tmp_path / target, tmp_path / "back.urdf", keep="inside")
         assert hx.diff(hx.load(source), hx.load(tmp_path / "back.urdf")) == ()
 
 
@@ -386,10 +388,10 @@ def test_a_look_of_one_triangle_stays_that_surface_in_mjcf(faces: str, tmp_path:
     import mujoco
 
     source = lay_obj(tmp_path, faces)
-    hx.convert(source, tmp_path / "there.xml")
+    hx.convert(source, tmp_path / "there.xml", keep="inside")
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "there.xml"))
     assert sorted(zip(model.mesh_vertnum.tolist(), model.mesh_facenum.tolist(), strict=True)) == [(4, 1), (4, 2)]
     assert model.body_mass[1] == 1
     assert hx.verify(source, tmp_path / "there.xml").is_same
-    hx.convert(tmp_path / "there.xml", tmp_path / "home.urdf")
+    hx.convert(tmp_path / "there.xml", tmp_path / "home.urdf", keep="inside")
     assert hx.diff(hx.load(source), hx.load(tmp_path / "home.urdf")) == ()

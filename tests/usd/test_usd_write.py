@@ -69,7 +69,7 @@ def test_text_crate_and_package_say_the_same_twice_the_same_way(format: str) -> 
 
 
 def test_a_package_does_not_tell_when_it_was_made() -> None:
-    robot = pipeline.convert(arm(), formats.by_name("usdz"), Options(), NoFiles(), Report())
+    robot = pipeline.convert(arm(), formats.by_name("usdz"), Options(keep="inside"), NoFiles(), Report())
     for data in (written(arm(), "usdz"), robot.package.main):
         with zipfile.ZipFile(io.BytesIO(data)) as package:
             assert {inside.date_time for inside in package.infolist()} == {(1980, 1, 1, 0, 0, 0)}
@@ -127,10 +127,10 @@ def test_without_a_residue_too_the_link_that_stands_for_the_world_is_held(tmp_pa
         """<robot name="r"><link name="world"/><link name="a"/>
       <joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint></robot>"""
     )
-    hx.convert(tmp_path / "r.urdf", tmp_path / "r.usda", pure=True)
+    hx.convert(tmp_path / "r.urdf", tmp_path / "r.usda")
     stage = hx.load(tmp_path / "r.usda")
     assert [view.joint.dofs for view in stage.joints.values()] == [(), ()]
-    hx.convert(tmp_path / "r.usda", tmp_path / "back.urdf", pure=True)
+    hx.convert(tmp_path / "r.usda", tmp_path / "back.urdf")
     back = hx.load(tmp_path / "back.urdf")
     assert ([root.name for root in back.roots], list(back.joints)) == (["world"], [Id("joint", "j")])
 
@@ -170,7 +170,7 @@ MESHES = """<robot name="m"><link name="a">
 def test_a_mesh_that_is_shown_twice_is_stored_once_and_keeps_its_file(tmp_path: Path) -> None:
     files = Texts({"a.obj": OBJ})
     mechanism = urdf.read(Source("m.urdf", MESHES.encode(), files), Report()).mechanism
-    data = pipeline.convert(mechanism, formats.USD, Options(), files, Report()).package.main
+    data = pipeline.convert(mechanism, formats.USD, Options(keep="inside"), files, Report()).package.main
     assert data.count(b"point3f[] points") == 1
     stage = opened(data, tmp_path)
     prims = [prim for prim in stage.Traverse() if prim.GetTypeName() == "Mesh"]

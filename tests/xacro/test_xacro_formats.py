@@ -35,9 +35,9 @@ def assert_same(robot: Path, other: Path) -> None:
 def assert_same_there_and_back(robot: Path, suffix: str, folder: Path) -> None:
     there, back = folder / f"there{suffix}", folder / "back" / "back.xacro"
     back.parent.mkdir()
-    hx.convert(robot, there)
+    hx.convert(robot, there, keep="inside")
     assert_same(robot, there)
-    hx.convert(there, back)
+    hx.convert(there, back, keep="inside")
     assert_same(robot, back)
 
 

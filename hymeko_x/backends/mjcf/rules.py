@@ -13,7 +13,7 @@ from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import NAME, compiler_has
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Actuator, DofKind
-from hymeko_x.rewrite.actuators import choose_actuators, drop_idle_actuators
+from hymeko_x.rewrite.actuators import drop_foreign_actuators, drop_idle_actuators
 from hymeko_x.rewrite.couplings import drop_odd_tendons, make_couplings_scalar, make_tendons_sound, name_wrapped_shapes
 from hymeko_x.rewrite.inertia import fill_tensors, give_moving_bodies_mass, make_tensors_physical
 from hymeko_x.rewrite.joints import (
@@ -26,7 +26,7 @@ from hymeko_x.rewrite.joints import (
 )
 from hymeko_x.rewrite.loops import anchor_closures, close_by_points, open_second_parents
 from hymeko_x.rewrite.names import make_names_usable, name_assets_once
-from hymeko_x.rewrite.roots import choose_base, put_world_link_into_world
+from hymeko_x.rewrite.roots import put_world_link_into_world, report_open_bases
 from hymeko_x.rewrite.shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.rewrite.subsets import split_subsets
 
@@ -44,7 +44,7 @@ RULES: tuple[Rule, ...] = (
     close_by_points,
     anchor_closures,
     put_world_link_into_world,
-    choose_base,
+    report_open_bases,
     expand_screws,
     lower_inner_free_joints,
     name_dofs,
@@ -62,7 +62,7 @@ RULES: tuple[Rule, ...] = (
     make_sizes_positive,
     name_shapes_once,
     name_wrapped_shapes,
-    choose_actuators,
+    drop_foreign_actuators,
     drop_idle_actuators,
     make_names_usable,  # once more, for what the rules have added
 )

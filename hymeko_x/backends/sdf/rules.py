@@ -20,7 +20,7 @@ from hymeko_x.rewrite.couplings import make_couplings_scalar
 from hymeko_x.rewrite.inertia import fill_tensors, give_every_body_mass, make_tensors_physical
 from hymeko_x.rewrite.joints import lower_inner_free_joints
 from hymeko_x.rewrite.names import make_names_usable
-from hymeko_x.rewrite.roots import hold_or_free_open_bases, put_world_link_into_world
+from hymeko_x.rewrite.roots import put_world_link_into_world
 from hymeko_x.rewrite.shapes import drop_engine_shapes, prefer_own_colours, split_shared_shapes
 from hymeko_x.rewrite.subsets import part_meshes_by_looks
 
@@ -175,7 +175,6 @@ RULES: tuple[Rule, ...] = (
     chain_joints,
     unless_from_sdf(close_loops_by_joints),
     make_couplings_scalar,
-    hold_or_free_open_bases,
     put_world_geometry_on_a_link,
     unless_from_sdf(give_every_body_mass),
     prefer_own_colours,

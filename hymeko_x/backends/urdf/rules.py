@@ -12,7 +12,7 @@ from hymeko_x.rewrite.chains import chain_dofs
 from hymeko_x.rewrite.inertia import fill_tensors
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
-from hymeko_x.rewrite.roots import hold_or_free_open_bases, join_roots, make_world_a_link
+from hymeko_x.rewrite.roots import join_roots, make_world_a_link
 from hymeko_x.rewrite.shapes import approximate_shapes, drop_engine_shapes, prefer_own_colours, split_shared_shapes
 from hymeko_x.rewrite.subsets import part_meshes_by_looks
 
@@ -52,7 +52,6 @@ RULES: tuple[Rule, ...] = (
     fill_tensors,
     expand_screws,
     chain_joints,
-    hold_or_free_open_bases,
     make_world_a_link,
     join_roots,
     prefer_own_colours,

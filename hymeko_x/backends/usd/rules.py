@@ -12,7 +12,6 @@ from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Contact, Loop
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
-from hymeko_x.rewrite.roots import hold_or_free_open_bases
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Mechanism
@@ -53,7 +52,6 @@ def _is_group(extra: Extra) -> bool:
 
 RULES: tuple[Rule, ...] = (
     make_names_usable,
-    hold_or_free_open_bases,
     expand_screws,
     drop_loops_without_bodies,
     drop_stale_groups,

@@ -1,0 +1,131 @@
+"""What the user asks of the robot itself: what holds its bases, and what drives its dofs. From then on it is the robot's own."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from hymeko_x import codes
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.mechanism import WORLD, Id, joint_edge
+from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.parts import Actuator, Coupling, Dof, DofKind, Drive, Joint
+from hymeko_x.rewrite.actuators import MUJOCO_KINDS, without_actuators
+from hymeko_x.rewrite.joints import full_name, legal_dof
+from hymeko_x.rewrite.roots import stands_for_world, with_world
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.ir.mechanism import JointView, Mechanism, RobotEdge
+    from hymeko_x.ir.parts import Parameters
+    from hymeko_x.rewrite.context import Options
+
+
+def choose(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
+    """The robot as the options ask for it. Idempotent."""
+    if options.base is not None:
+        mechanism = _with_bases(mechanism, is_free=options.base == "free", report=report)
+    if options.actuators is not None:
+        mechanism = _with_actuators(mechanism, options.actuators, report)
+    return mechanism
+
+
+# ---- bases -------------------------------------------------------------------------------------------------------------------
+
+
+def _with_bases(mechanism: Mechanism, *, is_free: bool, report: Report) -> Mechanism:
+    """Each open base gets a fixed or a free joint to the world."""
+    worlds = {WORLD, *[root for root in mechanism.roots if stands_for_world(root, mechanism)]}
+    open_bases = [root for root in mechanism.roots if root not in worlds and root not in mechanism.parent_joint]
+    if is_free and not open_bases:
+        _report_fixed_bases(mechanism, worlds, report)
+    if not open_bases:
+        return mechanism
+    names = names_in_use(mechanism)
+    joint, suffix = (Joint((Dof(DofKind.FREE),)), "free") if is_free else (Joint(), "base")
+    edges = {names.take("joint", f"{root.name}_{suffix}"): joint_edge(joint, WORLD, root) for root in open_bases}
+    mechanism = with_world(mechanism)
+    mechanism = mechanism.with_graph(mechanism.graph.replace(edges=edges))
+    if is_free:
+        return mechanism
+    unnamed = {key: {UNNAMED.name: UNNAMED.write(True)} for key in edges}
+    return replace(mechanism, notations={**mechanism.notations, **unnamed})
+
+
+def _report_fixed_bases(mechanism: Mechanism, worlds: set[Id], report: Report) -> None:
+    """Report the joints that fix bases to the world; none when the base floats already."""
+    for joint in (joint for world in worlds for joint in mechanism.children.get(world, ())):
+        if not joint.joint.dofs:
+            report.warn(
+                codes.REWRITTEN,
+                f"{joint.child} does not float: {joint.id} fixes it to the world",
+                mechanism.origin(joint.id),
+                element=str(joint.child),
+                hint="remove that joint or the link 'world' to let the robot float",
+            )
+
+
+# ---- actuators ---------------------------------------------------------------------------------------------------------------
+
+_STIFFNESS = 100.0
+"""Position gain in Nm/rad or N/m of a joint without effort limit."""
+_FULL_EFFORT_AT = 0.1
+"""The error (rad or m; for velocities a part of the limit) at which a servo asks for all of the effort limit."""
+_DRIVEN = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
+
+
+def _with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanism:
+    """One actuator of a kind for every driven dof instead of those that a simulation would have; transmissions stay."""
+    present = {key: actuator for key, actuator in mechanism.vertices(Actuator) if actuator.kind in MUJOCO_KINDS}
+    bare = without_actuators(mechanism, list(present))
+    names = names_in_use(bare)
+    vertices: dict[Id, Actuator] = {}
+    edges: dict[Id, RobotEdge] = {}
+    for view, number, dof in _driven_dofs(bare) if kind != "none" else ():
+        name = full_name(view, number)
+        key = names.take("actuator", f"{name}_{kind}" if Id("actuator", name) in bare.graph.vertices else name)
+        vertices[key] = Actuator(kind, _parameters(kind, dof))
+        role = "" if len(view.joint.dofs) == 1 else dof.name or str(number)
+        edges[names.take("drive", key.name)] = Edge(Drive(), (Arc(key, 1), Arc(view.id, -1, None, role)))
+    if present == vertices:
+        return mechanism
+    if present:
+        what = "left out" if kind == "none" else f"replaced by one {kind} per driven dof"
+        report.note(codes.REWRITTEN, f"{len(present)} actuators of the source are {what}, as asked", element=str(next(iter(present))))
+    return bare.with_graph(bare.graph.replace(vertices=vertices, edges=edges))
+
+
+def _driven_dofs(mechanism: Mechanism) -> Iterator[tuple[JointView, int, Dof]]:
+    """Every hinge, slide and screw that follows no other dof, with its number, on the joints that hold bodies."""
+    followers = set()
+    for _, _, arcs in mechanism.edges(Coupling):
+        for arc in arcs:
+            if arc.sign > 0 and arc.target in mechanism.joints:
+                followers.add((arc.target, dof_number(mechanism.joints[arc.target].joint, arc.role)))
+    for view in mechanism.joints.values():
+        if mechanism.parent_joint[view.child] != view:
+            continue
+        for number, dof in enumerate(view.joint.dofs):
+            if dof.kind in _DRIVEN and (view.id, number) not in followers:
+                yield view, number, legal_dof(dof, [])
+
+
+def _parameters(kind: str, dof: Dof) -> Parameters:
+    """Control ranges from the limits; gains so that the effort limit is reached at a small error."""
+    limits = dof.limits
+    match kind:
+        case "position":
+            gain = limits.effort / _FULL_EFFORT_AT if limits.effort else _STIFFNESS
+            reach = ((limits.lower, limits.upper),) if limits.lower is not None and limits.upper is not None else ()
+            return (("kp", gain), *(("ctrlrange", span) for span in reach), ("dampratio", 1.0))
+        case "velocity":
+            speed = limits.velocity or 0.0
+            gain = limits.effort / (_FULL_EFFORT_AT * (speed or 1.0)) if limits.effort else _STIFFNESS * _FULL_EFFORT_AT
+            return (("kv", gain), *((("ctrlrange", (-speed, speed)),) if speed else ()))
+        case _:
+            return (("ctrlrange", (-limits.effort, limits.effort)),) if limits.effort else ()
