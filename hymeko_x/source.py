@@ -56,6 +56,14 @@ class Kept(NamedTuple):
     file: str
 
 
+def with_prefix(text: str, prefix: str) -> str:
+    """The text of a residue for a robot all of whose names begin so by now."""
+    if not prefix:
+        return text
+    escaped = prefix.replace("\\", "\\\\").replace('"', '\\"')
+    return text.replace("version ", f'prefix "{escaped}" version ', 1)
+
+
 class Source(Struct, frozen=True):
     """One input: its name as the user typed it (used in messages), its bytes, and the files around it.
 

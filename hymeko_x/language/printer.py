@@ -32,7 +32,7 @@ class TextBlock(NamedTuple):
     """A node whose signature and items are texts already, or blocks again."""
 
     signature: str
-    items: tuple[str | TextBlock, ...]
+    items: tuple[str | TextBlock | Comment, ...]
 
 
 Piece = Item | TextBlock | str

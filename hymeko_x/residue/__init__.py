@@ -6,8 +6,8 @@ The *native image* of a mechanism in a format is what the format's own frontend 
     restore(image, residue_of(source, image)) == source
     restore(edited image, residue) == source with the edit
 
-Every entry is bound to an element and to a digest of the image's value (``guard``); it is applied only where the
-image still has it. So what an editor changed wins, what was deleted stays deleted, and what was added is kept.
+Every entry has what the source says and what the image says, and is applied only where the image still says that, but for
+rounding. So what an editor changed wins, what was deleted stays deleted, and what was added is kept.
 
 Some differences are only another description of the same thing: another name, another frame on a body, a joint of
 several dofs as a chain. They are not entries but a :class:`Alignment`, which is aligned first, with all edits.
@@ -18,6 +18,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct, field
+
+from hymeko_x.ir.provenance import Provenance
 
 if TYPE_CHECKING:
     from hymeko_x.compare.leaves import Path
@@ -55,27 +57,27 @@ class Alignment(Struct, frozen=True):
 
 
 class Change(NamedTuple):
-    """A field whose value differs in the image, or is not there (then ``guard`` is empty)."""
+    """A field with its value in the source, and its other value in the image (``there``; NODEFAULT: the field's default)."""
 
     element: Id
     path: Path
     value: object
-    guard: str
+    there: object
 
 
-class Addition(NamedTuple):
-    """An element that the image does not have."""
+class Element(NamedTuple):
+    """An element with its part: a vertex, or an edge with its arcs."""
 
-    element: Id
+    id: Id
     part: VertexPart | RobotEdge
 
 
-class Removal(NamedTuple):
-    """An element that only the image has; ``guard`` is its whole digest, and ``group`` what it belongs to if it is a shape."""
+class Landmark(NamedTuple):
+    """By what else than its name an element of the image is known: the elements that it is on or with, and a few numbers."""
 
     element: Id
-    guard: str
-    group: str = ""
+    beside: tuple[Id, ...] = ()
+    numbers: tuple[float, ...] = ()
 
 
 class Run(NamedTuple):
@@ -88,7 +90,8 @@ class Run(NamedTuple):
 class Sides(Struct, frozen=True):
     """The side tables of the source where they differ: None takes an entry away.
 
-    ``forgotten`` are keys of notations that only the image uses; ``is_plain``: only the image has stereotypes.
+    ``forgotten`` are keys of notations that only the image uses; ``is_plain``: only the image has stereotypes; ``foreign_extras`` are
+    those that only the image has.
     """
 
     notations: tuple[tuple[Id, str, str | None], ...] = ()
@@ -96,23 +99,28 @@ class Sides(Struct, frozen=True):
     stereotypes: tuple[tuple[Id, tuple[str, ...]], ...] = ()
     is_plain: bool = False
     extras: tuple[tuple[Id, Extra], ...] = ()
-    foreign_extras: tuple[tuple[Id, str], ...] = ()
-    """Extras that only the image has, by digest."""
+    foreign_extras: tuple[tuple[Id, Extra], ...] = ()
 
 
 class Residue(Struct, frozen=True):
-    """All of it. ``known`` are the digests by which renamed elements are found."""
+    """All of it.
 
+    ``source`` is where the source came from; ``additions`` are the elements that only the source has, ``removals`` those that only the
+    image has, ``weights`` shapes that both have and from which masses follow that only the image states.
+    """
+
+    source: Provenance = Provenance()
     alignment: Alignment = field(default_factory=Alignment)
     changes: tuple[Change, ...] = ()
-    additions: tuple[Addition, ...] = ()
-    removals: tuple[Removal, ...] = ()
+    additions: tuple[Element, ...] = ()
+    removals: tuple[Element, ...] = ()
+    weights: tuple[Element, ...] = ()
     sides: Sides = field(default_factory=Sides)
     order: tuple[Run, ...] = ()
     layout: tuple[Id, ...] | None = None
     """The source's layout, where it is another one; ``unplaced`` are elements that only the image has a place for."""
     unplaced: tuple[Id, ...] = ()
-    known: tuple[tuple[Id, str], ...] = ()
+    landmarks: tuple[Landmark, ...] = ()
 
     @property
     def is_empty(self) -> bool:

@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
+from msgspec import NODEFAULT
 from msgspec.structs import replace
 
 from hymeko_x.compare.leaves import TURN, leaves_between
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import ROOT, Id
-from hymeko_x.ir.parts import Body
-from hymeko_x.residue import Addition, Change, Removal, Residue
+from hymeko_x.residue import Change, Element, Residue
 from hymeko_x.residue.align import align
-from hymeko_x.residue.digests import Digests, digest, guard_of, shape_group
+from hymeko_x.residue.landmarks import NAMED, landmarks_of
 from hymeko_x.residue.sides import by_kind, moves, sides_between
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.compare.leaves import Leaf, Leaves
-    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+    from hymeko_x.ir.parts import VertexPart
     from hymeko_x.residue import Alignment, Run
-
-NAMED = frozenset({"body", "joint", "frame", "material", "actuator", "sensor", "camera", "light", "tendon"})
-"""Kinds of elements that people give names to."""
 
 
 def residue_of(source: Mechanism, image: Mechanism) -> Residue:
@@ -34,55 +33,50 @@ def residue_of(source: Mechanism, image: Mechanism) -> Residue:
 
 def residue_between(source: Mechanism, image: Mechanism, alignment: Alignment, aligned: Mechanism, leaves: Mapping[Id, Leaves]) -> Residue:
     """The same where the alignment is known, the aligned image, and the leaves in which that and the source differ."""
-    digests = Digests(aligned)
-    changes = tuple(_changes(aligned, source, leaves, digests))
-    additions = tuple(_additions(aligned, source))
-    removals = tuple(_removals(aligned, source, digests))
+    there, here = aligned.graph, source.graph
+    changes = tuple(_changes(aligned, source, leaves))
+    removals = tuple(_only_in(there.vertices, here.vertices)) + tuple(_only_in(there.edges, here.edges))
     found = Residue(
+        source.source._replace(file=PurePath(source.source.file).name),
         alignment,
         changes,
-        additions,
+        tuple(_only_in(here.vertices, there.vertices)) + tuple(_only_in(here.edges, there.edges)),
         removals,
+        tuple(_weights(aligned, changes, removals)),
         sides_between(aligned, source),
         tuple(_order(aligned, source)),
         *_layout(aligned, source),
     )
-    return replace(found, known=tuple(_known(image, found, Digests(image, digests))))
+    return replace(found, landmarks=landmarks_of(image, _spoken_of(image, found)))
 
 
-def _changes(image: Mechanism, source: Mechanism, leaves: Mapping[Id, Leaves], digests: Digests) -> Iterator[Change]:
+def _changes(image: Mechanism, source: Mechanism, leaves: Mapping[Id, Leaves]) -> Iterator[Change]:
     if image.name != source.name:
-        yield Change(ROOT, ("name",), source.name, digest(image.name))
+        yield Change(ROOT, ("name",), source.name, image.name)
     for key, found in leaves.items():
         for leaf in found:
-            yield Change(key, leaf.path, leaf.before, _guard(image, key, leaf, digests))
+            yield Change(key, leaf.path, leaf.before, _there(leaf))
 
 
-def _guard(image: Mechanism, key: Id, leaf: Leaf, digests: Digests) -> str:
-    """The digest of the image's value there. A mass that follows from shapes holds only as long as the shapes do."""
+def _there(leaf: Leaf) -> object:
+    """The image's value; NODEFAULT for the default, which a field has in a format that cannot represent it."""
     if leaf.path[-1] == TURN:
-        return digest(leaf.after[0])  # type: ignore[index]
-    if leaf.path[0] == "inertial" and leaf.before is None and isinstance(image.graph.vertices.get(key), Body):
-        return digests.of_weight(key)
-    return guard_of(leaf.after, leaf.default)
+        return leaf.after[0]  # type: ignore[index]
+    return NODEFAULT if leaf.default is not NODEFAULT and leaf.after == leaf.default else leaf.after
 
 
-def _additions(image: Mechanism, source: Mechanism) -> Iterator[Addition]:
-    for key, part in source.graph.vertices.items():
-        if key not in image.graph.vertices:
-            yield Addition(key, part)
-    for key, edge in source.graph.edges.items():
-        if key not in image.graph.edges:
-            yield Addition(key, edge)
+def _only_in(mine: Mapping[Id, VertexPart | RobotEdge], theirs: Mapping[Id, object]) -> Iterator[Element]:
+    return (Element(key, part) for key, part in mine.items() if key not in theirs)
 
 
-def _removals(image: Mechanism, source: Mechanism, digests: Digests) -> Iterator[Removal]:
-    for key in image.graph.vertices:
-        if key not in source.graph.vertices:
-            yield Removal(key, digests.of(key), "")
-    for key, edge in image.graph.edges.items():
-        if key not in source.graph.edges:
-            yield Removal(key, digests.of(key), shape_group(edge))
+def _weights(image: Mechanism, changes: Iterable[Change], removals: Iterable[Element]) -> Iterator[Element]:
+    """The shapes of bodies of which only the image states the mass, but for those that only the image has."""
+    gone = {key for key, _ in removals}
+    for change in changes:
+        if change.path == ("inertial",) and change.value is None and change.element.kind == "body":
+            yield from (
+                Element(view.id, image.graph.edges[view.id]) for view in image.shapes.get(change.element, ()) if view.id not in gone
+            )
 
 
 # ---- order -----------------------------------------------------------------------------------------------------------------
@@ -108,11 +102,11 @@ def _layout(image: Mechanism, source: Mechanism) -> tuple[tuple[Id, ...] | None,
 # ---- what an editor may rename -----------------------------------------------------------------------------------------------
 
 
-def _known(image: Mechanism, residue: Residue, digests: Digests) -> Iterator[tuple[Id, str]]:
-    """The elements of the image with names of their own that the residue speaks of, with their digests."""
+def _spoken_of(image: Mechanism, residue: Residue) -> Iterator[Id]:
+    """The elements of the image with names of their own that the residue speaks of."""
     names = {new: old for old, new in residue.alignment.names}
-    spoken = dict.fromkeys(names.get(key, key) for key in map(_named, _spoken_of(residue)) if key.kind in NAMED)
-    yield from ((key, digests.of(key)) for key in spoken if key in image.graph)
+    spoken = dict.fromkeys(names.get(key, key) for key in map(_named, _elements_in(residue)))
+    return (key for key in spoken if key.kind in NAMED and key in image.graph)
 
 
 def _named(key: Id) -> Id:
@@ -123,7 +117,7 @@ def _named(key: Id) -> Id:
     return Id("body", body) if stroke else key
 
 
-def _spoken_of(residue: Residue) -> Iterator[Id]:
+def _elements_in(residue: Residue) -> Iterator[Id]:
     alignment: Alignment = residue.alignment
     yield from (change.element for change in residue.changes)
     for addition in residue.additions:

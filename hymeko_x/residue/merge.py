@@ -13,10 +13,11 @@ from hymeko_x import codes
 from hymeko_x.compare.leaves import TURN, default_at, get, put
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.parts import Body, Drive, Mount, Plane, Sense
+from hymeko_x.ir.parts import Body, Drive, Mount, Plane, Sense, Shape
 from hymeko_x.ir.types import is_sound, settled
-from hymeko_x.residue.digests import digest, digest_of, guard_of, mass_digest, shape_group
-from hymeko_x.residue.realign import realign, renamed_since, with_new_names, with_old_names
+from hymeko_x.residue.alike import holds, is_alike
+from hymeko_x.residue.landmarks import renamed_since
+from hymeko_x.residue.realign import realign, with_new_names, with_old_names
 from hymeko_x.residue.sides import by_kind, moved, with_sides
 from hymeko_x.residue.stand_ins import with_stand_ins
 
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotEdge
     from hymeko_x.ir.parts import VertexPart
-    from hymeko_x.residue import Change, Removal, Residue
+    from hymeko_x.residue import Change, Element, Residue
 
 P = TypeVar("P")
 
@@ -50,7 +51,7 @@ class Restored(NamedTuple):
 
 def restore(image: Mechanism, residue: Residue, report: Report) -> Restored:
     """The source, with what was done to its image since. What no longer applies is reported."""
-    names = renamed_since(image, residue)
+    names = renamed_since(image, residue.landmarks)
     for new, old in names.items():
         report.note(codes.RESIDUE_FOLLOWED, f"{old} is called '{new.name}' now", element=str(new))
     aligned = realign(with_old_names(image, names), residue.alignment)
@@ -72,10 +73,16 @@ class _Merge:
     edges: dict[Id, RobotEdge] = field(init=False)
     values: int = 0
     """How many values of the source have been put in."""
+    _shapes_then: dict[Id, list[Element]] = field(init=False)
+    """The shapes that bodies had in the image, of those that the residue tells of."""
 
     def result(self) -> Mechanism:
         """All steps, in their order."""
         self.vertices, self.edges = dict(self.image.graph.vertices), dict(self.image.graph.edges)
+        self._shapes_then = defaultdict(list)
+        for element in (*self.residue.removals, *self.residue.weights):
+            if element.id.kind == "shape" and isinstance(element.part, Edge):
+                self._shapes_then[_body_of(element.part)].append(element)
         name = self._change_fields()
         kept, withheld = self._edited_shapes()
         self._add(withheld)
@@ -104,7 +111,7 @@ class _Merge:
         return name
 
     def _changed_name(self, name: str, change: Change) -> str:
-        if change.guard != digest(name):
+        if change.there != name:
             self._note(ROOT, f"is called '{name}' now")
             return name
         self.values += 1
@@ -124,15 +131,22 @@ class _Merge:
         return part
 
     def _still_holds(self, key: Id, part: object, change: Change) -> bool:
-        if change.path[0] == "inertial" and change.value is None and isinstance(part, Body):
-            return change.guard == mass_digest(self.image, key)
         try:
             value = get(part, change.path)
+            default = default_at(part, change.path)
         except LookupError:
             return False
         if change.path[-1] == TURN:
             value = value[0]  # type: ignore[index]
-        return change.guard == guard_of(value, default_at(part, change.path)) or change.guard == digest(value)
+        if not holds(value, change.there, default):
+            return False
+        follows = change.path == ("inertial",) and change.value is None and isinstance(part, Body)
+        return not follows or self._has_its_shapes(key)
+
+    def _has_its_shapes(self, body: Id) -> bool:
+        """Whether the shapes of a body whose mass follows from them are what they were."""
+        expected = self._shapes_then[body]
+        return len(self.image.shapes.get(body, ())) == len(expected) and all(map(self._is_untouched, expected))
 
     # ---- elements ----------------------------------------------------------------------------------------------------------
 
@@ -141,21 +155,23 @@ class _Merge:
 
         Shapes of one name on one body belong together.
         """
-        stand_ins: dict[object, list[Removal]] = defaultdict(list)
+        stand_ins: dict[object, list[Element]] = defaultdict(list)
         for removal in self.residue.removals:
-            if removal.element.kind == "shape":
-                stand_ins[removal.group].append(removal)
+            if removal.id.kind == "shape":
+                stand_ins[_group_of(removal)].append(removal)
         edited = {group for group, members in stand_ins.items() if not all(map(self._is_untouched, members))}
         if not edited:
             return set(), set()
-        kept = {removal.element for group in edited for removal in stand_ins[group]}
-        withheld = {key for key, part in self.residue.additions if isinstance(part, Edge) and shape_group(part) in edited}
+        kept = {removal.id for group in edited for removal in stand_ins[group]}
+        withheld = {added.id for added in self.residue.additions if added.id.kind == "shape" and _group_of(added) in edited}
         for key in withheld:
             self._note(key, "is not restored, because what stands for it was edited")
         return kept, withheld
 
-    def _is_untouched(self, removal: Removal) -> bool:
-        return removal.element in self.image.graph and digest_of(self.image, removal.element) == removal.guard
+    def _is_untouched(self, then: Element) -> bool:
+        graph = self.image.graph
+        now = graph.vertices.get(then.id) or graph.edges.get(then.id)
+        return now is not None and is_alike(now, then.part)
 
     def _add(self, withheld: set[Id]) -> None:
         """Put in what the image does not have; what it is on must be there."""
@@ -175,7 +191,7 @@ class _Merge:
         """Take away what only the image has, unless it was edited."""
         gone: dict[Id, VertexPart | RobotEdge] = {}
         for removal in self.residue.removals:
-            key = removal.element
+            key = removal.id
             if key in kept or key in gone or key not in self.image.graph:
                 continue
             if not self._is_untouched(removal):
@@ -232,6 +248,16 @@ class _Merge:
 
     def _note(self, key: Id, message: str) -> None:
         self.report.note(codes.RESIDUE_SUPERSEDED, f"{key} {message}", element=str(key))
+
+
+def _group_of(shape: Element) -> tuple[Id, str | None] | None:
+    """What a shape belongs to: all shapes of one name on one body stand or fall together."""
+    edge = shape.part
+    return (_body_of(edge), edge.data.name) if isinstance(edge, Edge) and isinstance(edge.data, Shape) else None
+
+
+def _body_of(edge: RobotEdge) -> Id:
+    return next((arc.target for arc in edge.arcs if arc.sign > 0), ROOT)
 
 
 def _sorted(table: dict[Id, P], runs: Mapping[str, list]) -> dict[Id, P]:  # type: ignore[type-arg]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -14,7 +13,6 @@ from hymeko_x.ir.mechanism import WORLD, Id, joint_edge, pose_weight
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate, rotate_tensor
-from hymeko_x.residue.digests import digest_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -22,7 +20,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import JointView, Mechanism, RobotArc, RobotEdge
     from hymeko_x.ir.parts import Inertial, VertexPart
     from hymeko_x.ir.values import Pose
-    from hymeko_x.residue import Alignment, Fold, Join, Residue
+    from hymeko_x.residue import Alignment, Fold, Join
 
 
 def realign(image: Mechanism, alignment: Alignment) -> Mechanism:
@@ -198,25 +196,7 @@ def _placed(pose: Pose) -> Pose | None:
     return None if pose == IDENTITY else pose
 
 
-# ---- renames since -------------------------------------------------------------------------------------------------------
-
-
-def renamed_since(image: Mechanism, residue: Residue) -> dict[Id, Id]:
-    """The old ids of renamed elements by their new ones; those for which the evidence is not unique are left out."""
-    graph = image.graph
-    known = dict(residue.known)
-    missing = {key: mark for key, mark in known.items() if key not in graph}
-    if not missing:
-        return {}
-    kinds = {key.kind for key in missing}
-    unknown: dict[tuple[str, str], list[Id]] = defaultdict(list)
-    for key in (*graph.vertices, *graph.edges):
-        if key.kind in kinds and key not in known:
-            unknown[key.kind, digest_of(image, key)].append(key)
-    lost: dict[tuple[str, str], list[Id]] = defaultdict(list)
-    for key, mark in missing.items():
-        lost[key.kind, mark].append(key)
-    return {unknown[mark][0]: keys[0] for mark, keys in lost.items() if len(keys) == 1 and len(unknown[mark]) == 1}
+# ---- other names --------------------------------------------------------------------------------------------------------
 
 
 def with_old_names(image: Mechanism, names: Mapping[Id, Id]) -> Mechanism:

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections import Counter, defaultdict
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x import formats
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import ROOT
-from hymeko_x.ir.provenance import kept_notations, take_provenance
 from hymeko_x.residue import Run, Sides
-from hymeko_x.residue.digests import digest_of_extra
+from hymeko_x.residue.alike import is_same_extra
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -109,7 +107,7 @@ def laid_out(have: Sequence[Id], want: Sequence[Id], known: set[Id]) -> tuple[Id
 
 def sides_between(image: Mechanism, source: Mechanism) -> Sides:
     """What stands beside the graph."""
-    written, noted = kept_notations(source.notations, source.source), kept_notations(image.notations, image.source)
+    written, noted = source.notations, image.notations
     used = {name for table in written.values() for name in table}
     forgotten = {name for table in noted.values() for name in table} - used
     extras = tuple(_extras(image, source))
@@ -119,7 +117,7 @@ def sides_between(image: Mechanism, source: Mechanism) -> Sides:
         tuple(_stereotypes(image, source)) if source.stereotypes else (),
         bool(image.stereotypes) and not source.stereotypes,
         tuple((key, extra) for key, extra, new in extras if new),
-        tuple((key, digest_of_extra(extra)) for key, extra, new in extras if not new),
+        tuple((key, extra) for key, extra, new in extras if not new),
     )
 
 
@@ -156,17 +154,20 @@ def _extras(image: Mechanism, source: Mechanism) -> Iterator[tuple[Id, Extra, bo
         yield from ((key, extra, True) for extra in theirs[len(kept) :])
 
 
+_NEAR = 20
+"""Among so many extras of an element in their order one that only the image has is looked for."""
+
+
 def with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mechanism:
     sides = residue.sides
     there = {ROOT, *mechanism.graph.vertices, *mechanism.graph.edges}
-    noted = kept_notations(image.notations, image.source).items()
+    noted = image.notations.items()
     notations = {key: {name: text for name, text in table.items() if name not in sides.forgotten} for key, table in noted}
     for key, name, text in sides.notations:
         if text is None:
             notations.get(key, {}).pop(name, None)
         elif key in there:
             notations.setdefault(key, {})[name] = text
-    source = take_provenance(notations, {format.family for format in formats.FORMATS}, image.source)
     stereotypes = {} if sides.is_plain else {**image.stereotypes, **dict(sides.stereotypes)}
     layout = image.layout if residue.layout is None else laid_out(image.layout, residue.layout, set(residue.unplaced))
     return replace(
@@ -175,20 +176,23 @@ def with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mech
         stereotypes={key: names for key, names in stereotypes.items() if names and key in there},
         extras=_restored_extras(residue, image, there),
         layout=tuple(key for key in layout if key in there),
-        source=source,
+        source=residue.source._replace(file=image.source.file),
     )
 
 
 def _restored_extras(residue: Residue, image: Mechanism, there: set[Id]) -> dict[Id, tuple[Extra, ...]]:
-    foreign = Counter(residue.sides.foreign_extras)
+    foreign: dict[Id, list[Extra]] = defaultdict(list)
+    for key, extra in residue.sides.foreign_extras:
+        foreign[key].append(extra)
     extras: dict[Id, list[Extra]] = {}
     for key, found in image.extras.items():
+        expected = foreign[key]
         for extra in found:
-            mark = (key, digest_of_extra(extra))
-            if foreign[mark]:
-                foreign[mark] -= 1
-            else:
+            place = next((place for place, other in enumerate(expected[:_NEAR]) if is_same_extra(extra, other)), None)
+            if place is None:
                 extras.setdefault(key, []).append(extra)
+            else:
+                del expected[place]
     for key, extra in residue.sides.extras:
         extras.setdefault(key, []).append(extra)
     return {key: tuple(found) for key, found in extras.items() if key in there}

@@ -13,6 +13,7 @@ from hymeko_x.ir.mechanism import WORLD, Id, joint_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Coupling, Dof, DofKind, Drive, Joint
+from hymeko_x.ir.values import Z
 from hymeko_x.rewrite.actuators import MUJOCO_KINDS, without_actuators
 from hymeko_x.rewrite.joints import full_name, legal_dof
 from hymeko_x.rewrite.roots import stands_for_world, with_world
@@ -47,7 +48,7 @@ def _with_bases(mechanism: Mechanism, *, is_free: bool, report: Report) -> Mecha
     if not open_bases:
         return mechanism
     names = names_in_use(mechanism)
-    joint, suffix = (Joint((Dof(DofKind.FREE),)), "free") if is_free else (Joint(), "base")
+    joint, suffix = (Joint((Dof(DofKind.FREE, Z),)), "free") if is_free else (Joint(), "base")
     edges = {names.take("joint", f"{root.name}_{suffix}"): joint_edge(joint, WORLD, root) for root in open_bases}
     mechanism = with_world(mechanism)
     mechanism = mechanism.with_graph(mechanism.graph.replace(edges=edges))

@@ -27,7 +27,7 @@ def sent_home(folder: Path, name: str, text: str, through: str) -> Path:
     (home / name).write_text(text)
     for place in (away, back):
         place.mkdir()
-    hx.convert(home / name, away / f"robot.{through}")
+    hx.convert(home / name, away / f"robot.{through}", keep="inside")
     home.rename(folder / "gone")
     hx.convert(away / f"robot.{through}", back / name)
     shutil.rmtree(away)

@@ -10,7 +10,7 @@ from hymeko_x.ir.parts import Body
 
 ROBOT = (
     '<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
-    '<hymeko:residue xmlns:hymeko="urn:hymeko-x"><![CDATA[carried : residue {{ version 1 {} }}]]></hymeko:residue></robot>'
+    '<hymeko:residue xmlns:hymeko="urn:hymeko-x"><![CDATA[kept : residue {{ version 2 {} }}]]></hymeko:residue></robot>'
 )
 
 
@@ -26,26 +26,28 @@ ROBOT = (
         "layout [1 2]",
         'layout [[a] "b"]',
         "unplaced [1]",
-        "order { body [ a] }",
-        "additions { a : link {} }",
-        "additions { x : body { inertial [1 2] } }",
-        'additions { x : contact { ["a"] + body.a } }',
+        "order { body { a [] } }",
+        "source_only { a : link {} }",
+        "source_only { x : body { inertial [1 2] } }",
+        'source_only { x : contact { ["a"] + body.a } }',
         "frames { a [1 2 3 4 5 6 7] }",
         'frames { a ["x" 2 3 1 0 0 0] }',
         "frames { a [0 0 0 0 0 0 0] }",
         "frames { a [nan 0 0 1 0 0 0] }",
-        "names { world [a b] }",
-        "version 2",
+        "names { world { a=b } }",
+        "version 3",
+        "landmarks { body { a [b] } }",
+        "values { body { of [a] inertial [source none file] } }",
     ],
 )
 def test_a_residue_that_holds_something_else_is_left_out(content: str) -> None:
     report = Report()
     robot = hx.loads(ROBOT.format(content), "urdf", report=report)
     assert [diagnostic.code.id for diagnostic in report] == ["HX107"]
-    assert robot == hx.loads(ROBOT.replace("{{ version 1 {} }}", ""), "urdf")
+    assert robot == hx.loads(ROBOT.replace("{{ version 2 {} }}", ""), "urdf")
 
 
-@pytest.mark.parametrize("names", ["body [a b]", "body [a c b c]"])
+@pytest.mark.parametrize("names", ["body { a=b }", "body { a=c b=c }"])
 def test_a_name_that_another_element_has_by_now_is_not_given_again(names: str) -> None:
     """Two elements under one name would be one."""
     robot = hx.loads(ROBOT.format(f"names {{ {names} }}"), "urdf")

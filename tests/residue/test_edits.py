@@ -265,8 +265,8 @@ def test_what_the_editor_names_like_something_carried_is_kept() -> None:
 def test_a_damaged_residue_is_one_warning_and_the_file_is_read_without() -> None:
     text = hx.dumps(hx.loads(MJCF, "mjcf"), "urdf", keep="inside")
     for broken in (
-        text.replace("version 1", "version 2"),
-        text.replace("carried : residue {", "carried : residue"),
+        text.replace("version 2", "version 3"),
+        text.replace("kept : residue {", "kept : residue"),
         text.replace("dofs.1.ref", "dofs.x.ref"),
     ):
         report = Report()

@@ -15,7 +15,8 @@ from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.ir.types import hints_of, settled
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.merge import restore
-from hymeko_x.residue.text import parse_residue, print_residue
+from hymeko_x.residue.reading import parse_residue
+from hymeko_x.residue.text import print_residue
 from hymeko_x.testing import mechanisms
 from tests.residue.exactness import unequal
 

@@ -31,5 +31,15 @@ def parse(source: Source, report: Report) -> Element:
             if node.tag == INSTRUCTION_NODE:
                 target = (node.text or "").partition(" ")[0]
                 raise refuse(codes.NOT_XML, f"a processing instruction (<?{target} ...?>) cannot stand inside of an element", node.origin)
+    _take_texts(document.root)
     document.root.children[:0] = [node for node in document.preceding if node.tag == COMMENT]
     return document.root
+
+
+def _take_texts(root: Element) -> None:
+    """The data of texts that stand between their tags, as MuJoCo saves long ones, as the attributes that they are otherwise."""
+    for section in root.children:
+        for node in section.children if section.tag == "custom" else ():
+            if node.tag == "text" and node.text is not None and "data" not in node.attributes:
+                node.attributes["data"] = node.text
+                node.text = None

@@ -5,6 +5,7 @@ Source: MJCF of MuJoCo 4.0; docs/mapping/mjcf.md lists what becomes what.
 
 from __future__ import annotations
 
+import re
 from pathlib import PurePath
 from typing import TYPE_CHECKING
 
@@ -27,7 +28,7 @@ from hymeko_x.frontends.mjcf.tendons import read_tendons
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import World
-from hymeko_x.source import Reading
+from hymeko_x.source import Reading, with_prefix
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -36,6 +37,9 @@ if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.codec import Settings
     from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.source import Source
+
+
+_CARRIER = re.compile(rf".*{RESIDUE}\d*", re.DOTALL)
 
 
 def read(source: Source, report: Report) -> Reading:
@@ -88,12 +92,16 @@ def _keep_sections(root: Element, builder: MjcfBuilder) -> None:
 
 
 def _take_carried(root: Element) -> Iterator[str]:
-    """The texts that carry a residue, out of the sections that hold them."""
+    """The texts that hold a residue, out of their sections. Where robots were joined, each begins with what their names begin with."""
     for section in root_sections(root, "custom"):
-        own = [text for text in section.children if text.tag == "text" and text.attributes.get("name", "").startswith(RESIDUE)]
+        own = [text for text in section.children if text.tag == "text" and _CARRIER.fullmatch(text.attributes.get("name", ""))]
         if not own:
             continue
-        yield from (text.attributes.get("data", "") for text in own)
+        texts: dict[str, str] = {}
+        for text in own:
+            prefix = text.attributes["name"].partition(RESIDUE)[0]
+            texts[prefix] = texts.get(prefix, "") + text.attributes.get("data", "")
+        yield from (with_prefix(text, prefix) for prefix, text in texts.items())
         section.children = [child for child in section.children if child not in own]
         if not section.children:
             root.children.remove(section)

@@ -1,0 +1,97 @@
+"""Whether something is still what it was, for programs that save a file: they round its numbers, and may name its elements otherwise."""
+
+from __future__ import annotations
+
+import struct
+from typing import TYPE_CHECKING
+
+from msgspec import NODEFAULT
+
+from hymeko_x import formats
+from hymeko_x.ir.fields import NUMBERS, layout_of
+from hymeko_x.ir.graph import Edge
+from hymeko_x.ir.values import are_numbers
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from hymeko_x.ir.mechanism import Extra, RobotArc
+
+_FEWEST_DIGITS = 6
+"""To how many digits MuJoCo rounds what it saves; other programs keep more."""
+_ROUNDED = 6e-6
+"""By how much rounding changes a number at most, as a part of it."""
+_WHOLES = frozenset({4, 6})
+"""Lengths of quaternions and tensors, which programs compute anew from axes and angles: only their largest number counts."""
+
+
+def is_alike(now: object, then: object) -> bool:
+    """Whether a value is what it was but for rounding, notations and names; a part with its fields, an edge with its arcs."""
+    if now is then:
+        return True
+    if isinstance(then, tuple):
+        return isinstance(now, tuple) and len(now) == len(then) and _are_alike(now, then)
+    if isinstance(then, NUMBERS) and isinstance(now, NUMBERS):
+        return is_rounded(float(now), float(then))
+    if isinstance(then, Edge) and isinstance(now, Edge):
+        return len(now.arcs) == len(then.arcs) and is_alike(now.data, then.data) and all(map(_is_alike_arc, now.arcs, then.arcs))
+    layout = layout_of(type(then))
+    if layout is None or type(now) is not type(then):
+        return now == then
+    pairs = zip(layout.counting, layout.compared(now), layout.compared(then), strict=True)
+    return all(item.name == "name" or is_alike(a, b) for item, a, b in pairs)
+
+
+def _is_alike_arc(now: RobotArc, then: RobotArc) -> bool:
+    return (now.sign, now.target.kind, bool(now.role)) == (then.sign, then.target.kind, bool(then.role)) and is_alike(
+        now.weight, then.weight
+    )
+
+
+def _are_alike(now: tuple[object, ...], then: tuple[object, ...]) -> bool:
+    if now == then:
+        return True
+    if len(then) in _WHOLES and are_numbers(now) and are_numbers(then):
+        room = _ROUNDED * max(map(abs, then))  # type: ignore[arg-type]
+        return any(all(abs(sign * a - b) <= room for a, b in zip(now, then, strict=True)) for sign in _signs(then))  # type: ignore[operator]
+    return all(map(is_alike, now, then))
+
+
+def _signs(numbers: tuple[object, ...]) -> Iterable[float]:
+    """A quaternion and its opposite are the same rotation."""
+    return (1.0, -1.0) if len(numbers) == 4 else (1.0,)
+
+
+def is_rounded(now: float, then: float) -> bool:
+    """Whether a number is another one, or that one rounded: to six or more digits, or to single precision."""
+    if now == then or (now != now and then != then):
+        return True
+    if not abs(now - then) <= _ROUNDED * abs(then):
+        return False
+    return any(now == float(f"{then:.{digits}g}") for digits in range(_FEWEST_DIGITS, 17)) or now == _single(then)
+
+
+def _single(number: float) -> float:
+    try:
+        found: float = struct.unpack("f", struct.pack("f", number))[0]
+    except OverflowError:
+        return number
+    return found
+
+
+def holds(now: object, then: object, default: object) -> bool:
+    """The same for a field; ``then`` is NODEFAULT where it had its default."""
+    return is_alike(now, default if then is NODEFAULT else then)
+
+
+def is_same_extra(now: Extra, then: Extra) -> bool:
+    """Whether an extra is what it was, but for what elements inherit from it and have in a field, where an edit would be seen."""
+    if (now.format, now.path) != (then.format, then.path):
+        return False
+    if now.text == then.text:
+        return True
+    inherited = next((row.inherited for row in formats.FORMATS if row.name == now.format), None)
+    if inherited is None or now.path:
+        return False
+    without = formats.loaded(inherited)
+    return bool(without(now.text) == without(then.text))
