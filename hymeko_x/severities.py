@@ -96,6 +96,7 @@ ERRORS: Mapping[Code, str] = {
 
 WARNINGS: Mapping[Code, str] = {
     codes.REPAIRED_XML: "every element and attribute is there as it was written; other readers overlook the mistake, or refuse the file",
+    codes.NO_FORM: "the equations are those of what they cover",
     codes.PASSED_OVER: "the user allowed it, and has to remember",
     codes.BAD_NUMBER: "one number as a scale means the same in all directions",
     codes.MISSING_ATTRIBUTE: "the default is the format's own, or the value stays unspecified; a mesh without a file is as one not found",

@@ -14,6 +14,10 @@ from hymeko_x import codes
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal
 
+# MuJoCo chooses how it draws when it is imported, by whichever test that is.
+if "DISPLAY" not in os.environ:
+    os.environ.setdefault("MUJOCO_GL", "egl")
+
 # The same examples in every run, so that a change is judged by what it changed; `HYPOTHESIS_PROFILE=search` looks for new ones.
 settings.register_profile("same", derandomize=True, database=None)
 # `ci` and `nightly` look for new ones for minutes and for hours (`make fuzz`): tests of laws take their number from the profile.

@@ -44,7 +44,7 @@ FULL: tuple[parts.VertexPart | parts.EdgePart, ...] = (
     parts.Spring(100.0, 0.1),
     parts.Damper(10.0),
     parts.Mass(5.0),
-    parts.Port("effort", 2.0),
+    parts.Port("effort", 2.0, "rotation", (("period", 1.0),)),
     parts.Datum(PARAMETERS),
     parts.Shape(parts.Box((1.0, 2.0, 3.0)), parts.Role.VISUAL, "s", (1.0, 1.0, 1.0, 1.0), 1.0, 1000.0, (1.0, 0.1)),
     parts.Mount(),

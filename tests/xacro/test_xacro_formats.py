@@ -29,7 +29,7 @@ pytestmark = pytest.mark.corpus
 def assert_same(robot: Path, other: Path) -> None:
     verdict = hx.verify(robot, other, samples=10, meshes=False)
     assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
-    assert verdict.verdict == "same"
+    assert verdict.is_same
 
 
 def assert_same_there_and_back(robot: Path, suffix: str, folder: Path) -> None:
