@@ -146,6 +146,8 @@ NOTES: Mapping[Code, str] = {
     codes.INERTIA_REPAIRED: "the change is below what matters, or the body never moves by itself",
     codes.NOT_SAID: "only appearance or a hint for other programs is concerned",
     codes.RESIDUE_SUPERSEDED: "the newer change wins, as it should",
+    codes.KEPT_USED: "it is what --keep kept",
+    codes.KEPT_LEFT: "the output has all of its own words, and --keep takes it along",
     codes.RESIDUE_FOLLOWED: "everything was found again",
     codes.XACRO_SAID: "the file prints it for its users",
     codes.ENVIRONMENT_CLOSED: "the file has a default for it",

@@ -50,12 +50,13 @@ class Meshes:
 
     def surface(self, mesh: Surface | MeshFile | None) -> Surface | str:
         """The triangles of a mesh in its own frame, scaled; or the reason why there are none. The same mesh gives the same object."""
-        if mesh is None or (isinstance(mesh, MeshFile) and mesh.path is None):
-            return f"the mesh '{mesh.uri if mesh else ''}' was not found"
-        if not self._wanted:
-            return "meshes were not compared, as asked"
+        return self._surface(mesh) if self._wanted else "meshes were not compared, as asked"
+
+    def _surface(self, mesh: Surface | MeshFile | None) -> Surface | str:
         if isinstance(mesh, Surface):
             return mesh if len(mesh.faces) else f"a mesh in the file {_EMPTY}"
+        if mesh is None or mesh.path is None:
+            return f"the mesh '{mesh.uri if mesh else ''}' was not found"
         if mesh.path not in self._files:
             self._files[mesh.path] = self._read(mesh.path)
         found = self._files[mesh.path]
@@ -70,16 +71,11 @@ class Meshes:
     def why_none(self, shapes: Sequence[Shape]) -> str:
         """Why none of these meshes can be read; "" when one can: an engine that needs the files leaves such meshes out.
 
-        Where no meshes are read, a file that is there counts as one that can be.
+        These are read also where no meshes are compared.
         """
-        reasons = [self._why_not(shape.mesh) for shape in shapes]
-        return reasons[0] if all(reasons) else ""
-
-    def _why_not(self, mesh: Surface | MeshFile | None) -> str:
-        if not self._wanted and (isinstance(mesh, Surface) or (mesh is not None and mesh.path is not None)):
-            return ""
-        found = self.surface(mesh)
-        return found if isinstance(found, str) else ""
+        surfaces = [self._surface(shape.mesh) for shape in shapes]
+        reasons = [surface for surface in surfaces if isinstance(surface, str)]
+        return reasons[0] if len(reasons) == len(surfaces) else ""
 
     def together(self, shapes: Sequence[Shape]) -> Surface | str:
         """All triangles of several mesh shapes in the body's frame; or the reason why there are none."""

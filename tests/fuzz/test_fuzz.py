@@ -92,10 +92,10 @@ def test_the_runner_notices_whatever_goes_wrong(damage: str, kind: str, tmp_path
     (tmp_path / "sitecustomize.py").write_text(
         "import hymeko_x.pipeline as pipeline\n"
         "right = pipeline.read\n"
-        "def read(source, format, report):\n"
+        "def read(source, format, report, **options):\n"
         "    if source.data == DATA:\n"
         f"        {damage}\n"
-        "    return right(source, format, report)\n"
+        "    return right(source, format, report, **options)\n"
         "pipeline.read = read\n".replace("DATA", repr(data_of("urdf", 3)))
     )
     monkeypatch.setenv("PYTHONPATH", f"{tmp_path}{os.pathsep}{ROOT}")
