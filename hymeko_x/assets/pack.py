@@ -141,14 +141,15 @@ def package_hint(uri: str) -> str:
 def _with_meshes_of_source(mechanism: Mechanism, files: Files, report: Report) -> Mechanism:
     """The mechanism with the points of files that the engine of its source reads as another solid than other programs do."""
     row = formats.of_source(mechanism)
-    if row is None or row.read_otherwise is None:
+    stored = {key: (mesh, mesh.uri) for key, mesh in mechanism.vertices(Mesh) if mesh.uri is not None}
+    if row is None or row.read_otherwise is None or not stored:
         return mechanism
     from hymeko_x.meshes.submesh import Unreadable, listed
 
     changed: dict[Id, Mesh] = {}
     read = formats.loaded(row.read_otherwise)
-    for key, mesh in mechanism.vertices(Mesh):
-        found = None if mesh.uri is None else read_file(files, mesh.uri)
+    for key, (mesh, uri) in stored.items():
+        found = read_file(files, uri)
         if found is None:
             continue
         with suppress(Unreadable):
