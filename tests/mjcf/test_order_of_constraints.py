@@ -34,7 +34,7 @@ def robot(path: Path, constraints: list[str]) -> Path:
 @pytest.mark.parametrize("through", ["urdf", "xacro", "usda", "hymeko"])
 def test_it_comes_back_where_it_is_kept(through: str, tmp_path: Path) -> None:
     source = robot(tmp_path / "a.xml", CONSTRAINTS)
-    hx.convert(source, tmp_path / f"a.{through}")
+    hx.convert(source, tmp_path / f"a.{through}", keep="inside")
     hx.convert(tmp_path / f"a.{through}", tmp_path / "b.xml")
     before, after = (mujoco.MjModel.from_xml_path(str(path)) for path in (source, tmp_path / "b.xml"))
     assert (after.eq_type.tolist(), after.eq_data.tolist()) == (before.eq_type.tolist(), before.eq_data.tolist())

@@ -54,7 +54,7 @@ def test_what_is_hidden_is_only_felt(tmp_path: Path) -> None:
 def test_it_stays_hidden_elsewhere_is_named_as_lost_and_comes_back(target: str, tmp_path: Path) -> None:
     source = stage(tmp_path / "home")
     (tmp_path / "back").mkdir()
-    losses = hx.convert(source, tmp_path / target).losses or ()
+    losses = hx.convert(source, tmp_path / target, keep="inside").losses or ()
     assert sum(loss.field.startswith("usd ") and "def Cube" in str(loss.before) for loss in losses) == 3
     assert hx.verify(source, tmp_path / target).verdict == "same"
     hx.convert(tmp_path / target, tmp_path / "back" / "r.usda")

@@ -174,7 +174,7 @@ def test_the_second_prim_of_a_name_gets_no_other_name() -> None:
     group = 'def Xform "{0}"\n{{\n    def Xform "leg" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])\n    {{\n    }}\n}}\n'
     mechanism = read_text(HEADER + group.format("one") + group.format("two"))
     assert [key.name for key, _ in mechanism.vertices(Body)] == ["leg", "leg#2"]
-    assert written(mechanism).count(b"displayName") == 1  # that of the robot
+    assert written(mechanism).count(b'displayName = "') == 1  # that of the robot
     assert again(mechanism) == mechanism
 
 
