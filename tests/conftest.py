@@ -13,10 +13,9 @@ from hypothesis.internal.constants_ast import Constants
 from hymeko_x import codes
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal
+from hymeko_x.draw.render import choose_backend
 
-# MuJoCo chooses how it draws when it is imported, by whichever test that is.
-if "DISPLAY" not in os.environ:
-    os.environ.setdefault("MUJOCO_GL", "egl")
+choose_backend()  # MuJoCo decides how it draws when it is imported, by whichever test that is
 
 # The same examples in every run, so that a change is judged by what it changed; `HYPOTHESIS_PROFILE=search` looks for new ones.
 settings.register_profile("same", derandomize=True, database=None)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+from ctypes.util import find_library
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -286,8 +287,8 @@ def _swept(model: mujoco.MjModel, rest: NDArray[np.float64]) -> Iterator[NDArray
 
 
 def choose_backend() -> None:
-    """Draw through EGL where there is no screen and the environment does not name another way. MuJoCo decides when it is imported."""
-    if "DISPLAY" not in os.environ and os.name == "posix":
+    """Draw through EGL where it is there, no screen is, and the environment names no other way. MuJoCo decides when it is imported."""
+    if "DISPLAY" not in os.environ and find_library("EGL"):
         os.environ.setdefault("MUJOCO_GL", "egl")
 
 
@@ -296,7 +297,7 @@ def _renderer(model: mujoco.MjModel, width: int, height: int) -> mujoco.Renderer
 
     try:
         return mujoco.Renderer(model, height, width)
-    except (AttributeError, ImportError, RuntimeError, mujoco.FatalError) as error:
+    except (AttributeError, ImportError, RuntimeError, Warning, mujoco.FatalError) as error:  # glfw warns where there is no screen
         way = os.environ.get("MUJOCO_GL", "the screen")
         hint = "install EGL (Debian: libegl1 libgl1-mesa-dri), or OSMesa (libosmesa6) and set MUJOCO_GL=osmesa"
         raise refuse(codes.CANNOT_DRAW, f"MuJoCo cannot draw through {way} on this machine: {_first_line(error)}", hint=hint) from error
