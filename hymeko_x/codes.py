@@ -192,7 +192,7 @@ INERTIA_REPAIRED = Code(
 RESIDUE_SUPERSEDED = Code(
     "HX105",
     "what was kept no longer applies",
-    "What the format cannot represent was kept, each entry with what the file said when it was written. Somebody has changed that since, and the change wins.",
+    "What the format cannot represent was kept, each entry with the value that the file had when it was written. The file has another value now: it was edited since, and the edit wins.",
 )
 RESIDUE_FOLLOWED = Code(
     "HX106",

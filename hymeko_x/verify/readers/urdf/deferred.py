@@ -15,7 +15,7 @@ _PACKAGE = "trimesh"
 
 
 class _Deferred(ModuleType):
-    """Stands for a package: what is asked of it while another package is imported is a type, afterwards the package's own."""
+    """Stands for a package: its attributes are types while another package is imported, and afterwards those of the package."""
 
     def __init__(self, name: str) -> None:
         super().__init__(name)
