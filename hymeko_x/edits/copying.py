@@ -7,7 +7,6 @@ import posixpath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import formats, pipeline
@@ -17,7 +16,7 @@ from hymeko_x.assets.shelf import Shelf
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Refusal, Report
-from hymeko_x.edits.text import text_with_edits
+from hymeko_x.edits.text import PackagesBehind, text_with_edits
 from hymeko_x.residue.align import align
 from hymeko_x.source import Package, PackageFiles
 
@@ -78,12 +77,11 @@ def _below(path: str, home: str) -> str | None:
     return None if relative.startswith("../") or "[" in relative else relative
 
 
-class Elsewhere(Struct, frozen=True):
+class Elsewhere(PackagesBehind, frozen=True):
     """The files around an output that is not on the disk yet, with the packages of its source; a :class:`hymeko_x.source.Files`."""
 
     package: PackageFiles
     around: DiskFiles
-    behind: Files
 
     def find(self, uri: str) -> str | None:
         """The path of a file: of the package, from the output's folder, or of what means the same from everywhere."""
@@ -96,22 +94,10 @@ class Elsewhere(Struct, frozen=True):
         """The content of a path that :meth:`find` returned. Raises: OSError."""
         return self.package.read(path)
 
-    def find_package(self, name: str, beside: str = "") -> str | None:
-        """The folder of a package, or None."""
-        return self.behind.find_package(name, beside) if isinstance(self.behind, DiskFiles) else None
-
-    def guess_package(self, name: str, beside: str = "") -> str | None:
-        """A folder that may be the package under another name, or None."""
-        return self.behind.guess_package(name, beside) if isinstance(self.behind, DiskFiles) else None
-
-    def match(self, pattern: str) -> list[str]:
-        """The files that a path with wildcards names."""
-        return self.behind.match(pattern) if isinstance(self.behind, DiskFiles) else []
-
 
 def _is_same_robot(package: Package, source: Source, format: Format, mechanism: Mechanism, folder: str) -> bool:
     """Whether the text is the robot where it is going to be."""
-    files = Elsewhere(PackageFiles(package, source.files), DiskFiles(Path(folder)), source.files)
+    files = Elsewhere(source.files, PackageFiles(package, source.files), DiskFiles(Path(folder)))
     try:
         name = os.path.join(folder, os.path.basename(source.name))
         found = pipeline.read_anyway(replace(source, name=name, data=package.main, files=files, kept=None), format, Report())

@@ -38,19 +38,10 @@ class Texts(NamedTuple):
     beside: Mapping[str, bytes]
 
 
-class EditedFiles(Struct, frozen=True):
-    """Files of which some have another content; a :class:`hymeko_x.source.Files` that knows packages if those behind it do."""
+class PackagesBehind(Struct, frozen=True):
+    """Finds packages among the files behind it, if those know packages."""
 
-    changed: Mapping[str, bytes]
     behind: Files
-
-    def find(self, uri: str) -> str | None:
-        """The path of a file."""
-        return self.behind.find(uri)
-
-    def read(self, path: str) -> bytes:
-        """The content of a path that :meth:`find` returned. Raises: OSError."""
-        return self.changed[path] if path in self.changed else self.behind.read(path)
 
     def find_package(self, name: str, beside: str = "") -> str | None:
         """The folder of a package, or None."""
@@ -63,6 +54,20 @@ class EditedFiles(Struct, frozen=True):
     def match(self, pattern: str) -> list[str]:
         """The files that a path with wildcards names."""
         return self.behind.match(pattern) if isinstance(self.behind, DiskFiles) else []
+
+
+class EditedFiles(PackagesBehind, frozen=True):
+    """Files of which some have another content; a :class:`hymeko_x.source.Files` that knows packages if those behind it do."""
+
+    changed: Mapping[str, bytes]
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file."""
+        return self.behind.find(uri)
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        return self.changed[path] if path in self.changed else self.behind.read(path)
 
 
 def text_with_edits(source: Source, format: Format, before: Mechanism, after: Mechanism, report: Report) -> Texts:
@@ -120,7 +125,7 @@ class _Attempt:
     def wrong(self, files: Mapping[str, bytes]) -> frozenset[Id] | None:
         """The elements that are not what they should be; None when all are, and ``_UNREADABLE`` where the text cannot be read."""
         main = files.get(self.source.name, self.source.data)
-        edited = replace(self.source, data=main, files=EditedFiles(files, self.source.files))
+        edited = replace(self.source, data=main, files=EditedFiles(self.source.files, files))
         try:
             found = pipeline.reader(self.format)(edited, Report()).mechanism
         except Refusal:
