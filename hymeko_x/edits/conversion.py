@@ -13,10 +13,10 @@ from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
-from hymeko_x.residue.align import other_names
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED
 from hymeko_x.residue.merge import restore
+from hymeko_x.residue.pairing import other_names
 from hymeko_x.residue.realign import with_new_names, with_old_names
 from hymeko_x.source import PackageFiles
 

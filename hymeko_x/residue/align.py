@@ -9,15 +9,16 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from hymeko_x.ir.mechanism import WORLD, Id
-from hymeko_x.ir.parts import DofKind, Joint, Role, Shape
+from hymeko_x.ir.parts import DofKind, Role
 from hymeko_x.ir.values import IDENTITY, Pose, add, compose, inverse, quat_about, rotate, rotation_angle, scaled
 from hymeko_x.residue import Alignment, Fold, Join
+from hymeko_x.residue.pairing import content_of, other_names
 from hymeko_x.residue.realign import are_twins, fold_chains, join_twins, move_frames, realign
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from hymeko_x.ir.mechanism import JointView, Mechanism, RobotEdge, RobotGraph
+    from hymeko_x.ir.mechanism import JointView, Mechanism
     from hymeko_x.ir.parts import Dof
 
 _SAME_PLACE = 1e-5
@@ -37,117 +38,6 @@ def align(image: Mechanism, source: Mechanism) -> tuple[Alignment, Mechanism]:
     joined = join_twins(folded, joins)
     frames = {} if _agree_in_poses(joined, source) else dict(_frames(joined, source))
     return Alignment(tuple(names.items()), folds, joins, tuple(frames.items())), move_frames(joined, frames)
-
-
-# ---- names -----------------------------------------------------------------------------------------------------------------
-
-
-def other_names(image: Mechanism, source: Mechanism) -> dict[Id, Id]:
-    """The source's id of every element of the image that goes by another one."""
-    pairs = _Pairs(image.graph, source.graph)
-    pairs.match_world()
-    pairs.match_ends()  # bodies by the joints that both have, materials and meshes by the shapes
-    for _ in range(2):  # then edges by what they connect, and once more what only those lead to
-        pairs.match_edges()
-        pairs.match_ends()
-    return pairs.names
-
-
-class _Pairs:
-    """Elements of the image without a namesake, and elements of the source without one, being matched."""
-
-    def __init__(self, image: RobotGraph, source: RobotGraph) -> None:
-        self.image, self.source = image, source
-        self.names: dict[Id, Id] = {}
-        mine, theirs = {*image.vertices, *image.edges}, {*source.vertices, *source.edges}
-        self.strange = mine - theirs
-        self.missing = theirs - mine
-
-    def pair(self, old: Id, new: Id) -> None:
-        """They are the same element from now on."""
-        is_world = new == WORLD and old.kind == "body" and WORLD not in self.image.vertices  # a link that stands for the world
-        if old in self.strange and (is_world or (new in self.missing and old.kind == new.kind)):
-            self.names[old] = new
-            self.strange.discard(old)
-            self.missing.discard(new)
-
-    def match_world(self) -> None:
-        """The link that a format without a world calls so, where the source knows no body of that name."""
-        if WORLD in self.source.vertices:
-            self.pair(Id("body", WORLD.name), WORLD)
-
-    def match_ends(self) -> None:
-        """What the arcs of an edge lead to, for the edges that both have."""
-        if not self.strange or not self.missing:
-            return
-        for key, edge in self.image.edges.items():
-            strange = [arc for arc in edge.arcs if arc.target in self.strange]
-            other = self.source.edges.get(self.names.get(key, key)) if strange else None
-            if other is None:
-                continue
-            ends = {(arc.sign, arc.role): arc.target for arc in other.arcs}
-            for arc in strange:
-                target = ends.get((arc.sign, arc.role))
-                if target is not None:
-                    self.pair(arc.target, target)
-
-    def match_edges(self) -> None:
-        """Edges of the same kind between the same elements: equal ones first, then in their order."""
-        if not self.strange or not self.missing:
-            return
-        waiting: dict[object, list[Id]] = defaultdict(list)
-        for key, edge in self.source.edges.items():
-            if key in self.missing:
-                waiting[self._ends(key, edge, {})].append(key)
-        if not waiting:
-            return
-        candidates: dict[object, list[Id]] = defaultdict(list)
-        for key, edge in self.image.edges.items():
-            if key in self.strange:
-                candidates[self._ends(key, edge, self.names)].append(key)
-        for ends, keys in candidates.items():
-            if ends in waiting:
-                self._match(keys, waiting[ends])
-
-    def _match(self, old: list[Id], new: list[Id]) -> None:
-        if len(old) == len(new) == 1 and _sort(self.source.edges[new[0]]) == _sort(self.image.edges[old[0]]):
-            self.pair(old[0], new[0])
-            return
-        alike: dict[object, list[Id]] = defaultdict(list)
-        for key in reversed(new):
-            alike[_content(self.source.edges[key])].append(key)
-        for key in old:
-            same = alike[_content(self.image.edges[key])]
-            if same:
-                self.pair(key, same.pop())
-        left, rest = [key for key in old if key in self.strange], [key for key in new if key in self.missing]
-        kinds: dict[object, list[Id]] = defaultdict(list)
-        for key in reversed(rest):
-            kinds[_sort(self.source.edges[key])].append(key)
-        for key in left:
-            same = kinds[_sort(self.image.edges[key])]
-            if same:
-                self.pair(key, same.pop())
-
-    def _ends(self, key: Id, edge: RobotEdge, names: dict[Id, Id]) -> object:
-        """What an edge is and what it is on; assets do not count, since they are renamed most often."""
-        targets = (names.get(arc.target, arc.target) for arc in edge.arcs if arc.target.kind not in ("mesh", "material", "texture"))
-        return key.kind, tuple(targets)
-
-
-def _content(edge: RobotEdge) -> object:
-    """The content of an edge, without names."""
-    weights = tuple(arc.weight for arc in edge.arcs if arc.target.kind not in ("mesh", "material"))
-    data = edge.data
-    return (data.geometry, weights) if isinstance(data, Shape) else (data, weights)
-
-
-def _sort(edge: RobotEdge) -> object:
-    """What must be equal for two edges to be the same one, changed."""
-    data = edge.data
-    if isinstance(data, Shape):
-        return type(data.geometry), data.role is Role.COLLISION
-    return tuple(dof.kind for dof in data.dofs) if isinstance(data, Joint) else ()
 
 
 # ---- chains ----------------------------------------------------------------------------------------------------------------
@@ -188,10 +78,10 @@ def _joins(image: Mechanism, source: Mechanism) -> Iterable[Join]:
         free: dict[object, list[Id]] = defaultdict(list)
         for view in reversed(image.shapes[body]):
             if view.shape.role is Role.COLLISION and view.id not in source.graph.edges:
-                free[_content(image.graph.edges[view.id])].append(view.id)
+                free[content_of(image.graph.edges[view.id])].append(view.id)
         for key in both:
             seen = image.graph.edges.get(key)
-            twins = free[_content(seen)] if seen is not None else []
+            twins = free[content_of(seen)] if seen is not None else []
             if seen is not None and twins and are_twins(seen, image.graph.edges[twins[-1]]):
                 yield Join(key, twins.pop())
 

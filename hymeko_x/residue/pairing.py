@@ -1,0 +1,188 @@
+"""Pairing: the elements of the image that are elements of the source under another name.
+
+Elements with names of their own are paired by these. Names that readers generate (``calf/visual#3``) say only where an element stands, and
+a format that has its shapes in another order gives them to others: shapes without names are paired by what they are.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from hymeko_x.ir.fields import layout_of
+from hymeko_x.ir.mechanism import WORLD, Id, file_stem
+from hymeko_x.ir.names import Names
+from hymeko_x.ir.parts import Joint, Mesh, Role, Shape
+from hymeko_x.ir.values import IDENTITY, Pose
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge, RobotGraph
+
+_DIGITS = 7
+"""To how many decimals the numbers of two shapes agree that are the same one: formats round angles and single-precision numbers."""
+
+
+def other_names(image: Mechanism, source: Mechanism) -> dict[Id, Id]:
+    """The source's id of every element of the image that goes by another one."""
+    pairs = _Pairs(image.graph, source.graph)
+    pairs.match_world()
+    pairs.match_ends()  # bodies by the joints that both have, materials and meshes by the shapes
+    for _ in range(2):  # then edges by what they connect, and once more what only those lead to
+        pairs.match_edges()
+        pairs.match_ends()
+    return pairs.names | dict(pairs.ousted())
+
+
+class _Pairs:
+    """Elements of the image without a namesake, and elements of the source without one, being matched.
+
+    Shapes without names whose namesakes are other shapes count as elements without one.
+    """
+
+    def __init__(self, image: RobotGraph, source: RobotGraph) -> None:
+        self.image, self.source = image, source
+        self.names: dict[Id, Id] = {}
+        mine, theirs = {*image.vertices, *image.edges}, {*source.vertices, *source.edges}
+        self.doubtful = set(_doubtful(image, source))
+        self.strange = (mine - theirs) | self.doubtful
+        self.missing = (theirs - mine) | self.doubtful
+
+    def pair(self, old: Id, new: Id) -> None:
+        """They are the same element from now on."""
+        is_world = new == WORLD and old.kind == "body" and WORLD not in self.image.vertices  # a link that stands for the world
+        if old in self.strange and (is_world or (new in self.missing and old.kind == new.kind)):
+            if old != new:
+                self.names[old] = new
+            self.strange.discard(old)
+            self.missing.discard(new)
+
+    def ousted(self) -> Iterator[tuple[Id, Id]]:
+        """A free id for each element of the image that has no partner, and whose own id is now that of another element."""
+        left = self.doubtful & self.strange - self.missing
+        if left:
+            free = Names((*self.image.vertices, *self.image.edges, *self.source.vertices, *self.source.edges))
+            yield from ((key, free.take(*key)) for key in self.image.edges if key in left)
+
+    def match_world(self) -> None:
+        """The link that a format without a world calls so, where the source knows no body of that name."""
+        if WORLD in self.source.vertices:
+            self.pair(Id("body", WORLD.name), WORLD)
+
+    def match_ends(self) -> None:
+        """What the arcs of an edge lead to, for the edges that both have."""
+        if not self.strange or not self.missing:
+            return
+        unsure = self.doubtful & self.strange
+        for key, edge in self.image.edges.items():
+            strange = [arc for arc in edge.arcs if arc.target in self.strange and arc.target not in unsure] if key not in unsure else []
+            other = self.source.edges.get(self.names.get(key, key)) if strange else None
+            if other is None:
+                continue
+            ends = {(arc.sign, arc.role): arc.target for arc in other.arcs}
+            for arc in strange:
+                target = ends.get((arc.sign, arc.role))
+                if target is not None:
+                    self.pair(arc.target, target)
+
+    def match_edges(self) -> None:
+        """Edges of the same kind between the same elements."""
+        if not self.strange or not self.missing:
+            return
+        waiting: dict[object, list[Id]] = defaultdict(list)
+        for key, edge in self.source.edges.items():
+            if key in self.missing:
+                waiting[self._ends(key, edge, {})].append(key)
+        if not waiting:
+            return
+        candidates: dict[object, list[Id]] = defaultdict(list)
+        for key, edge in self.image.edges.items():
+            if key in self.strange:
+                candidates[self._ends(key, edge, self.names)].append(key)
+        for ends, keys in candidates.items():
+            if ends in waiting:
+                self._match(keys, waiting[ends])
+
+    def _match(self, old: list[Id], new: list[Id]) -> None:
+        """Equal ones first, then namesakes of a sort, then in their order, then namesakes of any sort."""
+        if len(old) == len(new) == 1 and _sort(self.source.edges[new[0]]) == _sort(self.image.edges[old[0]]):
+            self.pair(old[0], new[0])
+            return
+        own = self.names.get
+        self._match_by(old, new, lambda edge: _essence(self.image, edge, own), lambda edge: _essence(self.source, edge))
+        for key in old:
+            if key in self.missing and _sort(self.source.edges[key]) == _sort(self.image.edges[key]):
+                self.pair(key, key)
+        self._match_by(old, new, content_of, content_of)
+        self._match_by(old, new, _sort, _sort)
+        for key in old:
+            self.pair(key, key)
+
+    def _match_by(self, old: list[Id], new: list[Id], ours: Callable[[RobotEdge], object], theirs: Callable[[RobotEdge], object]) -> None:
+        """Pair the edges that have the same key, in their order."""
+        alike: dict[object, list[Id]] = defaultdict(list)
+        for key in reversed(new):
+            if key in self.missing:
+                alike[theirs(self.source.edges[key])].append(key)
+        for key in old:
+            if key in self.strange and (same := alike.get(ours(self.image.edges[key]))):
+                self.pair(key, same.pop())
+
+    def _ends(self, key: Id, edge: RobotEdge, names: dict[Id, Id]) -> object:
+        """What an edge is and what it is on; assets do not count, since they are renamed most often."""
+        targets = (names.get(arc.target, arc.target) for arc in edge.arcs if arc.target.kind not in ("mesh", "material", "texture"))
+        return key.kind, tuple(targets)
+
+
+def _doubtful(image: RobotGraph, source: RobotGraph) -> Iterator[Id]:
+    """The shapes without names of their own that are another shape in the source."""
+    for key, edge in image.edges.items():
+        data, other = edge.data, source.edges.get(key)
+        if other is None or not isinstance(data, Shape) or not isinstance(other.data, Shape) or data.name or other.data.name:
+            continue
+        is_same = data.geometry == other.data.geometry and edge.arcs == other.arcs
+        if not is_same and _essence(image, edge) != _essence(source, other):
+            yield key
+
+
+def content_of(edge: RobotEdge) -> object:
+    """The content of an edge, without names."""
+    weights = tuple(arc.weight for arc in edge.arcs if arc.target.kind not in ("mesh", "material"))
+    data = edge.data
+    return (data.geometry, weights) if isinstance(data, Shape) else (data, weights)
+
+
+def _essence(graph: RobotGraph, edge: RobotEdge, own: Callable[[Id, Id], Id] = lambda key, _: key) -> object:
+    """The content of an edge; of a shape also its sort, mesh and material (``own`` gives their ids), with rounded numbers."""
+    if not isinstance(edge.data, Shape):
+        return content_of(edge)
+    assets = tuple([_asset(graph, arc.target, own) for arc in edge.arcs if arc.target.kind in ("mesh", "material")])
+    placed = [_rounded(arc.weight or IDENTITY) for arc in edge.arcs if arc.sign > 0]
+    return _sort(edge), _rounded(edge.data.geometry), tuple(placed), assets
+
+
+def _asset(graph: RobotGraph, key: Id, own: Callable[[Id, Id], Id]) -> object:
+    """A mesh is the one of its file, whatever its id."""
+    part = graph.vertices.get(key)
+    return file_stem(part.uri) if isinstance(part, Mesh) and part.uri else own(key, key)
+
+
+def _rounded(value: object) -> object:
+    """A value whose numbers are rounded; a rotation is one of two quaternions."""
+    if isinstance(value, float):
+        return round(value, _DIGITS) + 0.0
+    if isinstance(value, Pose):
+        return _rounded(value.xyz), _rounded(value.quat if value.quat[0] >= 0.0 else tuple([-number for number in value.quat]))
+    if isinstance(value, tuple):
+        return tuple(map(_rounded, value))
+    layout = layout_of(type(value))
+    return value if layout is None else (type(value), _rounded(layout.compared(value)))
+
+
+def _sort(edge: RobotEdge) -> object:
+    """What must be equal for two edges to be the same one, changed."""
+    data = edge.data
+    if isinstance(data, Shape):
+        return type(data.geometry), data.role is Role.COLLISION
+    return tuple(dof.kind for dof in data.dofs) if isinstance(data, Joint) else ()

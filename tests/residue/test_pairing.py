@@ -1,0 +1,70 @@
+"""Which shape of the image is which of the source, where neither has a name of its own."""
+
+from __future__ import annotations
+
+from hymeko_x.ir.graph import Hypergraph
+from hymeko_x.ir.mechanism import Id, Mechanism, shape_edge
+from hymeko_x.ir.parts import Box, Capsule, Cylinder, Mesh, MeshShape, Role, Shape, Sphere
+from hymeko_x.ir.values import Pose
+from hymeko_x.residue.align import align
+from hymeko_x.residue.pairing import other_names
+from tests.robots import body, chain
+
+HERE, ABOVE = Pose((0.0, 0.0, 0.1)), Pose((0.0, 0.0, 0.2))
+
+
+def robot(*shapes: tuple[str, Shape, Pose, str | None]) -> Mechanism:
+    """A body with shapes: id, content, pose, name of the mesh."""
+    bare = chain()
+    meshes = {Id("mesh", mesh): Mesh(f"{mesh}.stl") for _, _, _, mesh in shapes if mesh}
+    edges = {
+        Id("shape", name): shape_edge(shape, body("b0"), pose, Id("mesh", mesh) if mesh else None) for name, shape, pose, mesh in shapes
+    }
+    return bare.with_graph(Hypergraph({**bare.graph.vertices, **meshes}, {**bare.graph.edges, **edges}))
+
+
+def visual(geometry: object = MeshShape()) -> Shape:
+    return Shape(geometry, Role.VISUAL)  # type: ignore[arg-type]
+
+
+def ids(names: dict[str, str]) -> dict[Id, Id]:
+    return {Id("shape", old): Id("shape", new) for old, new in names.items()}
+
+
+def test_a_mesh_behind_a_cylinder_is_no_cylinder() -> None:
+    rod = Cylinder(0.01, 0.1)
+    source = robot(("b0/shape", Shape(rod, Role.BOTH), HERE, None), ("b0/visual", visual(), ABOVE, "foot"))
+    image = robot(
+        ("b0/visual", visual(rod), HERE, None),
+        ("b0/visual#2", visual(), ABOVE, "foot"),
+        ("b0/collision", Shape(rod, Role.COLLISION), HERE, None),
+    )
+    alignment, aligned = align(image, source)
+    assert dict(alignment.names) == ids({"b0/visual": "b0/shape", "b0/visual#2": "b0/visual"})
+    assert aligned.graph == source.graph
+
+
+def test_meshes_of_one_place_are_paired_by_their_files() -> None:
+    source = robot(("b0/visual", visual(), HERE, "left"), ("b0/visual#2", visual(), HERE, "right"))
+    image = robot(("b0/visual", visual(), HERE, "right"), ("b0/visual#2", visual(), HERE, "left"))
+    assert other_names(image, source) == ids({"b0/visual": "b0/visual#2", "b0/visual#2": "b0/visual"})
+    assert align(image, source)[1].graph == source.graph
+
+
+def test_what_only_moved_or_grew_keeps_its_partner() -> None:
+    source = robot(("b0/visual", visual(Sphere(1.0)), HERE, None), ("b0/visual#2", visual(Sphere(2.0)), HERE, None))
+    image = robot(("b0/visual", visual(Sphere(1.5)), HERE, None), ("b0/visual#2", visual(Sphere(2.0)), ABOVE, None))
+    assert other_names(image, source) == {}
+
+
+def test_a_shape_of_another_sort_is_the_one_in_its_place() -> None:
+    source = robot(("b0/visual", visual(Capsule(1.0, 2.0)), HERE, None))
+    image = robot(("b0/visual", visual(Cylinder(1.0, 2.0)), HERE, None))
+    assert other_names(image, source) == {}
+
+
+def test_a_shape_whose_name_another_one_has_gets_a_free_one() -> None:
+    source = robot(("b0/visual", visual(Box((1.0, 1.0, 1.0))), HERE, None))
+    image = robot(("b0/visual", visual(Sphere(1.0)), HERE, None), ("b0/visual#2", visual(Box((1.0, 1.0, 1.0))), HERE, None))
+    assert other_names(image, source) == ids({"b0/visual#2": "b0/visual", "b0/visual": "b0/visual#3"})
+    assert align(image, source)[1].graph.edges.keys() == {Id("shape", "b0/visual"), Id("shape", "b0/visual#3")}
