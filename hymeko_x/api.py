@@ -68,6 +68,8 @@ class Writing(TypedDict, total=False):
     """USD: whether each body stands inside of its parent."""
     split: bool
     """xacro: whether the macros go into a file of their own."""
+    target: str | None
+    """The program that the output is for, a row of `hymeko_x.targets`. What it expects belongs to the robot from then on."""
     keep: Literal["beside", "inside"] | None
     """Where to keep what the format cannot represent, so that it comes back: in a file beside the output, or inside of it."""
     lenient: bool
@@ -181,7 +183,7 @@ def dumps(
 
 def convert(
     source: Place,
-    target: Place,
+    output: Place,
     *,
     from_format: str | None = None,
     to_format: str | None = None,
@@ -192,6 +194,7 @@ def convert(
     nested: bool | None = None,
     split: bool = False,
     keep: Literal["beside", "inside"] | None = None,
+    target: str | None = None,
     lenient: bool = False,
     **reading: Unpack[Reading],
 ) -> pipeline.Result:
@@ -204,11 +207,11 @@ def convert(
     report = Report()
     given = _source(source, **reading)
     read_as = _input_format(given, from_format)
-    format = formats.of_output(os.fspath(target), to_format)
+    format = formats.of_output(os.fspath(output), to_format)
     robot, passed = pipeline.read_for(format, given, read_as, report, lenient=lenient)
-    options = Options(base, actuators, layout, nested, split, keep, lenient, Path(target).stem)
+    options = Options(base, actuators, layout, nested, split, keep, lenient, Path(output).stem, target=target)
     own = unchanged(given, read_as, format)
-    delivery = Delivery(robot, format, options, given.files, _place(target, assets), os.fspath(target), own, passed)
+    delivery = Delivery(robot, format, options, given.files, _place(output, assets), os.fspath(output), own, passed)
     result = delivery.convert(report)
     delivery.put(result)
     return result
@@ -224,11 +227,13 @@ def update(
     edited_format: str | None = None,
     base: Literal["fixed", "free"] | None = None,
     actuators: Literal["none", "motor", "position", "velocity"] | None = None,
+    target: str | None = None,
     **reading: Unpack[Reading],
 ) -> Updated:
     """Bring the edits in ``edited``, which was once converted from ``original``, into the text of that, or into ``output``.
 
-    ``base`` and ``actuators`` are those of the conversion, found out where they are not given. With ``dry_run`` nothing is written.
+    ``base``, ``actuators`` and ``target`` are those of the conversion, found out where they are not given. With ``dry_run`` nothing is
+    written.
     The result has the edits, the differences of the texts, and the diagnostics.
 
     Raises: Refusal when a file cannot be read or written; then nothing was changed.
@@ -237,7 +242,7 @@ def update(
 
     given, changed = _source(original, **reading), _source(edited, **reading)
     report = Report()
-    options = Options(base, actuators, beside=Path(edited).stem)
+    options = Options(base, actuators, beside=Path(edited).stem, target=target)
     found = updating.update(given, _input_format(given, from_format), changed, _input_format(changed, edited_format), options, report)
     if not dry_run:
         disk.write_files(found.files(given.name, None if output is None else os.fspath(output)))

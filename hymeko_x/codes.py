@@ -48,6 +48,11 @@ NOT_WELL_FORMED = Code(
     "the XML is not well-formed",
     "An end tag is missing, the file is cut off, or a tag is damaged. What could be read was read, but nothing tells how much is missing.",
 )
+UNKNOWN_TARGET = Code(
+    "HX012",
+    "the target is not known, or is for another format",
+    "--for names the program that takes the output. `hymeko-x formats` lists the targets of each format.",
+)
 
 # ---- HX02x: numbers and names ----------------------------------------------------------------------------------------
 BAD_NUMBER = Code(
@@ -223,6 +228,11 @@ OPTIONS_FOUND = Code(
     "HX109",
     "the options of an earlier conversion were found out",
     "The edited file differs least from what its original gives with these options. Give them to update if others were used.",
+)
+FOR_TARGET = Code(
+    "HX114",
+    "something was added or changed for the program that takes the output",
+    "--for names this program, or an option asks for what it needs. docs/targets.md lists what each program expects, and why.",
 )
 NOT_SAID = Code("HX104", "the target has no word for this", "The target cannot say this, and nothing comes near.")
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
 from msgspec import Struct
 from msgspec.structs import replace
 
-from hymeko_x import codes, formats
+from hymeko_x import codes, formats, targets
 from hymeko_x.assets.pack import pack, with_stand_ins
 from hymeko_x.assets.shelf import read_file, safe_name
 from hymeko_x.collector import uncollected
@@ -25,7 +25,7 @@ from hymeko_x.residue.delta import residue_between
 from hymeko_x.residue.kept import restored
 from hymeko_x.residue.realign import alignment_differences
 from hymeko_x.residue.text import print_residue
-from hymeko_x.rewrite import Options, choose, legalize
+from hymeko_x.rewrite import Options, actuate, choose, legalize
 from hymeko_x.source import Kept, PackageFiles, PlacedFiles, Source
 
 if TYPE_CHECKING:
@@ -154,7 +154,8 @@ def write(mechanism: Mechanism, format: Format, options: Options, files: Files, 
 
     Raises: Refusal when the format cannot be written; Stopped when that made errors, unless the options are lenient.
     """
-    return _printed(choose(mechanism, options, report), format, options, files, report, place).package
+    mechanism, options = _chosen(mechanism, format, options, files, report)
+    return _printed(mechanism, format, options, files, report, place).package
 
 
 @uncollected()
@@ -176,7 +177,7 @@ def convert(
 
     Raises: as :func:`write`, and HX901 when our own reader refuses the output.
     """
-    mechanism = choose(mechanism, options, report)
+    mechanism, options = _chosen(mechanism, format, options, files, report)
     package, printed, is_moved = _printed(mechanism, format, options, files, report, place)
     if format.frontend is None or not measured:
         return Result(mechanism, package, report, None)
@@ -185,6 +186,13 @@ def convert(
     is_kept = options.keep is not None and passed is None and not format.is_exact
     losses, residue = _compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_kept=is_kept)
     return Result(mechanism, with_kept(package, residue if passed is None else passed, options, report), report, losses)
+
+
+def _chosen(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> tuple[Mechanism, Options]:
+    """The robot as the options and the target among them ask for it, and the options with that target's defaults."""
+    options, target = targets.chosen(options, format)
+    mechanism = actuate(choose(mechanism, options, report), format.name, options, report)
+    return targets.aimed(mechanism, target, PlacedFiles(mechanism.places, files), report), options
 
 
 def with_kept(package: Package, text: str, options: Options, report: Report) -> Package:
@@ -232,7 +240,8 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
     package = writer(format)(placed, options, report)
     if package.enclose is not None and (new or copies):
         return _Printed(package.enclose({**new, **dict(_contents(copies, files))}), placed, bool(options.within))
-    package = replace(package, files={**package.files, **new}, copies={**package.copies, **copies})
+    beside = targets.files_beside(placed, options) if options.beside else {}
+    package = replace(package, files={**package.files, **new, **beside}, copies={**package.copies, **copies})
     return _Printed(package, placed, bool(options.within))
 
 

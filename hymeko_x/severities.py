@@ -25,6 +25,7 @@ _REFUSED = "the program that the format belongs to refuses it as well"
 ERRORS: Mapping[Code, str] = {
     codes.CANNOT_READ: f"{_NOTHING_READ}; a layer of a stage that cannot be read is a missing part of the robot",
     codes.CANNOT_WRITE: "what was asked for is not there",
+    codes.UNKNOWN_TARGET: "nothing tells what the output is for",
     codes.UNKNOWN_FORMAT: "reading a text by the rules of another format gives a wrong robot or none",
     codes.NOT_XML: _NOTHING_READ,
     codes.WRONG_ROOT: _NOTHING_READ,
@@ -142,6 +143,7 @@ NOTES: Mapping[Code, str] = {
     codes.EDIT_REWRITTEN: "the edit is there, in an element that was printed anew",
     codes.OPTIONS_FOUND: "they explain the edited file best",
     codes.REWRITTEN: "the output is the same robot in other words",
+    codes.FOR_TARGET: "it was asked for, and belongs to the robot from then on",
     codes.RENAMED: "references follow, and the name was no name in the target",
     codes.INERTIA_REPAIRED: "the change is below what matters, or the body never moves by itself",
     codes.NOT_SAID: "only appearance or a hint for other programs is concerned",

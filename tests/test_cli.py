@@ -76,6 +76,7 @@ def test_formats_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
         "read": True,
         "write": True,
         "verify": True,
+        "targets": [],
     }
 
 

@@ -23,6 +23,7 @@ LAYERS = (
     ("rewrite", "compare", "language", "factor", "extras"),
     ("residue", "assets", "reporting"),
     ("frontends", "backends"),
+    ("targets",),
     ("pipeline", "disk", "verify", "validation", "corpus"),
     ("delivery", "edits", "robot", "dynamics"),
     ("api",),
@@ -154,8 +155,8 @@ def test_reading_a_robot_loads_no_heavy_library(words: list[str], tmp_path: Path
     assert run.stdout.splitlines()[-1] == "0 set()"
 
 
-ROOMS = re.compile(r"(formats|frontends|backends|verify/readers)/(?!__init__\.py)|testing/|formats/__init__")
-"""The rooms of formats, the table, and the strategies for tests, which make documents of every format."""
+ROOMS = re.compile(r"(formats|frontends|backends|verify/readers)/(?!__init__\.py)|testing/|formats/__init__|targets/")
+"""The rooms of formats, the table, the targets, each of which is for programs that read one format, and the strategies for tests."""
 
 STILL_NAMED = frozenset(
     {

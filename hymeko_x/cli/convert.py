@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from hymeko_x import codes, disk, formats, pipeline
+from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
@@ -69,9 +69,9 @@ def export_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_export(chosen: argparse.Namespace) -> int:
     """Read HyMeKo and write the wanted format."""
-    if chosen.to_format is None and chosen.output == "-":
+    if not chosen.to_format and not chosen.target and chosen.output == "-":
         raise UsageError("say which format to write: --to FORMAT, or -o FILE with its suffix")
-    format = formats.of_output(chosen.output, chosen.to_format)
+    format = _output_format(chosen)
     report = Report()
     return deliver(read_input(chosen.input, chosen, report, format), Output(format, chosen.output), chosen, report)
 
@@ -91,18 +91,28 @@ def convert_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_convert(chosen: argparse.Namespace) -> int:
     """Convert one file."""
-    if chosen.output == "-" and not chosen.to_format:
+    if chosen.output == "-" and not chosen.to_format and not chosen.target:
         raise UsageError("say which format to write to standard output: --to FORMAT")
     if chosen.output == "-" and chosen.json:
         raise UsageError("--json prints to standard output, which already carries the result; use --report FILE.json")
     if chosen.verify and "-" in (chosen.input, chosen.output):
         raise UsageError("--verify reads the files again with other engines, so that neither can be a pipe")
-    format = formats.of_output(chosen.output, chosen.to_format)
+    format = _output_format(chosen)
     report = Report()
     given = read_input(chosen.input, chosen, report, format)
     own = unchanged(given.source, given.format, format)
     code = deliver(given, Output(format, chosen.output), chosen, report, own=own)
     return _verified(chosen.input, chosen.output, chosen) if chosen.verify and code == exits.DONE else code
+
+
+def _output_format(chosen: argparse.Namespace) -> Format:
+    """The format to write: the named one, that of the suffix, and without either the usual one of the target.
+
+    Raises: Refusal HX003, HX012.
+    """
+    usual = targets.by_name(chosen.target).formats[0] if chosen.target else None
+    has_suffix = formats.of_file(chosen.output) is not None
+    return formats.of_output(chosen.output, chosen.to_format or (None if has_suffix else usual))
 
 
 def _verified(before: str, after: str, chosen: argparse.Namespace) -> int:
@@ -120,6 +130,8 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of every verb that writes a robot."""
     parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the source leaves open")
     parser.add_argument("--actuators", choices=("none", "motor", "position", "velocity"), help="the actuators to write")
+    for_help = "the program that the output is for (`hymeko-x formats` lists them): what it expects is added, and reported"
+    parser.add_argument("--for", dest="target", metavar="TARGET", help=for_help)
     parser.add_argument("--assets", choices=("copy", "reference"), help="put meshes beside the output, or refer to them where they are")
     layouts = "USD: one file, or an interface with files for geometry, materials and physics behind it"
     parser.add_argument("--layout", choices=("single", "layered"), help=layouts)
@@ -145,7 +157,7 @@ def deliver(
     if chosen.keep == "beside" and not path:
         raise UsageError("standard output has nothing beside it: use --keep=inside, or -o FILE")
     layout = chosen.layout, chosen.nested, chosen.split
-    options = Options(chosen.base, chosen.actuators, *layout, chosen.keep, chosen.lenient, Path(path).stem)
+    options = Options(chosen.base, chosen.actuators, *layout, chosen.keep, chosen.lenient, Path(path).stem, target=chosen.target)
     place = _place(output, chosen.assets)
     delivery = Delivery(given.mechanism, output.format, options, given.source.files, place, path, own, given.passed)
     result = delivery.convert(report, measured=measured)

@@ -8,7 +8,7 @@ import textwrap
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from hymeko_x import formats
+from hymeko_x import formats, targets
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
@@ -163,7 +163,7 @@ def formats_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run_formats(chosen: argparse.Namespace) -> int:
-    """Print one line per format."""
+    """Print one line per format, and one per target."""
     rows = [
         {
             "name": row.name,
@@ -172,6 +172,7 @@ def run_formats(chosen: argparse.Namespace) -> int:
             "read": row.frontend is not None,
             "write": row.backend is not None,
             "verify": row.reference is not None,
+            "targets": [target.name for target in targets.of_format(row)],
         }
         for row in formats.FORMATS
     ]
@@ -182,6 +183,9 @@ def run_formats(chosen: argparse.Namespace) -> int:
     for row in formats.FORMATS:
         can_read, can_write, can_verify = ("yes" if module else "no" for module in (row.frontend, row.backend, row.reference))
         print(f"{row.name:<8} {can_read:<5} {can_write:<6} {can_verify:<7} {' '.join(row.suffixes):<18} {row.title}")
+    print(f"\n{'target':<10} {'formats':<14} title")
+    for target in targets.TARGETS:
+        print(f"{target.name:<10} {' '.join(target.formats):<14} {target.title}")
     return exits.DONE
 
 

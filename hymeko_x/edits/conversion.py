@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec.structs import replace
 
-from hymeko_x import codes, formats, pipeline
+from hymeko_x import codes, formats, pipeline, targets
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Report
@@ -84,7 +84,7 @@ class Conversion:
     def _found_out(self, first: Guess) -> Guess:
         """The guess with the fewest differences, one option after the other; only those that may explain some are tried."""
         best = first
-        for others in (self._other_files, self._other_bases, self._other_actuators):
+        for others in (self._other_files, self._other_bases, self._other_actuators, self._other_targets):
             for options, place in others(best):
                 guess = self._guess(options, place)
                 if guess.distance < best.distance:
@@ -114,9 +114,20 @@ class Conversion:
         if guess.options.actuators is None and mine != theirs:
             yield from ((replace(guess.options, actuators=kind), guess.place) for kind in _ACTUATORS)
 
+    def _other_targets(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
+        """Where the two differ in anything."""
+        if guess.options.target is None and guess.distance:
+            for target in targets.of_format(self.format):
+                yield replace(guess.options, target=target.name), guess.place
+
     def _report_found(self, options: Options, guess: Guess) -> None:
-        names = {"base": guess.options.base, "actuators": guess.options.actuators, "assets": guess.place.assets}
-        given = {"base": options.base, "actuators": options.actuators, "assets": None}
+        names = {
+            "base": guess.options.base,
+            "actuators": guess.options.actuators,
+            "for": guess.options.target,
+            "assets": guess.place.assets,
+        }
+        given = {"base": options.base, "actuators": options.actuators, "for": options.target, "assets": None}
         found = [f"--{name} {value}" for name, value in names.items() if value != given[name]]
         if found:
             self.report.note(codes.OPTIONS_FOUND, f"the file was converted with {' '.join(found)}, as far as can be seen")

@@ -44,7 +44,8 @@ class Format(Struct, frozen=True):
     backend: str | None = None
     """The module with ``write(mechanism, options, report)``."""
     rules: str | None = None
-    """The module with the rewriting rules in order: ``RULES``, and ``NATIVE`` for what came from this format."""
+    """The module with the rewriting rules in order: ``RULES``, ``NATIVE`` for what came from this format, and ``ACTUATED`` for
+    actuators that the user asks for."""
     roots: tuple[str, ...] = ()
     """The XML root elements of its files."""
     magic: tuple[bytes, ...] = ()

@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING, Literal
 
 from msgspec import Struct
 
+from hymeko_x.source import NoFiles
+
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.source import Files
 
 
 class Options(Struct, frozen=True):
@@ -19,7 +22,7 @@ class Options(Struct, frozen=True):
     have none, None to keep those of the mechanism. Both belong to the robot from then on: `rewrite.choose`. ``layout`` and
     ``nested``: how a stage of USD is laid out (None = one file with flat bodies). ``split``: whether the macros of xacro
     go into a file of their own. ``keep``: where what the format cannot represent is kept: ``beside`` the output, or ``inside`` it.
-    ``lenient``: whether errors are passed over.
+    ``lenient``: whether errors are passed over. ``target``: the name of the program that the output is for, a row of `targets`.
     ``beside``: how files of our own that may stand beside the output begin, which is its own name; empty = there is no place.
     ``within``: the folder below the output's own that holds every file beside it, and ends in a slash; empty = each where it belongs.
     """
@@ -33,12 +36,15 @@ class Options(Struct, frozen=True):
     lenient: bool = False
     beside: str = ""
     within: str = ""
+    target: str | None = None
 
 
 class Context(Struct, frozen=True):
-    """The circumstances of one rewriting: the report of what is changed."""
+    """The circumstances of one rewriting: the report of what is changed, the files around the robot, and the option that asks for it."""
 
     report: Report
+    files: Files = NoFiles()
+    reason: str = ""
 
 
 Rule = Callable[["Mechanism", Context], "Mechanism"]

@@ -45,13 +45,16 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     """The MJCF of the mechanism. Files that it refers to are not part of it: `assets.pack` returns them."""
     del options, report
     sheet = open_sheet(mechanism, ROLE_CLASSES)
+    settings_end = 1
     for section in SECTIONS:
+        if section == "default":
+            settings_end = len(sheet.root.children)
         sheet.write_kept(section)
         if section in _WRITERS:
             _WRITERS[section](sheet)
     sheet.write_kept("")
     if not sheet.from_mjcf:
-        write_defaults(sheet)
+        write_defaults(sheet, settings_end)
     lines = render(sheet.root)
     return Package("\n".join([*lines, ""]).encode(), carry=lambda residue: _with_residue(sheet, lines, residue))
 

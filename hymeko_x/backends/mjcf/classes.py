@@ -172,8 +172,8 @@ def _name(tag: str, own_class: str | None, own: Mapping[str, str], members: list
 # ---- the section -----------------------------------------------------------------------------------------------------------
 
 
-def write_defaults(sheet: MjcfSheet) -> None:
-    """<default> before all other sections, with the classes of the elements that are written there."""
+def write_defaults(sheet: MjcfSheet, place: int) -> None:
+    """<default> at its place behind the settings, with the classes of the elements that are written there."""
     tags = [tag for tag in _walk(sheet.root) if tag.owner is not None]
     roles = {tag.attributes.get("class") for tag in tags if tag.name == "geom"}
     shared = {(MAIN, "geom"): dict(_MASSLESS)} if roles else {}
@@ -184,7 +184,7 @@ def write_defaults(sheet: MjcfSheet) -> None:
         if found.around:
             inside.setdefault(found.around, []).append(found.name)
     if shared:
-        sheet.root.children[1:1] = ["", _class_tag(MAIN, {}, shared, inside)]
+        sheet.root.children[place:place] = ["", _class_tag(MAIN, {}, shared, inside)]
 
 
 def _walk(root: Tag) -> Iterable[Tag]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.backends.mjcf.steady import integrate_implicitly
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import NAME, compiler_has
 from hymeko_x.ir.mechanism import ROOT
@@ -122,6 +123,9 @@ def _with_fitting_keys(extra: Extra, counts: dict[str, int], report: Report) -> 
 
     return replace(extra, text=_KEY.sub(fitting, extra.text))
 
+
+ACTUATED: tuple[Rule, ...] = (integrate_implicitly,)
+"""The rules for actuators that the user asks for."""
 
 _REPLACED: Mapping[Rule, Rule | None] = MappingProxyType(
     {

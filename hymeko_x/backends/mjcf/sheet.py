@@ -28,7 +28,7 @@ from hymeko_x.ir.values import IDENTITY, Pose, compose, numbers_text
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.formats.mjcf.codec import Group
     from hymeko_x.formats.mjcf.tree import Element
@@ -237,7 +237,7 @@ def open_sheet(mechanism: Mechanism, others: Classes) -> MjcfSheet:
     """An empty document with the mechanism's own settings and classes; with ``others`` where it did not come from MJCF."""
     if not words.from_mjcf(mechanism):
         root = Tag("mujoco", {"model": mechanism.name} if mechanism.name else {}, ['<compiler angle="radian" autolimits="true"/>'])
-        return MjcfSheet(mechanism, root, False, Settings(degree=False), others)
+        return MjcfSheet(mechanism, root, False, Settings(degree=False), others, [*_sections_for_all(mechanism)])
     own = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.NAME, "comment")]
     kept = {extra.path[1:]: extra.text for extra in own if extra.format == words.NAME and extra.path[:1] == "@"}
     name = {} if mechanism.notation(ROOT, UNNAMED) else {"model": mechanism.name}
@@ -249,6 +249,14 @@ def open_sheet(mechanism: Mechanism, others: Classes) -> MjcfSheet:
     classes = Classes([node for node in sections if node.tag == "default"])
     rank = _ranks(mechanism, {extra.index for extra in standing})
     return MjcfSheet(mechanism, Tag("mujoco", name | kept), True, settings, classes, list(zip(tags, standing, strict=True)), rank)
+
+
+def _sections_for_all(mechanism: Mechanism) -> Iterator[tuple[str, Extra]]:
+    """The sections that a robot from elsewhere was given for MuJoCo, with their tags; its angles and classes are the writer's own."""
+    for extra in mechanism.extras.get(ROOT, ()):
+        node = _parsed(extra) if extra.format == words.NAME and not extra.path else None
+        if node is not None and node.tag in words.KEPT_SECTIONS and node.tag not in ("compiler", "default"):
+            yield node.tag, extra
 
 
 def tag_of(name: str, attributes: Attributes, children: Iterable[Tag | str] = (), owner: Id | None = None) -> Tag:

@@ -1,0 +1,86 @@
+"""Targets: what `--for` adds for the program that takes the output, and what it says about it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import hymeko_x as hx
+from hymeko_x import formats, targets
+from hymeko_x.cli import exits, main
+from hymeko_x.diagnostics import Refusal
+
+ARM = """arm : robot {
+  base { mass 1 inertia [0.1 0.1 0.1] }
+  upper { mass 1 inertia [0.1 0.1 0.1] com [0.2 0 0] }
+  @shoulder : revolute { limit [-1 1] effort 20 + base - upper axis=Y }
+}
+"""
+
+
+@pytest.fixture
+def arm(tmp_path: Path) -> Path:
+    path = tmp_path / "arm.hymeko"
+    path.write_text(ARM)
+    return path
+
+
+def test_every_row_names_formats_and_a_module_with_rules() -> None:
+    for target in targets.TARGETS:
+        assert all(formats.by_name(name).backend for name in target.formats)
+        assert all(map(callable, formats.loaded(target.rules).RULES))
+        assert target.beside is None or callable(formats.loaded(target.beside))
+
+
+def test_formats_lists_the_targets(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["formats"]) == exits.DONE
+    _, listed = capsys.readouterr().out.split("\n\n")
+    assert [line.split()[0] for line in listed.splitlines()] == ["target", *(target.name for target in targets.TARGETS)]
+
+
+def test_a_typo_is_one_line_with_a_suggestion(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["convert", str(arm), str(arm.with_suffix(".xml")), "--for", "mujocco"]) == exits.FAILED
+    assert capsys.readouterr().err == "error[HX012]: there is no target 'mujocco'; did you mean 'mujoco'?\n"
+    assert not arm.with_suffix(".xml").exists()
+
+
+def test_a_target_of_another_format_is_refused(arm: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["convert", str(arm), str(arm.with_suffix(".urdf")), "--for", "mujoco"]) == exits.FAILED
+    assert capsys.readouterr().err == "error[HX012]: target 'mujoco' takes mjcf, and the output is urdf\n"
+    with pytest.raises(Refusal, match="HX012"):
+        hx.convert(arm, arm.with_suffix(".urdf"), target="mujoco")
+
+
+def test_the_target_chooses_the_format_of_standard_output(arm: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    assert main(["convert", str(arm), "-", "--for", "mujoco"]) == exits.DONE
+    assert capfd.readouterr().out.startswith("<mujoco ")
+
+
+def test_a_drive_is_integrated_implicitly_and_reported(arm: Path) -> None:
+    done = hx.convert(arm, arm.with_suffix(".xml"), base="fixed", actuators="position", target="mujoco")
+    assert '<option integrator="implicitfast"/>' in arm.with_suffix(".xml").read_text()
+    assert [d.code.id for d in done.report if "implicitfast" in d.message] == ["HX114"]
+    assert not [loss for loss in done.losses or () if "option" in loss.field]
+
+
+def test_the_integrator_of_the_author_stays(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(
+        '<mujoco><option integrator="RK4"/><worldbody><body><joint name="j"/><geom size="1"/></body></worldbody>'
+        '<actuator><position joint="j" kp="1"/></actuator></mujoco>'
+    )
+    hx.convert(tmp_path / "a.xml", tmp_path / "b.xml", target="mujoco")
+    assert re.findall("integrator=.*?/>", (tmp_path / "b.xml").read_text()) == ['integrator="RK4"/>']
+
+
+def test_update_finds_the_target_out(arm: Path) -> None:
+    output = arm.with_suffix(".xml")
+    hx.convert(arm, output, base="fixed", target="mujoco", actuators="velocity")
+    assert hx.update(arm, output, dry_run=True).edits == ()
+
+
+def test_without_a_target_nothing_is_added(arm: Path) -> None:
+    report = hx.convert(arm, arm.with_suffix(".xml"), base="fixed").report
+    assert "<option" not in arm.with_suffix(".xml").read_text()
+    assert "HX114" not in {d.code.id for d in report}
