@@ -4,4 +4,5 @@ import sys
 
 from hymeko_x.cli import main
 
-sys.exit(main())
+if __name__ == "__main__":  # the processes of a batch load it too
+    sys.exit(main())

@@ -22,6 +22,7 @@ OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
         **dict.fromkeys(("filelock", "fsspec", "matplotlib", "pebble", "platformdirs", "polars", "rich"), "corpus"),
         **{library: extra for row in formats.FORMATS for library, extra in row.libraries.items()},
         **dict.fromkeys(("casadi", "sympy"), "dynamics"),
+        "argcomplete": "completion",
         "hypothesis": "testing",
         "imageio_ffmpeg": "draw",
         "ray": "ray",

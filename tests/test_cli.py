@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from hymeko_x import codes
-from hymeko_x.cli import VERBS, exits, main, terminal
+from hymeko_x.cli import GROUPS, VERBS, exits, main, terminal
 from hymeko_x.diagnostics import Diagnostic, Origin, Severity, refuse
 
 
@@ -29,7 +29,8 @@ def hymeko_x(*words: str, stdin: bytes = b"", cwd: Path | None = None, **environ
 def test_help_lists_every_verb_and_exit_code(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == exits.DONE
     said = capsys.readouterr().out
-    assert [verb for verb, (_, summary) in VERBS.items() if f"  {verb:<10} {summary}\n" not in said] == []
+    assert [name for name, verb in VERBS.items() if f"  {name:<10} {verb.summary}\n" not in said] == []
+    assert [group for group in GROUPS if f"\n{group}:\n" not in said] == []
     assert "70 a bug of ours" in said
 
 
@@ -51,11 +52,23 @@ def test_a_mistyped_verb_is_a_usage_error_with_the_nearest_one(capsys: pytest.Ca
     assert capsys.readouterr().err == "hymeko-x: there is no verb 'conver'; did you mean 'convert'?\n"
 
 
-def test_an_unknown_option_is_a_usage_error(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as stop:
-        main(["formats", "--jsn"])
-    assert stop.value.code == exits.USAGE
-    assert capsys.readouterr().out == ""
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["formats", "--jsn"], "formats: there is no option '--jsn'; did you mean '--json'? (hymeko-x formats --help lists the options)"),
+        (["convert", "--verfy", "a"], "convert: there is no option '--verfy'; did you mean '--verify'?"),
+        (["corpus", "run", "--evry", "3"], "corpus: there is no option '--evry'; did you mean '--every'?"),
+        (["verify", "a", "b", "--match", "nam"], "verify: --match: there is no 'nam'; did you mean 'name'?"),
+        (["dh"], "dh: arguments are required: FILE"),
+        (["diff", "a", "b", "c"], "diff: there are more files than it takes: c"),
+    ],
+)
+def test_a_mistake_in_the_options_costs_one_line(words: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(words) == exits.USAGE
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert said.err.startswith(f"hymeko-x {message}")
+    assert said.err.count("\n") == 1
 
 
 def test_formats_prints_the_table(capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,7 +19,10 @@ if TYPE_CHECKING:
     from tests.conftest import RealRobots
 
 README = Path(__file__).parents[1] / "README.md"
-PAGES = (README, *(README.parent / "docs" / f"{name}.md" for name in ("dynamics", "errors", "lossless", "report", "update", "verify")))
+PAGES = (
+    README,
+    *(README.parent / "docs" / f"{name}.md" for name in ("command-line", "dynamics", "errors", "lossless", "report", "update", "verify")),
+)
 BLOCK = re.compile(r"```(\w+)(?: (\S+))?\n(.*?)```\n", re.DOTALL)
 
 

@@ -5,39 +5,67 @@ Data goes to standard output, words to standard error. Exit codes are in :mod:`h
 
 from __future__ import annotations
 
+import os
 import sys
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.cli import exits
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    import argparse
+    from collections.abc import Callable, Mapping, Sequence
+    from types import ModuleType
 
-VERBS = {
-    "import": ("hymeko_x.cli.convert", "read any format, print HyMeKo"),
-    "export": ("hymeko_x.cli.convert", "read HyMeKo (standard input by default), write another format"),
-    "convert": ("hymeko_x.cli.convert", "convert a file, with its meshes, and measure what got lost"),
-    "update": ("hymeko_x.cli.update", "bring the edits of a converted file home into the text of its original"),
-    "attach": ("hymeko_x.cli.attach", "one robot on another: a hand on an arm, whatever formats they have"),
-    "diff": ("hymeko_x.cli.compare", "what differs between two robots, element by element"),
-    "verify": ("hymeko_x.cli.verdicts", "whether two files are the same robot, by the formats' own engines"),
-    "roundtrip": ("hymeko_x.cli.compare", "through other formats and back, every leg verified"),
-    "render": ("hymeko_x.cli.render", "draw a robot, or a film of its joints, without a screen"),
-    "check": ("hymeko_x.cli.info", "is a robot complete and sane? for people and for repair loops"),
-    "dh": ("hymeko_x.cli.dh", "Denavit-Hartenberg tables: standard, modified, Hayati-Roberts"),
-    "dynamics": ("hymeko_x.cli.dynamics", "the equations of motion: state space, transfer functions, energies"),
-    "simulate": ("hymeko_x.cli.dynamics", "the response over time to steps, pulses, sines, noise or a table"),
-    "info": ("hymeko_x.cli.info", "what is in a file"),
-    "formats": ("hymeko_x.cli.info", "the formats that can be read and written"),
-    "explain": ("hymeko_x.cli.info", "what a code such as HX044 means"),
-    "corpus": ("hymeko_x.cli.corpus", "real robots from published packages: fetch, list, run, stats"),
+    from hymeko_x.cli.parser import Parser
+
+
+class Verb(NamedTuple):
+    """The module with ``VERB_arguments(parser)`` and ``run_VERB(arguments) -> exit code``, and what the verb does in a few words."""
+
+    module: str
+    summary: str
+
+
+GROUPS: Mapping[str, Mapping[str, Verb]] = {
+    "convert": {
+        "convert": Verb("convert", "convert a file, with its meshes, and measure what got lost"),
+        "import": Verb("convert", "read any format, print HyMeKo"),
+        "export": Verb("convert", "read HyMeKo (standard input by default), write another format"),
+        "update": Verb("update", "bring the edits of a converted file home into the text of its original"),
+        "attach": Verb("attach", "one robot on another: a hand on an arm, whatever formats they have"),
+    },
+    "compare": {
+        "verify": Verb("verdicts", "whether two files are the same robot, by the formats' own engines"),
+        "diff": Verb("compare", "what differs between two robots, element by element"),
+        "roundtrip": Verb("compare", "through other formats and back, every leg verified"),
+    },
+    "look": {
+        "info": Verb("info", "what is in a file"),
+        "check": Verb("info", "is a robot complete and sane? for people and for repair loops"),
+        "render": Verb("render", "draw a robot, or a film of its joints, without a screen"),
+    },
+    "compute": {
+        "dh": Verb("dh", "Denavit-Hartenberg tables: standard, modified, Hayati-Roberts"),
+        "dynamics": Verb("dynamics", "the equations of motion: state space, transfer functions, energies"),
+        "simulate": Verb("dynamics", "the response over time to steps, pulses, sines, noise or a table"),
+    },
+    "more": {
+        "formats": Verb("info", "the formats that can be read and written"),
+        "explain": Verb("info", "what a code such as HX044 means"),
+        "completion": Verb("completion", "what makes a shell complete verbs, options and files"),
+        "corpus": Verb("corpus", "real robots from published packages: fetch, list, run, stats"),
+    },
 }
-"""Verb -> module with ``VERB_arguments(parser)`` and ``run_VERB(arguments) -> exit code``, and what the verb does in a few words."""
+"""The verbs as `--help` groups them."""
+
+VERBS: Mapping[str, Verb] = {name: verb for verbs in GROUPS.values() for name, verb in verbs.items()}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command; return its exit code. The console script passes it to the shell."""
+    if "_ARGCOMPLETE" in os.environ:
+        return _complete()
     words = list(sys.argv[1:] if argv is None else argv)
     if words[:1] in (["--version"], ["-V"]):
         return _print_version()
@@ -50,29 +78,69 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run_verb(verb: str, words: list[str]) -> int:
-    import argparse
     import gc
 
+    from hymeko_x.cli.parser import choose_colors
+
     gc.set_threshold(100_000, 50, 50)  # a robot is many objects of which nearly all stay to the end: looking for garbage finds none
-    module_name, summary = VERBS[verb]
-    module = import_module(module_name)
-    parser = argparse.ArgumentParser(f"hymeko-x {verb}", description=f"{summary[0].upper()}{summary[1:]}.", allow_abbrev=False)
-    getattr(module, f"{verb}_arguments")(parser)
-    code: int = getattr(module, f"run_{verb}")(parser.parse_args(words))
+    chosen = parser_of(verb).parse_args(words)
+    choose_colors(chosen.color)
+    run: Callable[[argparse.Namespace], int] = getattr(_module(verb), f"run_{verb}")
+    if getattr(chosen, "printed_to", None):
+        return _printed_into(chosen.printed_to, lambda: run(chosen))
+    code = run(chosen)
     sys.stdout.flush()
+    return code
+
+
+def _complete() -> int:
+    """Answer a shell that asks how the words go on."""
+    from hymeko_x.cli.completion import complete
+
+    complete()
+    return exits.DONE
+
+
+def parser_of(verb: str) -> Parser:
+    """The parser of a verb's words."""
+    from hymeko_x.cli.parser import Parser, shared_arguments
+
+    summary = VERBS[verb].summary
+    parser = Parser(f"hymeko-x {verb}", description=f"{summary[0].upper()}{summary[1:]}.", allow_abbrev=False)
+    getattr(_module(verb), f"{verb}_arguments")(parser)
+    shared_arguments(parser)
+    return parser
+
+
+def _module(verb: str) -> ModuleType:
+    return import_module(f"hymeko_x.cli.{VERBS[verb].module}")
+
+
+def _printed_into(path: str, run: Callable[[], int]) -> int:
+    """Run a verb; write what it prints to a file, whole or not at all."""
+    from contextlib import redirect_stdout
+    from io import StringIO
+
+    from hymeko_x.disk import write_files
+
+    with redirect_stdout(StringIO()) as printed:
+        code = run()
+    write_files({path: printed.getvalue().encode()})
     return code
 
 
 def overview() -> str:
     """The text of `hymeko-x --help`."""
-    verbs = "\n".join(f"  {verb:<10} {summary}" for verb, (_, summary) in VERBS.items())
-    return f"usage: hymeko-x VERB ...   (hymeko-x VERB --help says more)\n\n{verbs}\n\n{exits.TABLE}"
+    groups = (
+        "\n".join((f"{group}:", *(f"  {name:<10} {verb.summary}" for name, verb in verbs.items()))) for group, verbs in GROUPS.items()
+    )
+    return "\n\n".join(("usage: hymeko-x VERB ...   (hymeko-x VERB --help says more)", *groups, exits.TABLE))
 
 
 def _unknown_verb(word: str) -> int:
     from difflib import get_close_matches
 
-    near = get_close_matches(word, VERBS, 1)
+    near = get_close_matches(word, [*VERBS], 1)
     meant = f"did you mean '{near[0]}'?" if near else f"verbs: {', '.join(VERBS)}"
     print(f"hymeko-x: there is no verb '{word}'; {meant}", file=sys.stderr)
     return exits.USAGE

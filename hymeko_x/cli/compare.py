@@ -12,7 +12,7 @@ from hymeko_x import api, formats
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
-from hymeko_x.cli.terminal import show
+from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_of
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
@@ -45,7 +45,7 @@ def run_diff(chosen: argparse.Namespace) -> int:
     report = Report()
     a, b = (read_input(path, chosen, report) for path in (chosen.a, chosen.b))
     found = diff(a.mechanism, b.mechanism, Tolerance(chosen.tolerance, chosen.tolerance))
-    show(report)
+    show_diagnostics(report, chosen)
     print(json.dumps(_differences_json(a, b, found), indent=2, ensure_ascii=False)) if chosen.json else print_lines(found)
     return exits.DIFFERENT if found else exits.DONE
 
@@ -93,7 +93,7 @@ def run_roundtrip(chosen: argparse.Namespace) -> int:
     report = Report()
     given = read_input(chosen.input, chosen, report)
     stops = [*_stops(chosen.through, given.format), given.format]
-    show(report)
+    show_diagnostics(report, chosen)
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(chosen.output or temporary)
         folder.mkdir(parents=True, exist_ok=True)

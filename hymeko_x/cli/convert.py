@@ -11,7 +11,8 @@ from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
-from hymeko_x.cli.report import report_arguments, show_report, written_line
+from hymeko_x.cli.parser import count
+from hymeko_x.cli.report import one_line, report_arguments, show_report, written_line
 from hymeko_x.cli.terminal import is_coloured
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_lines, verdict_of
 from hymeko_x.delivery import Delivery, report_unwritten, unchanged
@@ -71,55 +72,98 @@ def run_export(chosen: argparse.Namespace) -> int:
     """Read HyMeKo and write the wanted format."""
     if not chosen.to_format and not chosen.target and chosen.output == "-":
         raise UsageError("say which format to write: --to FORMAT, or -o FILE with its suffix")
-    format = _output_format(chosen)
+    format = _output_format(chosen, chosen.output)
     report = Report()
     return deliver(read_input(chosen.input, chosen, report, format), Output(format, chosen.output), chosen, report)
 
 
 def convert_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `convert`."""
-    parser.add_argument("input", metavar="IN", help="the robot to read; - is standard input")
-    parser.add_argument("output", metavar="OUT", help="where to write; its suffix tells the format; - is standard output")
+    parser.usage = "hymeko-x convert IN [OUT] [options]\n       hymeko-x convert IN... --to FORMAT -o DIR [options]"
+    what = "the robot to read, then where to write unless -o says so; its suffix tells the format; - is standard input or output"
+    parser.add_argument("paths", nargs="+", metavar="IN", help=what)
+    parser.add_argument("-o", "--output", metavar="OUT", help="where to write, or the folder for several robots, each in a process")
+    parser.add_argument("--jobs", type=count, default=os.cpu_count() or 1, metavar="N", help="robots at a time (default: the processors)")
     parser.add_argument("--to", dest="to_format", metavar="FORMAT", help="the format to write, where the output's suffix does not tell")
     parser.add_argument("--json", action="store_true", help="print diagnostics and losses as JSON to standard output")
     input_arguments(parser)
     lenient_argument(parser)
     output_arguments(parser)
+    parser.set_defaults(brief=False)
     parser.add_argument("--verify", action="store_true", help="ask the formats' own engines whether it is the same robot; else exit 4")
     engine_arguments(parser)
 
 
 def run_convert(chosen: argparse.Namespace) -> int:
+    """Convert one file, or each of several."""
+    sources, output = _paths(chosen)
+    if len(sources) == 1 and not _is_folder(output):
+        return _convert(chosen, sources[0], output)
+    if not (chosen.to_format or chosen.target):
+        raise UsageError("say which format to write into the folder: --to FORMAT")
+    from hymeko_x.cli.batch import jobs_into, run_batch
+
+    format = _output_format(chosen, "")
+    jobs = jobs_into(output, sources, format)
+    if len(jobs) == 1:
+        return _convert(chosen, *jobs[0])
+    if chosen.json or chosen.report:
+        raise UsageError("--json and --report are for one robot at a time")
+    chosen.brief = not chosen.verbose
+    return run_batch(_convert, jobs, chosen, format)
+
+
+def _paths(chosen: argparse.Namespace) -> tuple[list[str], str]:
+    """What to read, and where to write. Raises: UsageError where the second of two robots would be taken for the output."""
+    *sources, last = chosen.paths
+    if chosen.output is not None:
+        return chosen.paths, chosen.output
+    if not sources:
+        return chosen.paths, "-"
+    if len(sources) > 1:
+        raise UsageError("several robots are written into a folder: -o DIR")
+    row = formats.of_file(last)
+    if row and os.path.isfile(last) and row.family != _output_format(chosen, last).family:
+        raise UsageError(f"{last} is there, and {row.name}: several robots are written into a folder (-o DIR), and one with -o FILE")
+    return sources, last
+
+
+def _is_folder(path: str) -> bool:
+    return path.endswith(("/", os.sep)) or os.path.isdir(path)
+
+
+def _convert(chosen: argparse.Namespace, source: str, output: str) -> int:
     """Convert one file."""
-    if chosen.output == "-" and not chosen.to_format and not chosen.target:
+    if output == "-" and not (chosen.to_format or chosen.target):
         raise UsageError("say which format to write to standard output: --to FORMAT")
-    if chosen.output == "-" and chosen.json:
+    if output == "-" and chosen.json:
         raise UsageError("--json prints to standard output, which already carries the result; use --report FILE.json")
-    if chosen.verify and "-" in (chosen.input, chosen.output):
+    if chosen.verify and "-" in (source, output):
         raise UsageError("--verify reads the files again with other engines, so that neither can be a pipe")
-    format = _output_format(chosen)
+    format = _output_format(chosen, output)
     report = Report()
-    given = read_input(chosen.input, chosen, report, format)
+    given = read_input(source, chosen, report, format)
     own = unchanged(given.source, given.format, format)
-    code = deliver(given, Output(format, chosen.output), chosen, report, own=own)
-    return _verified(chosen.input, chosen.output, chosen) if chosen.verify and code == exits.DONE else code
+    code = deliver(given, Output(format, output), chosen, report, own=own)
+    return _verified(source, output, chosen) if chosen.verify and code == exits.DONE else code
 
 
-def _output_format(chosen: argparse.Namespace) -> Format:
+def _output_format(chosen: argparse.Namespace, output: str) -> Format:
     """The format to write: the named one, that of the suffix, and without either the usual one of the target.
 
     Raises: Refusal HX003, HX012.
     """
     usual = targets.by_name(chosen.target).formats[0] if chosen.target else None
-    has_suffix = formats.of_file(chosen.output) is not None
-    return formats.of_output(chosen.output, chosen.to_format or (None if has_suffix else usual))
+    has_suffix = formats.of_file(output) is not None
+    return formats.of_output(output, chosen.to_format or (None if has_suffix else usual))
 
 
 def _verified(before: str, after: str, chosen: argparse.Namespace) -> int:
     """Say what the formats' own engines think of source and result; exit 4 when they see different robots."""
     verdict = verdict_of(before, after, chosen)
     if not chosen.quiet or not verdict.is_same:
-        print("\n".join(verdict_lines(verdict, coloured=is_coloured(sys.stderr), verbose=chosen.verbose)), file=sys.stderr)
+        lines = list(verdict_lines(verdict, coloured=is_coloured(sys.stderr), verbose=chosen.verbose))
+        print("\n".join(lines[:1] if chosen.brief and verdict.is_same else lines), file=sys.stderr)
     return exit_code(verdict)
 
 
@@ -167,7 +211,10 @@ def deliver(
     if not failed:
         _write(delivery, output, result)
     written = "" if failed or not path else written_line(path, given.mechanism, result.package)
-    show_report(written, report, result.losses or (), chosen)
+    if getattr(chosen, "brief", False):
+        print(one_line(written, report, result.losses or ()), file=sys.stderr)
+    else:
+        show_report(written, report, result.losses or (), chosen)
     if chosen.report:
         found = _document(given, output, report, result.losses)
         data = as_text(sarif(found) if chosen.report.lower().endswith(".sarif") else found)

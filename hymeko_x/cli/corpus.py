@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes, disk
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
+from hymeko_x.cli.parser import count
 from hymeko_x.cli.terminal import show
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.corpus.plan import Limits, Plan, pairs_of
@@ -121,12 +122,10 @@ def _run_arguments(parser: argparse.ArgumentParser) -> None:
         "--pairs", default="all", type=_pairs, metavar="A:B,...", help="the conversions, such as urdf:mjcf,mjcf:usd (default: all)"
     )
     parser.add_argument("--verify", action="store_true", help="have every result compared with its source by the formats' own engines")
-    parser.add_argument("--samples", type=_count, default=20, metavar="N", help="random configurations of the verifier (default 20)")
+    parser.add_argument("--samples", type=count, default=20, metavar="N", help="random configurations of the verifier (default 20)")
     parser.add_argument("--no-meshes", dest="meshes", action="store_false", help="do not compare mesh files")
-    parser.add_argument(
-        "--jobs", type=_count, default=os.cpu_count() or 1, metavar="N", help="files at a time (default: one per processor)"
-    )
-    parser.add_argument("--every", type=_count, default=1, metavar="N", help="take every N-th file only")
+    parser.add_argument("--jobs", type=count, default=os.cpu_count() or 1, metavar="N", help="files at a time (default: one per processor)")
+    parser.add_argument("--every", type=count, default=1, metavar="N", help="take every N-th file only")
     parser.add_argument("--timeout", type=float, default=180.0, metavar="S", help="seconds that one process may take (default 180)")
     parser.add_argument(
         "--memory", type=float, default=5120.0, metavar="MB", help="memory of one process in MiB, with what is only reserved (default 5120)"
@@ -244,12 +243,6 @@ def _pairs(words: str) -> tuple[tuple[str, str], ...]:
         return pairs_of(words)
     except ValueError as error:
         raise argparse.ArgumentTypeError(str(error)) from error
-
-
-def _count(text: str) -> int:
-    if not text.isascii() or not text.isdigit() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"expected a number of at least 1, found '{text}'")
-    return int(text)
 
 
 # ---- stats -------------------------------------------------------------------------------------------------------------

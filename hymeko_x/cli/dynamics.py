@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
-from hymeko_x.cli.terminal import show
+from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.diagnostics import Report
 from hymeko_x.disk import write_files
 
@@ -33,7 +33,7 @@ def dynamics_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--at", default="", metavar="WHERE", help=where)
     _base_argument(parser)
     parser.add_argument("--to", choices=_LANGUAGES, help="write the equations as a file of this kind (octave and simulink: linearised)")
-    parser.add_argument("-o", "--output", type=Path, metavar="OUT", help="the file for --to (else standard output)")
+    parser.add_argument("-o", "--output", type=Path, metavar="OUT", help="where to write (default: standard output)")
     parser.add_argument("--symbolic", action="store_true", help="formulas in the parameters instead of numbers")
     parser.add_argument("--style", choices=_STYLES, default="text", help="how to print them (default text)")
     parser.add_argument("--json", action="store_const", dest="style", const="json", help="the same as --style json")
@@ -50,13 +50,16 @@ def run_dynamics(chosen: argparse.Namespace) -> int:
     report = Report()
     found = _dynamics(chosen, report)
     if chosen.to is not None:
-        show(report)
+        show_diagnostics(report, chosen)
         return _write(found, chosen)
     text = printed(page_of(found, chosen.form, symbolic=chosen.symbolic, at=chosen.at), chosen.style)
     if not chosen.symbolic:
         report_unstable(found.state_space() if isinstance(found, Lumped) else found.state_space(chosen.at), report)
-    show(report)
-    print(text, end="")
+    show_diagnostics(report, chosen)
+    if chosen.output is None:
+        print(text, end="")
+    else:
+        write_files({str(chosen.output): text.encode()})
     return exits.DONE
 
 
@@ -111,7 +114,7 @@ def run_simulate(chosen: argparse.Namespace) -> int:
     step = chosen.time / 1000 if chosen.step is None else chosen.step
     signals = dict(_signal(text, chosen.time) for text in chosen.signals)
     response = found.simulate(chosen.time, step, signals)
-    show(report)
+    show_diagnostics(report, chosen)
     if chosen.output is None:
         print(csv_text(response), end="")
     else:

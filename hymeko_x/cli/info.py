@@ -12,7 +12,7 @@ from hymeko_x import formats, targets
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
-from hymeko_x.cli.terminal import show
+from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.codes import CODES
 from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.ir import parts
@@ -43,7 +43,7 @@ def run_info(chosen: argparse.Namespace) -> int:
     report = Report()
     given = read_input(chosen.input, chosen, report)
     facts = describe(given)
-    show(report)
+    show_diagnostics(report, chosen)
     if chosen.json:
         print(json.dumps(facts, indent=2, ensure_ascii=False))
         return exits.DONE
@@ -129,7 +129,7 @@ def run_check(chosen: argparse.Namespace) -> int:
     if chosen.json:
         print(json.dumps(_check_json(given, report, passed=not failed), indent=2, ensure_ascii=False))
     else:
-        show(report)
+        show_diagnostics(report, chosen)
         print(_summary(report))
     return exits.FAIL_ON if failed else exits.DONE
 

@@ -32,11 +32,14 @@ class Input(NamedTuple):
 
 def input_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of every verb that reads a robot."""
+    parser.add_argument("-v", "--verbose", action="store_true", help="report everything, each with its place; verify: the table of checks")
+    parser.add_argument("-q", "--quiet", action="store_true", help="report nothing but errors; verify: the answer alone")
     parser.add_argument("--from", dest="from_format", metavar="FORMAT", help="the input's format, where suffix and content do not tell")
     where = "where package://NAME and model://NAME are (repeatable)"
     parser.add_argument("--package", action="append", default=[], type=_package, metavar="NAME=DIR", help=where)
     parser.add_argument("--confine", type=_folder, metavar="DIR", help="read no file outside this folder")
-    parser.add_argument("--arg", action="append", default=[], type=_argument, metavar="NAME:=VALUE", help="an argument of a xacro file")
+    argument = "an argument of a xacro file; NAME:=VALUE as in ROS works too (repeatable)"
+    parser.add_argument("--arg", action="append", default=[], type=_argument, metavar="NAME=VALUE", help=argument)
     picked = "which variant of a USD file's variant set to read, wherever it has that set (repeatable)"
     parser.add_argument("--variant", action="append", default=[], type=_variant, metavar="SET=NAME", help=picked)
     passed = "an environment variable that a xacro file may see (repeatable)"
@@ -101,9 +104,10 @@ def _folder(text: str) -> Path:
 
 
 def _argument(text: str) -> tuple[str, str]:
-    name, sign, value = text.partition(":=")
+    name, sign, value = text.partition("=")
+    name = name.removesuffix(":")
     if not (name and sign):
-        raise argparse.ArgumentTypeError(f"expected NAME:=VALUE, found '{text}'")
+        raise argparse.ArgumentTypeError(f"expected NAME=VALUE, found '{text}'")
     return name, value
 
 

@@ -11,7 +11,7 @@ from hymeko_x import disk
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
-from hymeko_x.cli.terminal import show
+from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.diagnostics import Report
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def _studio(path: str, chosen: argparse.Namespace) -> Studio:
 
     report = Report()
     given = read_input(path, chosen, report)
-    show(report)
+    show_diagnostics(report, chosen)
     look = Look(chosen.size, chosen.view, chosen.pose, chosen.collision, chosen.frames, chosen.inertia)
     return open_studio(given.mechanism, path if is_drawn(given.format) and path != "-" else None, look)
 

@@ -6,7 +6,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from hymeko_x.cli.terminal import alike_diagnostics, is_coloured, render, render_alike
+from hymeko_x.cli.terminal import alike_diagnostics, is_coloured, render, render_alike, show
 from hymeko_x.diagnostics import Severity
 from hymeko_x.reporting.summary import counted, kept_line, minor_line, summary_lines
 
@@ -27,11 +27,17 @@ _FOLDERS = 3
 
 
 def report_arguments(parser: argparse.ArgumentParser) -> None:
-    """How much is reported."""
-    parser.add_argument("-v", "--verbose", action="store_true", help="report every loss and every diagnostic, each with its place")
-    parser.add_argument("-q", "--quiet", action="store_true", help="report nothing but errors")
+    """Where the report goes."""
     formats = "write diagnostics and losses to a file: as JSON, or as SARIF if it is called *.sarif"
     parser.add_argument("--report", metavar="FILE.json", help=formats)
+
+
+def show_diagnostics(report: Report, chosen: argparse.Namespace) -> None:
+    """Print the diagnostics of a verb that writes no robot: alike ones together, or each (`-v`), or errors alone (`-q`)."""
+    if chosen.verbose:
+        print("".join(f"{render(diagnostic, is_coloured(sys.stderr))}\n" for diagnostic in report), end="", file=sys.stderr)
+    else:
+        show(diagnostic for diagnostic in report if not chosen.quiet or diagnostic.severity is Severity.ERROR)
 
 
 def show_report(written: str, report: Report, losses: Sequence[Loss], chosen: argparse.Namespace) -> None:
@@ -45,6 +51,13 @@ def show_report(written: str, report: Report, losses: Sequence[Loss], chosen: ar
         lines = brief_lines(written, report, losses, coloured=coloured)
     for line in lines:
         print(line, file=sys.stderr)
+
+
+def one_line(written: str, report: Report, losses: Sequence[Loss]) -> str:
+    """The report of a conversion in one line."""
+    counts = ((len(losses), "loss"), *((sum(d.severity is s for d in report), s.value) for s in (Severity.ERROR, Severity.WARNING)))
+    found = ", ".join(counted(count, word) for count, word in counts if count)
+    return (written or "not written") + (f"; {found}" if found else "")
 
 
 def brief_lines(written: str, report: Iterable[Diagnostic], losses: Sequence[Loss], *, coloured: bool = False) -> list[str]:

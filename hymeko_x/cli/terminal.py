@@ -86,5 +86,7 @@ def paint(style: str, text: str) -> str:
 
 
 def is_coloured(stream: TextIO) -> bool:
-    """Colour on a terminal only, and never where NO_COLOR is set (https://no-color.org)."""
+    """Colour on a terminal only, or where FORCE_COLOR is set, and never where NO_COLOR is set (https://no-color.org)."""
+    if os.environ.get("FORCE_COLOR"):
+        return not os.environ.get("NO_COLOR")
     return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"

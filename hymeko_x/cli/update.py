@@ -12,7 +12,7 @@ from hymeko_x import disk, formats
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, source_of
-from hymeko_x.cli.terminal import show
+from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.updating import update
 from hymeko_x.rewrite import Options
@@ -54,7 +54,7 @@ def run_update(chosen: argparse.Namespace) -> int:
     files = found.files(chosen.original, chosen.output)
     if not chosen.dry_run:
         disk.write_files(files)
-    show(report)
+    show_diagnostics(report, chosen)
     _show_edits(found)
     if chosen.json:
         print(_as_json(found, list(files)))

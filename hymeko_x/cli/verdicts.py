@@ -31,7 +31,6 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("b", metavar="B", help="the robot to compare it with")
     engine_arguments(parser)
     parser.add_argument("--strict", action="store_true", help="exit 4 as well where a format cannot say what the other robot has")
-    parser.add_argument("-v", "--verbose", action="store_true", help="print the table of all checks, and what was not compared")
     parser.add_argument("--match", choices=("name", "structure"), default="name", help="how to find each body's counterpart (default name)")
     parser.add_argument("--json", action="store_true", help="print JSON")
     input_arguments(parser)
@@ -47,11 +46,11 @@ def engine_arguments(parser: argparse.ArgumentParser) -> None:
 def run_verify(chosen: argparse.Namespace) -> int:
     """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared, as :func:`exit_code` says."""
     verdict = verdict_of(chosen.a, chosen.b, chosen, structure=chosen.match == "structure")
-    print(
-        json.dumps(verdict.as_json(), indent=2, ensure_ascii=False)
-        if chosen.json
-        else "\n".join(verdict_lines(verdict, verbose=chosen.verbose))
-    )
+    if chosen.json:
+        print(json.dumps(verdict.as_json(), indent=2, ensure_ascii=False))
+    else:
+        lines = list(verdict_lines(verdict, verbose=chosen.verbose))
+        print("\n".join(lines[:1] if chosen.quiet else lines))
     return exit_code(verdict, strict=chosen.strict)
 
 

@@ -25,6 +25,7 @@ _PLURALS = {
     "body": "bodies",
     "pose": "named poses",
     "mesh": "meshes",
+    "loss": "losses",
     "comment or declaration": "comments and declarations",
     "field or element": "fields and elements",
 }

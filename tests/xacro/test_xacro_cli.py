@@ -35,9 +35,7 @@ def test_arguments_and_variables_are_passed_on(here: Folder, monkeypatch: pytest
 
 
 def test_a_variable_that_is_not_there_cannot_be_passed_on(here: Folder, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as usage:
-        main(["info", "r.urdf.xacro", "--env", "HYMEKO_X_NOT_THERE"])
-    assert usage.value.code == exits.USAGE
+    assert main(["info", "r.urdf.xacro", "--env", "HYMEKO_X_NOT_THERE"]) == exits.USAGE
     assert "the environment has no variable 'HYMEKO_X_NOT_THERE'" in capsys.readouterr().err
 
 

@@ -1,0 +1,61 @@
+"""`hymeko-x completion SHELL`: what makes a shell complete the words of this program, which it asks by running it.
+
+Source: argcomplete, whose protocol bash, zsh and fish follow: the line in COMP_LINE, the answers on another stream.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+
+from hymeko_x.cli import exits
+
+SHELLS = ("bash", "zsh", "fish")
+_USE = {
+    "bash": 'eval "$(hymeko-x completion bash)"                                  in ~/.bashrc',
+    "zsh": 'eval "$(hymeko-x completion zsh)"                                   in ~/.zshrc, after compinit',
+    "fish": "hymeko-x completion fish > ~/.config/fish/completions/hymeko-x.fish   once",
+}
+
+
+def completion_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `completion`."""
+    parser.add_argument("shell", choices=SHELLS, help="for which shell")
+    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = "how to use it:\n" + "\n".join(f"  {line}" for line in _USE.values())
+
+
+def run_completion(chosen: argparse.Namespace) -> int:
+    """Print the shell's text."""
+    from argcomplete.shell_integration import shellcode
+
+    print(shellcode(["hymeko-x"], shell=chosen.shell))
+    return exits.DONE
+
+
+def complete() -> None:
+    """Answer a shell and end the process: the verbs, or the options, choices and files of the verb on the line."""
+    from argcomplete import autocomplete
+
+    from hymeko_x.cli import VERBS, parser_of
+
+    words = os.environ.get("COMP_LINE", "").split()
+    verb = words[1] if len(words) > 1 else ""
+    parser = argparse.ArgumentParser("hymeko-x", allow_abbrev=False)
+    verbs = parser.add_subparsers(metavar="VERB")
+    for name, row in VERBS.items():
+        known = [_with_formats(parser_of(name))] if name == verb else []
+        verbs.add_parser(name, help=row.summary, parents=known, add_help=False, allow_abbrev=False)
+    autocomplete(parser, always_complete_options="long")
+
+
+def _with_formats(parser: argparse.ArgumentParser) -> argparse.ArgumentParser:
+    """The parser, with the names of the formats for each option that takes one."""
+    from argcomplete.completers import ChoicesCompleter
+
+    from hymeko_x.formats import FORMATS
+
+    for action in parser._actions:
+        if action.metavar == "FORMAT":
+            action.completer = ChoicesCompleter({row.name: row.title for row in FORMATS})  # type: ignore[attr-defined]
+    return parser
