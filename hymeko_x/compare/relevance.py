@@ -9,9 +9,10 @@ from hymeko_x import formats
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Shape
 from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
+from hymeko_x.rewrite.efforts import actuator_efforts
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.compare.diff import Difference, Tolerance
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.values import Pose, Vec3
 
 _AXIS = re.compile(r"dofs\[(\d+)\]\.axis")
+_EFFORT = re.compile(r"dofs\[(\d+)\]\.limits\.effort")
 _FRAMES = re.compile(r"\[[01]\]\.weight.*|dofs\[\d+\]\.(axis|anchor)")
 _TURNING_FREELY = (DofKind.BALL, DofKind.FREE)
 _NO_AXES = (X, Z)
@@ -33,16 +35,20 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
     """The differences from ``before`` to ``after`` without those that are none of the robot.
 
     No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
-    on a body whose mass and tensor are given; other frames of a joint that moves its body alike. What an author wrote counts, used or not.
+    on a body whose mass and tensor are given; other frames of a joint that moves its body alike; an effort limit that is what the actuators
+    of the source can exert. What an author wrote counts, used or not.
     """
     alike: dict[Id, bool] = {}
     native = formats.native_format(before)
+    efforts = actuator_efforts(before)
     weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
     for difference in found:
         key = difference.element
         if _is_described_otherwise(difference, before, after):
             continue
         if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _needs_no_weight(before, key, difference.field):
+            continue
+        if efforts and _is_effort_of_actuators(difference, after, efforts, tolerance):
             continue
         if key.kind == "joint" and _FRAMES.fullmatch(difference.field):
             if key not in alike:
@@ -65,6 +71,18 @@ def _is_described_otherwise(difference: Difference, before: Mechanism, after: Me
 def _came_as_file(before: object, after: object) -> bool:
     """Whether a mesh that was a file is held by the file that was written, which the mesh's uri tells."""
     return isinstance(before, Mesh) and before.uri is not None and not before.vertices and isinstance(after, Mesh) and after.uri is None
+
+
+def _is_effort_of_actuators(
+    difference: Difference, after: Mechanism, efforts: Mapping[tuple[Id, int], float], tolerance: Tolerance
+) -> bool:
+    """Whether an effort limit, where there was none, is what the actuators of the source can exert."""
+    match, edge = _EFFORT.fullmatch(difference.field), after.graph.edges.get(difference.element)
+    if match is None or edge is None or not isinstance(edge.data, Joint):
+        return False
+    number = int(match[1])
+    wanted, found = efforts.get((difference.element, number)), edge.data.dofs[number].limits.effort
+    return wanted is not None and found is not None and abs(found - wanted) <= tolerance.absolute + tolerance.relative * wanted
 
 
 def _needs_no_weight(mechanism: Mechanism, shape: Id, field: str) -> bool:

@@ -84,8 +84,9 @@ class Feature(Enum):
 class Dof(Struct, frozen=True, eq=False):
     """One degree of freedom. ``axis`` is unit, in the body's frame; bounds are infinite where there are none.
 
-    ``effort`` is (lowest, highest) in N or Nm. Damping in Nms/rad or Ns/m, ``pitch`` of a screw in m/rad; ``nonlinear``
-    holds the higher coefficients of damping and stiffness where an engine has them.
+    ``effort`` is (lowest, highest) in N or Nm, ``driven`` the largest force that the actuators can exert together. Damping in
+    Nms/rad or Ns/m, ``pitch`` of a screw in m/rad; ``nonlinear`` holds the higher coefficients of damping and stiffness where an engine
+    has them.
     """
 
     kind: Kind
@@ -97,6 +98,7 @@ class Dof(Struct, frozen=True, eq=False):
     upper: float = INF
     velocity: float = INF
     effort: tuple[float, float] = (-INF, INF)
+    driven: float = INF
     damping: float = 0.0
     friction: float = 0.0
     armature: float = 0.0

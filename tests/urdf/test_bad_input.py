@@ -233,7 +233,7 @@ REPORTED: dict[str, tuple[str | bytes, list[str]]] = {
     "no limit": (
         robot(TWO_LINKS + joint()),
         [
-            "2: warning[HX044]: joint 'j' has no <limit>; read as unlimited, and written with the largest numbers (urdfdom refuses the file as it is)",
+            "2: warning[HX044]: joint 'j' has no <limit>; read as unlimited, and written with 1e9 (urdfdom refuses the file as it is)",
         ],
     ),
     "a limit without effort and velocity": (

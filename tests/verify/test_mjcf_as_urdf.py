@@ -103,3 +103,12 @@ def test_what_urdf_can_say_is_compared(pair: tuple[Path, Path], path: str, to: s
         element.getparent().remove(element)
     pair[1].write_bytes(etree.tostring(root))
     assert check in {found.quantity for found in hx.verify(*pair, samples=5).failed}
+
+
+def test_the_effort_limits_of_the_urdf_are_compared_with_what_the_actuators_can_exert(written: Write, tmp_path: Path) -> None:
+    motors = '<actuator><motor joint="crank" ctrlrange="-2 2" gear="5"/><position joint="turn" forcerange="-3 4"/></actuator></mujoco>'
+    source, target = written("mjcf", ZOO.replace("</mujoco>", motors)), tmp_path / "zoo.urdf"
+    hx.convert(source, target)
+    assert hx.verify(source, target, samples=2).is_same
+    target.write_text(target.read_text("utf-8").replace('effort="10"', 'effort="11"'), "utf-8")
+    assert failed(hx.verify(source, target, samples=2)) == ["effort limits at joint 'crank'"]

@@ -17,6 +17,7 @@ from hymeko_x.ir.parts import Body, Dof, DofKind, Frame, Joint, Light, Loop, Mou
 from hymeko_x.ir.values import ZERO, Pose, compose, quat_about, scaled
 from hymeko_x.rewrite.chains import chain_dofs
 from hymeko_x.rewrite.couplings import make_couplings_scalar
+from hymeko_x.rewrite.efforts import limit_efforts_by_actuators
 from hymeko_x.rewrite.inertia import fill_tensors, give_every_body_mass, make_tensors_physical
 from hymeko_x.rewrite.joints import lower_inner_free_joints
 from hymeko_x.rewrite.names import make_names_usable
@@ -171,6 +172,7 @@ RULES: tuple[Rule, ...] = (
     unless_from_sdf(fill_tensors),
     unless_from_sdf(make_tensors_physical),
     unless_from_sdf(lower_inner_free_joints),
+    unless_from_sdf(limit_efforts_by_actuators),
     move_anchors_into_frames,
     chain_joints,
     unless_from_sdf(close_loops_by_joints),

@@ -88,18 +88,15 @@ def _written_axis(dof: Dof) -> tuple[float, ...]:
 
 
 def _add_limits(tag: Tag, limits: Limits, *, bounded: bool) -> None:
-    """<limit>, with the largest numbers where URDF requires one and there is none."""
-    values: dict[str, float | None] = {}
-    if bounded:
-        values["lower"] = -words.NO_LIMIT if limits.lower is None else limits.lower
-        values["upper"] = words.NO_LIMIT if limits.upper is None else limits.upper
-    required = bounded or limits.effort is not None or limits.velocity is not None
-    for name, value in (("effort", limits.effort), ("velocity", limits.velocity)):
-        values[name] = words.NO_LIMIT if value is None and required else value
-    values |= {"acceleration": limits.acceleration, "jerk": limits.jerk}
-    attributes = said_numbers({name: value for name, value in values.items() if value is not None})
-    if attributes:
-        tag.add("limit", **attributes)
+    """<limit>, with a number that is none where URDF requires one (:data:`hymeko_x.formats.urdf.NO_LIMIT`)."""
+    none: dict[str, str] = {"lower": f"-{words.NO_LIMIT_TEXT}", "upper": words.NO_LIMIT_TEXT} if bounded else {}
+    if bounded or limits.effort is not None or limits.velocity is not None:
+        none |= {"effort": words.NO_LIMIT_TEXT, "velocity": words.NO_LIMIT_TEXT}
+    values = {name: getattr(limits, name) for name in words.LIMITS if bounded or name not in ("lower", "upper")}
+    given = said_numbers({name: value for name, value in values.items() if value is not None})
+    attributes = {name: given.get(name, none.get(name)) for name in words.LIMITS}
+    if given or none:
+        tag.add("limit", **{name: text for name, text in attributes.items() if text is not None})
 
 
 def _add_safety(tag: Tag, safety: Safety) -> None:

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x import codes
+from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf.notations import STYLE, TYPE, Explicit, Style
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Capsule, Dof, DofKind, Ellipsoid, Plane
 from hymeko_x.ir.values import IDENTITY, plane_axes
 from hymeko_x.rewrite.chains import chain_dofs
+from hymeko_x.rewrite.efforts import limit_efforts_by_actuators
 from hymeko_x.rewrite.inertia import fill_tensors
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
@@ -46,11 +49,28 @@ def approximate_primitives(mechanism: Mechanism, context: Context) -> Mechanism:
     return approximate_shapes(mechanism, context, (Ellipsoid, Plane) if keeps_capsules else (Ellipsoid, Plane, Capsule))
 
 
+def report_missing_limits(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Limits that URDF requires and the robot does not have are reported: a number that stands for none is written."""
+    bounded = [view for view in mechanism.joints.values() if len(view.joint.dofs) == 1 and _is_bounded(view, mechanism)]
+    missing = {name: [view.id for view in bounded if getattr(view.joint.dofs[0].limits, name) is None] for name in ("effort", "velocity")}
+    listed = " and ".join(f"{name} of {len(found)} joint{'s'[: len(found) > 1]}" for name, found in missing.items() if found)
+    if listed:
+        message = f"URDF requires limits that are not given: {listed}; {words.NO_LIMIT_TEXT} is written, which is read as none"
+        context.report.note(codes.REWRITTEN, message, element=str(next(found[0] for found in missing.values() if found)))
+    return mechanism
+
+
+def _is_bounded(view: JointView, mechanism: Mechanism) -> bool:
+    word = words.JOINT_TYPES.get(mechanism.notation(view.id, TYPE) or words.default_type(view.joint) or "")
+    return word is not None and word.bounded
+
+
 RULES: tuple[Rule, ...] = (
     make_names_usable,
     drop_engine_shapes,
     fill_tensors,
     expand_screws,
+    limit_efforts_by_actuators,
     chain_joints,
     make_world_a_link,
     join_roots,
@@ -58,5 +78,6 @@ RULES: tuple[Rule, ...] = (
     approximate_primitives,
     split_shared_shapes,
     part_meshes_by_looks,
+    report_missing_limits,
     make_names_usable,  # once more, for what the rules have added
 )

@@ -56,8 +56,18 @@ def default_type(joint: Joint) -> str | None:
     return "prismatic" if kind is DofKind.SLIDE else "floating" if kind is DofKind.FREE else None
 
 
-NO_LIMIT = 1.7976931348623157e308
-"""The largest double: "no limit" for Pinocchio, and written where URDF requires a number."""
+NO_LIMIT, NO_LIMIT_TEXT = 1e9, "1e9"
+"""Written where URDF requires a limit and there is none (rad, m, rad/s, m/s, N, Nm), and read as none: no robot comes near it."""
+LARGEST = 1.7976931348623157e308
+"""The largest double, which is "no limit" as well for Pinocchio."""
+LIMITS = ("lower", "upper", "effort", "velocity", "acceleration", "jerk")
+"""The attributes of <limit> in the order in which they are written, which are fields of the same names."""
+
+
+def is_no_limit(value: float) -> bool:
+    """Whether a number in <limit> stands for none."""
+    return abs(value) == NO_LIMIT or abs(value) >= LARGEST
+
 
 ROLES: Mapping[str, Role] = MappingProxyType({"visual": Role.VISUAL, "collision": Role.COLLISION})
 """The elements of a link that hold a shape."""

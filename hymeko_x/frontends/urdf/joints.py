@@ -183,7 +183,7 @@ def _read_limits(joint: Node, builder: UrdfBuilder) -> Limits:
     node = joint.take_child("limit")
     if node is None:
         message = (
-            f"{joint.subject} has no <limit>; read as unlimited, and written with the largest numbers (urdfdom refuses the file as it is)"
+            f"{joint.subject} has no <limit>; read as unlimited, and written with {words.NO_LIMIT_TEXT} (urdfdom refuses the file as it is)"
         )
         builder.warn(codes.MISSING_LIMIT, joint, message)
         return UNLIMITED
@@ -214,7 +214,7 @@ def _rates(node: Node, lower: float | None, upper: float | None, builder: UrdfBu
 
 def _rate(node: Node, name: str, builder: UrdfBuilder) -> float | None:
     value = take_number(node, name, builder, instead="unlimited is used")
-    return None if value is None or abs(value) >= words.NO_LIMIT else value
+    return None if value is None or words.is_no_limit(value) else value
 
 
 def _check_limits(joint: Node, node: Node, limits: Limits, missing: list[str], builder: UrdfBuilder) -> None:

@@ -38,7 +38,7 @@ def check_dofs(pair: Pair) -> Iterator[Check]:
     """Every check of single coordinates."""
     yield from _check_limits(pair)
     yield from _check_bounds(pair, Feature.VELOCITY_LIMITS, "velocity limits", "rad/s or m/s", _velocity)
-    yield from _check_bounds(pair, Feature.EFFORT_LIMITS, "effort limits", "N m or N", _effort)
+    yield from _check_bounds(pair, Feature.EFFORT_LIMITS, "effort limits", "N m or N", _driven_effort(pair))
     for feature, (name, unit, value) in _MECHANICS.items():
         yield from _check_mechanics(pair, feature, name, unit, value)
     yield from _check_springs(pair)
@@ -79,6 +79,13 @@ def _effort(dof: Dof) -> tuple[float, float]:
     if low == -high:
         return -_or_none(abs(high)), _or_none(abs(high))
     return low, high
+
+
+def _driven_effort(pair: Pair) -> Callable[[Dof], tuple[float, float]]:
+    """The effort limits; where a format has no actuators, a joint without one has what they can exert in the other."""
+    if pair.both_represent(Feature.ACTUATORS):
+        return _effort
+    return lambda dof: (-dof.driven, dof.driven) if _effort(dof) == (-INF, INF) else _effort(dof)
 
 
 def _or_none(value: float) -> float:

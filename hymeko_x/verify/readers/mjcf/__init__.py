@@ -19,11 +19,12 @@ from hymeko_x.verify.kinematics import disagreement
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Joint, Kind, KinematicModel, Role, Shape, Surface, world_body
 from hymeko_x.verify.readers import native_output
 from hymeko_x.verify.readers.mjcf.constraints import read_actuators, read_couplings, read_loops, read_sensors, read_tied_tendons
+from hymeko_x.verify.readers.mjcf.forces import driven_joints
 from hymeko_x.verify.readers.mjcf.tendons import read_tendons
 from hymeko_x.verify.spatial import pose, quat_from_rotation, rigid, rotation_from_quat
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from hymeko_x.verify.readers import Lookup
@@ -86,9 +87,10 @@ def _without_log_file() -> Iterator[None]:
 def from_compiled(compiled: Any) -> KinematicModel:
     """The robot in an mjModel."""
     joint_dofs: dict[int, int] = {}
+    forces = driven_joints(compiled)
     bodies = [world_body(shapes=tuple(_shapes(compiled, WORLD)))]
     for index in range(1, compiled.nbody):
-        bodies.append(_body(compiled, index, joint_dofs))
+        bodies.append(_body(compiled, index, joint_dofs, forces))
     return KinematicModel(
         name=compiled.names[: compiled.names.find(b"\0")].decode("utf-8", "replace"),
         format="mjcf",
@@ -104,9 +106,9 @@ def from_compiled(compiled: Any) -> KinematicModel:
     )
 
 
-def _body(compiled: Any, index: int, joint_dofs: dict[int, int]) -> Body:
+def _body(compiled: Any, index: int, joint_dofs: dict[int, int], forces: Mapping[int, float]) -> Body:
     first, count = int(compiled.body_jntadr[index]), int(compiled.body_jntnum[index])
-    dofs = [_dof(compiled, joint) for joint in range(first, first + count)]
+    dofs = [_dof(compiled, joint, forces) for joint in range(first, first + count)]
     number = next(reversed(joint_dofs.values()), -1) + 1
     if int(compiled.body_parentid[index]) and _floats(dofs):
         dofs = [Dof(Kind.FREE, np.array([0.0, 0.0, 1.0]))]
@@ -132,7 +134,7 @@ def _floats(dofs: list[Dof]) -> bool:
     return all(repr(dof) == repr(other) for dof, other in zip(dofs, plain, strict=True))
 
 
-def _dof(compiled: Any, joint: int) -> Dof:
+def _dof(compiled: Any, joint: int, forces: Mapping[int, float]) -> Dof:
     kind = _KINDS[int(compiled.jnt_type[joint])]
     v, q = int(compiled.jnt_dofadr[joint]), int(compiled.jnt_qposadr[joint])
     limited, forced = bool(compiled.jnt_limited[joint]), bool(compiled.jnt_actfrclimited[joint])
@@ -147,6 +149,7 @@ def _dof(compiled: Any, joint: int) -> Dof:
         lower=float(lower),
         upper=float(upper),
         effort=(float(strongest[0]), float(strongest[1])),
+        driven=forces.get(joint, INF),
         damping=float(compiled.dof_damping[v]),
         friction=float(compiled.dof_frictionloss[v]),
         armature=float(compiled.dof_armature[v]),
