@@ -21,7 +21,10 @@ if TYPE_CHECKING:
 README = Path(__file__).parents[1] / "README.md"
 PAGES = (
     README,
-    *(README.parent / "docs" / f"{name}.md" for name in ("command-line", "dynamics", "errors", "lossless", "report", "update", "verify")),
+    *(
+        README.parent / "docs" / f"{name}.md"
+        for name in ("command-line", "dh", "dynamics", "errors", "lossless", "report", "update", "verify")
+    ),
 )
 BLOCK = re.compile(r"```(\w+)(?: (\S+))?\n(.*?)```\n", re.DOTALL)
 

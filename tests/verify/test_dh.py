@@ -79,7 +79,8 @@ def worst_error(seed: int, conventions: tuple[Convention, ...]) -> float:
     q = rng.uniform(-math.pi, math.pi, (2, model.width))
     native = build(model, 1)
     poses = native.poses(q)[:, -1]
-    return max(float(np.abs(dh.table(model, None, c).poses(q) - poses).max()) for c in conventions)
+    tables = [dh.table(model, None, c, as_data_sheet=as_sheet) for c in conventions for as_sheet in (False, True)]
+    return max(float(np.abs(table.poses(q) - poses).max()) for table in tables)
 
 
 def test_tables_of_500_random_chains_are_exact() -> None:

@@ -21,10 +21,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.verify.dh.lines import Frame, Line, Link, link_between, motion
+from hymeko_x.verify.dh.sheet import settled, turn_of_base
 from hymeko_x.verify.kinematics import draw, prepare
 from hymeko_x.verify.model import WORLD, Array, Kind, KinematicModel
 from hymeko_x.verify.spatial import rigid, rotation_about
@@ -60,8 +62,8 @@ class Row(Struct, frozen=True):
 class Table(Struct, frozen=True, eq=False):
     """The rows of a chain between two constants: T(q) = ``base`` * rows(q) * ``tool``, the tip's pose in the base's frame.
 
-    ``dofs`` are the indices of the rows' dofs in the model, ``ends`` the bodies at both ends, ``start`` and
-    ``tip`` their names.
+    ``base_rows`` and ``tool_rows`` are these constants as rows of the convention, none for the identity. ``dofs`` are the
+    indices of the rows' dofs in the model, ``ends`` the bodies at both ends, ``start`` and ``tip`` their names.
     """
 
     convention: Convention
@@ -72,6 +74,8 @@ class Table(Struct, frozen=True, eq=False):
     tool: Array
     dofs: tuple[int, ...]
     ends: tuple[int, int]
+    base_rows: tuple[Link, ...] = ()
+    tool_rows: tuple[Link, ...] = ()
 
     def poses(self, q: Array) -> Array:
         """Poses (n, 4, 4) of the tip at coordinates (n, rows)."""
@@ -83,8 +87,13 @@ class Table(Struct, frozen=True, eq=False):
         return out @ self.tool
 
 
-def table(model: KinematicModel, tip: str | int | None = None, convention: Convention = Convention.STANDARD) -> Table:
+def table(
+    model: KinematicModel, tip: str | int | None = None, convention: Convention = Convention.STANDARD, *, as_data_sheet: bool = False
+) -> Table:
     """The table of the chain from the base to a body by name or index (to the end of the longest chain by default).
+
+    ``as_data_sheet``: normals point so that theta has no offset wherever that is possible, as :mod:`hymeko_x.verify.dh.sheet` says;
+    else so that a > 0.
 
     Where a ball or a free joint is on the way to the tip, the chain starts at the child of the last one of them.
     Raises: Refusal HX303 when there is no such body or no joint on the way to it moves.
@@ -95,7 +104,12 @@ def table(model: KinematicModel, tip: str | int | None = None, convention: Conve
         raise refuse(codes.NO_CHAIN, f"nothing moves between {model.body_label(start)} and {model.body_label(body)}")
     lines, frames = lines_of(model, start, body, dofs, zero_poses(model))
     links, last = _through(lines, frames[0], frames[1], keep=convention is Convention.HAYATI)
-    return _grouped(model, convention, (start, body), dofs, links, last)
+    turn = 0.0
+    if as_data_sheet:
+        slides = convention is not Convention.STANDARD or model.dofs[dofs[-1]].kind is Kind.SLIDE
+        links, last = settled(links, last, sliding_end=slides)
+        turn = turn_of_base((links, last))
+    return _grouped(model, convention, (start, body), dofs, links, last, turn)
 
 
 def chains(model: KinematicModel) -> tuple[int, ...]:
@@ -198,22 +212,37 @@ def _grouped(
     dofs: Sequence[int],
     links: Sequence[Link],
     last: tuple[float, float],
+    turn: float = 0.0,
 ) -> Table:
-    """The same numbers grouped by the convention."""
-    base = _joint_matrix(links[0].theta, links[0].d)
-    tool = _joint_matrix(*last)
+    """The same numbers grouped by the convention; the base takes this turn from the first theta, and then all of the first link."""
+    first, end = links[0], links[-1]
+    turned = Link(turn, 0.0, 0.0, 0.0)
+    if turn:
+        links = [Link(0.0, 0.0, 0.0, 0.0), replace(links[1], theta=0.0), *links[2:]]
     if convention is Convention.MODIFIED:
         shapes = links[:-1]
-        tool = links[-1].matrix() @ tool
+        before = [replace(first, a=0.0, alpha=0.0, beta=0.0), *([replace(first, theta=turn, d=0.0)] if turn else ())]
+        behind = [replace(end, theta=last[0], d=last[1])]
     else:
         shapes = links[1:]
-        base = base @ links[0].matrix()
+        before, behind = [first, turned], [Link(*last, 0.0, 0.0)]
+    base, tool = (_product(rows, convention) for rows in (before, behind))
     rows = tuple(
         Row(_name(model, dof), model.dofs[dof].kind, joint.theta, joint.d, shape.a, shape.alpha, shape.beta)
         for dof, joint, shape in zip(dofs, links[1:], shapes, strict=True)
     )
     names = [model.bodies[end].name or f"body {end}" for end in ends]
-    return Table(convention, names[0], names[1], rows, base, tool, tuple(dofs), ends)
+    base_rows, tool_rows = (tuple(row for row in constant if row != Link(0.0, 0.0, 0.0, 0.0)) for constant in (before, behind))
+    return Table(convention, names[0], names[1], rows, base, tool, tuple(dofs), ends, base_rows, tool_rows)
+
+
+def _product(rows: Sequence[Link], convention: Convention) -> Array:
+    """The transformation of rows without a coordinate."""
+    out = np.eye(4)
+    for row in rows:
+        joint, link = _joint_matrix(row.theta, row.d), row.matrix()
+        out = out @ (link @ joint if convention is Convention.MODIFIED else joint @ link)
+    return out
 
 
 def _name(model: KinematicModel, dof: int) -> str:
