@@ -21,7 +21,7 @@ LAYERS = (
     ("xml", "meshes"),
     ("formats",),
     ("rewrite", "compare", "language", "factor", "extras"),
-    ("residue", "assets", "reporting"),
+    ("residue", "assets", "reporting", "joining"),
     ("frontends", "backends"),
     ("targets",),
     ("pipeline", "disk", "verify", "validation", "corpus"),

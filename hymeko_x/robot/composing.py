@@ -10,15 +10,16 @@ from msgspec.structs import replace
 from hymeko_x import formats, pipeline
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge, pose_weight
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import word
 from hymeko_x.ir.parts import Body, Dof, DofKind, Joint, World
-from hymeko_x.ir.values import IDENTITY, Pose, compose
+from hymeko_x.ir.values import IDENTITY, Pose
+from hymeko_x.joining import held, on_body, with_names
 from hymeko_x.robot.draft import Draft
 from hymeko_x.robot.editing import dofs_of, place
 from hymeko_x.robot.errors import EditError, unknown_name
-from hymeko_x.robot.joining import merged, provenance_of, with_files, with_names
+from hymeko_x.robot.joining import merged, provenance_of, with_files
 from hymeko_x.robot.parting import ASSETS, below, part_of
 
 if TYPE_CHECKING:
@@ -95,8 +96,8 @@ def _standing(part: Mechanism, body: Id, frame: Pose, dofs: Joint | None, name: 
     for key, edge in part.graph.edges.items():
         if all(arc.target != WORLD for arc in edge.arcs):
             continue
-        arcs = tuple([_on_body(arc, body, frame) if arc.target == WORLD else arc for arc in edge.arcs])
-        edges[key] = replace(edge, data=_held(edge.data, dofs) if isinstance(edge.data, Joint) else edge.data, arcs=arcs)
+        arcs = tuple([on_body(arc, body, frame) if arc.target == WORLD else arc for arc in edge.arcs])
+        edges[key] = replace(edge, data=held(edge.data, dofs) if isinstance(edge.data, Joint) else edge.data, arcs=arcs)
         notations[key] = {**notations.get(key, {}), ATTACHED.name: _remembered(name, edge)}
     names = names_in_use(part)
     for root in part.roots:
@@ -106,20 +107,6 @@ def _standing(part: Mechanism, body: Id, frame: Pose, dofs: Joint | None, name: 
             notations[key] = {ATTACHED.name: _remembered(name, None)}
     graph = part.graph.replace(edges=edges, without=[WORLD])
     return replace(part, graph=graph, notations=notations)
-
-
-def _on_body(arc: RobotArc, body: Id, frame: Pose) -> RobotArc:
-    """The arc to the world as one to the body."""
-    moves = isinstance(arc.weight, Pose) or (arc.weight is None and arc.sign >= 0)
-    weight = compose(frame, pose_weight(arc)) if moves else arc.weight
-    return replace(arc, target=body, weight=None if weight == IDENTITY else weight)
-
-
-def _held(joint: Joint, dofs: Joint | None) -> Joint:
-    """A joint to the world as one to the body: a free one is fixed."""
-    if dofs is not None:
-        return dofs
-    return Joint() if any(dof.kind is DofKind.FREE for dof in joint.dofs) else joint
 
 
 def _dofs(joint: str | Joint | None) -> Joint | None:

@@ -1,4 +1,4 @@
-"""Two mechanisms as one: every element of the part gets a prefix, its files keep leading to where they are, its side tables come along."""
+"""Two mechanisms as one: the files of the part keep leading to where they are, its side tables come along."""
 
 from __future__ import annotations
 
@@ -11,71 +11,14 @@ from hymeko_x import formats
 from hymeko_x.assets.pack import is_of_package
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, Mechanism, Provenance
-from hymeko_x.ir.names import rename
-from hymeko_x.ir.parts import Joint, Material, Mesh, Shape, Texture
 from hymeko_x.robot.errors import EditError
 from hymeko_x.source import ManyFiles
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping
+    from collections.abc import Iterator, Mapping
 
-    from hymeko_x.ir.mechanism import Extra, RobotArc, RobotEdge
-    from hymeko_x.ir.parts import EdgePart, VertexPart
+    from hymeko_x.ir.parts import Mesh, Texture, VertexPart
     from hymeko_x.source import Files
-
-
-# ---- names ---------------------------------------------------------------------------------------------------------------------
-
-
-def with_names(mechanism: Mechanism, change: Callable[[str], str], *, is_part: bool = True) -> Mechanism:
-    """The mechanism with every name changed, also those in its extras; the world stays the world.
-
-    Of one that becomes a part of a robot, the extras that a robot has once are left out.
-    """
-    graph = mechanism.graph
-    vertices = {key: _named(part, change) for key, part in graph.vertices.items()}
-    edges = {
-        key: replace(edge, data=_edge_named(edge.data, change), arcs=_arcs(edge, graph.edges, change)) for key, edge in graph.edges.items()
-    }
-    pairs = ((key, Id(key.kind, change(key.name))) for table in (vertices, edges) for key in table if key != WORLD)
-    renamed = rename(replace(mechanism, graph=Hypergraph(vertices, edges)), {old: new for old, new in pairs if old != new})
-    extras = {key: tuple(_extras(found, change, is_of_whole=is_part and key == ROOT)) for key, found in renamed.extras.items()}
-    return replace(renamed, extras={key: found for key, found in extras.items() if found})
-
-
-def _named(part: VertexPart, change: Callable[[str], str]) -> VertexPart:
-    return replace(part, name=change(part.name)) if isinstance(part, Material | Mesh | Texture) and part.name else part
-
-
-def _edge_named(part: EdgePart, change: Callable[[str], str]) -> EdgePart:
-    if isinstance(part, Shape) and part.name:
-        return replace(part, name=change(part.name))
-    if isinstance(part, Joint) and any(dof.name for dof in part.dofs):
-        return replace(part, dofs=tuple([replace(dof, name=change(dof.name)) if dof.name else dof for dof in part.dofs]))
-    return part
-
-
-def _arcs(edge: RobotEdge, edges: Mapping[Id, RobotEdge], change: Callable[[str], str]) -> tuple[RobotArc, ...]:
-    """The arcs; roles that are names of dofs change as well."""
-    if not any(arc.role for arc in edge.arcs):
-        return edge.arcs
-    return tuple([replace(arc, role=change(arc.role)) if _is_dof(arc, edges) else arc for arc in edge.arcs])
-
-
-def _is_dof(arc: RobotArc, edges: Mapping[Id, RobotEdge]) -> bool:
-    joint = edges[arc.target].data if arc.role and arc.target in edges else None
-    return isinstance(joint, Joint) and any(dof.name == arc.role for dof in joint.dofs)
-
-
-def _extras(found: Iterable[Extra], change: Callable[[str], str], *, is_of_whole: bool) -> Iterator[Extra]:
-    """The extras with changed names where their format says how. Of those of the whole, only elements of XML come along."""
-    for extra in found:
-        row = next((row for row in formats.FORMATS if row.name == extra.format and row.names_in), None)
-        if row is not None and row.names_in is not None:
-            changed = formats.loaded(row.names_in)(extra, change, is_of_whole=is_of_whole)
-            yield from () if changed is None else (changed,)
-        elif not is_of_whole or extra.text.startswith("<"):
-            yield extra
 
 
 # ---- formats -------------------------------------------------------------------------------------------------------------------

@@ -11,11 +11,11 @@ from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.parts import Body
 from hymeko_x.ir.values import IDENTITY
+from hymeko_x.joining import with_names
 from hymeko_x.robot import memory, text
 from hymeko_x.robot.composing import attach, detach, subtree
 from hymeko_x.robot.draft import Draft
 from hymeko_x.robot.editing import Editing
-from hymeko_x.robot.joining import with_names
 from hymeko_x.robot.kinematics import all_poses
 from hymeko_x.robot.merging import merge_fixed
 from hymeko_x.robot.mirroring import mirror, swapped
