@@ -132,6 +132,8 @@ def read_for(target: Format, source: Source, format: Format, report: Report, *, 
 
 def _native(source: Source, format: Format, report: Report) -> tuple[Mechanism, Kept | None]:
     """The mechanism as the file itself describes it, and what is kept for it: inside of it, else beside it."""
+    if format.imports is not None and source.parts is None:
+        source = formats.loaded(format.imports)(source, report)
     image, inside = reader(format)(source, report)
     kept = Kept(inside, source.name) if inside else source.kept
     return image, None if source.ignores_kept else kept

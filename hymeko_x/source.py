@@ -15,6 +15,7 @@ from msgspec import Struct, field
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from hymeko_x.diagnostics import Origin
     from hymeko_x.ir.mechanism import Mechanism
 
 
@@ -64,13 +65,24 @@ def with_prefix(text: str, prefix: str) -> str:
     return text.replace("version ", f'prefix "{escaped}" version ', 1)
 
 
+class Parts(Protocol):
+    """Reads the robots of other files for a description that imports them."""
+
+    def __call__(self, path: str, arguments: tuple[tuple[str, float | str], ...], origin: Origin) -> Mechanism:
+        """The robot in a file: complete, without classes, and with uris that lead from the importing file to its files.
+
+        ``path`` is as the description has it, ``origin`` where it imports. Raises: Refusal.
+        """
+        ...
+
+
 class Source(Struct, frozen=True):
     """One input: its name as the user typed it (used in messages), its bytes, and the files around it.
 
     ``arguments`` are the user's values for a format that takes some (xacro's NAME:=VALUE), ``environment`` the
     variables that the user passes on to it (xacro's `$(env NAME)`); the program's own environment stays closed. ``variants``
     are the choices for a format that leaves some open (USD's variant sets). ``kept`` is what the kept file beside it holds;
-    with ``ignores_kept`` neither this is used nor what is kept inside of the file.
+    with ``ignores_kept`` neither this is used nor what is kept inside of the file. ``parts`` reads robots that the description imports.
     """
 
     name: str
@@ -81,6 +93,7 @@ class Source(Struct, frozen=True):
     variants: Mapping[str, str] = field(default_factory=dict)
     kept: Kept | None = None
     ignores_kept: bool = False
+    parts: Parts | None = None
 
 
 class Reading(NamedTuple):

@@ -24,7 +24,7 @@ LAYERS = (
     ("residue", "assets", "reporting", "joining"),
     ("frontends", "backends"),
     ("targets",),
-    ("pipeline", "disk", "verify", "validation", "corpus"),
+    ("pipeline", "importing", "disk", "verify", "validation", "corpus"),
     ("delivery", "edits", "robot", "dynamics"),
     ("api",),
     ("draw",),
@@ -41,6 +41,8 @@ BESIDE = {
     ("corpus", "verify"),
     ("corpus", "pipeline"),
     ("corpus", "disk"),
+    ("importing", "pipeline"),
+    ("verify", "importing"),
     ("delivery", "edits"),
 }
 """Imports within a layer that are meant to be: (who, whom)."""

@@ -62,6 +62,8 @@ class Format(Struct, frozen=True):
     """The name of the format that its files expand to (xacro)."""
     outline: str | None = None
     """The function ``(source, report) -> outline`` that finds where everything stands in its text."""
+    imports: str | None = None
+    """The function ``(source, report) -> source`` by which its files can import robots of other files."""
     flat: str | None = None
     """The function that writes as ``backend`` does, without what depends on several elements; None: ``write`` itself is like that."""
     has_arguments: bool = False
@@ -154,6 +156,7 @@ HYMEKO = Format(
     "hymeko_x.frontends.hymeko",
     "hymeko_x.backends.hymeko",
     outline="hymeko_x.frontends.hymeko.outline:outline",
+    imports="hymeko_x.importing:with_imports",
     flat="hymeko_x.backends.hymeko:write_flat",
     is_exact=True,
     beginning=rb"(?:\s|//[^\n]*\n|#[^\n]*\n|/\*.*?\*/)*+(?:[^\W\d]|[`\"@\[\x80-\xff])[^{}=;$]{0,1000}\{",

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct, field
 
-from hymeko_x.language.expressions import fill, fill_text
-from hymeko_x.language.syntax import ArcItem, Comment, Document, Field, Import, Item, Node, QuotedName
-from hymeko_x.language.templates import MAX_DEPTH, Templates, defined_templates, is_definition, merge
+from hymeko_x.language.expressions import INDEX, fill, fill_text, fill_value
+from hymeko_x.language.syntax import ArcItem, Comment, Document, Field, Import, Item, Node, QuotedName, Value, is_list
+from hymeko_x.language.templates import MAX_DEPTH, Templates, definitions, is_definition, merge
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -67,6 +67,31 @@ class Element(NamedTuple):
     scope: Scope
 
 
+class Instance(NamedTuple):
+    """A robot of another file: where it is imported, its arguments, the node with plain values, and the scope of its elements.
+
+    ``inner.prefix`` is what the names of its elements begin with; ``inner.elements`` are they, as soon as the file is read.
+    """
+
+    node: Node
+    source: Import
+    arguments: tuple[tuple[str, float | str], ...]
+    inner: Scope
+    scope: Scope
+
+
+class Change(NamedTuple):
+    """``group.name { .. }``: fields of an element that another item makes."""
+
+    node: Node
+    scope: Scope
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        """The path of the element."""
+        return (*self.node.within, self.node.name)
+
+
 class Statement(NamedTuple):
     """A field or arc that stands in the root's block itself."""
 
@@ -79,7 +104,7 @@ class Expanded(NamedTuple):
 
     name: str
     types: tuple[str, ...]
-    items: tuple[Element | Statement, ...]
+    items: tuple[Expansion, ...]
     scope: Scope
     root: str
     preceding: tuple[Comment, ...] = ()
@@ -93,17 +118,35 @@ def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
     """
     preceding, document, following = _without_outer_comments(document)
     header, roots, loose = _split(document)
-    definitions = defined_templates(document.items, roots, file, fetch)
-    templates = Templates(file, definitions, MAX_ITEMS + EACH * sum(len(node.items) for node in roots))
+    defined = definitions(document.items, roots, file, fetch)
+    templates = Templates(file, defined, MAX_ITEMS + EACH * sum(len(node.items) for node in roots))
     expansion = _Expansion(file, templates)
     scope = Scope()
     if len(roots) != 1 or loose:
-        found = expansion.elements([*loose, *roots], {}, scope)
-        return Expanded(header, (), tuple(found), scope, "", preceding, following)
+        found = _changed(expansion.elements([*loose, *roots], {}, scope))
+        return Expanded(header, (), found, scope, "", preceding, following)
     root = roots[0]
     preset = templates.preset(root, {})
-    found = expansion.elements(merge(preset.items, root.items), {}, scope)
-    return Expanded(header or root.name, preset.types, tuple(found), scope, root.name, preceding, following)
+    found = _changed(expansion.elements(merge(preset.items, root.items), {}, scope))
+    return Expanded(header or root.name, preset.types, found, scope, root.name, preceding, following)
+
+
+def _changed(found: Iterator[Expansion]) -> tuple[Expansion, ...]:
+    """The items with the changes of elements that this text makes; those of imported robots are left for their reader."""
+    items = list(found)
+    changes = [item for item in items if isinstance(item, Change)]
+    if not changes:
+        return tuple(items)
+    places = {(item.name, bool(item.node.edge)): place for place, item in enumerate(items) if isinstance(item, Element)}
+    done: set[int] = set()
+    for change in changes:
+        name = change.scope.resolve(change.path)
+        place = places.get((name or "", bool(change.node.edge)))
+        element = None if place is None else items[place]
+        if place is not None and isinstance(element, Element):
+            done.add(id(change))
+            items[place] = element._replace(node=element.node._replace(items=merge(element.node.items, change.node.items)))
+    return tuple(item for item in items if id(item) not in done)
 
 
 def _without_outer_comments(document: Document) -> tuple[tuple[Comment, ...], Document, tuple[Comment, ...]]:
@@ -136,6 +179,9 @@ def _split(document: Document) -> tuple[str, list[Node], list[Item]]:
     return header, roots, loose
 
 
+Expansion = Element | Statement | Instance | Change
+
+
 class _Expansion:
     """The elements of blocks, with those of the assemblies in them."""
 
@@ -145,7 +191,7 @@ class _Expansion:
 
     def elements(
         self, items: Sequence[Item], environment: Environment, scope: Scope, depth: int = 0, *, made: bool = False
-    ) -> Iterator[Element | Statement]:
+    ) -> Iterator[Expansion]:
         """The elements of a block, with those of the assemblies in it in their place. ``made``: a template put them there."""
         for item in items:
             if is_definition(item):
@@ -155,10 +201,24 @@ class _Expansion:
             else:
                 yield Statement(fill(item, environment, self._file), scope)  # type: ignore[arg-type]
 
-    def _element(self, node: Node, environment: Environment, scope: Scope, depth: int, *, made: bool) -> Iterator[Element | Statement]:
+    def _element(self, node: Node, environment: Environment, scope: Scope, depth: int, *, made: bool) -> Iterator[Expansion]:
         if made:
             self._templates.count(node, 1)
+        if node.size is not None:
+            yield from self._array(node, node.size, environment, scope, depth)
+            return
         name = fill_text(node.name, environment, node, self._file)
+        if node.within:
+            yield Change(self._plain(node, name, environment), scope)
+            return
+        robot = self._templates.robot(node)
+        if robot is not None:
+            source, kind = robot
+            arguments = tuple((key, self._templates.scalar(key, value, environment, node)) for key, value in kind.arguments or ())
+            inner = scope.scopes.setdefault(name, Scope(f"{scope.full(name)}_", scope))
+            scope.elements.add(name)
+            yield Instance(self._plain(node, name, environment), source, arguments, inner, scope)
+            return
         preset = self._templates.preset(node, environment)
         merged = merge(preset.items, node.items)
         if "assembly" in preset.types:
@@ -170,9 +230,25 @@ class _Expansion:
         )
         yield Element(scope.full(name), node._replace(name=name, items=plain, stereotypes=()), preset.types, scope)
 
+    def _plain(self, node: Node, name: str, environment: Environment) -> Node:
+        """The node with plain values."""
+        return node._replace(name=name, items=tuple(fill(item, environment, self._file) for item in node.items))
+
+    def _array(self, node: Node, count: tuple[Value, ...], environment: Environment, scope: Scope, depth: int) -> Iterator[Expansion]:
+        """The elements of an array: ``${i}`` is the number of each, from 0, and stands behind its name."""
+        sizes = fill_value(count, environment, node, self._file)
+        size = sizes[0] if is_list(sizes) and len(sizes) == 1 else None
+        if not isinstance(size, float) or not size.is_integer() or size < 0:
+            hint = f"{node.name} [3] : type {{ }} makes {node.name}_0, {node.name}_1 and {node.name}_2"
+            raise self._templates.refuse(node, f"the size of the array '{node.name}' is one whole number in brackets", hint)
+        self._templates.count(node, int(min(size, MAX_ITEMS * 2)))
+        for number in range(int(size)):
+            one = node._replace(size=None, name=type(node.name)(f"{node.name}_{number}"))
+            yield from self._element(one, {**environment, INDEX: float(number)}, scope, depth, made=True)
+
     def _assembly(
         self, node: Node, name: str, items: tuple[Item, ...], environment: Environment, scope: Scope, depth: int, *, made: bool
-    ) -> Iterator[Element | Statement]:
+    ) -> Iterator[Expansion]:
         """The elements of an assembly: its own nodes and comments, and the nodes of its template. One of the same name is continued."""
         if depth > MAX_DEPTH:
             hint = "an assembly that holds an instance of itself never ends"

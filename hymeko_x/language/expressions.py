@@ -40,6 +40,10 @@ _WORDS: Mapping[type[Exception], str] = MappingProxyType(
         RecursionError: "it is nested too deep",
     }
 )
+INDEX = "i"
+"""The number of an element of an array, from 0, in the expressions of the array."""
+_LATER = "the number of an element that is not made yet"
+_NAMES = re.compile(r"(?<![\w.])[^\W\d]\w*")
 MAX_TEXT = 100_000
 """Characters of a text with `${ }` in it."""
 _INTERPOLATION = re.compile(r"\$\{([^{}]*)\}")
@@ -119,9 +123,18 @@ def fill(item: Item, environment: Environment, file: str) -> Item:
         case ArcItem():
             return _filled_arc(item, environment, file)
         case Node():
-            items = tuple(fill(inner, environment, file) for inner in item.items)
-            types = tuple(_filled_arguments(stereotype, environment, item, file) for stereotype in item.stereotypes)
-            return item._replace(name=fill_text(item.name, environment, item, file), items=items, stereotypes=types)
+            return _filled_node(item, environment, file)
+
+
+def _filled_node(node: Node, environment: Environment, file: str) -> Node:
+    """The node; expressions of an array that use the number of its elements wait for that."""
+    inner = environment
+    if node.size is not None:
+        node = node._replace(size=fill_value(node.size, environment, node, file))  # type: ignore[arg-type]
+        inner = {**environment, INDEX: _LATER}
+    items = tuple(fill(item, inner, file) for item in node.items)
+    types = tuple(_filled_arguments(stereotype, inner, node, file) for stereotype in node.stereotypes)
+    return node._replace(name=fill_text(node.name, environment, node, file), items=items, stereotypes=types)
 
 
 def _filled_arguments(stereotype: Stereotype, environment: Environment, node: Node, file: str) -> Stereotype:
@@ -146,6 +159,8 @@ def fill_value(value: Value, environment: Environment, item: Item, file: str) ->
     if type(value) is str:
         return fill_text(value, environment, item, file)
     if isinstance(value, Expression):
+        if _waits(value.text, environment):
+            return Expression(_with_numbers(value.text, environment))
         return _value_of(value.text, environment, item, file)
     if type(value) is tuple:
         return tuple(fill_value(part, environment, item, file) for part in value)
@@ -158,6 +173,8 @@ def fill_text(text: str, environment: Environment, item: Item, file: str) -> str
         return text
 
     def interpolated(match: re.Match[str]) -> str:
+        if _waits(match[1], environment):
+            return f"${{{_with_numbers(match[1], environment)}}}"
         value = _value_of(match[1], environment, item, file)
         if isinstance(value, str):
             return value
@@ -167,6 +184,21 @@ def fill_text(text: str, environment: Environment, item: Item, file: str) -> str
     if len(filled) > MAX_TEXT:
         raise refuse(codes.TOO_LARGE, f"a text grows to more than {MAX_TEXT} characters", origin_of(item, file))
     return type(text)(filled)
+
+
+def _waits(text: str, environment: Environment) -> bool:
+    """Whether an expression uses the number of an element of an array that is not made yet."""
+    return environment.get(INDEX) is _LATER and INDEX in _NAMES.findall(text)
+
+
+def _with_numbers(text: str, environment: Environment) -> str:
+    """An expression with the numbers of the parameters that are known."""
+
+    def known(match: re.Match[str]) -> str:
+        value = environment.get(match[0])
+        return f"({value!r})" if isinstance(value, float) else match[0]
+
+    return _NAMES.sub(known, text)
 
 
 def _value_of(text: str, environment: Environment, item: Item, file: str) -> float | str:

@@ -23,10 +23,12 @@ NAME = "name of the node"
 TYPES = "types of the node"
 """The name of the field that is everything behind its colon."""
 
-_VALUES = ("vector", "ref", "relation", "type", "signature", "stereotypes", "stereotype", "use", "parameters", "parameter", "arguments")
+_SIGNED = ("signature", "stereotypes", "stereotype", "use", "parameters", "parameter", "arguments")
+_VALUES = ("vector", "ref", "path", "relation", "type", *_SIGNED)
 _FIELDS = ("bare", "field", "import_")
 _ARCS = ("plain_arc", "role_arc", "weighted_arc", "quoted_arc", "legacy_edge")
-_NODES = ("node", "edge", "typed_edge")
+_NODES = ("node", "edge", "typed_edge", "changed_node", "changed_edge", "array", "edge_array")
+_TYPES = ("signature", "stereotypes")
 _NAME = re.compile(r"`(?:[^`\\]|\\.)*`|[^\W\d]\w*")
 _ARC = re.compile(r"(?:\[.*\]\s*)?(.*)", re.DOTALL)
 
@@ -92,14 +94,14 @@ def _byte_offsets(text: str) -> Callable[[int], int]:
 
 def _node(item: _Span, text: str, file: str, byte: Callable[[int], int]) -> tuple[Block, tuple[Any, ...]]:
     content = item.parts[-1]
-    words = [part for part in item.parts[:-1] if part.kind in ("NAME", "EDGE_WORD", "STRING")]
-    own = next(part for part in words if part.kind == "NAME")
+    words = [part for part in item.parts[:-1] if part.kind in ("NAME", "path", "EDGE_WORD", "STRING")]
+    own = next(part for part in words if part.kind in ("NAME", "path"))
     name = text[own.start : own.end]
-    tag = "" if item.kind == "node" else text[words[0].start : words[0].end]
+    tag = "" if words[0] is own else text[words[0].start : words[0].end]
     inside = byte(content.start) + 1, byte(content.end) - 1
     fields = {NAME: Field(name, byte(own.start), byte(own.end), byte(own.start), byte(own.end))}
     types = next(
-        (part for signature in item.parts if signature.kind == "signature" for part in signature.parts if part.kind == "stereotypes"), None
+        (part for given in item.parts for part in (given, *given.parts) if given.kind in _TYPES and part.kind == "stereotypes"), None
     )
     if types is not None:
         start, end = byte(types.start), byte(types.end)

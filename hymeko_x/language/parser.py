@@ -192,6 +192,7 @@ _ACTIONS: Mapping[str, Reduce] = MappingProxyType(
         "start": _start,
         "block": lambda parts, _: _Block(parts),
         "ref": lambda parts, _: Ref(tuple(parts)),
+        "path": lambda parts, _: Ref(tuple(parts)),
         "relation": lambda parts, _: Ref(parts[-1].path, parts[-2], parts[0] if len(parts) == 3 else ""),
         "vector": lambda parts, _: tuple(parts),
         "type": lambda parts, _: _TypeName(parts[0].dotted),
@@ -218,6 +219,14 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
         signature: _Signature = parts[1]
         return Node(parts[0], tuple(parts[-1]), signature.stereotypes, signature.parameters, signature.uses, edge, line, column)
 
+    def changed(edge: str, parts: list[Any], offset: int) -> Node:
+        path: Ref = parts[0]
+        return node(edge, [path.path[-1], *parts[1:]], offset)._replace(within=path.path[:-1])
+
+    def array(edge: str, parts: list[Any], offset: int) -> Node:
+        types = [_Signature(None, tuple(parts[2]), ())] if len(parts) > 3 else []
+        return node(edge, [parts[0], *types, parts[-1]], offset)._replace(size=parts[1])
+
     def arc(role: str, weight: tuple[Value, ...] | None, parts: list[Any], offset: int) -> ArcItem:
         return ArcItem(parts[0], role, weight, tuple(parts[1]) if len(parts) > 1 else (), *place(offset))
 
@@ -230,6 +239,10 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
         "import_": lambda parts, offset: Import(parts[1], parts[3] if len(parts) > 2 else "", *place(offset)),
         "node": lambda parts, offset: node("", parts, offset),
         "edge": lambda parts, offset: node(parts[0], parts[1:], offset),
+        "changed_node": lambda parts, offset: changed("", parts, offset),
+        "changed_edge": lambda parts, offset: changed(parts[0], parts[1:], offset),
+        "array": lambda parts, offset: array("", parts, offset),
+        "edge_array": lambda parts, offset: array(parts[0], parts[1:], offset),
         "typed_edge": lambda parts, offset: node(parts[0], parts[1:], offset),
         "plain_arc": lambda parts, offset: arc("", None, parts, offset),
         "role_arc": lambda parts, offset: arc(parts[0], None, parts[1:], offset),

@@ -67,7 +67,8 @@ class Node(NamedTuple):
     """A vertex, an edge, or a definition: ``name (parameters) : stereotypes use scope { items }``.
 
     ``edge`` is empty for a vertex, else the word that makes it an edge (``@``, ``rel``, ... or a quoted edge type).
-    ``parameters`` is None where there were no parentheses; a node with parentheses is a template.
+    ``parameters`` is None where there were no parentheses; a node with parentheses is a template. ``within`` is the path of the
+    group that holds the element, which then is only changed here. ``size`` makes an array of it.
     """
 
     name: str
@@ -78,6 +79,8 @@ class Node(NamedTuple):
     edge: str = ""
     line: int = 0
     column: int = 0
+    within: tuple[str, ...] = ()
+    size: tuple[Value, ...] | None = None
 
 
 class Field(NamedTuple):

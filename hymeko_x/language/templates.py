@@ -7,7 +7,7 @@ from functools import cache
 from importlib.resources import files
 from typing import TYPE_CHECKING, NamedTuple
 
-from hymeko_x import codes
+from hymeko_x import codes, formats
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.language.expressions import fill, fill_value
 from hymeko_x.language.parser import parse
@@ -37,40 +37,62 @@ def is_definition(item: Item) -> bool:
     return isinstance(item, Import) or (isinstance(item, Node) and item.parameters is not None)
 
 
-def defined_templates(items: tuple[Item, ...], roots: list[Node], file: str, fetch: Fetch) -> dict[str, Node]:
+class Definitions(NamedTuple):
+    """What the types of a text may name: templates, and the imports of files whose robots are types, by alias."""
+
+    templates: dict[str, Node]
+    robots: dict[str, Import]
+
+
+def definitions(items: tuple[Item, ...], roots: list[Node], file: str, fetch: Fetch) -> Definitions:
     """The standard types, those of imported files (also by alias and name), of the roots, and of the text itself.
 
     Raises: Refusal (HX060, HX063, HX040, HX007) at the import.
     """
-    templates = dict(standard_templates())
-    _import(items, file, fetch, templates, {})
+    found = Definitions(dict(standard_templates()), {})
+    _import(items, file, fetch, found, {})
     for node in roots:
-        templates.update(_definitions(node.items))
-    return templates | _definitions(items)
+        _import(node.items, file, fetch, found, {})
+        found.templates.update(_definitions(node.items))
+    found.templates.update(_definitions(items))
+    return found
 
 
 def _definitions(items: tuple[Item, ...]) -> dict[str, Node]:
     return {item.name: item for item in items if isinstance(item, Node) and item.parameters is not None}
 
 
-def _import(items: tuple[Item, ...], file: str, fetch: Fetch, templates: dict[str, Node], seen: _Imported) -> None:
-    """Add the definitions of imported files: by name, and by alias and name."""
+def _import(items: tuple[Item, ...], file: str, fetch: Fetch, found: Definitions, seen: _Imported) -> None:
+    """Add the definitions of imported files, by name, and by alias and name; an alias alone is the robot in the file."""
     for item in items:
         if not isinstance(item, Import) or item.path.startswith("std/") or item.path == "std":
             continue
         origin = origin_of(item, file)
+        if item.alias:
+            found.robots[item.alias] = item
+        if not _is_text(item.path):
+            if not item.alias:
+                hint = f'import "{item.path}" as robot'
+                raise refuse(codes.BAD_TEMPLATE, f"the robot in '{item.path}' is imported without a name for it", origin, hint=hint)
+            continue
         if item.path not in seen:
             seen[item.path] = None
-            seen[item.path] = _imported(item.path, fetch, templates, seen, origin)
-        found = seen[item.path]
-        if found is None:
+            seen[item.path] = _imported(item.path, fetch, found, seen, origin)
+        defined = seen[item.path]
+        if defined is None:
             raise refuse(codes.BAD_TEMPLATE, f"the import of '{item.path}' leads back to itself", origin)
-        templates.update(found)
+        found.templates.update(defined)
         if item.alias:
-            templates.update({f"{item.alias}.{name}": node for name, node in found.items()})
+            found.templates.update({f"{item.alias}.{name}": node for name, node in defined.items()})
 
 
-def _imported(path: str, fetch: Fetch, templates: dict[str, Node], seen: _Imported, origin: Origin) -> dict[str, Node]:
+def _is_text(path: str) -> bool:
+    """Whether the suffix of an imported file leaves open that it is text of this language."""
+    row = formats.of_file(path)
+    return row is None or row.is_exact
+
+
+def _imported(path: str, fetch: Fetch, found: Definitions, seen: _Imported, origin: Origin) -> dict[str, Node]:
     """The definitions of one imported file, after those of its own imports."""
     if len(seen) > MAX_IMPORTS:
         raise refuse(codes.TOO_LARGE, f"more than {MAX_IMPORTS} files are imported", origin)
@@ -78,7 +100,7 @@ def _imported(path: str, fetch: Fetch, templates: dict[str, Node], seen: _Import
     if data is None:
         raise refuse(codes.UNDEFINED_REFERENCE, f"the imported file '{path}' was not found", origin)
     items = parse(decode(data, path), path).items
-    _import(items, path, fetch, templates, seen)
+    _import(items, path, fetch, found, seen)
     return _definitions(items)
 
 
@@ -103,9 +125,10 @@ class Preset(NamedTuple):
 class Templates:
     """The templates of one text, and how many items they have made."""
 
-    def __init__(self, file: str, templates: Mapping[str, Node], most: int) -> None:
+    def __init__(self, file: str, defined: Definitions, most: int) -> None:
         self._file = file
-        self._templates = templates
+        self._templates = defined.templates
+        self._robots = defined.robots
         self._most = most
         self._made = 0
 
@@ -117,6 +140,20 @@ class Templates:
         self._made += items
         if self._made > self._most:
             raise refuse(codes.TOO_LARGE, f"the templates make more than {self._most} items", origin_of(node, self._file))
+
+    def robot(self, node: Node) -> tuple[Import, Stereotype] | None:
+        """The import whose robot a node is an instance of, and the type with its arguments.
+
+        Raises: Refusal (HX063) when it has other types as well.
+        """
+        for stereotype in node.stereotypes:
+            found = self._robots.get(stereotype.ref.dotted)
+            if found is None or stereotype.ref.dotted in self._templates:
+                continue
+            if len(node.stereotypes) > 1:
+                raise self.refuse(node, f"'{node.name}' is the robot '{stereotype.ref.dotted}' and cannot have other types")
+            return found, stereotype
+        return None
 
     def preset(self, node: Node, environment: Environment) -> Preset:
         """All types of a node merged, the first one strongest, with their parameters filled in.
@@ -163,7 +200,7 @@ class Templates:
             return path[0], (Field("type", path[1]),)
         from difflib import get_close_matches
 
-        near = get_close_matches(dotted, self._templates, n=3)
+        near = get_close_matches(dotted, [*self._templates, *self._robots], n=3)
         hint = f"did you mean {' or '.join(near)}?" if near else "the vocabulary is listed in the language reference"
         message = f"'{node.name}' has the type '{dotted}', which is not known"
         raise refuse(codes.UNKNOWN_TYPE, message, origin_of(node, self._file), hint=hint)
@@ -179,14 +216,15 @@ class Templates:
             if value is None:
                 message = f"'{node.name}' applies '{template.name}' without its parameter '{parameter.name}'"
                 raise self.refuse(node, message, f"it has the parameters {names}")
-            bound[parameter.name] = self._scalar(parameter.name, value, scope, node)
+            bound[parameter.name] = self.scalar(parameter.name, value, scope, node)
         if given:
             unknown = ", ".join(f"'{name}'" for name in given)
             message = f"'{node.name}' gives '{template.name}' the unknown parameter {unknown}; it has {names or 'no parameters'}"
             raise self.refuse(node, message)
         return bound
 
-    def _scalar(self, name: str, value: Value, environment: Environment, node: Node) -> float | str:
+    def scalar(self, name: str, value: Value, environment: Environment, node: Node) -> float | str:
+        """The value of a parameter of a template or of a robot. Raises: Refusal (HX063, HX064) at the node."""
         plain = fill_value(value, environment, node, self._file)
         if isinstance(plain, float | str):
             return plain

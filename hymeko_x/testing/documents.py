@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from hymeko_x.language import syntax
 from hymeko_x.testing.values import NAMES, NUMBERS, PLAIN_NAMES, TEXTS, maybe
 
+_WORDS = ("@", "rel", "seq", "concurrent")
 _SIGNS = ("+", "-", "~", "->", "<-", "<>")
 _MODIFIERS = ("", "", "|>", "*|>", "-|>", "<<copy>>", "<<use>>", "<<extend>>")
 REFS = st.lists(NAMES, min_size=1, max_size=3).map(lambda path: syntax.Ref(tuple(path)))
@@ -31,18 +32,14 @@ _IMPORTS = st.builds(syntax.Import, TEXTS, st.just("") | NAMES.filter(bool), st.
 
 def _blocks(inner: st.SearchStrategy[syntax.Item]) -> st.SearchStrategy[syntax.Item]:
     items = st.lists(inner, max_size=4).map(tuple)
+    nowhere, plain = (st.just(0), st.just(0)), st.sampled_from(["", "", *_WORDS])
+    uses = st.lists(REFS, max_size=1).map(tuple)
+    signature = (NAMES, items, _STEREOTYPES, maybe(_PARAMETERS), uses)
+    within = st.lists(NAMES, min_size=1, max_size=2).map(tuple)
     return st.one_of(
-        st.builds(
-            syntax.Node,
-            NAMES,
-            items,
-            _STEREOTYPES,
-            maybe(_PARAMETERS),
-            st.lists(REFS, max_size=1).map(tuple),
-            st.sampled_from(["", "", "@", "rel", "seq", "concurrent", "my edge"]),
-            st.just(0),
-            st.just(0),
-        ),
+        st.builds(syntax.Node, *signature, plain | st.just("my edge"), *nowhere, st.just(()), st.none()),
+        st.builds(syntax.Node, *signature, plain, *nowhere, within, st.none()),
+        st.builds(syntax.Node, NAMES, items, _STEREOTYPES, st.none(), st.just(()), plain, *nowhere, st.just(()), LISTS),
         st.builds(syntax.ArcItem, RELATIONS_TO, st.just("") | NAMES.filter(bool), maybe(LISTS), items, st.just(0), st.just(0)),
     )
 

@@ -16,7 +16,10 @@ from hymeko_x.formats.hymeko import AXES, FOREIGN, ROOT_NAME, SETTINGS, attached
 from hymeko_x.frontends.hymeko.block import Block, is_written, read_written, read_written_block
 from hymeko_x.frontends.hymeko.bodies import is_base_arc, read_body, read_fixed
 from hymeko_x.frontends.hymeko.builder import HymekoBuilder
+from hymeko_x.frontends.hymeko.changes import change_element
 from hymeko_x.frontends.hymeko.extras import is_foreign, read_extra, read_foreign
+from hymeko_x.frontends.hymeko.heritage import with_heritage
+from hymeko_x.frontends.hymeko.instances import changes_in, declare_instance, frames_on_bodies, place_instance, read_instances
 from hymeko_x.frontends.hymeko.joints import read_joint, unit_axis
 from hymeko_x.frontends.hymeko.kinds import infer_kinds
 from hymeko_x.frontends.hymeko.lumped import remove_folded
@@ -26,7 +29,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Provenance
 from hymeko_x.ir.provenance import take_provenance
 from hymeko_x.language.errors import with_excerpt
-from hymeko_x.language.expansion import Element, Expanded, expand
+from hymeko_x.language.expansion import Change, Element, Expanded, Instance, Statement, expand
 from hymeko_x.language.markup import SECTION_COMMENT
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
@@ -36,6 +39,7 @@ from hymeko_x.source import Reading
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
+    from hymeko_x.frontends.hymeko.instances import Imported
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.language.syntax import ArcItem, Node
     from hymeko_x.source import Source
@@ -65,27 +69,42 @@ def read(source: Source, report: Report) -> Reading:
 
     try:
         expanded = expand(parse(text, source.name), source.name, fetch)
-        return Reading(_read_expanded(expanded, HymekoBuilder(reader=ValueReader(source.name, report))))
+        builder = HymekoBuilder(reader=ValueReader(source.name, report))
+        return Reading(_read_expanded(expanded, builder, read_instances(builder, expanded, source.parts)))
     except Refusal as refusal:
         raise with_excerpt(refusal, text, source.name) from refusal
 
 
-def _read_expanded(expanded: Expanded, builder: HymekoBuilder) -> Mechanism:
+def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[int, Imported]) -> Mechanism:
     elements = [item for item in expanded.items if isinstance(item, Element)]
     for element in elements:
         if _is_units(element.node):
             builder.reader.units = read_units(element.node, builder.reader)
     elements = [element for element in elements if not _is_about_the_whole(element.node)]
     kinds = infer_kinds(expanded, elements)
-    _read_root(builder, expanded, kinds)
+    _read_root(builder, expanded, kinds, instances)
     builder.source = take_provenance(builder.notations, FOREIGN, Provenance("hymeko", file=builder.reader.file))
-    declared = _declare(builder, expanded, kinds)
+    declared = _declare(builder, expanded, kinds, instances)
     for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _FIRST):
         _read_element(builder, key, element)
     remove_folded(builder)
+    _place_instances(builder, expanded, instances)
     if expanded.root and expanded.root != expanded.name:
         builder.note(ROOT, ROOT_NAME, expanded.root)
-    return builder.build(expanded.name, builder.source)
+    found = builder.build(expanded.name, builder.source)
+    if not instances:
+        return found
+    return with_heritage(replace(found, places=builder.places, stored=builder.stored), tuple(instances.values()))
+
+
+def _place_instances(builder: HymekoBuilder, expanded: Expanded, instances: dict[int, Imported]) -> None:
+    """Apply the changes of elements of imported robots, and put the robots where they belong."""
+    within = [change for imported in instances.values() for change in changes_in(imported)]
+    for change in (*within, *(item for item in expanded.items if isinstance(item, Change))):
+        change_element(builder, change)
+    owners = frames_on_bodies(builder) if instances else {}
+    for imported in instances.values():
+        place_instance(builder, imported, owners)
 
 
 def _read_element(builder: HymekoBuilder, key: Id, element: Element) -> None:
@@ -105,7 +124,7 @@ def _preset(element: Element, name: str) -> str | None:
     return next((str(item.value) for item in element.node.items if is_field(item, (name,)) and isinstance(item.value, str)), None)
 
 
-def _read_root(builder: HymekoBuilder, expanded: Expanded, kinds: list[str]) -> None:
+def _read_root(builder: HymekoBuilder, expanded: Expanded, kinds: list[str], instances: dict[int, Imported]) -> None:
     """Settings in the root: the prefix of files, notations and extras of the whole, each extra with its place among the elements."""
     place = 0
     remaining = iter(kinds)
@@ -114,6 +133,10 @@ def _read_root(builder: HymekoBuilder, expanded: Expanded, kinds: list[str]) -> 
             place += _read_root_block(builder, item.node, place)
         elif isinstance(item, Element):
             place += 1 + _has_attached(next(remaining), item.node)
+        elif isinstance(item, Instance):
+            place += len(instances[id(item)].robot.layout)
+        elif isinstance(item, Change):
+            continue
         elif isinstance(item.item, Field):
             place += _read_setting(builder, item.item, place)
         else:
@@ -181,15 +204,17 @@ def _loose_extra(builder: HymekoBuilder, item: ArcItem | Comment, place: int, *,
     return Extra("hymeko", "", print_item(item), place)
 
 
-def _declare(builder: HymekoBuilder, expanded: Expanded, kinds: list[str]) -> list[tuple[Id, Element]]:
+def _declare(builder: HymekoBuilder, expanded: Expanded, kinds: list[str], instances: dict[int, Imported]) -> list[tuple[Id, Element]]:
     """Every element's id, before anything is read, so that references may look ahead."""
     declared: list[tuple[Id, Element]] = []
     remaining = iter(kinds)
     for element in expanded.items:
-        if not isinstance(element, Element):
+        if isinstance(element, Instance):
+            declare_instance(builder, instances[id(element)])
+        elif isinstance(element, Statement):
             if isinstance(element.item, Field) and not _is_setting(element.item):
                 _read_datum(builder, element.item)
-        elif not _is_about_the_whole(element.node):
+        elif isinstance(element, Element) and not _is_about_the_whole(element.node):
             declared += _declared(builder, element, next(remaining))
     return declared
 

@@ -41,6 +41,34 @@ def read_body(builder: HymekoBuilder, key: Id, element: Element) -> None:
     builder.keep(key, block)
 
 
+def change_inertial(body: parts.Body, block: Block) -> parts.Body:
+    """The body with those of mass, centre and tensor that the block gives."""
+    given = {word for word in ("mass", "com", "inertia", "axes") if word in block.fields}
+    found = _inertial(block, IDENTITY)
+    if not given or found is None:
+        return body
+    if body.inertial is None:
+        return parts.Body(found)
+    kept = replace(body.inertial, mass=found.mass if "mass" in given else body.inertial.mass)
+    if "com" in given:
+        kept = replace(kept, com=found.com)
+    if "inertia" in given:
+        kept = replace(kept, tensor=found.tensor)
+    return parts.Body(replace(kept, written=found.written if "inertia" in given else None))
+
+
+def add_shapes(builder: HymekoBuilder, key: Id, block: Block, items: tuple[Item, ...], scope: Scope) -> None:
+    """Give a body the shapes among the items, which are taken out of the block."""
+    shapes = [item for item in items if _is_shape(item)]
+    for item in shapes:
+        _read_shape(builder, key, item, IDENTITY, scope)
+    block.nodes = [node for node in block.nodes if node not in shapes]
+    block.arcs = [arc for arc in block.arcs if arc not in shapes]
+    for item in shapes:
+        if isinstance(item, Field):
+            block.fields.pop(item.name, None)
+
+
 def is_base_arc(item: object) -> bool:
     """Whether an item of a body's block names the body that it is fixed to: ``[0 0 1] + arm``."""
     return isinstance(item, ArcItem) and not item.role and sign_of(item) > 0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import field
 
@@ -12,7 +12,8 @@ from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Provenance
-from hymeko_x.ir.parts import Weight, World
+from hymeko_x.ir.parts import Texture, Weight, World
+from hymeko_x.ir.values import compose
 from hymeko_x.language.syntax import ArcItem, QuotedName, is_list
 from hymeko_x.language.templates import standard_templates
 
@@ -20,13 +21,21 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.block import Block
     from hymeko_x.frontends.hymeko.values import ValueReader
     from hymeko_x.ir.mechanism import RobotArc
-    from hymeko_x.ir.values import Vec3
+    from hymeko_x.ir.provenance import StoredMesh
+    from hymeko_x.ir.values import Pose, Vec3
     from hymeko_x.language.expansion import Element, Scope
     from hymeko_x.language.syntax import Item, Ref
 
 _FEW = 8
 _ALL_KINDS = tuple(KINDS.values())
 _SIGNS = {"+": 1, "<-": 1, "-": -1, "->": -1, "~": 0, "<>": 0}
+
+
+class ImportedRoot(NamedTuple):
+    """What the name of an imported robot means where a body is expected: its root, and the frame of the robot's world in that."""
+
+    roots: tuple[Id, ...]
+    frame: Pose
 
 
 class HymekoBuilder(Builder):
@@ -38,6 +47,9 @@ class HymekoBuilder(Builder):
     kinds: dict[str, list[str]] = field(default_factory=dict)
     directions: dict[str, Vec3] = field(default_factory=dict)
     folded: set[Id] = field(default_factory=set)
+    imported: dict[str, ImportedRoot] = field(default_factory=dict)
+    places: dict[str, str] = field(default_factory=dict)
+    stored: dict[Id, StoredMesh | Texture] = field(default_factory=dict)
 
     def declare(self, kind: str, element: Element) -> Id:
         """Reserve the id of an element, so that references find it.
@@ -86,13 +98,23 @@ class HymekoBuilder(Builder):
         """
         found = self.find(ref, scope, kinds)
         if found is None:
+            self._check_roots(ref, scope, kinds, item)
             raise refuse(
                 codes.UNDEFINED_REFERENCE,
                 f"'{ref.dotted}' is not defined; expected a {' or '.join(kinds or ('element',))}",
                 self.reader.origin(item),
-                hint=self._near(ref.path[-1], kinds),
+                hint=self.near(ref.path[-1], kinds),
             )
         return found
+
+    def _check_roots(self, ref: Ref, scope: Scope, kinds: tuple[str, ...], item: Item) -> None:
+        """Raises: Refusal (HX045) for the name of an imported robot with no root or several."""
+        found = next((self.imported[name] for name in scope.meanings(ref.path) if name in self.imported), None)
+        if found is None or "body" not in kinds:
+            return
+        names = ", ".join(root.name for root in found.roots[:_FEW]) or "none"
+        message = f"the robot '{ref.dotted}' has {len(found.roots)} roots, and one was expected: {names}"
+        raise refuse(codes.MISSING_PART, message, self.reader.origin(item), hint=f"name a body of it: {ref.dotted}.body")
 
     def find(self, ref: Ref, scope: Scope, kinds: tuple[str, ...]) -> Id | None:
         """The element behind a reference, or None."""
@@ -104,11 +126,28 @@ class HymekoBuilder(Builder):
                 if kind in self.kinds.get(name, ()):
                     return Id(kind, name)
                 if kind == "world" and name == "world" and not isinstance(path[-1], QuotedName):
-                    self.vertices.setdefault(WORLD, World())
-                    return WORLD
+                    return self.world()
+            if name in self.imported and (root := self._root(name, kinds)) is not None:
+                return root
         return None
 
-    def _near(self, name: str, kinds: tuple[str, ...]) -> str:
+    def _root(self, name: str, kinds: tuple[str, ...]) -> Id | None:
+        """The root of an imported robot of this name, where a body is expected and there is one root."""
+        found = self.imported.get(name)
+        return found.roots[0] if found is not None and len(found.roots) == 1 and "body" in kinds else None
+
+    def in_root(self, ref: Ref, scope: Scope, pose: Pose) -> Pose:
+        """A pose in the world of an imported robot that the reference names as one in its root; of another body the pose itself."""
+        name = next((name for name in scope.meanings(ref.path) if name in self.imported and "body" not in self.kinds.get(name, ())), None)
+        return pose if name is None else compose(self.imported[name].frame, pose)
+
+    def world(self) -> Id:
+        """The world, which is there from now on."""
+        self.vertices.setdefault(WORLD, World())
+        return WORLD
+
+    def near(self, name: str, kinds: tuple[str, ...]) -> str:
+        """A hint with names that look alike, of elements of these kinds (none: of all)."""
         from difflib import get_close_matches
 
         candidates = [known for known, of in self.kinds.items() if not kinds or set(of) & set(kinds)]

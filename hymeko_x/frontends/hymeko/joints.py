@@ -49,6 +49,7 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
     compliant = take_compliant(builder, block, scope)
     parent, child = _ends(builder, key, block, element.node)
     pose, child_pose = _poses(builder.reader, parent, child, key)
+    child_pose = builder.in_root(child.ref, scope, child_pose)
     target = builder.target(child.ref, scope, _BODIES, child)
     dofs = _dofs(builder, block, scope, words.ROLE_MOVES.get(child.role.upper()) or moves, axis_arc)
     dofs = with_compliance(builder, key, compliant, dofs)
@@ -148,7 +149,7 @@ def _dof_block(builder: HymekoBuilder, node: Node, scope: Scope) -> parts.Dof:
 
 def _dof(builder: HymekoBuilder, block: Block, scope: Scope, kind: parts.DofKind, axis: _Axis | None) -> parts.Dof:
     motion = "angle" if kind in words.TURNING else "length"
-    direction, written = axis or _axis(builder, block, scope) or (words.default_axis(kind), None)
+    direction, written = axis or axis_of(builder, block, scope) or (words.default_axis(kind), None)
     limits = read_limits(block, motion)
     safety, calibration = _nested(block, "safety", parts.Safety, motion), _nested(block, "calibration", parts.Calibration, motion)
     fields: dict[str, Any] = block.take_words(words.DOF_WORDS, motion)
@@ -178,7 +179,7 @@ def _nested(block: Block, name: str, kind: type[T], motion: str) -> T | None:
     return kind(**found)
 
 
-def _axis(builder: HymekoBuilder, block: Block, scope: Scope) -> _Axis | None:
+def axis_of(builder: HymekoBuilder, block: Block, scope: Scope) -> _Axis | None:
     """``axis [x y z]`` (normalised), ``axis=Y`` or ``axis=-Z``."""
     item = block.take("axis")
     if item is None:

@@ -13,6 +13,7 @@ import numpy as np
 from hymeko_x import codes, formats
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.frontends import hymeko
+from hymeko_x.importing import with_imports
 from hymeko_x.ir import parts
 from hymeko_x.ir import tendons as roles
 from hymeko_x.ir.mechanism import WORLD as WORLD_ID
@@ -46,7 +47,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
     """The robot in a text. Raises: Refusal HX302 when it cannot be read."""
     try:
         files = lookup.files(path.parent)
-        mechanism = hymeko.read(Source(str(path), path.read_bytes(), files), Report()).mechanism
+        mechanism = hymeko.read(with_imports(Source(str(path), path.read_bytes(), files), Report()), Report()).mechanism
     except Refusal as refusal:
         raise refuse(codes.ENGINE_REFUSED, f"the HyMeKo text cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
     if next(mechanism.vertices(parts.Body), None) is None:
