@@ -13,6 +13,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.edits.copying import copied
 from hymeko_x.pipeline import Result
 from hymeko_x.rewrite import Options
+from hymeko_x.source import Kept
 
 if TYPE_CHECKING:
     from hymeko_x.formats import Format
@@ -35,7 +36,7 @@ class Delivery(Struct, frozen=True):
     place: Place
     path: str
     own: Source | None = None
-    passed: str | None = None
+    passed: Kept | None = None
 
     def convert(self, report: Report, *, measured: bool = True) -> Result:
         """The result to write. Its files go below a folder named like the main file when those of another output are in the way.
@@ -44,7 +45,7 @@ class Delivery(Struct, frozen=True):
         """
         package = self._copied(report)
         if package is not None and self._in_the_way(package, f"{safe_name(self.options.beside)}/") is None:
-            package = pipeline.with_kept(package, self.passed or "", self.options, report)
+            package = pipeline.with_kept(package, self.passed or Kept("", ""), self.options, report)
             return Result(self.mechanism, package, report, ())
         place = replace(self.place, in_the_way=self._in_the_way if self.path else None)
         return pipeline.convert(self.mechanism, self.format, self.options, self.files, report, place, measured=measured, passed=self.passed)
@@ -53,8 +54,8 @@ class Delivery(Struct, frozen=True):
         """The output with the source's own text, where that is the robot and holds neither more nor less than is to be kept."""
         if self.own is None or not self.path or replace(self.options, beside="", keep=None, lenient=False) != Options():
             return None
-        is_inside = bool(self.passed) and self.own.kept is None
-        if is_inside or (self.passed and self.options.keep == "inside"):
+        text = self.passed.text if self.passed is not None else ""
+        if text and (self.own.kept is None or self.options.keep == "inside"):
             return None
         return copied(self.own, self.format, self.mechanism, self.place, report)
 

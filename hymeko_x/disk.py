@@ -18,7 +18,7 @@ from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Origin, Refusal, refuse
-from hymeko_x.source import KEPT_SUFFIX, Kept, Package, PackageFiles, Source
+from hymeko_x.source import KEPT_FOLDER, KEPT_SUFFIX, Kept, Package, PackageFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -41,7 +41,15 @@ def open_source(
     files = DiskFiles(Path(path).parent, packages or {}, search_path, confine)
     beside = f"{path}{KEPT_SUFFIX}"
     kept = Kept(_read(beside, confine).decode("utf-8", "replace"), beside) if Path(beside).is_file() else None
-    return Source(path, _read(path, confine), files, kept=kept)
+    return Source(path, _read(path, confine), files, kept=kept, originals=_originals(Path(f"{path}{KEPT_FOLDER}")))
+
+
+def _originals(folder: Path) -> dict[str, str]:
+    """The files in a folder of originals, by their paths below it."""
+    if not folder.is_dir():
+        return {}
+    found = (Path(place, name) for place, _, names in os.walk(folder) for name in names)
+    return {path.relative_to(folder).as_posix(): str(path) for path in sorted(found)}
 
 
 def _read(path: str, confine: Path | None) -> bytes:
@@ -89,8 +97,13 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
             data = contents.read(name)
             assets.make_folders(place.parent)
             assets.add(place, data)
+        for name, source in package.originals.items():
+            place = _beside(target, f"{target.name}{KEPT_FOLDER}/{name}")
+            data = files.read(source)
+            kept.make_folders(place.parent)
+            kept.add(place, data)
         is_stream = _is_stream(target)
-        if package.kept and is_stream:
+        if (package.kept or package.originals) and is_stream:
             raise ValueError("this is a pipe or a device, which has no file beside it; --keep=inside keeps within the output")
         if package.kept:
             kept.add(beside, package.kept.encode("utf-8", "surrogatepass"))
@@ -104,6 +117,7 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
             assets.put()
             if not is_stream:
                 beside.unlink(missing_ok=True)
+                _remove_others(target.with_name(f"{target.name}{KEPT_FOLDER}"), package.originals)
             main.put()
             kept.put()
             for stand_in in _stand_ins(target):  # ours, and that of a run that was killed
@@ -114,6 +128,16 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
         kept.clean()
         main.clean()
         assets.clean()
+
+
+def _remove_others(folder: Path, originals: Mapping[str, str]) -> None:
+    """Remove what an earlier run has kept in the folder of originals, and this one does not. Raises: OSError."""
+    for name, path in _originals(folder).items():
+        if name not in originals and not name.endswith(".part"):
+            Path(path).unlink()
+    for place, _, _ in sorted(os.walk(folder), reverse=True):
+        with suppress(OSError):  # a folder that is not empty stays
+            os.rmdir(place)
 
 
 def write_files(contents: Mapping[str, bytes]) -> None:

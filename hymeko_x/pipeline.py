@@ -23,6 +23,7 @@ from hymeko_x.ir.parts import Body, Mesh, Texture
 from hymeko_x.residue.align import align
 from hymeko_x.residue.delta import residue_between
 from hymeko_x.residue.kept import restored
+from hymeko_x.residue.originals import OriginalFiles, originals_of, with_originals
 from hymeko_x.residue.realign import alignment_differences
 from hymeko_x.residue.text import print_residue
 from hymeko_x.rewrite import Options, actuate, choose, legalize
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.compare.ledger import Loss
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.ir.parts import VertexPart
     from hymeko_x.source import Files, Package, Reading
 
@@ -111,11 +112,13 @@ def read(source: Source, format: Format, report: Report, *, lenient: bool = Fals
 def read_anyway(source: Source, format: Format, report: Report) -> Mechanism:
     """As :func:`read`, whatever errors there are: for those who look at the errors. Raises: Refusal when nothing can be read."""
     image, kept = _native(source, format, report)
-    return image if kept is None else with_points_of_files(restored(image, kept, report), _fetch(source.files))
+    if kept is not None and kept.text:
+        image = with_points_of_files(restored(image, kept, report), _fetch(source.files))
+    return image if kept is None else with_originals(image, kept.originals)
 
 
 @uncollected()
-def read_for(target: Format, source: Source, format: Format, report: Report, *, lenient: bool = False) -> tuple[Mechanism, str | None]:
+def read_for(target: Format, source: Source, format: Format, report: Report, *, lenient: bool = False) -> tuple[Mechanism, Kept | None]:
     """The mechanism to convert into a target; and within one format, what is kept for the source, which fits the output as it is.
 
     All that a conversion within one format needs stands in the file itself.
@@ -127,7 +130,7 @@ def read_for(target: Format, source: Source, format: Format, report: Report, *, 
     since = len(report)
     image, kept = _native(source, format, report)
     stop_on_errors(report, since, lenient=lenient)
-    return image, "" if kept is None else kept.text
+    return image, kept or Kept("", "")
 
 
 def _native(source: Source, format: Format, report: Report) -> tuple[Mechanism, Kept | None]:
@@ -136,7 +139,9 @@ def _native(source: Source, format: Format, report: Report) -> tuple[Mechanism, 
         source = formats.loaded(format.imports)(source, report)
     image, inside = reader(format)(source, report)
     kept = Kept(inside, source.name) if inside else source.kept
-    return image, None if source.ignores_kept else kept
+    if source.ignores_kept or (kept is None and not source.originals):
+        return image, None
+    return image, (kept or Kept("", source.name))._replace(originals=source.originals)
 
 
 def stop_on_errors(report: Report, since: int, *, lenient: bool) -> None:
@@ -170,7 +175,7 @@ def convert(
     place: Place = HERE,
     *,
     measured: bool = True,
-    passed: str | None = None,
+    passed: Kept | None = None,
 ) -> Result:
     """Write a mechanism, read the result back if the format has a reader, measure the losses, and keep them if the options ask for it.
 
@@ -184,36 +189,50 @@ def convert(
     if format.frontend is None or not measured:
         return Result(mechanism, package, report, None)
     image = read_back(package, format, files)
-    contents = None if place.assets == "reference" else PackageFiles(package, PlacedFiles(mechanism.places, files))
+    contents = None if place.assets == "reference" else PackageFiles(package, _files_of(mechanism, files))
     is_kept = options.keep is not None and passed is None and not format.is_exact
-    losses, residue = _compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_kept=is_kept)
-    return Result(mechanism, with_kept(package, residue if passed is None else passed, options, report), report, losses)
+    losses, residue, aligned = _compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_kept=is_kept)
+    kept = Kept(residue, "") if passed is None else passed
+    if passed is None and options.keep is not None:
+        named, is_inside = printed if format.is_exact else mechanism, options.keep == "inside" and not format.is_exact
+        originals = originals_of(named, aligned, package, _files_of(mechanism, files), missing_only=is_inside)
+        kept = kept._replace(originals=originals)
+    return Result(mechanism, with_kept(package, kept, options, report), report, losses)
 
 
 def _chosen(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> tuple[Mechanism, Options]:
     """The robot as the options and the target among them ask for it, and the options with that target's defaults."""
     options, target = targets.chosen(options, format)
     mechanism = actuate(choose(mechanism, options, report), format.name, options, report)
-    return targets.aimed(mechanism, target, PlacedFiles(mechanism.places, files), report), options
+    return targets.aimed(mechanism, target, _files_of(mechanism, files), report), options
 
 
-def with_kept(package: Package, text: str, options: Options, report: Report) -> Package:
-    """The package with this text of a residue where the options want it."""
-    if not text:
+def with_kept(package: Package, kept: Kept, options: Options, report: Report) -> Package:
+    """The package with this text of a residue where the options want it, and with the originals."""
+    if not kept.text and not kept.originals:
         return package
     if options.keep is None:
         report.note(codes.KEPT_LEFT, "what is kept for the input stays there", hint="--keep takes it along")
         return package
+    package = replace(package, originals=kept.originals)
+    if not kept.text:
+        return package
     if options.keep == "beside" or package.carry is None:
-        return replace(package, kept=text)
-    return replace(package, main=package.carry(text))
+        return replace(package, kept=kept.text)
+    return replace(package, main=package.carry(kept.text))
+
+
+def _files_of(mechanism: Mechanism, files: Files) -> Files:
+    """The files of a mechanism, among them those that another file carried or kept for it."""
+    files = PlacedFiles(mechanism.places, files) if mechanism.places else files
+    return OriginalFiles(mechanism.originals, files) if mechanism.originals else files
 
 
 def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
     """Rewritten, with its files placed, and printed."""
     since = len(report)
     _check_is_robot(mechanism, format, report)
-    files = PlacedFiles(mechanism.places, files) if mechanism.places else files
+    files = _files_of(mechanism, files)
     complete = completed(with_stand_ins(mechanism, format, files, report), format, files, report)
     legal = legalize(complete, format.name, report)
     printed = _placed_and_printed(legal, format, options, files, report, place)
@@ -263,8 +282,8 @@ def read_back(package: Package, format: Format, files: Files) -> Mechanism:
 
 def _compared(
     mechanism: Mechanism, printed: Mechanism, image: Mechanism, format: Format, contents: Files | None, *, is_moved: bool, is_kept: bool
-) -> tuple[tuple[Loss, ...], str]:
-    """The losses, and the text of the residue if it is to be kept: empty where the image is the mechanism.
+) -> tuple[tuple[Loss, ...], str, Mechanism]:
+    """The losses, the text of the residue if it is to be kept (empty where the image is the mechanism), and the aligned image.
 
     ``contents`` are the files of the output (None where the main file goes alone): points that the mechanism holds and that are in one of
     them are no difference. Where files are moved, the residue has nothing that leads back to those in the way.
@@ -275,12 +294,12 @@ def _compared(
     leaves = leaves_between(moved, aligned)
     losses = losses_between(moved, aligned, alignment_differences(alignment), format, leaves, is_carried=is_kept)
     if not is_kept:
-        return losses, ""
+        return losses, "", aligned
     source = without_points(mechanism, as_files)
     if is_moved:
         source = moved if formats.native_format(moved) is None else replace(moved, extras=printed.extras)
     residue = residue_between(source, image, alignment, aligned, leaves_again(source, moved, aligned, leaves))
-    return losses, "" if residue.is_empty else print_residue(residue)
+    return losses, "" if residue.is_empty else print_residue(residue), aligned
 
 
 def _fetch(files: Files) -> Callable[[str], bytes | None]:
@@ -328,13 +347,26 @@ def _contents(copies: Mapping[str, str], files: Files) -> Iterator[tuple[str, by
 
 
 def with_references_of(printed: Mechanism, mechanism: Mechanism) -> Mechanism:
-    """The mechanism with the printed one's paths of meshes and textures: that a file has moved is no loss."""
+    """The mechanism with the printed one's paths of files, in extras as well: that a file has moved is no loss."""
     moved: dict[Id, VertexPart] = {}
     for key, part in mechanism.assets():
         other = printed.graph.vertices.get(key)
         if isinstance(other, Mesh | Texture) and other.uri and part.uri != other.uri:
             moved[key] = replace(part, uri=other.uri)
+    row = formats.of_source(mechanism)
+    if row is not None and row.tells_places is not None and printed.extras is not mechanism.extras:
+        mechanism = replace(mechanism, extras=_with_places_of(printed, mechanism, formats.loaded(row.tells_places)))
     return mechanism.with_graph(mechanism.graph.replace(vertices=moved)) if moved else mechanism
+
+
+def _with_places_of(printed: Mechanism, mechanism: Mechanism, tells_places: Callable[[Extra], bool]) -> dict[Id, tuple[Extra, ...]]:
+    """The extras, those that tell of places being the printed one's."""
+    extras = dict(mechanism.extras)
+    for key, found in mechanism.extras.items():
+        new = printed.extras.get(key, ())
+        if len(new) == len(found) and any(map(tells_places, found)):
+            extras[key] = tuple([b if tells_places(a) and a.path == b.path else a for a, b in zip(found, new, strict=True)])
+    return extras
 
 
 def reader(format: Format) -> Reader:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import posixpath
 from contextlib import suppress
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from msgspec import Struct, field
@@ -50,11 +51,23 @@ KEPT_SUFFIX = ".keep.hymeko"
 """What follows the name of a file in the name of the kept file beside it."""
 
 
+KEPT_FOLDER = ".keep.files"
+"""What follows the name of a file in the name of the folder beside it that has the originals kept for it."""
+
+NOTHING_KEPT: Mapping[str, str] = MappingProxyType({})
+"""No originals."""
+
+
 class Kept(NamedTuple):
-    """What is kept for a file of the robot that it was made from: the text of a residue, and the name of the file that has it."""
+    """What is kept for a file of the robot that it was made from.
+
+    ``text`` is the text of a residue, and ``file`` the name of the file that has it; ``originals`` are files of that robot that are not
+    among the output's own, by their names in their folder, with their paths.
+    """
 
     text: str
     file: str
+    originals: Mapping[str, str] = NOTHING_KEPT
 
 
 def with_prefix(text: str, prefix: str) -> str:
@@ -81,8 +94,9 @@ class Source(Struct, frozen=True):
 
     ``arguments`` are the user's values for a format that takes some (xacro's NAME:=VALUE), ``environment`` the
     variables that the user passes on to it (xacro's `$(env NAME)`); the program's own environment stays closed. ``variants``
-    are the choices for a format that leaves some open (USD's variant sets). ``kept`` is what the kept file beside it holds;
-    with ``ignores_kept`` neither this is used nor what is kept inside of the file. ``parts`` reads robots that the description imports.
+    are the choices for a format that leaves some open (USD's variant sets). ``kept`` is what the kept file beside it holds, and
+    ``originals`` the files that are kept for it; with ``ignores_kept`` neither is used, nor what is kept inside of the file.
+    ``parts`` reads robots that the description imports.
     """
 
     name: str
@@ -92,6 +106,7 @@ class Source(Struct, frozen=True):
     environment: Mapping[str, str] = field(default_factory=dict)
     variants: Mapping[str, str] = field(default_factory=dict)
     kept: Kept | None = None
+    originals: Mapping[str, str] = NOTHING_KEPT
     ignores_kept: bool = False
     parts: Parts | None = None
 
@@ -109,7 +124,7 @@ class Package(Struct, frozen=True):
     ``copies`` names files that are to be copied as they are: relative path -> path in the source's ``files``. ``carry`` prints the
     main file again with the text of a residue where other readers of the format ignore it; None for a format that represents
     everything. ``enclose`` gives the package with files inside of the main one; None where they stand beside it. ``kept`` is the text of
-    the kept file beside the main one; where it is empty there is none.
+    the kept file beside the main one; where it is empty there is none. ``originals`` are copies in the folder of what is kept.
     """
 
     main: bytes
@@ -118,6 +133,7 @@ class Package(Struct, frozen=True):
     carry: Callable[[str], bytes] | None = None
     enclose: Callable[[Mapping[str, bytes]], Package] | None = None
     kept: str = ""
+    originals: Mapping[str, str] = field(default_factory=dict)
 
 
 class PackageFiles(Struct, frozen=True):

@@ -44,6 +44,7 @@ BESIDE = {
     ("importing", "pipeline"),
     ("verify", "importing"),
     ("delivery", "edits"),
+    ("residue", "assets"),
 }
 """Imports within a layer that are meant to be: (who, whom)."""
 

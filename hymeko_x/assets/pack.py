@@ -52,6 +52,9 @@ def pack(
     if format.pack is None:
         read = mechanism if format.is_exact else _with_meshes_of_source(mechanism, files, report)
         packed = keep_references(read, shelf, files, report, Keep.of(format, shelf.mode))
+        row = formats.of_source(mechanism)
+        if format.is_exact and row is not None and row.place_extras is not None:
+            packed = formats.loaded(row.place_extras)(mechanism, packed, shelf, files, report, Keep.of(format, shelf.mode))
     else:
         packed = formats.loaded(format.pack)(mechanism, shelf, files, report)
     return packed, shelf.files, shelf.copies

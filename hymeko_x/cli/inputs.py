@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.source import Kept
 
 
 class Input(NamedTuple):
@@ -27,7 +28,7 @@ class Input(NamedTuple):
     mechanism: Mechanism
     format: Format
     source: Source
-    passed: str | None = None
+    passed: Kept | None = None
 
 
 def input_arguments(parser: argparse.ArgumentParser) -> None:

@@ -92,6 +92,12 @@ class Format(Struct, frozen=True):
     """The function ``(data, suffix) -> Submesh or None``: a mesh file as its engine reads it, where others read it in another way."""
     read_otherwise: str | None = None
     """The function ``(data, suffix) -> (Submesh, reason) or None``: such a file where other programs read another solid from it."""
+    files_in_extras: str | None = None
+    """The function ``mechanism -> pairs of an element and a reference`` for files that only extras of the format name."""
+    place_extras: str | None = None
+    """The function ``(mechanism, packed, shelf, files, report, keep) -> Mechanism`` that gives the extras the new paths of these files."""
+    tells_places: str | None = None
+    """The function ``extra -> bool``: whether an extra of the format names files, or the folders that they are in."""
     placing: frozenset[str] = frozenset()
     """The extras of a mesh by which its points are elsewhere than in its file, or are made."""
     keeps_package_uris: bool = False
@@ -224,6 +230,9 @@ MJCF = Format(
     mesh_reader="hymeko_x.meshes.tables:read_mesh",
     read_otherwise="hymeko_x.meshes.tables:read_otherwise",
     refused="hymeko_x.formats.mjcf.files:refused",
+    files_in_extras="hymeko_x.backends.mjcf.references:files_in_extras",
+    place_extras="hymeko_x.backends.mjcf.references:place_extras",
+    tells_places="hymeko_x.backends.mjcf.references:tells_places",
     placing=frozenset({"@refpos", "@refquat", "@builtin", "@params"}),
     inherited="hymeko_x.formats.mjcf.classes:without_inherited",
     shapes_have_weight="hymeko_x.formats.mjcf.words:shapes_have_weight",

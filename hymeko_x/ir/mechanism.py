@@ -105,8 +105,9 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
     ``notations`` keeps, by element and name, how an author wrote what the value itself cannot keep, as text
     (see :class:`hymeko_x.ir.notations.Notation`); ``stereotypes`` the classes, macros and templates that elements were made
     from; ``layout`` the order in which the author wrote the elements (of any kind), as far as known; ``places`` by uri the
-    name that the file which carried the mechanism has for a mesh or an image; ``stored`` what this file has in the place of a
-    mesh or an image, which is used where its file is not found; ``source`` where all of it came from.
+    name that the file which carried the mechanism has for a mesh or an image; ``originals`` by uri the path of the very file, where that
+    is kept; ``stored`` what the file that carried it has in the place of a mesh or an image, which is used where its file is not found;
+    ``source`` where all of it came from.
     """
 
     name: str
@@ -117,6 +118,7 @@ class Mechanism(Struct, frozen=True, eq=False, dict=True):
     stereotypes: Mapping[Id, tuple[str, ...]] = field(default_factory=dict)
     layout: tuple[Id, ...] = ()
     places: Mapping[str, str] = field(default_factory=dict)
+    originals: Mapping[str, str] = field(default_factory=dict)
     stored: Mapping[Id, StoredMesh | parts.Texture] = field(default_factory=dict)
     source: Provenance = Provenance()
 

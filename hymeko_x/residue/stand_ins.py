@@ -34,15 +34,17 @@ def with_stand_ins(mechanism: Mechanism, image: Mechanism) -> Mechanism:
             stored[key] = StoredMesh(before)  # it had points of its own, which are in that file
         if part.uri is None or not isinstance(before, Mesh | Texture) or before.uri in (None, part.uri):
             continue
-        if _is_copy(mechanism, key, part, before):
+        if is_copy(mechanism, key, part, before):
             places[part.uri] = image.places.get(before.uri or "", before.uri or "")
         else:
             stored[key] = StoredMesh(before) if isinstance(before, Mesh) else before
     return replace(mechanism, places=places, stored=stored) if places or stored else mechanism
 
 
-def _is_copy(mechanism: Mechanism, key: Id, part: Mesh | Texture, before: Mesh | Texture) -> bool:
+def is_copy(mechanism: Mechanism, key: Id, part: object, before: object) -> bool:
     """Whether the image's file is the source's: of the same type, and nothing else about the points has changed."""
+    if not isinstance(part, Mesh | Texture) or not isinstance(before, Mesh | Texture):
+        return False
     if suffix_of(part.uri or "") != suffix_of(before.uri or ""):
         return False
     if isinstance(part, Mesh) and isinstance(before, Mesh):

@@ -62,6 +62,13 @@ def drop_engine_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
     return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
 
 
+def drop_unused_assets(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """Meshes of no shape and images of no material have no place in the target; the ledger names them."""
+    used = {arc.target for edge in mechanism.graph.edges.values() for arc in edge.arcs}
+    gone = [key for key, _ in mechanism.assets() if key not in used]
+    return mechanism.with_graph(mechanism.graph.replace(without=gone)) if gone else mechanism
+
+
 def make_sizes_positive(mechanism: Mechanism, context: Context) -> Mechanism:
     """Lengths of zero become very small ones, negative lengths lose their sign."""
     changed: dict[Id, RobotEdge] = {}

@@ -51,6 +51,7 @@ def merged(host: Mechanism, part: Mechanism, source: Provenance) -> Mechanism:
         stereotypes={**host.stereotypes, **part.stereotypes},
         layout=host.layout + part.layout,
         places={**part.places, **host.places},
+        originals={**part.originals, **host.originals},
         stored={**host.stored, **part.stored},
         source=source,
     )

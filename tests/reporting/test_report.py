@@ -97,7 +97,7 @@ def test_the_go2_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.Ca
 def test_a_humanoid_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Of Talos's kind and size."""
     assert reported(real(real_robot, "gr1/robot.xml"), capsys) == [
-        "wrote out.urdf (45 bodies, 45 joints) and 33 files in meshes/",
+        "wrote out.urdf (45 bodies, 45 joints) and 31 files in meshes/",
         "dropped: 32 actuators: 'torso_waist_yaw', 'torso_waist_pitch', ...",
         "dropped: 2 meshes: 'l_hand_pitch', 'r_hand_pitch'",
         "dropped: 6 contacts: 'upper_lower_body', 'torso_head_1', ...",

@@ -18,6 +18,8 @@ from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.xml.text import escaped, unescaped
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats.mjcf.codec import Settings
@@ -33,20 +35,27 @@ def pack_native(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report
 
     The folders that <compiler> names stay as long as no file has to move; else every path is written in full.
     """
-    settings = _settings(mechanism)
     from hymeko_x.backends.mjcf.meshes import with_points_as_files
 
     packed = keep_references(mechanism, shelf, files, report, Keep.PACKAGES_AND_PATHS)
     packed = with_points_as_files(_with_mended_files(mechanism, packed, shelf, files, report), shelf)
+    return place_extras(mechanism, packed, shelf, files, report, Keep.PACKAGES_AND_PATHS, is_native=True)
+
+
+def place_extras(
+    mechanism: Mechanism, packed: Mechanism, shelf: Shelf, files: Files, report: Report, keep: Keep, *, is_native: bool = False
+) -> Mechanism:
+    """The packed mechanism whose extras name files by their new paths; where it is for MuJoCo (native), such as MuJoCo reads."""
+    settings = _settings(mechanism)
     moved: dict[tuple[str, str], str] = {}
     for key, extra in _with_files(mechanism):
         for _, file in _FILE.findall(_text(extra)):
             folder = _folder(key, settings)
             uri = joined(folder, unescaped(file), settings)
-            there = new_uri(uri, "assets", shelf, files, Keep.PACKAGES_AND_PATHS)
+            there = new_uri(uri, "assets", shelf, files, keep)
             if there is None:
                 _report_missing(uri, mechanism, key, extra, report)
-            else:
+            elif is_native:
                 there = _mended(uri, there, key, mechanism, shelf, files, report)
             moved[folder, file] = there or uri
     same = all(joined(folder, unescaped(file), settings) == uri for (folder, file), uri in moved.items())
@@ -111,8 +120,20 @@ def _with_files(mechanism: Mechanism) -> list[tuple[Id, Extra]]:
     return found
 
 
+def files_in_extras(mechanism: Mechanism) -> Iterator[tuple[Id, str]]:
+    """The references of the files that extras name: height fields, skins, the sides of textures."""
+    settings = _settings(mechanism)
+    for key, extra in _with_files(mechanism):
+        yield from ((key, joined(_folder(key, settings), unescaped(file), settings)) for _, file in _FILE.findall(_text(extra)))
+
+
 def _names_files(extra: Extra) -> bool:
     return extra.format == NAME and (extra.path in _KEPT or extra.text.startswith("<deformable"))
+
+
+def tells_places(extra: Extra) -> bool:
+    """Whether an extra names files, or the folders that they are in."""
+    return extra.format == NAME and (_names_files(extra) or extra.path.startswith("@file") or extra.text.startswith("<compiler"))
 
 
 def _text(extra: Extra) -> str:

@@ -16,7 +16,7 @@ from hymeko_x.rewrite.inertia import fill_tensors
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
 from hymeko_x.rewrite.roots import join_roots, make_world_a_link
-from hymeko_x.rewrite.shapes import approximate_shapes, drop_engine_shapes, prefer_own_colours, split_shared_shapes
+from hymeko_x.rewrite.shapes import approximate_shapes, drop_engine_shapes, drop_unused_assets, prefer_own_colours, split_shared_shapes
 from hymeko_x.rewrite.subsets import part_meshes_by_looks
 
 if TYPE_CHECKING:
@@ -79,5 +79,6 @@ RULES: tuple[Rule, ...] = (
     split_shared_shapes,
     part_meshes_by_looks,
     report_missing_limits,
+    drop_unused_assets,
     make_names_usable,  # once more, for what the rules have added
 )

@@ -1,0 +1,121 @@
+"""Originals: files of the source that the way home needs and that are not among the output's own, kept in a folder beside the output.
+
+A file that nothing in the output uses (the mesh of no geom, a skin), and one that is something else there (converted, moved, points of a
+stage), is copied as it is. On the way home it lies under its own reference again, so that the source comes back to the last bit.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
+from msgspec.structs import replace
+
+from hymeko_x import formats
+from hymeko_x.assets.shelf import safe_name
+from hymeko_x.residue.stand_ins import is_copy
+from hymeko_x.source import PackageFiles
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.source import Files, Package
+
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]*:/*")
+
+
+def kept_name(uri: str) -> str:
+    """The relative path of an original below the folder of originals: its reference, where this leads nowhere else on any system.
+
+    Other references are made harmless, with a digest that tells them apart.
+    """
+    parts = [part for part in posixpath.normpath(uri.replace("\\", "/")).split("/") if part]
+    safe = [safe_name(part) for part in parts]
+    if parts == safe and not uri.startswith("/"):
+        return "/".join(parts)
+    from hashlib import sha256
+
+    harmless = [safe_name(part) for part in _SCHEME.sub("", uri).replace("\\", "/").split("/") if part not in ("", ".", "..")] or ["file"]
+    return "/".join(["elsewhere", sha256(uri.encode("utf-8", "surrogatepass")).hexdigest()[:8], *harmless])
+
+
+def files_named(mechanism: Mechanism) -> Iterator[tuple[Id, str]]:
+    """The reference of every file that the mechanism names, with the element: meshes, images, and files that only extras name."""
+    yield from ((key, part.uri) for key, part in mechanism.assets() if part.uri is not None)
+    row = formats.of_source(mechanism)
+    if row is not None and row.files_in_extras is not None:
+        yield from formats.loaded(row.files_in_extras)(mechanism)
+
+
+def originals_of(mechanism: Mechanism, aligned: Mechanism, package: Package, files: Files, *, missing_only: bool) -> dict[str, str]:
+    """The files to keep, by their names in the folder of originals: those that the aligned image of the package does not have as they are.
+
+    With ``missing_only`` without those for which the image has something else, which stands in for them.
+    """
+    found: dict[str, str] = {}
+    contents = PackageFiles(package, files)
+    shown = set(_shown(mechanism, aligned)) if missing_only else ()
+    for key, uri in files_named(mechanism):
+        path = files.find(uri)
+        if key in shown and uri == getattr(mechanism.graph.vertices.get(key), "uri", None):
+            continue
+        if path is not None and not _is_there(mechanism, aligned, key, uri, path, contents):
+            found.setdefault(kept_name(uri), path)
+    return found
+
+
+def _shown(mechanism: Mechanism, aligned: Mechanism) -> Iterator[Id]:
+    """The meshes and images that the aligned image has too, or that one of its shapes shows."""
+    yield from aligned.graph.vertices
+    yield from (view.mesh for view in mechanism.every_shape() if view.mesh is not None and view.id in aligned.graph)
+
+
+def _is_there(mechanism: Mechanism, aligned: Mechanism, key: Id, uri: str, path: str, contents: PackageFiles) -> bool:
+    """Whether the file of a reference is found when the package is read: under the same reference, or as that of the same element."""
+    copies = contents.package.copies
+    if copies.get(posixpath.normpath(uri)) == path:
+        return True
+    part, image = mechanism.graph.vertices.get(key), aligned.graph.vertices.get(key)
+    other = getattr(image, "uri", None)
+    if other is None or uri != getattr(part, "uri", None) or not is_copy(mechanism, key, part, image):
+        return False
+    if copies.get(posixpath.normpath(other)) == path:
+        return True
+    name = posixpath.normpath(other)
+    return name in contents.package.files and _holds(contents.behind, path, contents.package.files[name])
+
+
+def with_originals(mechanism: Mechanism, originals: Mapping[str, str]) -> Mechanism:
+    """The mechanism that finds its files among the originals kept for it, given by their names."""
+    if not originals:
+        return mechanism
+    places = {uri: originals[name] for _, uri in files_named(mechanism) if (name := kept_name(uri)) in originals}
+    return replace(mechanism, originals=places) if places else mechanism
+
+
+class OriginalFiles(Struct, frozen=True):
+    """The files of a mechanism that kept originals: another file of the same name does not count as one; a :class:`Files`."""
+
+    originals: Mapping[str, str]
+    behind: Files
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file: where it is found as ever, unless the original has another content."""
+        path, kept = self.behind.find(uri), self.originals.get(uri)
+        if kept is None or path is None:
+            return path or kept
+        return path if _holds(self.behind, kept, self.behind.read(path)) else kept
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        return self.behind.read(path)
+
+
+def _holds(files: Files, path: str, data: bytes) -> bool:
+    try:
+        return files.read(path) == data
+    except OSError:
+        return False
