@@ -58,11 +58,11 @@ def test_a_walker_loses_its_loops_springs_and_motors_in_urdf(folder: Path, capsy
         "approximated: kind of 2 joints (ball -> hinge): 'left-achilles-rod', 'right-achilles-rod'",
         "approximated: connection of 2 joints: 'left-achilles-rod', 'right-achilles-rod'",
         "no physics: 4 joints renamed ('left-hip-roll' -> no name); 4 joints, 2 shapes, 1 mesh described in another form",
+        "note[HX101]: effort limits are what the actuators can exert: 'left-hip' 112.5, 'left-hip' 112.5, 'left-hip-pitch' 112.5,"
+        " 'left-shin' 112.5, ...",
         "IN:6: note[HX101]: joint 'left-hip' has dofs or a frame that the format cannot represent; it is written as a chain of 2 joints"
         " (5 more alike: lines 12, 14, 22, 28, 30)",
-        "IN:20: note[HX101]: shape 'left-foot/shape' is a capsule, which the format cannot represent; it is written as a cylinder and two"
-        " spheres (1 more alike: line 36)",
-        "3 more kinds; -v lists each with its place, --report FILE.json has all",
+        "5 more kinds; -v lists each with its place, --report FILE.json has all",
     ]
 
 
@@ -75,6 +75,8 @@ def test_the_panda_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.
         "dropped: armature of 9 joints, 0.1 kg or kg m^2: 'joint1', 'joint2', ...",
         "dropped: 7 settings that only mjcf has: <compiler>, <option>, <default>, <keyframe>, ...",
         "no physics: 11 meshes renamed ('link0_c' -> 'link0'); appearance of 5 materials, 1 light; 3 comments and declarations",
+        "note[HX101]: effort limits are what the actuators can exert: 'joint1' 87, 'joint2' 87, 'joint3' 87, 'joint4' 87, ...",
+        "note[HX101]: URDF requires limits that are not given: velocity of 9 joints; 1e9 is written, which is read as none",
         "-v lists each with its place, --report FILE.json has all",
     ]
 
@@ -89,6 +91,9 @@ def test_the_go2_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.Ca
         "dropped: friction of 56 shapes, up to 0.8: 'body/visual', 'body/visual#2', ...",
         "dropped: 5 settings that only mjcf has: <compiler>, <option>, <default>, <keyframe>",
         "no physics: 23 shapes described in another form; appearance of 5 frames; 5 comments and declarations",
+        "note[HX101]: effort limits are what the actuators can exert: 'FR_hip_leg_joint' 23.7, 'FR_thigh_leg_joint' 23.7,"
+        " 'FR_calf_leg_joint' 45.43, 'FL_hip_leg_joint' 23.7, ...",
+        "note[HX101]: URDF requires limits that are not given: velocity of 12 joints; 1e9 is written, which is read as none",
         "-v lists each with its place, --report FILE.json has all",
     ]
 
@@ -106,7 +111,10 @@ def test_a_humanoid_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest
         "dropped: 95 settings that only mjcf has: <compiler>, <default>, contype, conaffinity, ...",
         "no physics: 3 meshes renamed ('torso_waist_yaw' -> 'waist_yaw'); 63 shapes, 1 body described in another form;"
         " appearance of 16 frames, 5 materials, 3 textures, 5 more",
+        "note[HX101]: effort limits are what the actuators can exert: 'torso_waist_yaw' 20000, 'torso_waist_pitch' 20000,"
+        " 'torso_waist_roll' 20000, 'head_yaw' 20000, ...",
         "IN:57: note[HX101]: shape 'world/shape' is a plane, which the format cannot represent; it is written as a thin box",
+        "note[HX101]: URDF requires limits that are not given: velocity of 32 joints; 1e9 is written, which is read as none",
         "-v lists each with its place, --report FILE.json has all",
     ]
 
@@ -123,6 +131,8 @@ def test_cassie_as_urdf(real_robot: RealRobots, folder: Path, capsys: pytest.Cap
         "no physics: 2 joints described in another form",
         "IN:1034: note[HX101]: joint 'right-achilles-spring-joint' has dofs or a frame that the format cannot represent; it is written as a"
         " chain of 2 joints (1 more alike: line 1052)",
+        "note[HX101]: URDF requires limits that are not given: effort of 16 joints and velocity of 16 joints; 1e9 is written,"
+        " which is read as none",
         "-v lists each with its place, --report FILE.json has all",
     ]
 
