@@ -7,6 +7,7 @@ exact and deterministic, as :mod:`hymeko_x.factor` is for forms with an order an
 from __future__ import annotations
 
 import re
+from collections import Counter
 from heapq import nsmallest
 from itertools import combinations
 from typing import TYPE_CHECKING
@@ -71,6 +72,8 @@ def share(rows: Sequence[Row], costs: Costs) -> list[Shared]:
 
 def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], list[int]] | None:
     """The set that saves most, and the places of the rows that have all of it."""
+    if _most_saved(rows, costs) < costs.definition + costs.least:
+        return None
     best, most = None, costs.least - 1
     for pairs, members in _ranked(rows):
         fields = sum([len(name) + len(text) + costs.field for name, text in pairs])
@@ -78,6 +81,12 @@ def _best(rows: list[Row], costs: Costs, use: int) -> tuple[frozenset[Pair], lis
         if saved > most:
             best, most = (pairs, members), saved
     return None if best is None else (best[0], sorted(best[1]))
+
+
+def _most_saved(rows: list[Row], costs: Costs) -> int:
+    """More than any one set can save before its definition is paid: each field is written once instead of every time."""
+    counts = Counter(pair for row in rows for pair in row)
+    return sum([(count - 1) * (len(name) + len(text) + costs.field) for (name, text), count in counts.items() if count > 1])
 
 
 def candidates(rows: Sequence[Row]) -> list[frozenset[Pair]]:

@@ -120,7 +120,10 @@ class MjcfSheet:
 
     def inside(self, key: Id, path: str = "") -> list[str]:
         """The elements and comments that stand inside an element, as they are."""
-        found = [extra for extra in self.extras(key) if extra.path == path and extra.format in (words.NAME, "comment")]
+        extras = self.extras(key)
+        if not extras:
+            return []
+        found = [extra for extra in extras if extra.path == path and extra.format in (words.NAME, "comment")]
         return [_line_of(extra) for extra in sorted(found, key=lambda extra: extra.index)]
 
     # ---- attributes --------------------------------------------------------------------------------------------------------
@@ -140,14 +143,12 @@ class MjcfSheet:
         written = {name.removeprefix(start): text for name, text in notations.items() if name.startswith(start)} if notations else {}
         for group, inherited in self.inherited.of(groups, base, self.settings):
             value = values[group.key]
-            depends = not (found.keys().isdisjoint(group.needs) and kept.keys().isdisjoint(group.needs))
-            if not depends and not written and same_value(inherited, value):
-                continue
-            below = {**base, **_chosen(kept, group.needs), **_chosen(found, group.needs)} if depends else base
-            noted = _chosen(written, group.names)
+            context = _chosen(kept, group.needs) | _chosen(found, group.needs) if group.needs else None
+            below = {**base, **context} if context else base
+            noted = _chosen(written, group.names) if written else None
             if noted and self._means(group, merge(below, noted), value):
                 found |= noted
-            elif not (self._means(group, below, value) if depends else same_value(inherited, value)):
+            elif not (self._means(group, below, value) if context else value is inherited or same_value(inherited, value)):
                 for name, text in group.write(value, self.settings).items():
                     if base.get(name) != text:
                         found[name] = self._unsigned(name, text)
@@ -340,6 +341,9 @@ class BodyTag:
 
     def add(self, tag: Tag, frame: FrameTag | None) -> None:
         """Put an element into the frame; frames are opened and closed where they change, and named when they open first."""
+        if frame is None and not self.opened:
+            self.tag.children.append(tag)
+            return
         closed: list[FrameTag] = []
         while frame is not None and not self._is_open(frame):
             closed.append(frame)
@@ -363,7 +367,7 @@ class BodyTag:
 def open_body(sheet: MjcfSheet, key: Id, tag: Tag, childclass: str | None) -> BodyTag:
     """A body with the frames that its author put into it."""
     frames: dict[str, FrameTag] = {}
-    while (noted := sheet.mechanism.notation(key, frame(len(frames) + 1))) is not None:
+    while sheet.from_mjcf and (noted := sheet.mechanism.notation(key, frame(len(frames) + 1))) is not None:
         number = str(len(frames) + 1)
         outer, attributes = noted
         parent = frames.get(outer)
