@@ -8,7 +8,7 @@ from msgspec import Struct
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped, parts
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -69,7 +69,7 @@ def domains_of(
 def _is_neutral(mechanism: Mechanism, key: Id) -> bool:
     """Whether an end or a port has no domain of its own and hands none on: one ground may serve translations and rotations."""
     part = mechanism.graph.vertices.get(key)
-    return isinstance(part, parts.World) or (isinstance(part, parts.Port) and not part.domain and part.kind not in ("position", "flow"))
+    return isinstance(part, parts.World) or (isinstance(part, lumped.Port) and not part.domain and part.kind not in ("position", "flow"))
 
 
 def _connected(neighbours: dict[Id, list[Id]], start: Id) -> list[Id]:

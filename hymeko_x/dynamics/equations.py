@@ -14,7 +14,7 @@ from hymeko_x.dynamics.laws import evaluate
 from hymeko_x.dynamics.layout import PID_GAINS, Layout, layout_of, tex, variable
 from hymeko_x.dynamics.numbers import add, dot, factorize, solve, times
 from hymeko_x.dynamics.system import System, Variable
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -88,15 +88,15 @@ class Moment(Struct, frozen=True, dict=True):
 
     def _force(self, branch: Branch, element: Element, along: Motion) -> Number:
         match element.part:
-            case parts.Spring(_, rest):
+            case lumped.Spring(_, rest):
                 k, x = self.parameter(element.id, "stiffness"), add(along.position, self.numbers.exact(-rest))
                 return evaluate(element.law, {"x": x, "k": k}, self.numbers) if element.law else times(k, x)
-            case parts.Damper():
+            case lumped.Damper():
                 c, v = self.parameter(element.id, "damping"), along.velocity
                 return evaluate(element.law, {"v": v, "c": c}, self.numbers) if element.law else times(c, v)
-            case parts.Port(kind="effort"):
+            case lumped.Port(kind="effort"):
                 return -1 * self.input(element.id, "effort")
-            case parts.Port(kind="feedback"):
+            case lumped.Port(kind="feedback"):
                 gains = [gain for _, *both in branch.senses for gain in both]
                 sensed = dot(list(map(self.numbers.exact, gains)), [value for key, _, _ in branch.senses for value in self.motions[key]])
                 return add(sensed, -1 * self.input(element.id, "reference"))

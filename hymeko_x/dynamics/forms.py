@@ -14,7 +14,7 @@ from hymeko_x.dynamics.layout import layout_of, tex
 from hymeko_x.dynamics.linear import parameter_symbols
 from hymeko_x.dynamics.numbers import symbols, times
 from hymeko_x.dynamics.system import System, Variable
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -129,14 +129,14 @@ def port_hamiltonian(network: Network, *, symbolic: bool = False) -> PortHamilto
 
     for branch in network.branches:
         for element in branch.elements:
-            if element.law is not None or (isinstance(element.part, parts.Port) and element.part.kind != "effort"):
+            if element.law is not None or (isinstance(element.part, lumped.Port) and element.part.kind != "effort"):
                 words = "has a law of its own" if element.law is not None else "is a controller"
                 raise _no_form(element.id, f"{words}; its energy is not known")
     layout = layout_of(network)
     p = parameters_of(network, symbolic=symbolic)
     now = Moment(layout, (), (), p, symbols())
     mass = sympy.Matrix(now.mass_matrix())
-    sprung = [branch for branch in network.branches if any(isinstance(element.part, parts.Spring) for element in branch.elements)]
+    sprung = [branch for branch in network.branches if any(isinstance(element.part, lumped.Spring) for element in branch.elements)]
     n, k = len(network.coordinates), len(sprung)
     incidence = {branch.id: _incidence(network, branch) for branch in network.branches}
     efforts = [(branch, element) for branch, element in network.ports]
@@ -147,7 +147,7 @@ def port_hamiltonian(network: Network, *, symbolic: bool = False) -> PortHamilto
     energy = (momenta.T * mass.LUsolve(momenta))[0] / 2
     for number, branch in enumerate(sprung):
         for element in branch.elements:
-            if isinstance(element.part, parts.Spring):
+            if isinstance(element.part, lumped.Spring):
                 stretch = x[number] - symbols().exact(element.part.rest)
                 energy += symbols().exact(element.count) * now.parameter(element.id, "stiffness") * stretch**2 / 2
 
@@ -164,7 +164,7 @@ def port_hamiltonian(network: Network, *, symbolic: bool = False) -> PortHamilto
             G[row, column] = ratio
     for branch in network.branches:
         damping = sum(
-            symbols().exact(e.count) * now.parameter(e.id, "damping") for e in branch.elements if isinstance(e.part, parts.Damper)
+            symbols().exact(e.count) * now.parameter(e.id, "damping") for e in branch.elements if isinstance(e.part, lumped.Damper)
         )
         along = sympy.Matrix([*[0] * len(efforts), *ends[branch.id]])
         R[k:, k:] += damping * incidence[branch.id] * incidence[branch.id].T

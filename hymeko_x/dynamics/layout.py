@@ -15,7 +15,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.domains import UNITS
 from hymeko_x.dynamics.system import Variable
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -75,7 +75,7 @@ def _inputs(network: Network) -> dict[tuple[Id, str], Variable]:
     found: dict[tuple[Id, str], Variable] = {}
     for branch, element in network.ports:
         port = element.part
-        assert isinstance(port, parts.Port)
+        assert isinstance(port, lumped.Port)
         units = UNITS[network.domains[branch.id]]
         quantity = "effort" if port.kind == "effort" else "reference"
         unit = units.position if port.kind == "pid" else units.effort
@@ -108,11 +108,11 @@ def _parameters(network: Network) -> dict[tuple[Id, str], Variable]:
         units = UNITS[network.domains[branch.id]]
         for element in branch.elements:
             match element.part:
-                case parts.Spring(stiffness):
+                case lumped.Spring(stiffness):
                     found.append((element.id, "stiffness", "k", stiffness, units.stiffness))
-                case parts.Damper(damping):
+                case lumped.Damper(damping):
                     found.append((element.id, "damping", "c", damping, units.damping))
-                case parts.Port(kind="pid") as port:
+                case lumped.Port(kind="pid") as port:
                     found += [(element.id, gain, gain, value, "") for gain, value in _gains(element, port).items()]
     unique = {(key, field): (letter, value, unit) for key, field, letter, value, unit in found}
     letters = [letter for letter, _, _ in unique.values()]
@@ -128,7 +128,7 @@ def _parameters(network: Network) -> dict[tuple[Id, str], Variable]:
     }
 
 
-def _gains(element: Element, port: parts.Port) -> dict[str, float]:
+def _gains(element: Element, port: lumped.Port) -> dict[str, float]:
     given = dict(port.parameters)
     gains = {gain: given.get(gain, 0.0) for gain in PID_GAINS}
     if not all(isinstance(value, float) for value in gains.values()) or not any(gains.values()):

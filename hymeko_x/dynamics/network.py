@@ -15,7 +15,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.domains import domains_of
 from hymeko_x.dynamics.laws import parse_law
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.mechanism import numbers_weight
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ class Element(Struct, frozen=True):
     """A spring, damper or effort port on an edge: ``count`` of them side by side, with the tree of its law if it has one."""
 
     id: Id
-    part: parts.Spring | parts.Damper | parts.Port
+    part: lumped.Spring | lumped.Damper | lumped.Port
     count: float = 1.0
     law: ast.expr | None = None
 
@@ -55,7 +55,7 @@ class Network(Struct, frozen=True):
 
     name: str
     masses: Mapping[Id, float]
-    moved: Mapping[Id, parts.Port]
+    moved: Mapping[Id, lumped.Port]
     branches: tuple[Branch, ...]
     followers: Mapping[Id, tuple[float, tuple[tuple[Id, float], ...]]]
     sensors: Mapping[Id, tuple[parts.Sensor, Id]]
@@ -70,12 +70,12 @@ class Network(Struct, frozen=True):
     def ports(self) -> Iterator[tuple[Branch, Element]]:
         """The ports that push, with their edges."""
         for branch in self.branches:
-            yield from ((branch, element) for element in branch.elements if isinstance(element.part, parts.Port))
+            yield from ((branch, element) for element in branch.elements if isinstance(element.part, lumped.Port))
 
 
 def has_network(mechanism: Mechanism) -> bool:
     """Whether there is a lumped network in it."""
-    return next(mechanism.vertices(parts.Mass), None) is not None or next(mechanism.edges(parts.Constitutive), None) is not None
+    return next(mechanism.vertices(lumped.Mass), None) is not None or next(mechanism.edges(lumped.Constitutive), None) is not None
 
 
 def network_of(mechanism: Mechanism) -> Network:
@@ -84,9 +84,9 @@ def network_of(mechanism: Mechanism) -> Network:
     Raises: Refusal (HX400) for one in which nothing moves, HX401 units that do not fit, HX402 a moving end without mass, HX403 couplings in
     a circle, HX406 an edge that describes no network.
     """
-    branches = tuple(_branch(mechanism, key, arcs) for key, _, arcs in mechanism.edges(parts.Constitutive))
+    branches = tuple(_branch(mechanism, key, arcs) for key, _, arcs in mechanism.edges(lumped.Constitutive))
     followers = _followers(mechanism)
-    ends = [key for key, _ in mechanism.vertices(parts.Mass)]
+    ends = [key for key, _ in mechanism.vertices(lumped.Mass)]
     ends += [key for branch in branches for key, _ in branch.ends] + [key for branch in branches for key, _, _ in branch.senses]
     ends = list(dict.fromkeys(ends))
     masses = {key: _mass(mechanism, key) for key in ends if key.kind in ("mass", "body")}
@@ -117,7 +117,7 @@ def _branch(mechanism: Mechanism, key: Id, arcs: tuple[RobotArc, ...]) -> Branch
             senses.append((arc.target, weight[0], weight[1]))
         elif arc.role:
             raise _wrong(mechanism, key, f"has an arc of the role '{arc.role}' to {arc.target}; the only role is 'sense'")
-        elif isinstance(part, parts.Spring | parts.Damper) or (isinstance(part, parts.Port) and part.kind not in MOTIONS):
+        elif isinstance(part, lumped.Spring | lumped.Damper) or (isinstance(part, lumped.Port) and part.kind not in MOTIONS):
             elements.append(_element(mechanism, arc.target, part, weight[0]))
         elif arc.sign == 0:
             raise _wrong(mechanism, key, f"has an arc without direction to {arc.target}", "+ and - are the two sides of the deflection")
@@ -128,19 +128,19 @@ def _branch(mechanism: Mechanism, key: Id, arcs: tuple[RobotArc, ...]) -> Branch
     return Branch(key, tuple(ends), tuple(elements), tuple(senses))
 
 
-def _element(mechanism: Mechanism, key: Id, part: parts.Spring | parts.Damper | parts.Port, count: float) -> Element:
-    if isinstance(part, parts.Port):
+def _element(mechanism: Mechanism, key: Id, part: lumped.Spring | lumped.Damper | lumped.Port, count: float) -> Element:
+    if isinstance(part, lumped.Port):
         _port(mechanism, key)
         return Element(key, part, count)
-    names = ("x", "k") if isinstance(part, parts.Spring) else ("v", "c")
+    names = ("x", "k") if isinstance(part, lumped.Spring) else ("v", "c")
     return Element(key, part, count, parse_law(part.law, names, str(key), mechanism.origin(key)) if part.law else None)
 
 
-def _port(mechanism: Mechanism, key: Id) -> parts.Port:
+def _port(mechanism: Mechanism, key: Id) -> lumped.Port:
     part = mechanism.graph.vertices[key]
     if isinstance(part, parts.World):
-        return parts.Port()
-    assert isinstance(part, parts.Port)
+        return lumped.Port()
+    assert isinstance(part, lumped.Port)
     if part.kind not in MOTIONS + EFFORTS:
         raise _wrong(mechanism, key, f"is a port of the type '{part.kind}'; there are {', '.join(MOTIONS + EFFORTS)}")
     return part
@@ -148,7 +148,7 @@ def _port(mechanism: Mechanism, key: Id) -> parts.Port:
 
 def _mass(mechanism: Mechanism, key: Id) -> float:
     part = mechanism.graph.vertices[key]
-    if isinstance(part, parts.Mass):
+    if isinstance(part, lumped.Mass):
         mass: float | None = part.mass
     else:
         mass = part.inertial.mass if isinstance(part, parts.Body) and part.inertial else None

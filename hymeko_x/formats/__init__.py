@@ -1,25 +1,24 @@
 """The table of formats: one row holds everything particular to a format that anything outside its own rooms asks for.
 
-Modules and functions are named, as ``module`` or ``module:function``, and loaded when they are used. Adding a format means its words,
-its reader, its writer, and one row here.
+The columns are explained in :mod:`hymeko_x.formats.format`. Adding a format means its words, its reader, its writer, and one row here.
 """
 
 from __future__ import annotations
 
 import re
-from importlib import import_module
 from os.path import splitext
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
-from msgspec import Struct, field
 from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.formats.format import Format as Format
+from hymeko_x.formats.format import loaded as loaded
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from hymeko_x.ir.mechanism import Extra, Mechanism
     from hymeko_x.meshes.submesh import Submesh
@@ -27,132 +26,6 @@ if TYPE_CHECKING:
     MeshReader = Callable[[bytes, str], Submesh | None]
 
 _XML_TOKENS = "hymeko_x.corpus.lengths:xml_tokens"
-
-
-class Format(Struct, frozen=True):
-    """One format. Only name, title and suffixes are needed; without ``frontend`` it cannot be read, without ``backend`` not written."""
-
-    name: str
-    """Its name on the command line, and of the extras and notations that it alone understands."""
-    title: str
-    suffixes: tuple[str, ...]
-    """The suffixes of its files, first the one that is written."""
-
-    # ---- how it is recognised, read and written
-    frontend: str | None = None
-    """The module with ``read(source, report)``."""
-    backend: str | None = None
-    """The module with ``write(mechanism, options, report)``."""
-    rules: str | None = None
-    """The module with the rewriting rules in order: ``RULES``, ``NATIVE`` for what came from this format, and ``ACTUATED`` for
-    actuators that the user asks for."""
-    roots: tuple[str, ...] = ()
-    """The XML root elements of its files."""
-    magic: tuple[bytes, ...] = ()
-    """The first bytes of its files."""
-    beginning: bytes | None = None
-    """The pattern with which its texts begin, where they have neither a root element nor first bytes of their own (HyMeKo)."""
-    layout_options: frozenset[str] = frozenset()
-    """Those of the options ``layout``, ``nested`` and ``split`` that it takes when it is written."""
-    is_exact: bool = False
-    """Whether it represents every mechanism exactly, so that it carries no residue and keeps what only another format understands."""
-    container_of: str = ""
-    """The name of the format of which it is another container, with the same reader and the same extras (usdc, usdz)."""
-    expands_to: str = ""
-    """The name of the format that its files expand to (xacro)."""
-    outline: str | None = None
-    """The function ``(source, report) -> outline`` that finds where everything stands in its text."""
-    imports: str | None = None
-    """The function ``(source, report) -> source`` by which its files can import robots of other files."""
-    flat: str | None = None
-    """The function that writes as ``backend`` does, without what depends on several elements; None: ``write`` itself is like that."""
-    has_arguments: bool = False
-    """Whether the user can set values in it (xacro)."""
-    has_variants: bool = False
-    """Whether its files leave choices open (USD)."""
-    completes: str | None = None
-    """The function ``(mechanism, printed, files, report) -> mechanism`` that adds what only this format's engine computes, for a
-    mechanism that came from this format and goes to another one; ``printed()`` gives it as this format has it."""
-    flattens: str | None = None
-    """The function ``(mechanism, text) -> mechanism`` by which each element has all that it inherits; ``text`` is it as printed."""
-    names_in: str | None = None
-    """The function ``(extra, change, is_of_whole) -> extra or None`` that changes the names in an extra of a part that becomes one of a
-    robot; None for what a robot has once."""
-    joins: str | None = None
-    """The function ``(whole, host, part, change) -> whole`` that gives a composed mechanism what depends on all of its elements."""
-
-    # ---- its files
-    assets: Literal["copy", "reference"] = "copy"
-    """Whether meshes and images are put beside the output when the user does not choose."""
-    pack: str | None = None
-    """The function ``(mechanism, shelf, files, report) -> mechanism`` that names its files; None: it refers to any file by its uri."""
-    refused: str | None = None
-    """The function ``(suffix, data) -> reason or None``: why its engine does not read a file of a type that it reads."""
-    mesh_reader: str | None = None
-    """The function ``(data, suffix) -> Submesh or None``: a mesh file as its engine reads it, where others read it in another way."""
-    read_otherwise: str | None = None
-    """The function ``(data, suffix) -> (Submesh, reason) or None``: such a file where other programs read another solid from it."""
-    files_in_extras: str | None = None
-    """The function ``mechanism -> pairs of an element and a reference`` for files that only extras of the format name."""
-    place_extras: str | None = None
-    """The function ``(mechanism, packed, shelf, files, report, keep) -> Mechanism`` that gives the extras the new paths of these files."""
-    tells_places: str | None = None
-    """The function ``extra -> bool``: whether an extra of the format names files, or the folders that they are in."""
-    placing: frozenset[str] = frozenset()
-    """The extras of a mesh by which its points are elsewhere than in its file, or are made."""
-    keeps_package_uris: bool = False
-    """Whether ``package://NAME`` is written as it is: programs that read the format find packages in their own ways."""
-
-    # ---- what the ledger and HyMeKo text ask
-    stated_notations: Mapping[str, str] = field(default_factory=dict)
-    """Notations that hold more than how a value was written, by the name of the field as which the ledger lists them."""
-    inherited: str | None = None
-    """The function ``text -> text`` that leaves out of an extra what the elements have in fields of their own (classes of MJCF)."""
-    shapes_have_weight: str | None = None
-    """The function ``mechanism -> bool``: whether masses of shapes may count although their bodies have inertials."""
-    numbers_constraints: bool = False
-    """Whether its engine numbers closures and couplings in their common order, so that this order is content (MJCF)."""
-    boilerplate: frozenset[str] = frozenset()
-    """Fields of the whole that every file of the format has, and no other."""
-    precision: float = 0.0
-    """How far a number that it stores may be off, as a part of the number, where it stores less than doubles: no loss in the ledger."""
-    has_compact_extras: bool = False
-    """Whether no white space stands between the tags of its extras."""
-
-    # ---- what the verifier asks
-    reference: str | None = None
-    """The module with ``read(path, places)`` that loads a file with the engine whose reading is authoritative."""
-    libraries: Mapping[str, str] = field(default_factory=dict)
-    """The libraries that its reader, its writer and its reference reader import, with the extra of the distribution that brings each."""
-    memory: Mapping[str, str] = field(default_factory=dict)
-    """By library, the function ``(main, contents) -> object`` that loads its files in memory: its text, and the files beside it by path."""
-    names_are_identifiers: bool = False
-    """Whether a name may hold letters, digits and underscores only, so that others are spelled differently (USD)."""
-    has_single_dof_joints: bool = False
-    """Whether a joint of several dofs becomes a chain of joints (URDF)."""
-    joints_share_names: bool = False
-    """Whether a joint cannot have the name of a body, and then has ``_joint`` behind its own (SDF)."""
-    requires_mass: bool = False
-    """Whether its engine refuses moving bodies without mass (MJCF)."""
-    missing_shapes: frozenset[str] = frozenset()
-    """The kinds of shapes that it cannot represent."""
-
-    # ---- what the statistics of the corpus ask
-    tokens: str | None = None
-    """The function ``text -> list of tokens`` by which its length is counted; None: words between white space."""
-    includes: bytes | None = None
-    """The pattern by which a file refers to others of its format, so that its length is not that of the robot."""
-    holds_points: bool = False
-    """Whether its text holds the points of meshes, so that its length is no measure of the language."""
-    claimed_reduction: float | None = None
-    """By how many percent HyMeKo is shorter, as the paper reports it."""
-    colour: str = "#7f7f7f"
-    """Its colour in figures."""
-
-    @property
-    def family(self) -> str:
-        """The name that extras of this format bear: its own, or that of the format of which it is another container."""
-        return self.container_of or self.name
 
 
 HYMEKO = Format(
@@ -347,13 +220,6 @@ def of_source(mechanism: Mechanism) -> Format | None:
 def is_placing(extra: Extra) -> bool:
     """Whether an extra of a mesh says that its points are elsewhere than in its file."""
     return extra.path[:1] == "@" and any(extra.format == row.name and extra.path in row.placing for row in FORMATS)
-
-
-def loaded(name: str) -> Any:
-    """The module, or the function of a module, that a row names as ``module`` or ``module:function``."""
-    module, _, function = name.partition(":")
-    found = import_module(module)
-    return getattr(found, function) if function else found
 
 
 def of_output(path: str, name: str | None = None) -> Format:

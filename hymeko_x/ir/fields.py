@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 
+Parameters = tuple[tuple[str, "float | str | tuple[float, ...]"], ...]
+"""Named parameters of kinds that differ too much to be typed (an actuator's gains, a sensor's noise), in order."""
+
 NUMBERS = (float, int)
 """The types of numbers, as a test of millions of values needs them."""
 

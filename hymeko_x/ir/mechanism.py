@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 from msgspec import Struct, field
 from msgspec.structs import replace
 
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.fields import Noted
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.ids import ROOT as ROOT
@@ -51,10 +51,10 @@ KINDS: Mapping[type, str] = MappingProxyType(
         parts.Camera: "camera",
         parts.Light: "light",
         parts.PoseSet: "pose",
-        parts.Spring: "spring",
-        parts.Damper: "damper",
-        parts.Mass: "mass",
-        parts.Port: "port",
+        lumped.Spring: "spring",
+        lumped.Damper: "damper",
+        lumped.Mass: "mass",
+        lumped.Port: "port",
         parts.Datum: "datum",
         parts.Shape: "shape",
         parts.Mount: "mount",
@@ -68,7 +68,7 @@ KINDS: Mapping[type, str] = MappingProxyType(
         parts.Sense: "sense",
         parts.Stance: "stance",
         parts.Contact: "contact",
-        parts.Constitutive: "constitutive",
+        lumped.Constitutive: "constitutive",
         parts.Relation: "relation",
     }
 )

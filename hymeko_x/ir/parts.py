@@ -11,6 +11,7 @@ from enum import Enum
 from msgspec import Struct
 
 from hymeko_x.ir.fields import Noted
+from hymeko_x.ir.fields import Parameters as Parameters
 from hymeko_x.ir.geometry import Box as Box
 from hymeko_x.ir.geometry import Capsule as Capsule
 from hymeko_x.ir.geometry import Cylinder as Cylinder
@@ -20,11 +21,10 @@ from hymeko_x.ir.geometry import MeshShape as MeshShape
 from hymeko_x.ir.geometry import NoShape as NoShape
 from hymeko_x.ir.geometry import Plane as Plane
 from hymeko_x.ir.geometry import Sphere as Sphere
+from hymeko_x.ir.lumped import Constitutive, Damper, Mass, Port, Spring
 from hymeko_x.ir.values import ZERO, Pose, Tensor, Vec3, Written, X
 
 Rgba = tuple[float, float, float, float]
-Parameters = tuple[tuple[str, "float | str | tuple[float, ...]"], ...]
-"""Named parameters of kinds that differ too much to be typed (an actuator's gains, a sensor's noise), in order."""
 
 
 # ---- vertices: bodies ----------------------------------------------------------------------------------------------------
@@ -146,47 +146,7 @@ class PoseSet(Struct, frozen=True):
     parameters: Parameters = ()
 
 
-# ---- vertices: lumped elements of the dynamics dialect -----------------------------------------------------------------------
-
-
-class Spring(Struct, frozen=True):
-    """A lumped spring: ``stiffness`` in N/m or Nm/rad, ``rest`` length or angle.
-
-    ``law`` is the force as an expression in the deflection ``x`` from rest and the stiffness ``k``; empty = ``k*x``.
-    ``domain`` is translation or rotation; empty = that of its neighbours.
-    """
-
-    stiffness: float
-    rest: float = 0.0
-    law: str = ""
-    domain: str = ""
-
-
-class Damper(Struct, frozen=True):
-    """A lumped damper: ``damping`` in Ns/m or Nms/rad; ``law`` an expression in the rate ``v`` and the damping ``c``, empty = ``c*v``."""
-
-    damping: float
-    law: str = ""
-    domain: str = ""
-
-
-class Mass(Struct, frozen=True):
-    """A lumped mass in kg, or moment of inertia in kg m^2 where the ``domain`` is rotation."""
-
-    mass: float
-    domain: str = ""
-
-
-class Port(Struct, frozen=True):
-    """Where effort or motion enters from outside: ``kind`` is ground, effort, position, flow (a velocity), pid or feedback.
-
-    ``value`` is the constant part of what enters, of a controller its reference; the parameters are the signal, or the gains.
-    """
-
-    kind: str = "ground"
-    value: float = 0.0
-    domain: str = ""
-    parameters: Parameters = ()
+# ---- vertices and edges of plain hypergraphs -----------------------------------------------------------------------------------
 
 
 class Datum(Struct, frozen=True):
@@ -380,15 +340,6 @@ class Contact(Struct, frozen=True):
 
     kind: str = "exclude"
     parameters: Parameters = ()
-
-
-class Constitutive(Struct, frozen=True):
-    """An n-ary relation of the dynamics dialect: springs, dampers and ports in parallel between masses.
-
-    Arcs: ``+`` and ``-`` masses, bodies, grounds, weight (ratio,): the deflection is the sum of ratio * position, negative for ``+``.
-    Springs, dampers, effort ports and controllers in any direction, weight (number of them,). What a controller measures has
-    the role ``sense``, weight (gain of the position, gain of the velocity).
-    """
 
 
 class Relation(Struct, frozen=True):

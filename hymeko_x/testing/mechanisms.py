@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from hypothesis import strategies as st
 from msgspec import Struct
 
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import (
     KINDS,
@@ -270,7 +270,7 @@ _ADDERS: tuple[tuple[Callable[[_Builder], None], Callable[[Knobs], bool]], ...] 
     (_add_any("stance", st.just(parts.Stance()), 0, ("pose", "joint"), _LISTS), lambda knobs: knobs.poses),
     (_add_any("contact", CONTACTS, 0, ("shape", "body"), _LISTS), lambda knobs: knobs.relations),
     (
-        _add_any("constitutive", st.just(parts.Constitutive()), -1, ("body", "spring", "damper", "mass", "port"), _LISTS),
+        _add_any("constitutive", st.just(lumped.Constitutive()), -1, ("body", "spring", "damper", "mass", "port"), _LISTS),
         lambda knobs: knobs.lumped,
     ),
     (_add_any("relation", RELATIONS, 0, tuple(KINDS.values()), _LISTS), lambda knobs: knobs.relations),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.values import Pose, Written, rotate_tensor, unit
 from hymeko_x.testing.values import COLOURS, DIRECTIONS, LENGTHS, NUMBERS, PARAMETERS, POSES, SMALL, TEXTS, VECTORS, maybe
 
@@ -90,10 +90,10 @@ MOUNTED = st.one_of(
     st.builds(parts.Light, TEXTS, maybe(VECTORS), PARAMETERS),
 )
 LUMPED = st.one_of(
-    st.builds(parts.Spring, NUMBERS, NUMBERS, TEXTS, TEXTS),
-    st.builds(parts.Damper, NUMBERS, TEXTS, TEXTS),
-    st.builds(parts.Mass, NUMBERS, TEXTS),
-    st.builds(parts.Port, TEXTS, NUMBERS, TEXTS, PARAMETERS),
+    st.builds(lumped.Spring, NUMBERS, NUMBERS, TEXTS, TEXTS),
+    st.builds(lumped.Damper, NUMBERS, TEXTS, TEXTS),
+    st.builds(lumped.Mass, NUMBERS, TEXTS),
+    st.builds(lumped.Port, TEXTS, NUMBERS, TEXTS, PARAMETERS),
 )
 ACTUATORS = st.builds(parts.Actuator, TEXTS, PARAMETERS)
 POSE_SETS = st.builds(parts.PoseSet, maybe(TEXTS), maybe(NUMBERS), PARAMETERS)

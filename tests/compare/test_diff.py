@@ -12,7 +12,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x.compare.diff import Difference, Tolerance, diff
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.fields import attributes_of
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import KINDS, ROOT, Extra, Id, Mechanism, RobotEdge
@@ -41,10 +41,10 @@ FULL: tuple[parts.VertexPart | parts.EdgePart, ...] = (
     parts.Camera(1.0, (640, 480), PARAMETERS),
     parts.Light("spot", (1.0, 1.0, 1.0), PARAMETERS),
     parts.PoseSet("arm", 1.0, PARAMETERS),
-    parts.Spring(100.0, 0.1),
-    parts.Damper(10.0),
-    parts.Mass(5.0),
-    parts.Port("effort", 2.0, "rotation", (("period", 1.0),)),
+    lumped.Spring(100.0, 0.1),
+    lumped.Damper(10.0),
+    lumped.Mass(5.0),
+    lumped.Port("effort", 2.0, "rotation", (("period", 1.0),)),
     parts.Datum(PARAMETERS),
     parts.Shape(parts.Box((1.0, 2.0, 3.0)), parts.Role.VISUAL, "s", (1.0, 1.0, 1.0, 1.0), 1.0, 1000.0, (1.0, 0.1)),
     parts.Mount(),
@@ -58,7 +58,7 @@ FULL: tuple[parts.VertexPart | parts.EdgePart, ...] = (
     parts.Sense(),
     parts.Stance(),
     parts.Contact("pair", PARAMETERS),
-    parts.Constitutive(),
+    lumped.Constitutive(),
     parts.Relation(PARAMETERS),
 )
 GEOMETRIES: tuple[parts.Geometry, ...] = (
@@ -202,7 +202,7 @@ def test_notations_do_not_count() -> None:
 
 def test_numbers_within_the_tolerance_are_equal_and_others_are_not() -> None:
     def masses(a: float, b: float, tolerance: Tolerance) -> int:
-        return len(diff(with_part(parts.Mass(a)), with_part(parts.Mass(b)), tolerance))
+        return len(diff(with_part(lumped.Mass(a)), with_part(lumped.Mass(b)), tolerance))
 
     assert masses(1.0, 1.0 + 1e-9, Tolerance(absolute=1e-8)) == 0
     assert masses(1.0, 1.0 + 1e-7, Tolerance(absolute=1e-8)) == 1

@@ -9,7 +9,7 @@ from msgspec import Struct
 
 import hymeko_x as hx
 from hymeko_x.dynamics.network import Network
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped
 
 
 class Case(Struct):
@@ -47,9 +47,9 @@ def mujoco_model(network: Network) -> mujoco.MjModel:
     )
     tendons = ""
     for branch in network.branches:
-        stiffness = sum(e.part.stiffness for e in branch.elements if isinstance(e.part, parts.Spring))
-        damping = sum(e.part.damping for e in branch.elements if isinstance(e.part, parts.Damper))
-        rest = next((e.part.rest for e in branch.elements if isinstance(e.part, parts.Spring)), 0.0)
+        stiffness = sum(e.part.stiffness for e in branch.elements if isinstance(e.part, lumped.Spring))
+        damping = sum(e.part.damping for e in branch.elements if isinstance(e.part, lumped.Damper))
+        rest = next((e.part.rest for e in branch.elements if isinstance(e.part, lumped.Spring)), 0.0)
         joints = "".join(f'<joint joint="{key.name}" coef="{ratio!r}"/>' for key, ratio in branch.ends if key in network.masses)
         tendons += f'<fixed stiffness="{stiffness!r}" damping="{damping!r}" springlength="{rest!r}">{joints}</fixed>'
     option = '<option gravity="0 0 0" timestep="0.001" integrator="RK4"><flag contact="disable"/></option>'

@@ -14,7 +14,7 @@ import hymeko_x as hx
 from hymeko_x.backends.hymeko import write
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.hymeko import read
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.parts import DofKind, Role
 from hymeko_x.ir.values import Pose, quat_from_rpy
@@ -82,13 +82,13 @@ def test_listing_4_is_a_scara_with_masses_and_solids_where_the_links_put_them() 
 def test_listing_5_is_a_mass_on_spring_and_damper() -> None:
     model = load(LISTINGS / "quarter_vehicle_model.hymeko")
     assert dict(model.graph.vertices) == {
-        Id("spring", "spring"): parts.Spring(50000.0),
-        Id("damper", "damping"): parts.Damper(1000.0),
-        Id("mass", "link"): parts.Mass(50.0),
-        Id("port", "chassis"): parts.Port("ground"),
+        Id("spring", "spring"): lumped.Spring(50000.0),
+        Id("damper", "damping"): lumped.Damper(1000.0),
+        Id("mass", "link"): lumped.Mass(50.0),
+        Id("port", "chassis"): lumped.Port("ground"),
     }
     ((key, edge),) = model.graph.edges.items()
-    assert (key, edge.data) == (Id("constitutive", "joint"), parts.Constitutive())
+    assert (key, edge.data) == (Id("constitutive", "joint"), lumped.Constitutive())
     assert [(arc.target.name, arc.sign) for arc in edge.arcs] == [("chassis", 1), ("link", -1), ("damping", 1), ("spring", -1)]
 
 

@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import formats
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.notations import word
@@ -78,10 +78,10 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
         "camera": PartWords(parts.Camera, (_number("fovy", "angle"), Word("resolution", "resolution", "pixels")), open=True),
         "light": PartWords(parts.Light, (_TYPE, Word("diffuse", "diffuse", "vec3")), open=True),
         "pose": PartWords(parts.PoseSet, (Word("group", "group", "text"), _number("time", "time")), open=True),
-        "spring": PartWords(parts.Spring, (*_numbers("stiffness rest"), _LAW, _DOMAIN)),
-        "damper": PartWords(parts.Damper, (*_numbers("damping"), _LAW, _DOMAIN)),
-        "mass": PartWords(parts.Mass, (_MASS, _DOMAIN)),
-        "port": PartWords(parts.Port, (_TYPE, _number("value"), _DOMAIN), open=True),
+        "spring": PartWords(lumped.Spring, (*_numbers("stiffness rest"), _LAW, _DOMAIN)),
+        "damper": PartWords(lumped.Damper, (*_numbers("damping"), _LAW, _DOMAIN)),
+        "mass": PartWords(lumped.Mass, (_MASS, _DOMAIN)),
+        "port": PartWords(lumped.Port, (_TYPE, _number("value"), _DOMAIN), open=True),
         "datum": PartWords(parts.Datum, (), open=True),
         "mount": PartWords(parts.Mount, ()),
         "layer": PartWords(parts.Layer, (Word("use", "use", "text"),)),
@@ -95,7 +95,7 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
         "sense": PartWords(parts.Sense, ()),
         "stance": PartWords(parts.Stance, ()),
         "contact": PartWords(parts.Contact, (_TYPE,), open=True),
-        "constitutive": PartWords(parts.Constitutive, ()),
+        "constitutive": PartWords(lumped.Constitutive, ()),
         "relation": PartWords(parts.Relation, (), open=True),
     }
 )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x.formats.hymeko import ALIASES, LUMPED_UNITS, TARGETS, unit_exponents
-from hymeko_x.ir import parts
+from hymeko_x.ir import lumped, parts
 from hymeko_x.language.syntax import Field, Quantity
 
 if TYPE_CHECKING:
@@ -65,9 +65,9 @@ def with_compliance(
 
 
 def _with(dof: parts.Dof, element: object) -> parts.Dof:
-    if isinstance(element, parts.Damper):
+    if isinstance(element, lumped.Damper):
         return replace(dof, damping=dof.damping + element.damping)
-    assert isinstance(element, parts.Spring)
+    assert isinstance(element, lumped.Spring)
     stiffness = dof.stiffness + element.stiffness
     moment = dof.stiffness * dof.spring_ref + element.stiffness * element.rest
     return replace(dof, stiffness=stiffness, spring_ref=moment / stiffness if stiffness else dof.spring_ref)
