@@ -21,7 +21,7 @@ from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.source import KEPT_FOLDER, KEPT_SUFFIX, Kept, Package, PackageFiles, Source
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.source import Files
 
@@ -80,10 +80,9 @@ def _content(place: Path, origin: Origin) -> bytes:
 def write_package(package: Package, path: str, files: Files, within: Within | None = None) -> None:
     """Write the main file to ``path`` and its assets beside it. A run that is killed leaves the old output or the new one, whole.
 
-    First everything is there as temporary siblings, then all is renamed, the main file last. ``within`` gives the same
-    output with its assets below a folder: such a main file stands in while assets are replaced that the old one refers to.
-    What an earlier run has kept beside the file is removed first, and what this one keeps comes last: no file is ever beside
-    what was kept for another one.
+    All is written as temporary siblings and then renamed, the main file last. ``within`` gives the same output with its assets below
+    a folder: such a main file stands in while assets are replaced that the old one refers to. What an earlier run has kept beside
+    the file is removed first, and what this one keeps comes last: no file is ever beside what was kept for another one.
 
     Raises: Refusal HX002; then no file of an earlier run has been touched, unless the very renaming failed.
     """
@@ -93,24 +92,12 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
     try:
         if not target.parent.is_dir():
             raise FileNotFoundError(errno.ENOENT, f"there is no folder '{target.parent}'")
-        for name, place in _assets(package, target):
-            data = contents.read(name)
-            assets.make_folders(place.parent)
-            assets.add(place, data)
-        for name, source in package.originals.items():
-            place = _beside(target, f"{target.name}{KEPT_FOLDER}/{name}")
-            data = files.read(source)
-            kept.make_folders(place.parent)
-            kept.add(place, data)
-        is_stream = _is_stream(target)
-        if (package.kept or package.originals) and is_stream:
-            raise ValueError("this is a pipe or a device, which has no file beside it; --keep=inside keeps within the output")
-        if package.kept:
-            kept.add(beside, package.kept.encode("utf-8", "surrogatepass"))
-        if is_stream:
-            target.write_bytes(package.main)
+        assets.add_all((place, contents.read(name)) for name, place in _assets(package, target))
+        if is_stream := _is_stream(target):
+            _write_stream(package, target)
         else:
             main.add(target, package.main)
+        kept.add_all(_kept_files(package, target, files))
         with _alone_in(target.parent):
             if within is not None and target.is_file() and assets.replace_others():
                 _put_stand_in(target, files, within)
@@ -125,9 +112,23 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
     finally:
-        kept.clean()
-        main.clean()
-        assets.clean()
+        for staging in (kept, main, assets):
+            staging.clean()
+
+
+def _kept_files(package: Package, target: Path, files: Files) -> Iterator[tuple[Path, bytes]]:
+    """What is kept beside the file for the way home: the originals of what was converted, and the text. Raises: OSError, ValueError."""
+    for name, source in package.originals.items():
+        yield _beside(target, f"{target.name}{KEPT_FOLDER}/{name}"), files.read(source)
+    if package.kept:
+        yield target.with_name(f"{target.name}{KEPT_SUFFIX}"), package.kept.encode("utf-8", "surrogatepass")
+
+
+def _write_stream(package: Package, target: Path) -> None:
+    """Write the main file to a pipe or a device. Raises: ValueError when something is kept, which has no place beside it."""
+    if package.kept or package.originals:
+        raise ValueError("this is a pipe or a device, which has no file beside it; --keep=inside keeps within the output")
+    target.write_bytes(package.main)
 
 
 def _remove_others(folder: Path, originals: Mapping[str, str]) -> None:
@@ -284,6 +285,12 @@ class Staging(Struct):
     def add(self, final: Path, data: bytes) -> None:
         """Put the data beside its place, with the permissions of the file that it will replace, or of a new file. Raises: OSError."""
         self.moves.append(_stage(final, data))
+
+    def add_all(self, places: Iterable[tuple[Path, bytes]]) -> None:
+        """Put data beside its places, in folders that are made where they do not exist. Raises: OSError."""
+        for final, data in places:
+            self.make_folders(final.parent)
+            self.add(final, data)
 
     def replace_others(self) -> bool:
         """Whether a file with another content is in the place of one of these. Raises: OSError."""

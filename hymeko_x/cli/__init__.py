@@ -97,7 +97,7 @@ def _complete() -> int:
     """Answer a shell that asks how the words go on."""
     from hymeko_x.cli.completion import complete
 
-    complete()
+    complete({name: verb.summary for name, verb in VERBS.items()}, parser_of)
     return exits.DONE
 
 

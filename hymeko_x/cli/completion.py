@@ -7,8 +7,12 @@ from __future__ import annotations
 
 import argparse
 import os
+from typing import TYPE_CHECKING
 
 from hymeko_x.cli import exits
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping
 
 SHELLS = ("bash", "zsh", "fish")
 _USE = {
@@ -33,19 +37,17 @@ def run_completion(chosen: argparse.Namespace) -> int:
     return exits.DONE
 
 
-def complete() -> None:
+def complete(summaries: Mapping[str, str], parser_of: Callable[[str], argparse.ArgumentParser]) -> None:
     """Answer a shell and end the process: the verbs, or the options, choices and files of the verb on the line."""
     from argcomplete import autocomplete
-
-    from hymeko_x.cli import VERBS, parser_of
 
     words = os.environ.get("COMP_LINE", "").split()
     verb = words[1] if len(words) > 1 else ""
     parser = argparse.ArgumentParser("hymeko-x", allow_abbrev=False)
     verbs = parser.add_subparsers(metavar="VERB")
-    for name, row in VERBS.items():
+    for name, summary in summaries.items():
         known = [_with_formats(parser_of(name))] if name == verb else []
-        verbs.add_parser(name, help=row.summary, parents=known, add_help=False, allow_abbrev=False)
+        verbs.add_parser(name, help=summary, parents=known, add_help=False, allow_abbrev=False)
     autocomplete(parser, always_complete_options="long")
 
 

@@ -127,53 +127,63 @@ def port_hamiltonian(network: Network, *, symbolic: bool = False) -> PortHamilto
     """
     import sympy
 
-    for branch in network.branches:
-        for element in branch.elements:
-            if element.law is not None or (isinstance(element.part, lumped.Port) and element.part.kind != "effort"):
-                words = "has a law of its own" if element.law is not None else "is a controller"
-                raise _no_form(element.id, f"{words}; its energy is not known")
+    _check_energies(network)
     layout = layout_of(network)
     p = parameters_of(network, symbolic=symbolic)
     now = Moment(layout, (), (), p, symbols())
-    mass = sympy.Matrix(now.mass_matrix())
     sprung = [branch for branch in network.branches if any(isinstance(element.part, lumped.Spring) for element in branch.elements)]
     n, k = len(network.coordinates), len(sprung)
     incidence = {branch.id: _incidence(network, branch) for branch in network.branches}
     efforts = [(branch, element) for branch, element in network.ports]
     moved = [key for key in network.moved if (key, "velocity") in layout.input_of]
-
     x = sympy.symbols(" ".join([f"delta_{b.id.name}" for b in sprung] + [f"p_{key.name}" for key in network.coordinates]) + ",", real=True)
     momenta = sympy.Matrix(n, 1, x[k:])
-    energy = (momenta.T * mass.LUsolve(momenta))[0] / 2
-    for number, branch in enumerate(sprung):
-        for element in branch.elements:
-            if isinstance(element.part, lumped.Spring):
-                stretch = x[number] - symbols().exact(element.part.rest)
-                energy += symbols().exact(element.count) * now.parameter(element.id, "stiffness") * stretch**2 / 2
-
-    to_springs = sympy.Matrix(n, k, lambda i, b: incidence[sprung[b].id][i])
+    energy = (momenta.T * sympy.Matrix(now.mass_matrix()).LUsolve(momenta))[0] / 2 + _energy_of_springs(now, sprung, x[:k])
     ends = {branch.id: [_moved_by(branch, key) for key in moved] for branch in network.branches}
     m = len(efforts) + len(moved)
     J, R = sympy.zeros(n + k), sympy.zeros(n + k)
     G, P, S = sympy.zeros(n + k, m), sympy.zeros(n + k, m), sympy.zeros(m)
-    J[:k, k:], J[k:, :k] = to_springs.T, -to_springs
+    J[k:, :k] = sympy.Matrix(n, k, lambda i, b: -incidence[sprung[b].id][i])
+    J[:k, k:] = -J[k:, :k].T
     for column, (branch, element) in enumerate(efforts):
         G[k:, column] = symbols().exact(element.count) * incidence[branch.id]
     for row, branch in enumerate(sprung):
         for column, ratio in enumerate(ends[branch.id], len(efforts)):
             G[row, column] = ratio
     for branch in network.branches:
-        damping = sum(
-            symbols().exact(e.count) * now.parameter(e.id, "damping") for e in branch.elements if isinstance(e.part, lumped.Damper)
-        )
+        damping = _total(now, branch, lumped.Damper, "damping")
         along = sympy.Matrix([*[0] * len(efforts), *ends[branch.id]])
         R[k:, k:] += damping * incidence[branch.id] * incidence[branch.id].T
         if m:
             P[k:, :] += damping * incidence[branch.id] * along.T
             S += damping * along * along.T
     inputs, outputs = _ports(layout.network, efforts, moved, layout.inputs, layout.input_of)
-    gradient = sympy.Matrix([sympy.diff(energy, symbol) for symbol in x])
+    gradient = sympy.Matrix([energy]).jacobian(x).T
     return PortHamiltonian(_states(network, sprung), inputs, outputs, J, R, G, P, S, energy, gradient, tuple(x))
+
+
+def _check_energies(network: Network) -> None:
+    """Raises: Refusal (HX408) for an element whose energy is not known."""
+    for branch in network.branches:
+        for element in branch.elements:
+            if element.law is not None or (isinstance(element.part, lumped.Port) and element.part.kind != "effort"):
+                words = "has a law of its own" if element.law is not None else "is a controller"
+                raise _no_form(element.id, f"{words}; its energy is not known")
+
+
+def _energy_of_springs(now: Moment, sprung: Sequence[Branch], deflections: Sequence[Any]) -> Any:
+    """The energy in J of the springs of some edges at their deflections."""
+    return sum(
+        symbols().exact(element.count) * now.parameter(element.id, "stiffness") * (x - symbols().exact(element.part.rest)) ** 2 / 2
+        for x, branch in zip(deflections, sprung, strict=True)
+        for element in branch.elements
+        if isinstance(element.part, lumped.Spring)
+    )
+
+
+def _total(now: Moment, branch: Branch, part: type[lumped.Spring | lumped.Damper], parameter: str) -> Any:
+    """The sum of a parameter over the elements of an edge that are such parts."""
+    return sum(symbols().exact(e.count) * now.parameter(e.id, parameter) for e in branch.elements if isinstance(e.part, part))
 
 
 def _no_form(key: Id, words: str) -> Refusal:

@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from hymeko_x.dynamics.multibody import Multibody
     from hymeko_x.dynamics.numbers import Number
+    from hymeko_x.dynamics.trees import Trees
     from hymeko_x.ir.ids import Id
 
     Floats = NDArray[np.floating[Any]]
 
 
-def closures(found: Multibody) -> list[tuple[Id, str, tuple[Id, Frame], tuple[Id, Frame]]]:
+def closures(found: Trees) -> list[tuple[Id, str, tuple[Id, Frame], tuple[Id, Frame]]]:
     """The active loops between two bodies or frames on bodies: id, kind, and the closure's frame in each of the two bodies."""
     mechanism = found.mechanism
     mounts = {view.thing: (view.body, frame_of(view.pose)) for views in mechanism.mounts.values() for view in views}
@@ -47,7 +47,7 @@ def closures(found: Multibody) -> list[tuple[Id, str, tuple[Id, Frame], tuple[Id
     return loops
 
 
-def constraint(found: Multibody) -> Any:
+def constraint(found: Trees) -> Any:
     """The casadi function (q, v) -> (phi, J, J' v) of all closures."""
     import casadi
 
@@ -80,7 +80,7 @@ def constraint(found: Multibody) -> Any:
 
 
 def closed_forward(
-    found: Multibody, q: Sequence[float], v: Sequence[float], tau: Sequence[float], rate: float = 0.0
+    found: Trees, closure: Any, q: Sequence[float], v: Sequence[float], tau: Sequence[float], rate: float = 0.0
 ) -> tuple[Floats, Floats]:
     """The accelerations, and the forces of the closures, of a mechanism with loops; ``rate`` in 1/s stabilises them.
 
@@ -88,7 +88,7 @@ def closed_forward(
     """
     import numpy as np
 
-    phi, slope, drift = (np.array(value, dtype=float) for value in found.closure(q, v))
+    phi, slope, drift = (np.array(value, dtype=float) for value in closure(q, v))
     state, rates = np.array(q, dtype=float), np.array(v, dtype=float)
     mass, bias = found.mass_matrix(state), found.bias(state, rates)
     free = np.linalg.solve(mass, np.array(tau) - bias)
@@ -98,9 +98,9 @@ def closed_forward(
     return free + inverse @ force, force
 
 
-def freedom(found: Multibody, q: Sequence[float]) -> int:
+def freedom(found: Trees, closure: Any, q: Sequence[float]) -> int:
     """The degrees of freedom that the closures leave: velocities less the rank of J."""
     import numpy as np
 
-    slope = np.array(found.closure(q, [0.0] * found.tree.nv)[1], dtype=float)
+    slope = np.array(closure(q, [0.0] * found.tree.nv)[1], dtype=float)
     return found.tree.nv - int(np.linalg.matrix_rank(slope, tol=1e-8))

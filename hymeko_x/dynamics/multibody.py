@@ -1,137 +1,36 @@
-"""The dynamics of a mechanism: M(q) v' + C(q, v) v + g(q) = tau - damping - springs, in floats, in symbols and as expression graphs."""
+"""The dynamics of a mechanism at operating points, with closed loops, and over time."""
 
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
-from msgspec import Struct
-
-from hymeko_x import codes
-from hymeko_x.diagnostics import refuse
-from hymeko_x.dynamics.couplings import Expanded, Follower, expanded, followers_of, independent
+from hymeko_x.dynamics.couplings import expanded, followers_of, independent
 from hymeko_x.dynamics.forms import SecondOrder
 from hymeko_x.dynamics.loops import closed_forward, constraint, freedom
-from hymeko_x.dynamics.numbers import add, dot, factorize, floats, graphs, solve, symbols, times
+from hymeko_x.dynamics.numbers import floats
 from hymeko_x.dynamics.operating import OperatingPoint, linearized, named_positions, operating_point, sympy_matrix
-from hymeko_x.dynamics.recursion import GRAVITY, Constants, forward_dynamics, inverse_dynamics, mass_matrix
+from hymeko_x.dynamics.recursion import GRAVITY, Constants
 from hymeko_x.dynamics.simulation import Response, simulate
-from hymeko_x.dynamics.spatial import minus
-from hymeko_x.dynamics.system import System, Variable, input_of
-from hymeko_x.dynamics.tree import Tree, joint_name, tree_of
-from hymeko_x.ir.parts import DofKind
+from hymeko_x.dynamics.system import Variable, input_of
+from hymeko_x.dynamics.tree import tree_of
+from hymeko_x.dynamics.trees import Trees, reduced_mass
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
 
     import numpy as np
     from numpy.typing import NDArray
 
     from hymeko_x.dynamics.linear import StateSpace
-    from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
     from hymeko_x.dynamics.signals import Signal
-    from hymeko_x.dynamics.tree import Link
     from hymeko_x.ir.mechanism import Mechanism
 
     Floats = NDArray[np.floating[Any]]
 
 
-class Formulas(NamedTuple):
-    """M(q), the bias C(q, v) v + g(q), and g(q), as sympy matrices in the symbols q1, q2, ... and v1, v2, ..."""
-
-    q: tuple[Any, ...]
-    v: tuple[Any, ...]
-    mass: Any
-    bias: Any
-    gravity: Any
-
-
-class Multibody(Struct, frozen=True, dict=True):
-    """The dynamics of a mechanism's trees.
-
-    Configurations q are (nq,) or (n, nq), velocities v, accelerations and forces (nv,) or (n, nv), in the order of the links of
-    ``tree``; a free base has a position and a quaternion (w, x, y, z), and a linear before an angular velocity, both in its own
-    axes. With couplings, ``system`` has the independent coordinates only; the other functions have all of them.
-    """
-
-    mechanism: Mechanism
-    tree: Tree
-    followers: tuple[Follower, ...] = ()
-    gravity: tuple[float, float, float] = GRAVITY
-
-    @cached_property
-    def _constants(self) -> Constants:
-        return Constants(self.tree, floats(), self.gravity)
-
-    def mass_matrix(self, q: Floats) -> Floats:
-        """M(q) with armatures: (nv, nv), or (n, nv, nv)."""
-        import numpy as np
-
-        rows = mass_matrix(self._constants, _columns(q))
-        shape = np.shape(q)[:-1]
-        return np.stack([np.stack([np.broadcast_to(entry, shape) for entry in row], axis=-1) for row in rows], axis=-2).astype(float)
-
-    def bias(self, q: Floats, v: Floats) -> Floats:
-        """C(q, v) v + g(q)."""
-        return _array(inverse_dynamics(self._constants, _columns(q), _columns(v)), q)
-
-    def inverse(self, q: Floats, v: Floats, a: Floats) -> Floats:
-        """The forces for which the accelerations are a, without damping and springs."""
-        return _array(inverse_dynamics(self._constants, _columns(q), _columns(v), _columns(a)), q)
-
-    def forward(self, q: Floats, v: Floats, tau: Floats) -> Floats:
-        """The accelerations under forces, without damping and springs.
-
-        Raises: Refusal (HX404) where some motion moves no mass.
-        """
-        import numpy as np
-
-        with np.errstate(divide="ignore", invalid="ignore"):
-            found = _array(forward_dynamics(self._constants, _columns(q), _columns(v), _columns(tau)), q)
-        if not np.isfinite(found).all():
-            self._refuse_singular(q)
-        return found
-
-    def _refuse_singular(self, q: Floats) -> None:
-        import numpy as np
-
-        diagonal = np.diagonal(self.mass_matrix(q), axis1=-2, axis2=-1).reshape(-1, self.tree.nv).min(axis=0)
-        light = int(np.argmin(diagonal))
-        link = next(link for link in self.tree.links if link.v <= light < link.v + link.velocities)
-        message = f"{link.joint} moves no mass there; the mass matrix is singular"
-        raise refuse(codes.SINGULAR_MASS, message, element=str(link.joint), hint="give what it moves an inertia tensor, or it an armature")
-
-    def passive(self, q: Floats, v: Floats) -> Floats:
-        """The forces of damping and springs."""
-        return _array(passive_forces(self.tree, _columns(q), _columns(v), floats()), q)
-
-    @cached_property
-    def system(self) -> System:
-        """x = (q, v) of the independent links, u = a force for each dof of one coordinate, y = their positions."""
-        links = independent(self.tree, self.followers)
-        states = [_variable(link, k, "position") for link in links for k in range(link.coordinates)]
-        states += [_variable(link, k, "velocity") for link in links for k in range(link.velocities)]
-        scalar = [link for link in links if link.velocities == 1]
-        inputs = tuple(_variable(link, 0, "effort") for link in scalar)
-        outputs = tuple(_variable(link, 0, "position") for link in scalar)
-        rates = _rates(self.tree, self.followers, self.gravity)
-
-        def measured(x: Sequence[Number], u: Sequence[Number], p: Sequence[Number], numbers: Numbers) -> list[Number]:
-            at = [place for place, state in enumerate(states) if state.name in {output.name for output in outputs}]
-            return [x[place] for place in at]
-
-        return System(self.tree.name, tuple(states), inputs, outputs, (), rates, measured)
-
-    def symbolic(self) -> Formulas:
-        """M(q), C(q, v) v + g(q) and g(q) of all coordinates as formulas: q, v and numbers as fractions. For a handful of dofs."""
-        import sympy
-
-        constants = Constants(self.tree, symbols(), self.gravity)
-        q = [sympy.Symbol(f"q{k}", real=True) for k in range(1, self.tree.nq + 1)]
-        v = [sympy.Symbol(f"v{k}", real=True) for k in range(1, self.tree.nv + 1)]
-        bias, gravity = (inverse_dynamics(constants, q, rate) for rate in (v, [0] * len(v)))
-        rows = (mass_matrix(constants, q), [[x] for x in bias], [[x] for x in gravity])
-        return Formulas(tuple(q), tuple(v), *(sympy.Matrix(found).applyfunc(sympy.trigsimp) for found in rows))
+class Multibody(Trees, frozen=True, dict=True):
+    """The dynamics of a mechanism: of its trees, at operating points, with closed loops and over time."""
 
     # ---- at an operating point --------------------------------------------------------------------------------------------
 
@@ -167,23 +66,13 @@ class Multibody(Struct, frozen=True, dict=True):
 
     def closed_forward(self, q: Sequence[float], v: Sequence[float], tau: Sequence[float], rate: float = 0.0) -> tuple[Floats, Floats]:
         """The accelerations and the closures' forces of a mechanism with loops, without damping and springs; ``rate`` (1/s) stabilises."""
-        return closed_forward(self, q, v, tau, rate)
+        return closed_forward(self, self.closure, q, v, tau, rate)
 
     def freedom(self, q: Sequence[float]) -> int:
         """The degrees of freedom that the loops leave at q."""
-        return freedom(self, q)
+        return freedom(self, self.closure, q)
 
     # ---- over time ---------------------------------------------------------------------------------------------------------
-
-    @cached_property
-    def graph(self) -> Any:
-        """The casadi function (x, u) -> x', with derivatives of any order and generated C."""
-        import casadi
-
-        system = self.system
-        x, u = casadi.SX.sym("x", len(system.states)), casadi.SX.sym("u", len(system.inputs))
-        rates = system.rates([x[k] for k in range(x.numel())], [u[k] for k in range(u.numel())], (), graphs())
-        return casadi.Function("rates", [x, u], [casadi.vertcat(*rates)], ["x", "u"], ["rates"])
 
     def input(self, name: str) -> Variable:
         """The input of this name, or of the joint of this name.
@@ -213,106 +102,3 @@ def multibody_of(mechanism: Mechanism, *, base: str | None = None, gravity: tupl
     """
     tree = tree_of(mechanism, base=base)
     return Multibody(mechanism, tree, followers_of(mechanism, tree), gravity)
-
-
-def _columns(values: Floats) -> list[Number]:
-    import numpy as np
-
-    array = np.asarray(values, dtype=float)
-    return [array[..., number] for number in range(array.shape[-1])]
-
-
-def _array(values: Sequence[Number], like: Floats) -> Floats:
-    import numpy as np
-
-    return np.stack([np.broadcast_to(value, np.shape(like)[:-1]) for value in values], axis=-1).astype(float)
-
-
-# ---- the system of first order ----------------------------------------------------------------------------------------------
-
-_PARTS = {DofKind.BALL: ("qw", "qx", "qy", "qz"), DofKind.FREE: ("x", "y", "z", "qw", "qx", "qy", "qz")}
-_RATES = {DofKind.BALL: ("wx", "wy", "wz"), DofKind.FREE: ("vx", "vy", "vz", "wx", "wy", "wz")}
-_UNITS = {"position": ("m", "rad"), "velocity": ("m/s", "rad/s"), "effort": ("N", "N*m")}
-
-
-def _variable(link: Link, k: int, quantity: str) -> Variable:
-    name, kind = joint_name(link), link.dof.kind
-    turns = kind is not DofKind.SLIDE
-    if kind in _PARTS and quantity == "position":
-        part = _PARTS[kind][k]
-        return Variable(f"{name}.{part}", "" if part.startswith("q") else "m", value=1.0 if part == "qw" else 0.0, element=str(link.joint))
-    if kind in _RATES:
-        part = _RATES[kind][k]
-        return Variable(f"{name}.{part}", _UNITS["velocity"][part.startswith("w")], element=str(link.joint))
-    letter = {"position": "q", "velocity": r"\dot q", "effort": r"\tau"}[quantity]
-    plain = name.replace("_", r"\_")
-    value = link.dof.ref if quantity == "position" else 0.0
-    return Variable(f"{name}.{quantity}", _UNITS[quantity][turns], rf"{letter}_{{\mathrm{{{plain}}}}}", value, str(link.joint))
-
-
-def passive_forces(tree: Tree, q: Sequence[Number], v: Sequence[Number], numbers: Numbers) -> list[Number]:
-    """The forces of dampers and springs at the dofs. A spring of a ball is left out: no format agrees on its rest."""
-    forces: list[Number] = [0] * tree.nv
-    for link in tree.links:
-        for k in range(link.v, link.v + link.velocities):
-            if link.dof.damping:
-                forces[k] = add(forces[k], minus(times(numbers.exact(link.dof.damping), v[k])))
-        if link.dof.stiffness and link.coordinates == 1:
-            stretch = add(q[link.q], numbers.exact(-link.dof.spring_ref))
-            forces[link.v] = add(forces[link.v], minus(times(numbers.exact(link.dof.stiffness), stretch)))
-    return forces
-
-
-def _rates(
-    tree: Tree, followers: tuple[Follower, ...], gravity: tuple[float, float, float]
-) -> Callable[[Sequence[Number], Sequence[Number], Sequence[Number], Numbers], list[Number]]:
-    links = independent(tree, followers)
-    nz, nr = sum(link.coordinates for link in links), sum(link.velocities for link in links)
-
-    def rates(x: Sequence[Number], u: Sequence[Number], p: Sequence[Number], numbers: Numbers) -> list[Number]:
-        constants = Constants(tree, numbers, gravity)
-        whole = expanded(tree, followers, x[:nz], x[nz:], numbers)
-        tau = passive_forces(tree, whole.q, whole.v, numbers)
-        for link, value in zip([link for link in links if link.velocities == 1], u, strict=True):
-            tau[link.v] = add(tau[link.v], value)
-        moved = reduced_acceleration(constants, whole, tau, nr) if followers else forward_dynamics(constants, whole.q, whole.v, tau)
-        return [*_position_rates(links, x[:nz], x[nz:]), *moved]
-
-    return rates
-
-
-def reduced_acceleration(constants: Constants, whole: Expanded, tau: list[Number], count: int) -> list[Number]:
-    """The accelerations of the independent coordinates: G' M G z'' = G' (tau - bias - M drift)."""
-    mass = mass_matrix(constants, whole.q)
-    against = inverse_dynamics(constants, whole.q, whole.v)
-    force = [add(add(t, minus(b)), minus(dot(row, whole.drift))) for t, b, row in zip(tau, against, mass, strict=True)]
-    columns = [[row[k] for row in whole.ratios] for k in range(count)]
-    return solve(factorize(reduced_mass(constants, whole, count)), [dot(column, force) for column in columns])
-
-
-def reduced_mass(constants: Constants, whole: Expanded, count: int) -> Matrix:
-    """G' M G, the mass matrix of the independent coordinates."""
-    mass = mass_matrix(constants, whole.q)
-    columns = [[row[k] for row in whole.ratios] for k in range(count)]
-    moved = [[dot(row, column) for row in mass] for column in columns]
-    return [[dot(columns[i], moved[j]) for j in range(count)] for i in range(count)]
-
-
-def _position_rates(links: Sequence[Link], q: Sequence[Number], v: Sequence[Number]) -> list[Number]:
-    """How positions change at velocities: quaternions by half their product with the angular velocity, in the moving axes."""
-    from hymeko_x.dynamics.spatial import of_quaternion, turned
-
-    found: list[Number] = []
-    at = column = 0
-    for link in links:
-        own, rate = q[at : at + link.coordinates], v[column : column + link.velocities]
-        at, column = at + link.coordinates, column + link.velocities
-        if link.coordinates == 1:
-            found += rate
-            continue
-        if link.dof.kind is DofKind.FREE:
-            found += turned(of_quaternion(own[3:]), list(rate[:3]))
-        w, x, y, z = own[-4:]
-        a, b, c = rate[-3:]
-        found += [(-x * a - y * b - z * c) / 2, (w * a + y * c - z * b) / 2, (w * b + z * a - x * c) / 2, (w * c + x * b - y * a) / 2]
-    return found

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from hymeko_x.dynamics.multibody import Multibody
     from hymeko_x.dynamics.tree import Link
+    from hymeko_x.dynamics.trees import Trees
     from hymeko_x.ir.mechanism import Mechanism
 
     Floats = NDArray[np.floating[Any]]
@@ -72,7 +72,7 @@ def named_positions(mechanism: Mechanism, words: str) -> dict[str, float]:
         raise refuse(codes.BAD_SIGNAL, f"'{words}' is no configuration", hint=hint) from error
 
 
-def operating_point(found: Multibody, positions: Mapping[str, float], *, search: bool = False) -> OperatingPoint:
+def operating_point(found: Trees, positions: Mapping[str, float], *, search: bool = False) -> OperatingPoint:
     """The point at these positions (others at their reference); with ``search`` the equilibrium without inputs next to it.
 
     Raises: Refusal (HX407) for a joint that is not there, HX408 when there is no equilibrium near.
@@ -159,7 +159,7 @@ def displacements(links: Sequence[Link]) -> tuple[Variable, ...]:
     return tuple(found)
 
 
-def linearized(found: Multibody, point: OperatingPoint) -> StateSpace:
+def linearized(found: Trees, point: OperatingPoint) -> StateSpace:
     """The linear system at an operating point: states are displacements and velocities from there, inputs count from what holds it.
 
     Derivatives are exact (casadi's).

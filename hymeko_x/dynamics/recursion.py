@@ -195,16 +195,8 @@ def mass_matrix(constants: Constants, q: Sequence[Number]) -> Matrix:
 def forward_dynamics(constants: Constants, q: Sequence[Number], v: Sequence[Number], tau: Sequence[Number]) -> list[Number]:
     """The accelerations under the forces tau. Table 7.1."""
     links, frames = constants.tree.links, constants.link_frames(q)
-    velocities: list[Spatial] = []
-    coriolis: list[Spatial] = []
+    coriolis, biases = _velocity_terms(constants, frames, v)
     inertias: list[Articulated] = [articulated(inertia) for inertia in constants.inertias]
-    biases: list[Spatial] = []
-    for i, (link, frame) in enumerate(zip(links, frames, strict=True)):
-        moving = constants.along(i, v[link.v : link.v + link.velocities])
-        above = velocities[link.parent] if link.parent >= 0 else NOTHING
-        velocities.append(together(down(frame, above), moving))
-        coriolis.append(crossed(velocities[i], moving))
-        biases.append(crossed_force(velocities[i], momentum(constants.inertias[i], velocities[i])))
     solved = []
     for i in reversed(range(len(links))):
         link, columns = links[i], constants.subspaces[i]
@@ -234,6 +226,20 @@ def forward_dynamics(constants: Constants, q: Sequence[Number], v: Sequence[Numb
         accelerations.append(together(change, constants.along(i, own)))
         found += own
     return found
+
+
+def _velocity_terms(constants: Constants, frames: Sequence[Frame], v: Sequence[Number]) -> tuple[list[Spatial], list[Spatial]]:
+    """Of each link the acceleration and the force that its velocity causes: c [7.40] and p^A without what is below it [7.42]."""
+    velocities: list[Spatial] = []
+    coriolis: list[Spatial] = []
+    biases: list[Spatial] = []
+    for i, (link, frame) in enumerate(zip(constants.tree.links, frames, strict=True)):
+        moving = constants.along(i, v[link.v : link.v + link.velocities])
+        above = velocities[link.parent] if link.parent >= 0 else NOTHING
+        velocities.append(together(down(frame, above), moving))
+        coriolis.append(crossed(velocities[i], moving))
+        biases.append(crossed_force(velocities[i], momentum(constants.inertias[i], velocities[i])))
+    return coriolis, biases
 
 
 def _without(inertia: Articulated, u: list[Spatial], factors: tuple[Matrix, list[Number]]) -> Articulated:

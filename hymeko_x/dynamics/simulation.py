@@ -106,11 +106,7 @@ def _exact(system: System, space: StateSpace, signals: Mapping[str, Signal], tim
     left, right, span = grid[:-1], grid[1:], np.diff(grid)
     place = {variable.name: number for number, variable in enumerate(system.inputs)}
     rates = {place[variable.name]: place[variable.rate_of] for variable in system.inputs if variable.rate_of}
-    given = [signals.get(variable.rate_of or variable.name) for variable in system.inputs]
-    first, last = (np.zeros((len(span), len(given))) for _ in range(2))
-    for number, signal in enumerate(given):
-        if signal is not None:
-            first[:, number], last[:, number] = _ends(signal, left, right)
+    first, last = _inputs_at_ends(system, signals, left, right)
     shift = np.zeros_like(b)
     for rate, position in rates.items():
         shift[:, position] = b[:, rate]
@@ -120,7 +116,7 @@ def _exact(system: System, space: StateSpace, signals: Mapping[str, Signal], tim
     driven[:, list(rates)] = 0.0
     driven = driven + a @ shift
     offset = np.array(space.offset.tolist(), dtype=float).reshape(-1)
-    rest = np.array([system.inputs[number].value for number in range(len(given))])
+    rest = np.array([variable.value for variable in system.inputs])
     w = initial - shift @ rest
     states = np.empty((len(grid), len(w)))
     states[0] = w + shift @ first[0]
@@ -137,6 +133,18 @@ def _exact(system: System, space: StateSpace, signals: Mapping[str, Signal], tim
     outputs = states @ c.T + inputs @ d.T
     chosen = np.searchsorted(grid, time - 1e-12 * time[-1])
     return Response(time, inputs[chosen], states[chosen], outputs[chosen], (system.inputs, system.states, system.outputs))
+
+
+def _inputs_at_ends(system: System, signals: Mapping[str, Signal], left: Floats, right: Floats) -> tuple[Floats, Floats]:
+    """The inputs (n, m) at both ends of n steps; of a rate the signal of which it is the rate."""
+    import numpy as np
+
+    first, last = (np.zeros((len(left), len(system.inputs))) for _ in range(2))
+    for number, variable in enumerate(system.inputs):
+        signal = signals.get(variable.rate_of or variable.name)
+        if signal is not None:
+            first[:, number], last[:, number] = _ends(signal, left, right)
+    return first, last
 
 
 def _hold(a: Floats, b: Floats, offset: Floats, step: float) -> tuple[Floats, Floats, Floats, Floats]:

@@ -220,8 +220,7 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
         return Node(parts[0], tuple(parts[-1]), signature.stereotypes, signature.parameters, signature.uses, edge, line, column)
 
     def changed(edge: str, parts: list[Any], offset: int) -> Node:
-        path: Ref = parts[0]
-        return node(edge, [path.path[-1], *parts[1:]], offset)._replace(within=path.path[:-1])
+        return node(edge, [parts[0].path[-1], *parts[1:]], offset)._replace(within=parts[0].path[:-1])
 
     def array(edge: str, parts: list[Any], offset: int) -> Node:
         types = [_Signature(None, tuple(parts[2]), ())] if len(parts) > 3 else []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from msgspec.json import decode, encode
 from msgspec.structs import replace
@@ -16,6 +16,7 @@ from hymeko_x.ir.notations import word
 from hymeko_x.ir.parts import Body, Dof, DofKind, Joint, World
 from hymeko_x.ir.values import IDENTITY, Pose
 from hymeko_x.joining import held, on_body, with_names
+from hymeko_x.robot.data import RobotData
 from hymeko_x.robot.draft import Draft
 from hymeko_x.robot.editing import dofs_of, place
 from hymeko_x.robot.errors import EditError, unknown_name
@@ -28,7 +29,8 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import RobotArc, RobotEdge
     from hymeko_x.ir.values import Vec3
     from hymeko_x.robot.element import Element
-    from hymeko_x.robot.robot import Robot
+
+R = TypeVar("R", bound=RobotData)
 
 ATTACHED = word("robot.attached")
 """The notation of an edge by which a part is attached: the part's name, and the pose that the edge had in the part's world."""
@@ -38,14 +40,14 @@ ATTACHED = word("robot.attached")
 
 
 def attach(
-    host: Robot,
-    part: Robot,
+    host: R,
+    part: RobotData,
     at: str | Element = "world",
     *,
     prefix: str = "",
     joint: str | Joint | None = None,
     pose: Pose | Vec3 = IDENTITY,
-) -> Robot:
+) -> R:
     """The host with the part attached to a body or frame; the names of the part get the prefix.
 
     The world of the part is where ``pose`` is in the frame ``at``: what stands there fixed or free is fixed, or moves by ``joint`` (a
@@ -67,8 +69,8 @@ def attach(
 
 
 def compose_scene(
-    robots: Sequence[Robot], poses: Sequence[Pose | Vec3] | None = None, *, names: Sequence[str] | None = None, name: str = "scene"
-) -> Robot:
+    robots: Sequence[R], poses: Sequence[Pose | Vec3] | None = None, *, names: Sequence[str] | None = None, name: str = "scene"
+) -> R:
     """Several robots in one world, each at its pose; before the names of each are its own name (or that of ``names``) and a slash.
 
     Raises: EditError when there is no robot, or when there are not as many poses or names as robots.
@@ -136,7 +138,7 @@ def _with_states(whole: Mechanism, host: Mechanism, part: Mechanism, change: Cal
 # ---- taking apart --------------------------------------------------------------------------------------------------------------
 
 
-def detach(robot: Robot, name: str) -> tuple[Robot, Robot]:
+def detach(robot: R, name: str) -> tuple[R, R]:
     """The robot without a part, and the part: what has this prefix, or else a body with all below it, which is then an open root.
 
     What was attached with a prefix gets back its names and its world. Relations between the two are in neither.
@@ -158,13 +160,13 @@ def detach(robot: Robot, name: str) -> tuple[Robot, Robot]:
     return robot.changed(rest.finished()), part
 
 
-def subtree(robot: Robot, body: str) -> Robot:
+def subtree(robot: R, body: str) -> R:
     """A body with all below it as a robot of its own; the body is its open root. Raises: KeyError when there is no such body."""
     key = robot.bodies[body].id
     return robot.changed(_only(robot, part_of(robot.mechanism, below(robot.mechanism, key))).finished(body))
 
 
-def _only(robot: Robot, inside: set[Id]) -> Draft:
+def _only(robot: RobotData, inside: set[Id]) -> Draft:
     """The robot without everything else."""
     draft = Draft(robot.mechanism, lambda: robot.completed, is_locked=False)
     draft.remove([key for table in (draft.vertices, draft.edges) for key in table if key not in inside])

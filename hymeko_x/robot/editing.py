@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import WORLD, Id, joint_edge, mount_edge, shape_edge
@@ -29,12 +29,13 @@ from hymeko_x.ir.parts import (
 )
 from hymeko_x.ir.values import IDENTITY, ZERO, Z, compose
 from hymeko_x.robot import elements as el
+from hymeko_x.robot.data import RobotData
 from hymeko_x.robot.draft import Draft
 from hymeko_x.robot.element import Element
 from hymeko_x.robot.errors import EditError, unknown_name
-from hymeko_x.robot.fields import as_pose, plain_value
 from hymeko_x.robot.kinematics import width_of
 from hymeko_x.robot.named import Named
+from hymeko_x.robot.values import as_pose, plain_value
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -43,14 +44,14 @@ if TYPE_CHECKING:
     from hymeko_x.ir.geometry import Geometry
     from hymeko_x.ir.parts import EdgePart, Limits, Rgba, VertexPart
     from hymeko_x.ir.values import Pose, Tensor, Vec3
-    from hymeko_x.robot.robot import Robot
 
     Bounds = Limits | tuple[float | None, float | None]
 
 E_ = TypeVar("E_", bound=Element)
+R = TypeVar("R", bound=RobotData)
 
 
-class Editing(Named):
+class Editing(Named, Generic[R]):
     """An editing session: ``with robot.edit() as e:`` and then ``e.robot``, the new robot. The old one stays as it is.
 
     Elements are found as in a robot, and their fields assigned. Each change is checked at its line, and one that cannot be is an
@@ -58,7 +59,7 @@ class Editing(Named):
     elements; ``at`` is a Pose there or a position in m.
     """
 
-    def __init__(self, robot: Robot) -> None:
+    def __init__(self, robot: R) -> None:
         self._robot = robot
         self._draft = Draft(robot.mechanism, lambda: robot.completed, is_locked=False)
         self.name = robot.name
@@ -68,7 +69,7 @@ class Editing(Named):
         """The tables that are changed."""
         return self._draft
 
-    def __enter__(self) -> Editing:
+    def __enter__(self) -> Editing[R]:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
@@ -76,7 +77,7 @@ class Editing(Named):
             self._draft.is_locked = True
 
     @property
-    def robot(self) -> Robot:
+    def robot(self) -> R:
         """The robot with all changes so far."""
         return self._robot.changed(self._draft.finished(self.name))
 

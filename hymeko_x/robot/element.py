@@ -9,7 +9,7 @@ from msgspec.structs import replace
 
 from hymeko_x.ir.values import IDENTITY
 from hymeko_x.robot.errors import EditError, unknown_name
-from hymeko_x.robot.fields import as_pose
+from hymeko_x.robot.values import as_pose
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin

@@ -14,6 +14,7 @@ from hymeko_x.ir.values import IDENTITY, Pose, Tensor, Vec3
 from hymeko_x.robot.element import Element
 from hymeko_x.robot.errors import EditError
 from hymeko_x.robot.fields import DofField, InertialField, LimitsField, PartField, between_zero_and_one, not_negative, ordered
+from hymeko_x.robot.kinematics import pose_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -86,9 +87,8 @@ class BodyElement(Element):
 
     def world_pose(self, q: Coordinates | None = None) -> Pose:
         """Its pose in the world (or its own root) at coordinates by joint, in rad or m; what is left out is at its reference."""
-        from hymeko_x.robot.kinematics import pose_of
-
-        return pose_of(self, {} if q is None else q)
+        mechanism = self.draft.mechanism if self.draft.is_locked else self.draft.finished()
+        return pose_of(mechanism, self.id, {} if q is None else q)
 
 
 class JointElement(Element):

@@ -10,8 +10,9 @@ from msgspec.structs import replace
 
 from hymeko_x.ir.parts import Body, Dof, Inertial, Joint, Limits
 from hymeko_x.ir.types import fits, hints_of, settled
-from hymeko_x.ir.values import Pose, pose, unit
+from hymeko_x.ir.values import unit
 from hymeko_x.robot.errors import EditError
+from hymeko_x.robot.values import plain_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -128,20 +129,6 @@ def fitting(element: Element, owner: type, name: str, value: object) -> Any:
     return unit_axis(element, plain) if name == "axis" else plain
 
 
-def plain_value(value: object) -> object:
-    """Numbers of numpy as floats, and arrays and lists as tuples."""
-    if isinstance(value, bool | str | bytes) or value is None:
-        return value
-    if isinstance(value, int):
-        return float(value)
-    if isinstance(value, float):
-        return float(value)
-    if isinstance(value, list | tuple) or hasattr(value, "tolist"):
-        items = value.tolist() if hasattr(value, "tolist") else value
-        return tuple(map(plain_value, items)) if isinstance(items, list | tuple) else plain_value(items)
-    return value
-
-
 def unit_axis(element: Element, axis: Any) -> Any:
     """The axis with length 1. Raises: EditError when it has no direction."""
     try:
@@ -161,16 +148,6 @@ def replaced(carrier: Any, name: str, value: object) -> Any:
     if "written" in type(carrier).__struct_fields__ and name in ("axis", "tensor", "com"):
         return replace(carrier, **{name: value, "written": None})
     return replace(carrier, **{name: value})
-
-
-def as_pose(element: object, value: object) -> Pose:
-    """A pose, or the one of a position. Raises: EditError for anything else."""
-    if isinstance(value, Pose):
-        return pose(value.xyz, value.quat) if value.written is None else value
-    plain = plain_value(value)
-    if isinstance(plain, tuple) and len(plain) == 3 and all(isinstance(number, float) and math.isfinite(number) for number in plain):
-        return Pose(plain)
-    raise EditError(f"{element}: a pose is a Pose or a position of three numbers in m, found {value!r}")
 
 
 # ---- checks: what a value must be, or None where it is ----------------------------------------------------------------------

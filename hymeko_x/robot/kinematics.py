@@ -17,7 +17,6 @@ from hymeko_x.robot.errors import EditError, unknown_name
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc
     from hymeko_x.ir.values import Quat, Vec3
-    from hymeko_x.robot.elements import BodyElement
 
 Coordinates = Mapping[str, "float | Sequence[float]"] | Sequence[float]
 """Coordinates by joint, or all of them in the order of the joints: rad or m, a quaternion (w, x, y, z) for a ball, position in m and
@@ -37,13 +36,12 @@ def all_poses(mechanism: Mechanism, q: Coordinates) -> dict[Id, Pose]:
     return poses
 
 
-def pose_of(body: BodyElement, q: Coordinates) -> Pose:
+def pose_of(mechanism: Mechanism, body: Id, q: Coordinates) -> Pose:
     """The pose of one body; of all joints only those above it move."""
-    mechanism = body.draft.mechanism if body.draft.is_locked else body.draft.finished()
     values = coordinates(mechanism, q)
     chain: list[JointView] = []
     seen: set[Id] = set()
-    key = body.id
+    key = body
     while key in mechanism.parent_joint and key not in seen:
         seen.add(key)
         chain.append(mechanism.parent_joint[key])

@@ -2,63 +2,36 @@
 
 from __future__ import annotations
 
-from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from hymeko_x import pipeline
-from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.diagnostics import Report
 from hymeko_x.ir.parts import Body
 from hymeko_x.ir.values import IDENTITY
 from hymeko_x.joining import with_names
 from hymeko_x.robot import memory, text
 from hymeko_x.robot.composing import attach, detach, subtree
-from hymeko_x.robot.draft import Draft
+from hymeko_x.robot.data import RobotData
 from hymeko_x.robot.editing import Editing
 from hymeko_x.robot.kinematics import all_poses
 from hymeko_x.robot.merging import merge_fixed
 from hymeko_x.robot.mirroring import mirror, swapped
-from hymeko_x.robot.named import Named
 from hymeko_x.robot.scaling import scale
 from hymeko_x.robot.varying import vary
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.ir.parts import Joint
     from hymeko_x.ir.values import Pose, Vec3
     from hymeko_x.robot.element import Element
     from hymeko_x.robot.kinematics import Coordinates
-    from hymeko_x.source import Files
 
 
-class Robot(Named):
+class Robot(RobotData):
     """A robot, which never changes: every change gives a new one.
 
     ``mechanism`` is what it is made of, ``files`` finds its meshes and images; by default they are looked for beside the file
     that the mechanism was read from.
     """
-
-    def __init__(self, mechanism: Mechanism, files: Files | None = None) -> None:
-        self.mechanism = mechanism
-        self.files: Files = DiskFiles(Path(mechanism.source.file).parent) if files is None else files
-
-    @property
-    def name(self) -> str:
-        """The name of the robot."""
-        return self.mechanism.name
-
-    @cached_property
-    def draft(self) -> Draft:
-        """The tables behind the mappings."""
-        return Draft(self.mechanism, lambda: self.completed, is_locked=True)
-
-    @cached_property
-    def completed(self) -> Mechanism:
-        """The mechanism with what only the engine of its format computes, such as inertias from shapes."""
-        return pipeline.fully_completed(self.mechanism, self.files, Report())
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Robot) and self.mechanism == other.mechanism
@@ -95,7 +68,7 @@ class Robot(Named):
 
     # ---- changing --------------------------------------------------------------------------------------------------------
 
-    def edit(self) -> Editing:
+    def edit(self) -> Editing[Robot]:
         """A session of changes: ``with robot.edit() as e: e.bodies["wrist"].mass = 0.5``; the changed robot is ``e.robot``."""
         return Editing(self)
 
@@ -163,10 +136,6 @@ class Robot(Named):
         Raises: EditError for an unknown name, and for a spread outside of 0 to 1.
         """
         return self.changed(vary(self.completed if spreads.get("mass") else self.mechanism, seed, spreads))
-
-    def changed(self, mechanism: Mechanism, files: Files | None = None) -> Robot:
-        """A robot of another mechanism, with the files of this one unless others are given."""
-        return Robot(mechanism, self.files if files is None else files)
 
     # ---- in memory -------------------------------------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from msgspec.structs import fields
 
@@ -14,6 +14,8 @@ from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.language.syntax import ArcItem, Field, Node, Ref, is_field
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
     from hymeko_x.frontends.hymeko.values import ParameterValue
     from hymeko_x.ir.mechanism import Id, RobotArc
@@ -45,12 +47,7 @@ def read_part(builder: HymekoBuilder, key: Id, element: Element) -> None:
         set_domain(builder, key.kind, element, values)
     if words.open:
         values["parameters"] = (*block.take_rest(builder.reader.parameter), *_nested_parameters(builder, block))
-    try:
-        part = words.part(**values)
-    except TypeError as error:
-        required = {found.name for found in fields(words.part) if found.required}
-        missing = ", ".join(f"'{word.word}'" for word in words.words if word.attribute in required - values.keys())
-        raise builder.reader.refuse(element.node, f"{key} needs {missing}") from error
+    part = _made(builder, key, element, values)
     if key.kind in TARGETS:
         builder.edges[key] = Edge(part, tuple(builder.arc(key.kind, arc, element.scope) for arc in block.arcs))
         block.arcs = []
@@ -63,6 +60,17 @@ def read_part(builder: HymekoBuilder, key: Id, element: Element) -> None:
             block.take(TEXTURE)
     block.rest(str(key))
     builder.keep(key, block)
+
+
+def _made(builder: HymekoBuilder, key: Id, element: Element, values: Mapping[str, Any]) -> Any:
+    """The part of these values. Raises: Refusal (HX062) when it needs others."""
+    words = PARTS[key.kind]
+    try:
+        return words.part(**values)
+    except TypeError as error:
+        required = {found.name for found in fields(words.part) if found.required}
+        missing = ", ".join(f"'{word.word}'" for word in words.words if word.attribute in required - values.keys())
+        raise builder.reader.refuse(element.node, f"{key} needs {missing}") from error
 
 
 def _renamed(items: tuple[Item, ...], kind: str) -> tuple[Item, ...]:
