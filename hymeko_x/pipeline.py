@@ -204,7 +204,12 @@ def _chosen(mechanism: Mechanism, format: Format, options: Options, files: Files
     """The robot as the options and the target among them ask for it, and the options with that target's defaults."""
     options, target = targets.chosen(options, format)
     mechanism = actuate(choose(mechanism, options, report), format.name, options, report)
-    return targets.aimed(mechanism, target, _files_of(mechanism, files), report), options
+    files = _files_of(mechanism, files)
+
+    def printed(robot: Mechanism) -> Package:
+        return _printed(robot, format, replace(options, beside="", lenient=True), files, Report(), HERE).package
+
+    return targets.aimed(mechanism, target, files, report, printed), options
 
 
 def with_kept(package: Package, kept: Kept, options: Options, report: Report) -> Package:

@@ -50,7 +50,7 @@ BESIDE = {
 
 HOMES = {
     "pxr": ("frontends/usd", "backends/usd", "verify/"),
-    "mujoco": ("frontends/mjcf", "verify/", "draw/"),
+    "mujoco": ("frontends/mjcf", "targets/", "verify/", "draw/"),
     "pinocchio": ("verify/",),
     "trimesh": ("meshes/", "verify/"),
     "collada": ("meshes/",),

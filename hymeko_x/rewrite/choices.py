@@ -15,22 +15,28 @@ from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Coupling, Dof, DofKind, Drive, Joint
 from hymeko_x.ir.values import Z
 from hymeko_x.rewrite.actuators import MUJOCO_KINDS, without_actuators
+from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.joints import full_name, legal_dof
 from hymeko_x.rewrite.roots import stands_for_world, with_world
+from hymeko_x.rewrite.rotors import give_light_dofs_rotors
+from hymeko_x.rewrite.servos import SAG, gains, loads, with_followers
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import JointView, Mechanism, RobotEdge
     from hymeko_x.ir.parts import Parameters
     from hymeko_x.rewrite.context import Options
+    from hymeko_x.rewrite.servos import Load
 
 
 def choose(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
     """The robot as the options ask for it. Idempotent."""
     if options.base is not None:
         mechanism = _with_bases(mechanism, is_free=options.base == "free", report=report)
+    if options.actuators == "position":
+        mechanism = give_light_dofs_rotors(mechanism, Context(report, reason="--actuators position"))
     if options.actuators is not None:
         mechanism = _with_actuators(mechanism, options.actuators, report)
     return mechanism
@@ -87,18 +93,32 @@ def _with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanis
     names = names_in_use(bare)
     vertices: dict[Id, Actuator] = {}
     edges: dict[Id, RobotEdge] = {}
+    carried = with_followers(bare, loads(bare)) if kind == "position" else {}
     for view, number, dof in _driven_dofs(bare) if kind != "none" else ():
         name = full_name(view, number)
         key = names.take("actuator", f"{name}_{kind}" if Id("actuator", name) in bare.graph.vertices else name)
-        vertices[key] = Actuator(kind, _parameters(kind, dof))
+        vertices[key] = Actuator(kind, _parameters(kind, dof, carried.get((view.id, number))))
         role = "" if len(view.joint.dofs) == 1 else dof.name or str(number)
         edges[names.take("drive", key.name)] = Edge(Drive(), (Arc(key, 1), Arc(view.id, -1, None, role)))
     if present == vertices:
         return mechanism
+    _report_gains(bare, carried, report)
     if present:
         what = "left out" if kind == "none" else f"replaced by one {kind} per driven dof"
         report.note(codes.REWRITTEN, f"{len(present)} actuators of the source are {what}, as asked", element=str(next(iter(present))))
     return bare.with_graph(bare.graph.replace(vertices=vertices, edges=edges))
+
+
+def _report_gains(mechanism: Mechanism, carried: Mapping[tuple[Id, int], Load], report: Report) -> None:
+    """Report where gains are from, and the dofs that cannot hold the robot: their servos give in."""
+    if any(load.inertia > 0.0 for load in carried.values()):
+        message = f"--actuators position: gains follow from the masses that each joint moves at home, and sag by {SAG:g} rad or m at most"
+        report.note(codes.FOR_TARGET, message, hint="docs/targets.md has the formula")
+    for view, number, dof in _driven_dofs(mechanism) if carried else ():
+        load, effort = carried[view.id, number], dof.limits.effort
+        if effort and load.weight > effort:
+            message = f"{view.id} carries {load.weight:.3g} at home, more than its effort limit of {effort:.3g}: it cannot hold the robot"
+            report.warn(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
 
 
 def _driven_dofs(mechanism: Mechanism) -> Iterator[tuple[JointView, int, Dof]]:
@@ -116,17 +136,26 @@ def _driven_dofs(mechanism: Mechanism) -> Iterator[tuple[JointView, int, Dof]]:
                 yield view, number, legal_dof(dof, [])
 
 
-def _parameters(kind: str, dof: Dof) -> Parameters:
-    """Control ranges from the limits; gains so that the effort limit is reached at a small error."""
+def _parameters(kind: str, dof: Dof, load: Load | None) -> Parameters:
+    """Control ranges from the limits; gains that carry the load where it is known, else so that a small error asks for all effort."""
     limits = dof.limits
     match kind:
         case "position":
+            damping = ("dampratio", 1.0)
             gain = limits.effort / _FULL_EFFORT_AT if limits.effort else _STIFFNESS
+            if load is not None and load.inertia > 0.0:
+                gain, kv = (_rounded(value) for value in gains(load, limits.effort))
+                damping = ("kv", kv)
             reach = ((limits.lower, limits.upper),) if limits.lower is not None and limits.upper is not None else ()
-            return (("kp", gain), *(("ctrlrange", span) for span in reach), ("dampratio", 1.0))
+            return (("kp", gain), damping, *(("ctrlrange", span) for span in reach))
         case "velocity":
             speed = limits.velocity or 0.0
             gain = limits.effort / (_FULL_EFFORT_AT * (speed or 1.0)) if limits.effort else _STIFFNESS * _FULL_EFFORT_AT
             return (("kv", gain), *((("ctrlrange", (-speed, speed)),) if speed else ()))
         case _:
             return (("ctrlrange", (-limits.effort, limits.effort)),) if limits.effort else ()
+
+
+def _rounded(value: float) -> float:
+    """A gain with the three digits that a person would write."""
+    return float(f"{value:.3g}")

@@ -12,7 +12,7 @@ from hymeko_x.source import NoFiles
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Mechanism
-    from hymeko_x.source import Files
+    from hymeko_x.source import Files, Package
 
 
 class Options(Struct, frozen=True):
@@ -39,12 +39,21 @@ class Options(Struct, frozen=True):
     target: str | None = None
 
 
+def _write_nothing(mechanism: Mechanism) -> Package:
+    """Nothing, where a rule is used alone."""
+    raise NotImplementedError(f"{mechanism.name} is rewritten without a format")
+
+
 class Context(Struct, frozen=True):
-    """The circumstances of one rewriting: the report of what is changed, the files around the robot, and the option that asks for it."""
+    """The circumstances of one rewriting: the report of what is changed, the files around the robot, and the option that asks for it.
+
+    ``write`` gives a mechanism as it would be written, for rules of targets that ask its engine.
+    """
 
     report: Report
     files: Files = NoFiles()
     reason: str = ""
+    write: Callable[[Mechanism], Package] = _write_nothing
 
 
 Rule = Callable[["Mechanism", Context], "Mechanism"]

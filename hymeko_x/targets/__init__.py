@@ -18,13 +18,13 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.rewrite.context import Context
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.rewrite.context import Options, Rule
-    from hymeko_x.source import Files
+    from hymeko_x.source import Files, Package
 
 
 class Target(Struct, frozen=True):
@@ -80,11 +80,11 @@ def chosen(options: Options, format: Format) -> tuple[Options, Target | None]:
     return replace(options, **unset), target
 
 
-def aimed(mechanism: Mechanism, target: Target | None, files: Files, report: Report) -> Mechanism:
-    """The mechanism as the target's program expects it. Idempotent."""
+def aimed(mechanism: Mechanism, target: Target | None, files: Files, report: Report, printed: Callable[[Mechanism], Package]) -> Mechanism:
+    """The mechanism as the target's program expects it; ``printed`` gives one as it would be written. Idempotent."""
     if target is None:
         return mechanism
-    context = Context(report, files, f"--for {target.name}")
+    context = Context(report, files, f"--for {target.name}", printed)
     rules: tuple[Rule, ...] = formats.loaded(target.rules).RULES
     for rule in rules:
         mechanism = rule(mechanism, context)

@@ -4,9 +4,96 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
+from hymeko_x import codes
 from hymeko_x.backends.mjcf.steady import integrate_implicitly
+from hymeko_x.diagnostics import Report
+from hymeko_x.formats.mjcf import NAME
+from hymeko_x.formats.mjcf.keyframes import Key, has_keyframes, with_keys
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import ROOT, Id, numbers_weight
+from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.parts import Actuator, Contact, Coupling, DofKind, Drive
+from hymeko_x.rewrite import legalize
+from hymeko_x.rewrite.rotors import give_light_dofs_rotors
+from hymeko_x.rewrite.servos import dof_of, home
+from hymeko_x.targets.engine import touching
 
 if TYPE_CHECKING:
-    from hymeko_x.rewrite.context import Rule
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+    from hymeko_x.rewrite.context import Context, Rule
 
-RULES: tuple[Rule, ...] = (integrate_implicitly,)
+_SHOWN = 3
+"""How many pairs a note names."""
+
+
+def _listed(words: list[str]) -> str:
+    return ", ".join(words[:_SHOWN]) + (", ..." if len(words) > _SHOWN else "")
+
+
+def name_home(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A keyframe ``home``: every joint at its reference, or at the limit next to it, and every position servo there."""
+    if has_keyframes(mechanism):
+        return mechanism
+    legal = legalize(mechanism, NAME, Report())
+    places = _at_home(legal)
+    if not places:
+        return mechanism
+    numbers: dict[tuple[str, Id], tuple[float, ...]] = {}
+    for view in legal.joints.values():
+        if view.joint.dofs and all(dof.kind not in (DofKind.BALL, DofKind.FREE) for dof in view.joint.dofs):
+            numbers["qpos", view.id] = tuple(places[view.id, number] for number in range(len(view.joint.dofs)))
+    for key, target in _servos(legal):
+        numbers["ctrl", key] = (places[target],)
+    keyed = with_keys(legal, [Key({"name": "home"}, numbers)])
+    context.report.note(codes.FOR_TARGET, f"{context.reason}: keyframe 'home' is written", element="mechanism")
+    extras = {key: found for key, found in {**mechanism.extras, ROOT: keyed.extras[ROOT]}.items() if found}
+    return replace(mechanism, extras=extras)
+
+
+def _at_home(mechanism: Mechanism) -> dict[tuple[Id, int], float]:
+    """The coordinates of hinges and slides at home; followers are where their leaders put them."""
+    places = {(view.id, n): home(dof) for view in mechanism.joints.values() for n, dof in enumerate(view.joint.dofs)}
+    for _, _, arcs in mechanism.edges(Coupling):
+        ends = [(dof_of(mechanism, arc), arc) for arc in arcs]
+        followers = [place for place, arc in ends if arc.sign > 0 and place in places]
+        leaders = [(places[place], numbers_weight(arc)) for place, arc in ends if arc.sign < 0 and place in places]
+        if len(followers) == 1 and leaders:
+            places[followers[0]] = sum(sum(c * at**power for power, c in enumerate(weights)) for at, weights in leaders)
+    return places
+
+
+def _servos(mechanism: Mechanism) -> list[tuple[Id, tuple[Id, int]]]:
+    """Each position servo with the dof that it drives."""
+    found = []
+    for _, _, arcs in mechanism.edges(Drive):
+        joints = [arc for arc in arcs if arc.sign < 0 and arc.target in mechanism.joints]
+        for arc in arcs:
+            part = mechanism.graph.vertices.get(arc.target)
+            if arc.sign > 0 and joints and isinstance(part, Actuator) and part.kind == "position":
+                found.append((arc.target, dof_of(mechanism, joints[0])))
+    return found
+
+
+def exclude_what_touches_at_home(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Bodies that touch at home, where nothing should push, never collide: their shapes overlap by design.
+
+    Source: MoveIt Setup Assistant, which disables pairs that are in collision by default; MuJoCo's <exclude>.
+    """
+    present = {frozenset(arc.target for arc in arcs) for _, contact, arcs in mechanism.edges(Contact) if contact.kind == "exclude"}
+    found = [pair for pair in touching(mechanism, context) if frozenset(pair) not in present]
+    if not found:
+        return mechanism
+    names = names_in_use(mechanism)
+    edges: dict[Id, RobotEdge] = {}
+    for pair in found:
+        key = names.take("contact", "_".join(body.name for body in pair))
+        edges[key] = Edge(Contact("exclude"), tuple(Arc(body, 0) for body in pair))
+    listed = _listed([f"'{a.name}' and '{b.name}'" for a, b in found])
+    message = f"{len(found)} pairs of bodies touch at home and are excluded from collision: {listed}"
+    context.report.note(codes.FOR_TARGET, f"{context.reason}: {message}", element=str(found[0][0]))
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges))
+
+
+RULES: tuple[Rule, ...] = (integrate_implicitly, give_light_dofs_rotors, name_home, exclude_what_touches_at_home)

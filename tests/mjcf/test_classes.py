@@ -62,8 +62,8 @@ def test_what_legs_share_is_in_classes_called_after_their_parts() -> None:
 
 def test_actuators_share_a_class_as_well() -> None:
     text = hx.dumps(hx.loads(QUADRUPED, "urdf"), "mjcf", actuators="position")
-    assert '    <position kp="400" dampratio="1"/>\n' in text[: text.index("<asset>")]
-    assert '<position name="lf_hip" joint="lf_hip" ctrlrange="-1.0625 1.0625"/>' in text
+    assert '<position kp="400" kv="40" ctrlrange="-0.03125 0.03125"/>\n' in text[: text.index("<asset>")]
+    assert '<position name="rh_ankle" class="ankle_2" joint="rh_ankle"/>' in text
 
 
 def test_whoever_is_different_says_so_but_never_half_of_a_size() -> None:

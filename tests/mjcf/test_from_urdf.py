@@ -207,7 +207,7 @@ def test_transmissions_become_no_actuators_unless_asked_for() -> None:
     text = robot(link("a"), link("b"), joint("1", "a", "b"), transmission)
     assert convert_text(text).model().nu == 0
     model = convert_text(text, options=Options("fixed", "position")).model()
-    assert (model.nu, list(model.actuator_ctrlrange[0]), model.actuator_gainprm[0, 0]) == (1, [-1.0, 1.0], 100.0)
+    assert (model.nu, list(model.actuator_ctrlrange[0]), model.actuator_gainprm[0, 0]) == (1, [-1.0, 1.0], 400.0)
 
 
 # ---- shapes ----------------------------------------------------------------------------------------------------------------------

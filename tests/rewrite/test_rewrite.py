@@ -453,8 +453,8 @@ def test_each_kind_of_actuator_takes_its_ranges_and_gains_from_the_limits() -> N
         "j2": ("motor", {}),
     }
     assert actuators(legal(mechanism, Options("fixed", "position"))[0]) == {
-        "j1": ("position", {"kp": 100.0, "dampratio": 1.0, "ctrlrange": (-1.0, 2.0)}),
-        "j2": ("position", {"kp": 100.0, "dampratio": 1.0}),
+        "j1": ("position", {"kp": 80.0, "kv": 8.0, "ctrlrange": (-1.0, 2.0)}),
+        "j2": ("position", {"kp": 40.0, "kv": 4.0}),
     }
     assert actuators(legal(mechanism, Options("fixed", "velocity"))[0]) == {
         "j1": ("velocity", {"kv": 25.0, "ctrlrange": (-4.0, 4.0)}),

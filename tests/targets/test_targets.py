@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+import mujoco
 import pytest
 
 import hymeko_x as hx
@@ -16,6 +17,16 @@ ARM = """arm : robot {
   base { mass 1 inertia [0.1 0.1 0.1] }
   upper { mass 1 inertia [0.1 0.1 0.1] com [0.2 0 0] }
   @shoulder : revolute { limit [-1 1] effort 20 + base - upper axis=Y }
+}
+"""
+
+
+TOUCHING = """arm : robot {
+  base { mass 1 inertia [0.1 0.1 0.1] collision { box [0.2 0.2 0.2] } }
+  upper { mass 1 inertia [0.1 0.1 0.1] com [0.2 0 0] }
+  fore { mass 1 inertia [0.1 0.1 0.1] collision { box [0.2 0.2 0.2] } }
+  @shoulder : revolute { limit [0.5rad 1rad] + base - upper axis=Z }
+  @elbow : revolute { limit [-1 1] [0.05 0 0] + upper - fore axis=Z }
 }
 """
 
@@ -78,6 +89,27 @@ def test_update_finds_the_target_out(arm: Path) -> None:
     output = arm.with_suffix(".xml")
     hx.convert(arm, output, base="fixed", target="mujoco", actuators="velocity")
     assert hx.update(arm, output, dry_run=True).edits == ()
+
+
+def test_home_is_a_keyframe_in_which_nothing_pushes(tmp_path: Path) -> None:
+    (tmp_path / "arm.hymeko").write_text(TOUCHING)
+    done = hx.convert(tmp_path / "arm.hymeko", tmp_path / "arm.xml", base="fixed", actuators="position", target="mujoco")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "arm.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    assert (model.key(0).name, list(data.qpos), list(data.ctrl), data.ncon) == ("home", [0.5, 0.0], [0.5, 0.0], 0)
+    assert [d.message for d in done.report if "touch" in d.message] == [
+        "--for mujoco: 1 pairs of bodies touch at home and are excluded from collision: 'base' and 'fore'"
+    ]
+    assert done.losses == ()
+
+
+def test_what_the_target_added_is_there_in_hymeko_text_as_well(tmp_path: Path) -> None:
+    (tmp_path / "arm.hymeko").write_text(TOUCHING)
+    robot = hx.convert(tmp_path / "arm.hymeko", tmp_path / "arm.xml", base="fixed", actuators="position", target="mujoco").mechanism
+    text = hx.dumps(robot, "hymeko")
+    assert hx.dumps(hx.loads(text, "hymeko"), "mjcf") == (tmp_path / "arm.xml").read_text()
 
 
 def test_without_a_target_nothing_is_added(arm: Path) -> None:

@@ -30,6 +30,11 @@ class Key(Struct, frozen=True):
     numbers: dict[tuple[str, Id], tuple[float, ...]]
 
 
+def has_keyframes(mechanism: Mechanism) -> bool:
+    """Whether a mechanism has keyframes of MJCF."""
+    return any(map(_is_keyframes, mechanism.extras.get(ROOT, ())))
+
+
 def keys_of(mechanism: Mechanism) -> list[Key]:
     """The keyframes of a mechanism from MJCF; one whose numbers do not fit its joints and actuators is left out."""
     sections = [parse_text(extra.text) for extra in mechanism.extras.get(ROOT, ()) if _is_keyframes(extra)]
