@@ -165,7 +165,7 @@ def _killer(at: int) -> Callable[[str, tuple[object, ...]], None]:
 
 
 def fixed(folder: Path) -> tuple[tuple[str, bytes], ...]:
-    """The files but for temporary siblings, at which nobody looks."""
+    """The files but for temporary siblings."""
     return tuple((name, data) for name, data in tree(folder).items() if not name.endswith(".part"))
 
 

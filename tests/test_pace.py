@@ -1,4 +1,4 @@
-"""What takes too long is told, and a round that the machine spoilt is not."""
+"""What takes too long is reported, and a round that the machine disturbed is not."""
 
 from __future__ import annotations
 

@@ -129,7 +129,7 @@ def test_what_is_taken_out_of_the_result_is_in_the_ledger(format: str, mechanism
 
 
 def _without(mechanism: Mechanism, victim: Id) -> Mechanism:
-    """The mechanism without a body and everything that hangs on it."""
+    """The mechanism without a body and everything below it."""
     graph = mechanism.graph
     gone = {victim}
     while more := {key for key, edge in graph.edges.items() if key not in gone and any(arc.target in gone for arc in edge.arcs)}:

@@ -100,7 +100,7 @@ def decoded(value: Value | None) -> Any:
 
 
 def _part(kind: type, words: tuple[Value, ...]) -> object:
-    names = [_name(word) for word in words[::2]]
+    names = [name_of(word) for word in words[::2]]
     part: object = kind(**{name: settled(kind, name, decoded(word)) for name, word in zip(names, words[1::2], strict=True)})
     if kind is not Arc and not is_sound(part):
         raise ValueError(f"no {kind.__name__}: {part!r}")
@@ -115,7 +115,7 @@ def decoded_turn(value: Value | None) -> tuple[values.Quat, Written | None]:
     items = _items(value)
     if len(items) == 4:
         return tuple(map(_number, items)), None  # type: ignore[return-value]
-    written = Written(_name(items[0]), tuple(map(_number, _items(items[1]))))
+    written = Written(name_of(items[0]), tuple(map(_number, _items(items[1]))))
     if len(items) == 3:
         return decoded_turn(items[2])[0], written
     return pose_as_written(ZERO, written).quat, written
@@ -133,7 +133,8 @@ def _number(value: Value) -> float:
     return value
 
 
-def _name(value: Value) -> str:
+def name_of(value: object) -> str:
+    """The name that a reference of one word is. Raises: ValueError for anything else."""
     if not isinstance(value, Ref) or len(value.path) != 1:
         raise ValueError(f"{value!r} is no name")
     return str(value.path[0])

@@ -13,8 +13,8 @@ from hymeko_x.ir.parts import EdgePart
 from hymeko_x.ir.provenance import Provenance
 from hymeko_x.ir.types import fits, is_sound
 from hymeko_x.ir.values import Pose
-from hymeko_x.language.syntax import ArcItem, Field, Node, Ref
-from hymeko_x.language.values import decoded, decoded_turn, name_ref
+from hymeko_x.language.syntax import ArcItem, Field, Node
+from hymeko_x.language.values import decoded, decoded_turn, name_of, name_ref
 from hymeko_x.residue import Alignment, Change, Element, Fold, Join, Landmark, Residue, Run, Sides
 from hymeko_x.residue.prefix import with_prefix
 from hymeko_x.residue.text import FILE, SIGNS, SOURCE, VERSION
@@ -123,9 +123,9 @@ class _Sections:
             yield from ((str(node.name), item) for item in _only(Field, node.items))
 
     def alignment(self) -> Alignment:
-        names = [_renamed(kind, str(item.name), _name(item.value)) for kind, item in self.of_kinds("names")]
+        names = [_renamed(kind, str(item.name), name_of(item.value)) for kind, item in self.of_kinds("names")]
         frames = [(Id("body", item.name), _pose(decoded(item.value))) for item in self.fields("frames")]
-        joins = [Join(Id("shape", item.name), Id("shape", _name(item.value))) for item in self.fields("twins")]
+        joins = [Join(Id("shape", item.name), Id("shape", name_of(item.value))) for item in self.fields("twins")]
         return Alignment(tuple(names), tuple(map(_folded, self.nodes("chains"))), tuple(joins), tuple(frames))
 
     def sides(self, is_plain: bool) -> Sides:
@@ -146,16 +146,10 @@ def _only(kind: type[T], items: Iterable[object]) -> list[T]:
     return found
 
 
-def _name(value: object) -> str:
-    if not isinstance(value, Ref) or len(value.path) != 1:
-        raise ValueError(f"{value!r} is no name")
-    return str(value.path[0])
-
-
 def _names(value: object) -> list[str]:
     if not isinstance(value, tuple):
         raise ValueError(f"{value!r} is no list of names")
-    return [_name(item) for item in value]
+    return [name_of(item) for item in value]
 
 
 # ---- entries -------------------------------------------------------------------------------------------------------------

@@ -5,11 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
-from msgspec.structs import replace
-
-from hymeko_x.ir.values import IDENTITY
 from hymeko_x.robot.errors import EditError, unknown_name
-from hymeko_x.robot.values import as_pose
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Origin
@@ -53,19 +49,14 @@ class Element:
     def __repr__(self) -> str:
         return f"<{self.id}>"
 
+    @property
+    def posed(self) -> Id:
+        """The edge whose arcs have its poses: its own."""
+        return self.id
+
     def arc(self, edge: Id, sign: int) -> RobotArc | None:
         """The first arc of an edge with this sign."""
         return next((arc for arc in self.draft.edges[edge].arcs if arc.sign == sign), None)
-
-    def set_weight(self, edge: Id, sign: int, value: object) -> None:
-        """Put another pose on the first arc of this sign."""
-        self.draft.check_open(self.id)
-        new = as_pose(self.id, value)
-        arc = self.arc(edge, sign)
-        found = self.draft.edges[edge]
-        weight = None if new == IDENTITY and new.written is None else new
-        arcs = tuple([replace(other, weight=weight) if other is arc else other for other in found.arcs])
-        self.draft.set_edge(edge, replace(found, arcs=arcs))
 
 
 class Elements(Mapping[str, V], Generic[V]):

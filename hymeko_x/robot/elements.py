@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
+from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.parts import Dof, Geometry, Limits, Parameters, Rgba, Role
-from hymeko_x.ir.values import IDENTITY, Pose, Tensor, Vec3
+from hymeko_x.ir.values import Pose, Tensor, Vec3
 from hymeko_x.robot.element import Element
 from hymeko_x.robot.errors import EditError
-from hymeko_x.robot.fields import DofField, InertialField, LimitsField, PartField, between_zero_and_one, not_negative, ordered
+from hymeko_x.robot.fields import DofField, InertialField, LimitsField, PartField, PoseField, between_zero_and_one, not_negative, ordered
 from hymeko_x.robot.kinematics import pose_of
 
 if TYPE_CHECKING:
@@ -115,6 +115,10 @@ class JointElement(Element):
     """Rotor inertia in kg m^2 or kg."""
     ref = DofField[float](None)
     """The coordinate in rad or m at which the child is where the poses put it."""
+    pose = PoseField(1)
+    """The joint's frame in the parent; a position in m can be assigned."""
+    child_pose = PoseField(-1)
+    """The joint's frame in the child; a position in m can be assigned."""
 
     @property
     def type(self) -> str:
@@ -130,26 +134,6 @@ class JointElement(Element):
     def child(self) -> BodyElement:
         """The body to which it leads. Raises: EditError where the source gives none."""
         return self._end(-1)
-
-    @property
-    def pose(self) -> Pose:
-        """The joint's frame in the parent."""
-        arc = self.arc(self.id, 1)
-        return IDENTITY if arc is None else pose_weight(arc)
-
-    @pose.setter
-    def pose(self, value: Pose | Vec3) -> None:
-        self.set_weight(self.id, 1, value)
-
-    @property
-    def child_pose(self) -> Pose:
-        """The joint's frame in the child."""
-        arc = self.arc(self.id, -1)
-        return IDENTITY if arc is None else pose_weight(arc)
-
-    @child_pose.setter
-    def child_pose(self, value: Pose | Vec3) -> None:
-        self.set_weight(self.id, -1, value)
 
     def _end(self, sign: int) -> BodyElement:
         arc = self.arc(self.id, sign)
@@ -172,6 +156,8 @@ class ShapeElement(Element):
     """Red, green, blue and opacity from 0 to 1, instead of the material's; None = the material's."""
     friction = PartField[tuple[float, ...]](None)
     """Coefficients: sliding, torsional, rolling."""
+    pose = PoseField(1)
+    """Its frame in the body; a position in m can be assigned."""
 
     @property
     def body(self) -> BodyElement:
@@ -180,16 +166,6 @@ class ShapeElement(Element):
         if arc is None:
             raise EditError(f"{self.id} is on no body")
         return BodyElement(self.draft, arc.target)
-
-    @property
-    def pose(self) -> Pose:
-        """Its frame in the body."""
-        arc = self.arc(self.id, 1)
-        return IDENTITY if arc is None else pose_weight(arc)
-
-    @pose.setter
-    def pose(self, value: Pose | Vec3) -> None:
-        self.set_weight(self.id, 1, value)
 
     @property
     def material(self) -> MaterialElement | None:
@@ -210,8 +186,12 @@ class ShapeElement(Element):
 class MountedElement(Element):
     """What sits on a body in a pose of its own."""
 
+    pose = PoseField(1)
+    """Its frame in the body; a position in m can be assigned. Raises: EditError where it is on none."""
+
     @property
-    def _mount(self) -> Id:
+    def posed(self) -> Id:
+        """The edge that puts it on its body. Raises: EditError where it is on none."""
         for key, _ in self.draft.at(self.id, "mount"):
             return key
         raise EditError(f"{self.id} is on no body")
@@ -219,18 +199,8 @@ class MountedElement(Element):
     @property
     def body(self) -> BodyElement:
         """The body (or the world) that it is on. Raises: EditError where it is on none."""
-        arc = self.arc(self._mount, 1)
+        arc = self.arc(self.posed, 1)
         return BodyElement(self.draft, WORLD if arc is None else arc.target)
-
-    @property
-    def pose(self) -> Pose:
-        """Its frame in the body. Raises: EditError where it is on none."""
-        arc = self.arc(self._mount, 1)
-        return IDENTITY if arc is None else pose_weight(arc)
-
-    @pose.setter
-    def pose(self, value: Pose | Vec3) -> None:
-        self.set_weight(self._mount, 1, value)
 
     def world_pose(self, q: Coordinates | None = None) -> Pose:
         """Its pose in the world (or the body's own root) at coordinates by joint, in rad or m."""

@@ -8,15 +8,17 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
 from msgspec.structs import replace
 
+from hymeko_x.ir.mechanism import pose_weight
 from hymeko_x.ir.parts import Body, Dof, Inertial, Joint, Limits
 from hymeko_x.ir.types import fits, hints_of, settled
-from hymeko_x.ir.values import unit
+from hymeko_x.ir.values import IDENTITY, unit
 from hymeko_x.robot.errors import EditError
-from hymeko_x.robot.values import plain_value
+from hymeko_x.robot.values import as_pose, plain_value
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from hymeko_x.ir.values import Pose, Vec3
     from hymeko_x.robot.element import Element
 
 T = TypeVar("T")
@@ -103,6 +105,32 @@ class LimitsField(DofField[Limits]):
             lower, upper = _pair(element, value)
             value = replace(self.carrier(element).limits, lower=lower, upper=upper)
         super().__set__(element, value)
+
+
+class PoseField:
+    """The pose on the first arc of a sign, of the edge that has the element's poses; a position in m can be assigned."""
+
+    def __init__(self, sign: int) -> None:
+        self.sign = sign
+
+    @overload
+    def __get__(self, element: None, owner: type) -> PoseField: ...
+    @overload
+    def __get__(self, element: Element, owner: type) -> Pose: ...
+    def __get__(self, element: Element | None, owner: type) -> Pose | PoseField:
+        if element is None:
+            return self
+        arc = element.arc(element.posed, self.sign)
+        return IDENTITY if arc is None else pose_weight(arc)
+
+    def __set__(self, element: Element, value: Pose | Vec3) -> None:
+        element.draft.check_open(element.id)
+        new = as_pose(element.id, value)
+        arc = element.arc(element.posed, self.sign)
+        found = element.draft.edges[element.posed]
+        weight = None if new == IDENTITY and new.written is None else new
+        arcs = tuple([replace(other, weight=weight) if other is arc else other for other in found.arcs])
+        element.draft.set_edge(element.posed, replace(found, arcs=arcs))
 
 
 def _pair(element: Element, value: Iterable[float | None]) -> tuple[float | None, float | None]:

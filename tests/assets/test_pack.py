@@ -1,4 +1,4 @@
-"""Packing: which files go where, under which names, in which form; and what is said when one is missing."""
+"""Packing: which files go where, under which names, in which form; and what is reported when one is missing."""
 
 from __future__ import annotations
 

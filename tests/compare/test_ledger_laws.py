@@ -89,7 +89,7 @@ def _inertials(draw: st.DrawFn) -> parts.Inertial:
 
 
 def _converted(mechanism: Mechanism, way: str) -> pipeline.Result:
-    """The mechanism by one way out, which is told by the format and the layout."""
+    """The mechanism by one way out, which the format and the layout name."""
     format, _, layout = way.partition(" ")
     options = Options(layout="layered" if layout == "layered" else None, nested=layout == "nested" or None)
     return pipeline.convert(mechanism, formats.by_name(format), options, NoFiles(), Report())

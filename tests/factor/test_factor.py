@@ -1,4 +1,4 @@
-"""Factoring: what repeats is said once, and expanding gives back exactly what was there."""
+"""Factoring: what repeats is written once, and expanding gives back exactly what was there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Sets of fields that several things share: what is said once is true of all of them, and saves letters."""
+"""Sets of fields that several things share: what is written once holds for all of them, and saves letters."""
 
 from __future__ import annotations
 

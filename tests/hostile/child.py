@@ -12,7 +12,7 @@ from contextlib import redirect_stderr
 from typing import Any, NamedTuple
 
 SECONDS = 60.0
-"""When somebody pulls the plug. How long a case may really take is said by the test."""
+"""After how long the process is ended. How long a case may take is a bound of the test."""
 MEMORY = 3 * 2**30
 
 

@@ -37,7 +37,7 @@ ENTITIES = (
     reading("an external entity: r.urdf", "<!DOCTYPE r [<!ENTITY a SYSTEM 'file:///etc/passwd'>]>" + ROBOT.format("&a;"), "HX008"),
     reading("a parameter entity: r.urdf", "<!DOCTYPE r [<!ENTITY % a SYSTEM 'http://localhost/x'> %a;]>" + ROBOT.format(""), "HX008"),
     reading("an external document type: r.urdf", "<!DOCTYPE r SYSTEM 'http://localhost:1/x.dtd'>" + ROBOT.format(""), "HX005", code=0),
-    reading("an entity that nobody defined: r.urdf", ROBOT.format("<link name='&who;'/>"), "HX010", "HX022"),
+    reading("an undefined entity: r.urdf", ROBOT.format("<link name='&who;'/>"), "HX010", "HX022"),
     reading("references to no character: r.urdf", ROBOT.format("<link name='b&#0;&#xD800;&#1114112;'/>"), "HX005", code=0),
     reading(
         "entities in an included file: m.xml",

@@ -33,7 +33,7 @@ class Converted(Struct, frozen=True):
     report: Report
 
     def said(self, *codes: str) -> list[str]:
-        """What was said with these codes, after reading."""
+        """The diagnostics with these codes, after reading."""
         return [f"{d.severity.value} {d.code.id} {d.message}" for d in self.report if d.code.id in codes]
 
     def model(self) -> mujoco.MjModel:

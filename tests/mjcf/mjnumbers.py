@@ -86,7 +86,7 @@ class Place(Struct, frozen=True):
 
     @property
     def plain(self) -> str:
-        """Numbers that nobody could mind."""
+        """Numbers in which nothing is odd."""
         return _PLAIN.get(self.name) or " ".join(map(str, range(1, max(self.kind.least, 1) + 1)))
 
     def text(self, value: str) -> str:

@@ -1,4 +1,4 @@
-"""Inertias from geoms: what MuJoCo computes is said explicitly where a format has no such thing."""
+"""Inertias from geoms: what MuJoCo computes is written explicitly for a format that does not compute it."""
 
 from __future__ import annotations
 

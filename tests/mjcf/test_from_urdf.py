@@ -145,7 +145,7 @@ def test_a_continuous_joint_has_no_limits() -> None:
     assert not model.jnt_limited[0]
 
 
-def test_limits_that_nobody_gave_do_not_lock_the_joint() -> None:
+def test_missing_limits_do_not_lock_the_joint() -> None:
     bare = '<joint name="1" type="revolute"><parent link="a"/><child link="b"/><limit effort="1" velocity="1"/></joint>'
     done = convert_text(robot(link("a"), link("b"), bare))
     assert not done.model().jnt_limited[0]

@@ -73,13 +73,13 @@ class Conversions:
         return self._robot == other._robot and bool(unequal(self._robot, other._robot))
 
     def written(self, target: str) -> Outcome:
-        """The files of a format and what was said."""
+        """The files of a format and the diagnostics."""
         if target not in self._written:
             self._written[target] = self._outcome(target, _files_of)
         return self._written[target]
 
     def lost(self, target: str) -> Outcome:
-        """The ledger, and what was said while it was measured."""
+        """The ledger, and the diagnostics of measuring it."""
         if target not in self._lost:
             self._lost[target] = self._outcome(target, _ledger_of)
         return self._lost[target]

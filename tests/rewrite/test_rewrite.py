@@ -1,4 +1,4 @@
-"""What MuJoCo cannot say, rule by rule: what is rewritten, what is said about it, and that once is enough."""
+"""What MuJoCo cannot represent, rule by rule: what is rewritten, what is reported, and that a second run changes nothing."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ FREE = Joint((Dof(DofKind.FREE),))
 
 
 def legal(mechanism: Mechanism, options: Options | None = None) -> tuple[Mechanism, list[str]]:
-    """The mechanism for MuJoCo, and what was said (of open bases only where options are given); a second run changes nothing."""
+    """The mechanism for MuJoCo, and what was reported (about open bases only where options are given); a second run changes nothing."""
     report = Report()
     chosen = choose(mechanism, options or Options(), report)
     assert choose(chosen, options or Options(), Report()) == chosen
@@ -191,7 +191,7 @@ def test_a_free_joint_inside_the_tree_becomes_three_slides_and_a_ball() -> None:
     ]
 
 
-def test_the_dofs_of_a_planar_joint_get_names_that_nobody_else_has() -> None:
+def test_the_dofs_of_a_planar_joint_get_names_of_their_own() -> None:
     planar = Joint((Dof(DofKind.SLIDE, X), Dof(DofKind.SLIDE, Y), Dof(DofKind.HINGE, Z)))
     other = Joint((Dof(DofKind.HINGE, Z, name="j1_TX"),))
     result, said = legal(chain(planar, other))

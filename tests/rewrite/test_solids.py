@@ -96,7 +96,7 @@ def test_what_urdf_leaves_out_stays_out() -> None:
 
 
 @pytest.mark.parametrize("name", ["robot.urdf", "robot.xml"])
-def test_what_nobody_said_is_unsaid_again_after_the_way_back(name: str, tmp_path: Path) -> None:
+def test_missing_inertials_are_missing_again_after_the_way_back(name: str, tmp_path: Path) -> None:
     source, target = tmp_path / "robot.hymeko", tmp_path / name
     source.write_text("robot { base { mass 2 shape { box [0.1 0.2 0.3] } } }")
     hx.convert(source, target, keep="inside")

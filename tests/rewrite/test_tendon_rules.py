@@ -57,7 +57,7 @@ def robot(tendon: Tendon, *arcs: RobotArc) -> Mechanism:
 
 
 def compiled(mechanism: Mechanism) -> tuple[Any, list[str]]:
-    """The model that MuJoCo makes of it, and what is said on the way."""
+    """The model that MuJoCo makes of it, and the diagnostics on the way."""
     report = Report()
     main = pipeline.convert(mechanism, formats.by_name("mjcf"), Options(), NoFiles(), report).package.main
     return mujoco.MjModel.from_xml_string(main.decode()), [item.message for item in report if "tendon" in item.message]

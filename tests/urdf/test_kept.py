@@ -70,7 +70,7 @@ def test_comments_before_and_after_the_robot_are_kept() -> None:
         (TWO_LINKS + joint('<axis xyz="0 0 1" rpy="0 0 0"/>' + LIMIT), J, "axis/@rpy", "0 0 0"),
     ],
 )
-def test_what_nobody_asked_for_belongs_to_the_element_it_stands_in(body: str, key: Id, path: str, text: str) -> None:
+def test_what_the_reader_does_not_use_belongs_to_the_element_it_stands_in(body: str, key: Id, path: str, text: str) -> None:
     source = robot(body)
     assert (path, text) in extras(source, key)
     assert load(dump(load(source))) == load(source)

@@ -1,4 +1,4 @@
-"""Odd texts in every attribute of URDF that holds numbers: decimal numbers are read, all else is said once, at its place, and kept."""
+"""Odd texts in every attribute of URDF that holds numbers: decimal numbers are read, all else is reported once, at its place, and kept."""
 
 from __future__ import annotations
 

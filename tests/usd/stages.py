@@ -35,10 +35,23 @@ class Texts(Struct, frozen=True):
         return content if isinstance(content, bytes) else content.encode()
 
 
+def stage_with_body(folder: Path) -> Usd.Stage:
+    """The new stage ``r.usda`` in a new folder: a robot ``/r`` with a body ``/r/b`` of 1 kg."""
+    folder.mkdir()
+    found = Usd.Stage.CreateNew(str(folder / "r.usda"))
+    UsdGeom.SetStageUpAxis(found, "Z")
+    UsdGeom.SetStageMetersPerUnit(found, 1.0)
+    found.SetDefaultPrim(UsdGeom.Xform.Define(found, "/r").GetPrim())
+    body = UsdGeom.Xform.Define(found, "/r/b").GetPrim()
+    UsdPhysics.RigidBodyAPI.Apply(body)
+    UsdPhysics.MassAPI.Apply(body).CreateMassAttr(1.0)
+    return found
+
+
 def read_text(
     text: str, report: Report | None = None, files: Mapping[str, str | bytes] | None = None, name: str = "robot.usda"
 ) -> Mechanism:
-    """The mechanism of a stage; without a report nothing may be said."""
+    """The mechanism of a stage; without a report there may be no diagnostics."""
     said = report if report is not None else Report()
     mechanism = usd.read(Source(name, text.encode(), Texts(files or {})), said).mechanism
     assert report is not None or [str(item) for item in said] == []

@@ -64,7 +64,7 @@ def test_a_shape_that_mujoco_fits_to_a_mesh_is_that_shape(tmp_path: Path) -> Non
 
 
 def test_a_camera_sees_what_it_sees_in_mujoco(tmp_path: Path) -> None:
-    """45 degrees where nothing is said, which in USD would mean 17."""
+    """45 degrees where nothing is written, which in USD would mean 17."""
     geom = '<geom size="0.1"/>'
     source, stage = stage_of(f'<body name="b">{geom}<camera name="usual"/><camera name="narrow" fovy="20"/></body>', tmp_path)
     opened = Usd.Stage.Open(str(stage))

@@ -9,6 +9,7 @@ from pxr import Usd, UsdGeom, UsdPhysics
 
 import hymeko_x as hx
 from hymeko_x.ir.parts import Role
+from tests.usd.stages import stage_with_body
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -19,14 +20,7 @@ ROD = """<robot name="r"><link name="b"><inertial><origin rpy="0.3 0.2 0.1"/><ma
 
 def stage(folder: Path) -> Path:
     """A body with a cube for each way to hide one."""
-    folder.mkdir()
-    found = Usd.Stage.CreateNew(str(folder / "r.usda"))
-    UsdGeom.SetStageUpAxis(found, "Z")
-    UsdGeom.SetStageMetersPerUnit(found, 1.0)
-    found.SetDefaultPrim(UsdGeom.Xform.Define(found, "/r").GetPrim())
-    body = UsdGeom.Xform.Define(found, "/r/b").GetPrim()
-    UsdPhysics.RigidBodyAPI.Apply(body)
-    UsdPhysics.MassAPI.Apply(body).CreateMassAttr(1.0)
+    found = stage_with_body(folder)
     UsdGeom.Xform.Define(found, "/r/b/below").CreateVisibilityAttr("invisible")
     for name in ("seen", "invisible", "guide", "below/invisible", "hull_invisible", "hull_guide", "hull_seen"):
         cube = UsdGeom.Cube.Define(found, f"/r/b/{name}")

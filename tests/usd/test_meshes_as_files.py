@@ -11,6 +11,7 @@ import trimesh
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdPhysics, Vt
 
 import hymeko_x as hx
+from tests.usd.stages import stage_with_body
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,15 +28,8 @@ CORNERS = [0, 2, 1, 0, 1, 3, 4, 3, 2, 1, 2, 3, 0, 0, 1]
 
 def stage(folder: Path) -> Path:
     """A body with a hull of many points, and with a visual that has texture coordinates."""
-    folder.mkdir()
-    found = Usd.Stage.CreateNew(str(folder / "r.usda"))
-    UsdGeom.SetStageUpAxis(found, "Z")
-    UsdGeom.SetStageMetersPerUnit(found, 1.0)
-    found.SetDefaultPrim(UsdGeom.Xform.Define(found, "/r").GetPrim())
-    body = UsdGeom.Xform.Define(found, "/r/b").GetPrim()
-    UsdPhysics.RigidBodyAPI.Apply(body)
-    mass = UsdPhysics.MassAPI.Apply(body)
-    mass.CreateMassAttr(1.0)
+    found = stage_with_body(folder)
+    mass = UsdPhysics.MassAPI(found.GetPrimAtPath("/r/b"))
     mass.CreateDiagonalInertiaAttr((0.1, 0.1, 0.1))
     mass.CreatePrincipalAxesAttr(Gf.Quatf(1))
     ball = mesh(found, "/r/b/ball", Vt.Vec3fArray.FromNumpy(POINTS), BALL.faces.ravel().tolist())

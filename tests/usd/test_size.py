@@ -20,7 +20,7 @@ MOST_MEMORY = 3 * 2**20
 
 
 def chain(prims: int) -> str:
-    """A chain of bodies, each with a collider, a prim that nobody knows, and a joint to the body before."""
+    """A chain of bodies, each with a collider, a prim of an unknown type, and a joint to the body before."""
     bodies = prims // PER_BODY
     parts = [HEADER, 'def Xform "robot" (\n    prepend apiSchemas = ["PhysicsArticulationRootAPI"]\n)\n{\n']
     for number in range(bodies):

@@ -153,7 +153,7 @@ def test_a_tendon_is_written_as_mujocos_schema_names_it(robot: Path, tmp_path: P
     }
 
 
-def test_a_site_of_a_cable_is_a_ball_that_nobody_sees_and_others_are_mere_places(robot: Path, tmp_path: Path) -> None:
+def test_a_site_of_a_cable_is_an_invisible_ball_and_others_have_no_geometry(robot: Path, tmp_path: Path) -> None:
     robot.write_text(ROBOT.replace('<site name="t"', '<site name="alone" size=".02"/><site name="t" size=".03"'))
     stage = tmp_path / "cables.usda"
     hx.convert(robot, stage, keep="inside")
@@ -312,7 +312,7 @@ def test_a_path_is_read_as_the_schema_says(tendon: str, arcs: tuple[RobotArc, ..
         ('token mjc:type = "other"; rel mjc:path = </r/j>', "is neither fixed nor spatial"),
     ],
 )
-def test_a_tendon_that_nobody_can_follow_is_said_and_kept(tendon: str, why: str, tmp_path: Path) -> None:
+def test_a_tendon_without_a_valid_path_is_reported_and_kept(tendon: str, why: str, tmp_path: Path) -> None:
     report = Report()
     source = stage(f"{tendon}; double mjc:stiffness = 3")
     mechanism = read_text(source, report)

@@ -53,7 +53,7 @@ def _free(draw: st.DrawFn, robot: Mechanism) -> JointView | None:
 
 
 def _below(robot: Mechanism, body: Id) -> tuple[str, ...]:
-    """A body and everything that hangs on it."""
+    """A body and everything below it."""
     found = [body]
     for name in found:
         found += [view.child for view in robot.children.get(name, ())]

@@ -1,4 +1,4 @@
-"""What one format says in other words is the same robot; what is said in other words by mistake is not."""
+"""What one format represents in another way is the same robot; what it represents wrongly is not."""
 
 from __future__ import annotations
 

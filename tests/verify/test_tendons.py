@@ -104,7 +104,7 @@ def test_a_tendon_of_a_stage_is_read_in_its_units(written: Write) -> None:
         ("path = </robot/turn>", "path = </robot/arm>", "leads to /robot/arm, which is no joint that one coordinate moves"),
     ],
 )
-def test_a_path_that_nobody_can_follow_is_said_and_missing(said: str, instead: str, why: str, written: Write) -> None:
+def test_an_invalid_path_is_reported_and_missing(said: str, instead: str, why: str, written: Write) -> None:
     assert said in STAGE
     whole, broken = written("usd", STAGE), written("usd", STAGE.replace(said, instead))
     (note,) = model_of(broken).notes

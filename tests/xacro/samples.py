@@ -60,7 +60,7 @@ class Folder:
         return expand(self.source(**how), Report(), limits)  # type: ignore[arg-type]
 
     def said(self, body: str, **how: object) -> list[str]:
-        """What is said about ``r.xacro`` with this body: everything reported, or the refusal, without hints."""
+        """The diagnostics of ``r.xacro`` with this body: everything reported, or the refusal, without hints."""
         report = Report()
         try:
             self.read(body, report, **how)
