@@ -287,6 +287,11 @@ NO_CHAIN = Code(
     "there is no such chain",
     "A Denavit-Hartenberg table describes the joints from the base to one body. The body does not exist, or nothing between them moves.",
 )
+CONFIG = Code(
+    "HX304",
+    "hymeko.toml does not describe robots to compare",
+    "`hymeko-x agree` compares the files that hymeko.toml lists for each robot; docs/agree.md shows its keys. The message names the entry.",
+)
 
 # ---- HX31x: what `check` finds ---------------------------------------------------------------------------------------
 EMPTY_ROBOT = Code("HX310", "there is no robot", "The file was read, and it describes no links.")

@@ -68,6 +68,7 @@ ERRORS: Mapping[Code, str] = {
     codes.ENGINE_MISSING: "without the engine the question has no answer, or masses that it computes are missing",
     codes.ENGINE_REFUSED: "without the engine's reading the question has no answer, or masses that it computes are missing",
     codes.NO_CHAIN: "there is nothing to print",
+    codes.CONFIG: "without it there is nothing to compare",
     codes.NOT_SAID: "the format has no element at all for what the whole file is about",
     codes.EMPTY_ROBOT: "there is nothing to simulate, to show or to compute",
     codes.LOOSE_JOINT: "the joint cannot be placed",

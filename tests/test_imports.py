@@ -25,7 +25,7 @@ LAYERS = (
     ("frontends", "backends"),
     ("targets",),
     ("pipeline", "importing", "disk", "verify", "validation", "corpus"),
-    ("delivery", "edits", "robot", "dynamics"),
+    ("agree", "delivery", "edits", "robot", "dynamics"),
     ("api",),
     ("draw",),
     ("cli", "testing"),

@@ -37,6 +37,7 @@ GROUPS: Mapping[str, Mapping[str, Verb]] = {
     },
     "compare": {
         "verify": Verb("verdicts", "whether two files are the same robot, by the formats' own engines"),
+        "agree": Verb("agree", "whether the files that are one robot in several formats agree, for CI"),
         "diff": Verb("compare", "what differs between two robots, element by element"),
         "roundtrip": Verb("compare", "through other formats and back, every leg verified"),
     },

@@ -6,6 +6,7 @@ import argparse
 import json
 import textwrap
 from collections import Counter
+from functools import partial
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats, targets
@@ -106,7 +107,7 @@ def _text(value: object) -> str:
 
 def check_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `check`."""
-    parser.add_argument("input", metavar="FILE", help="the robot to check; - is standard input")
+    parser.add_argument("inputs", nargs="+", metavar="FILE", help="the robot to check, or several; - is standard input")
     parser.add_argument("--profile", action="append", choices=PROFILES, help="what it is for (repeatable; default: all but complete)")
     parser.add_argument("--links", type=_count, metavar="N", help="how many links there should be")
     parser.add_argument("--joints", type=_count, metavar="N", help="how many joints there should be")
@@ -118,11 +119,20 @@ def check_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run_check(chosen: argparse.Namespace) -> int:
-    """Print what is wrong; exit 3 when it is bad enough."""
+    """Print what is wrong; exit 3 when it is bad enough in one of the files, 1 when one cannot be read."""
+    if len(chosen.inputs) == 1:
+        return _check(chosen.inputs[0], chosen)
+    if chosen.json:
+        raise UsageError("--json is for one robot at a time")
+    codes = [exits.guarded("check", partial(_check, path, chosen)) for path in chosen.inputs]
+    return next((code for code in (exits.BUG, exits.FAILED, exits.FAIL_ON) if code in codes), exits.DONE)
+
+
+def _check(path: str, chosen: argparse.Namespace) -> int:
     from hymeko_x.validation import USUAL, Declared, Profile, validate
 
     report = Report()
-    given = read_input(chosen.input, chosen, report, anyway=True)
+    given = read_input(path, chosen, report, anyway=True)
     profiles = [Profile(word) for word in chosen.profile] if chosen.profile else USUAL
     validate(given.mechanism, given.source.files, report, profiles, Declared(chosen.links, chosen.joints))
     failed = report.worst in ((Severity.ERROR,) if chosen.fail_on == "error" else (Severity.ERROR, Severity.WARNING))
@@ -130,7 +140,7 @@ def run_check(chosen: argparse.Namespace) -> int:
         print(json.dumps(_check_json(given, report, passed=not failed), indent=2, ensure_ascii=False))
     else:
         show_diagnostics(report, chosen)
-        print(_summary(report))
+        print(_summary(report) if len(chosen.inputs) == 1 else f"{path}: {_summary(report)}")
     return exits.FAIL_ON if failed else exits.DONE
 
 

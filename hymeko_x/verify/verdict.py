@@ -12,10 +12,19 @@ Json = dict[str, "str | list[str] | list[Row]"]
 SAME, DIFFERENT, NOT_COMPARABLE = "same", "different", "not comparable"
 
 
+class Finding(Struct, frozen=True):
+    """One difference of a quantity, where it arises, and what the two robots have there, where it is a value that can be shown."""
+
+    at: str
+    difference: float
+    values: tuple[str, str] | None = None
+
+
 class Check(Struct, frozen=True):
     """One quantity: its worst difference in its unit, where that is, and how much is allowed.
 
-    ``values`` are what the two robots have there, where it is a value that can be shown.
+    ``values`` are what the two robots have there, where it is a value that can be shown. ``findings`` are all differences that are not
+    allowed, each where it arises: for kinematics at the body whose pose in its parent's frame differs.
     """
 
     quantity: str
@@ -24,6 +33,7 @@ class Check(Struct, frozen=True):
     at: str
     allowed: float
     values: tuple[str, str] | None = None
+    findings: tuple[Finding, ...] = ()
 
     @property
     def passed(self) -> bool:

@@ -14,7 +14,7 @@ from msgspec.structs import replace
 
 from hymeko_x.verify.checks.pair import shown
 from hymeko_x.verify.spatial import angle_between
-from hymeko_x.verify.verdict import Check
+from hymeko_x.verify.verdict import Check, Finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -67,8 +67,47 @@ def check_kinematics(pair: Pair) -> Iterator[Check]:
         distances.add(slice(None), np.linalg.norm(a[..., :3, 3] - b[..., :3, 3], axis=-1), rows.start)
         angles.add(slice(None), angle_between(a[..., :3, :3], b[..., :3, :3]), rows.start)
     allowed = allowance(pair, reach)
-    yield _with_places(pair, _body_check(pair, "forward kinematics, position", "m", distances, allowed.metres), distances)
-    yield _body_check(pair, "forward kinematics, rotation", "rad", angles, allowed.radians)
+    position = _body_check(pair, "forward kinematics, position", "m", distances, allowed.metres)
+    rotation = _body_check(pair, "forward kinematics, rotation", "rad", angles, allowed.radians)
+    if position.passed and rotation.passed:
+        yield from (position, rotation)
+        return
+    moved, turned = _where_it_arises(pair, allowed)
+    yield replace(_with_places(pair, position, distances), findings=() if position.passed else moved)
+    yield replace(rotation, findings=() if rotation.passed else turned)
+
+
+def _where_it_arises(pair: Pair, allowed: Allowance) -> tuple[tuple[Finding, ...], tuple[Finding, ...]]:
+    """The bodies whose position, and those whose rotation, in the frame of the nearest ancestor with a counterpart differs."""
+    partner = dict(pair.match.bodies)
+    bodies = pair.match.bodies[1:]
+    above = []
+    for i, _ in bodies:
+        parent = pair.a.bodies[i].parent
+        while parent not in partner:
+            parent = pair.a.bodies[parent].parent
+        above.append((parent, partner[parent]))
+    (ours, theirs), (over_a, over_b) = (np.array(pairs, dtype=np.intp).T for pairs in (bodies, above))
+    distances, angles = Peaks(len(bodies)), Peaks(len(bodies))
+    for rows, poses_a, poses_b in batches(pair):
+        a, b = (_inside(poses[:, over], poses[:, own]) for poses, over, own in ((poses_a, over_a, ours), (poses_b, over_b, theirs)))
+        distances.add(slice(None), np.linalg.norm(a[..., :3, 3] - b[..., :3, 3], axis=-1), rows.start)
+        angles.add(slice(None), angle_between(a[..., :3, :3], b[..., :3, :3]), rows.start)
+    return _findings(pair, distances, allowed.metres), _findings(pair, angles, allowed.radians)
+
+
+def _inside(above: Array, poses: Array) -> Array:
+    """Poses (n, bodies, 4, 4) in the frames of others."""
+    back = np.swapaxes(above[..., :3, :3], -1, -2)
+    inside = poses.copy()
+    inside[..., :3, :3] = back @ poses[..., :3, :3]
+    inside[..., :3, 3] = np.einsum("...ij,...j->...i", back, poses[..., :3, 3] - above[..., :3, 3])
+    return inside
+
+
+def _findings(pair: Pair, peaks: Peaks, allowed: float) -> tuple[Finding, ...]:
+    beyond = np.flatnonzero(peaks.values > allowed)
+    return tuple(Finding(pair.a.body_label(pair.match.bodies[1:][k][0]), float(peaks.values[k])) for k in beyond)
 
 
 class Peaks:

@@ -12,7 +12,7 @@ from hymeko_x.verify.dh import zero_poses
 from hymeko_x.verify.kinematics import bounds, draw, follow, prepare
 from hymeko_x.verify.meshes import Meshes
 from hymeko_x.verify.spatial import quat_from_rotation
-from hymeko_x.verify.verdict import Check, Gap
+from hymeko_x.verify.verdict import Check, Finding, Gap
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -150,7 +150,12 @@ class Differences:
             return []
         difference, allowed, at, ours, theirs = max(self._rows, key=lambda row: row[0] / max(row[1], 1e-300))
         values = None if ours is None or difference == 0 else (shown(ours), shown(theirs))
-        return [Check(self.quantity, self.unit, difference, at if difference > 0 else "", allowed, values)]
+        findings = tuple(_finding(*row) for row in self._rows if not row[0] <= row[1])
+        return [Check(self.quantity, self.unit, difference, at if difference > 0 else "", allowed, values, findings)]
+
+
+def _finding(difference: float, _: float, at: str, ours: object, theirs: object) -> Finding:
+    return Finding(at, difference, None if ours is None else (shown(ours), shown(theirs)))
 
 
 def shown(value: object) -> str:
@@ -165,7 +170,8 @@ def shown(value: object) -> str:
 def counted(quantity: str, findings: Sequence[str]) -> Check:
     """The check of things that must have a counterpart: how many have none, and which."""
     rest = f"; and {len(findings) - MOST_NAMED} more" if len(findings) > MOST_NAMED else ""
-    return Check(quantity, "", float(len(findings)), "; ".join(findings[:MOST_NAMED]) + rest, 0.0)
+    each = tuple(Finding(words, 1.0) for words in findings)
+    return Check(quantity, "", float(len(findings)), "; ".join(findings[:MOST_NAMED]) + rest, 0.0, findings=each)
 
 
 def same_numbers(ours: Sequence[float], theirs: Sequence[float]) -> bool:

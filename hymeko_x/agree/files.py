@@ -1,0 +1,111 @@
+"""The files of a robot: where its elements stand in them, which files they need, and what has changed since a revision."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from hymeko_x import codes, disk, formats, pipeline
+from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
+from hymeko_x.ir.mechanism import Id
+
+if TYPE_CHECKING:
+    from hymeko_x.agree.config import Config, Robot
+    from hymeko_x.ir.mechanism import Mechanism
+
+_NAMED = re.compile(r"(\w+) '([^']*)'")
+_NEW_NAME = re.compile(r"(\w+) '[^']*' is called '([^']*)'")
+
+
+def read(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...] = ()) -> tuple[Mechanism | None, set[Path]]:
+    """A file of a robot by this program's own reader, None where it cannot be read; and all files that it needs, with links resolved."""
+    needed = {(folder / path).resolve()}
+    packages = {name: folder / place for name, place in robot.packages.items()}
+    try:
+        source = disk.open_source(str(folder / path), packages=packages, search_path=search_path)
+        format = formats.of_input(source.name, source.data)
+        arguments = dict(robot.arguments) if format.has_arguments else {}
+        mechanism = pipeline.read_anyway(replace(source, arguments=arguments), format, Report())
+    except Refusal:
+        return None, needed
+    uris = (getattr(part, "uri", None) for part in mechanism.graph.vertices.values())
+    assets = {source.files.find(uri) for uri in uris if isinstance(uri, str)}
+    read_in = {origin.file for origin in mechanism.origins.values()}
+    included = source.files.opened if isinstance(source.files, DiskFiles) else ()
+    return mechanism, needed | {Path(place).resolve() for place in {*assets, *read_in, *included} if place}
+
+
+class Lines:
+    """Where elements stand in the files of a robot, which are read when the first is asked for."""
+
+    def __init__(self, robot: Robot, folder: Path, search_path: tuple[Path, ...]) -> None:
+        self._read = cache(lambda path: read(robot, folder, path, search_path)[0])
+
+    def places(self, files: tuple[str, str], words: str, *, of_joints: bool) -> tuple[Origin, ...]:
+        """The lines of the element that these words name, in both files; line 1 where that is not known.
+
+        ``of_joints``: a body stands for the joint above it.
+        """
+        named = _NAMED.findall(words)
+        renamed = _NEW_NAME.findall(words)
+        return self._place(files[0], named, of_joints), self._place(files[1], [*renamed, *named], of_joints)
+
+    def _place(self, file: str, named: list[tuple[str, str]], of_joints: bool) -> Origin:
+        mechanism = self._read(file)
+        if mechanism is None:
+            return Origin(file, 1)
+        for kind, name in named:
+            above = mechanism.parent_joint.get(Id("body", name)) if of_joints else None
+            keys = [*([above.id] if above else []), *(Id(known, name) for known in (kind, "joint", "body"))]
+            for origin in filter(None, map(mechanism.origin, keys)):
+                if origin.line:
+                    return Origin(_shown(origin.file, mechanism.source.file, file), origin.line)
+        return Origin(file, 1)
+
+
+def _shown(place: str, main: str, file: str) -> str:
+    """The file of an origin as the configuration names the main one: an included file stands relative to it."""
+    if place == main:
+        return file
+    beside = Path(main).parent
+    return str(Path(file).parent / Path(place).relative_to(beside)) if Path(place).is_relative_to(beside) else place
+
+
+# ---- what has changed ------------------------------------------------------------------------------------------------------
+
+
+def changed_robots(config: Config, path: str, revision: str, search_path: tuple[Path, ...] = ()) -> tuple[Robot, ...]:
+    """The robots of which a file, or one that it includes or shows, has changed since a revision of git; all where ``path`` itself has.
+
+    Raises: Refusal HX304 when git is not there or does not know the revision.
+    """
+    folder = Path(path).parent
+    changed = changed_files(folder, revision)
+    if Path(path).resolve() in changed:
+        return config.robot
+    return tuple(robot for robot in config.robot if any(read(robot, folder, file, search_path)[1] & changed for file in robot.files))
+
+
+def changed_files(folder: Path, revision: str) -> set[Path]:
+    """Files of the repository around a folder that differ from a revision, and those that git does not know yet."""
+    root = Path(_git(folder, "rev-parse", "--show-toplevel").strip())
+    names = _git(root, "diff", "--name-only", "-z", revision, "--") + _git(root, "ls-files", "--others", "--exclude-standard", "-z")
+    return {(root / name).resolve() for name in names.split("\0") if name}
+
+
+def _git(folder: Path, *words: str) -> str:
+    if words[-1:] == ("--",) and words[-2].startswith("-"):
+        raise refuse(codes.CONFIG, f"'{words[-2]}' is no revision")
+    try:
+        done = subprocess.run(["git", "-C", str(folder), *words], capture_output=True, text=True, check=False)
+    except FileNotFoundError as error:
+        raise refuse(codes.CONFIG, "git is not installed, and --changed-since asks it") from error
+    if done.returncode:
+        raise refuse(codes.CONFIG, f"git says: {done.stderr.strip().splitlines()[0] if done.stderr.strip() else 'no reason'}")
+    return done.stdout

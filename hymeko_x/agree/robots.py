@@ -1,0 +1,136 @@
+"""The comparison: every file of a robot with its first one, by the verifier, and each difference with its place in both files."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec import Struct
+
+from hymeko_x.agree.files import Lines
+from hymeko_x.diagnostics import Origin
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from datetime import date
+    from pathlib import Path
+
+    from hymeko_x.agree.config import Allowed, Robot
+    from hymeko_x.verify.verdict import Check, Verdict
+
+_CONSEQUENCES = (
+    "DH parameters, lengths",
+    "DH parameters, angles",
+    "loop closure, position",
+    "loop closure, rotation",
+    "mass matrix",
+    "gravity torque",
+)
+"""Quantities that follow from others: a difference in them is one of its own only where there is no other."""
+
+
+class Disagreement(Struct, frozen=True):
+    """One difference between the first file of a robot and another one, or why these cannot be compared.
+
+    ``places`` are where its element stands in both files; ``allowed`` is the known difference that it is.
+    """
+
+    robot: str
+    files: tuple[str, str]
+    quantity: str
+    message: str
+    element: str = ""
+    places: tuple[Origin, ...] = ()
+    allowed: Allowed | None = None
+
+    @property
+    def key(self) -> tuple[str, ...]:
+        """What makes it the same difference in another run."""
+        return self.robot, *self.files, self.quantity, self.element
+
+
+class Compared(Struct, frozen=True):
+    """What became of one robot."""
+
+    robot: Robot
+    found: tuple[Disagreement, ...] = ()
+    notes: tuple[str, ...] = ()
+    """What a reader of the result should know: allowances that ended or that nothing needs, and what a format cannot represent."""
+
+    @property
+    def wrong(self) -> tuple[Disagreement, ...]:
+        """The differences that are not allowed."""
+        return tuple(found for found in self.found if found.allowed is None)
+
+
+def compare(robot: Robot, folder: Path, today: date, search_path: tuple[Path, ...] = ()) -> Compared:
+    """Compare the files of a robot, whose paths are relative to ``folder``.
+
+    Raises: Refusal when a file is not there or an engine is not installed.
+    """
+    found: list[Disagreement] = []
+    notes: list[str] = []
+    lines = Lines(robot, folder, search_path)
+    for path in robot.files[1:]:
+        verdict = _verdict(robot, folder, path, search_path)
+        found += _disagreements(robot, path, verdict, lines, today)
+        notes += [f"{path}: {gap.format} cannot say {gap}" for gap in verdict.gaps]
+    used = {found.allowed for found in found}
+    for allowed in robot.allow:
+        if allowed.until < today:
+            notes.append(f"the allowance of '{allowed.what}' ended on {allowed.until}: {allowed.reason}")
+        elif allowed not in used:
+            notes.append(f"the allowance of '{allowed.what}' is not needed any more: {allowed.reason}")
+    return Compared(robot, tuple(found), tuple(dict.fromkeys(notes)))
+
+
+def _verdict(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...]) -> Verdict:
+    from hymeko_x.verify import verify
+
+    first = robot.files[0]
+    return verify(
+        folder / first,
+        folder / path,
+        samples=robot.samples,
+        seed=robot.seed,
+        structure=robot.match == "structure",
+        meshes=robot.meshes,
+        packages={name: folder / place for name, place in robot.packages.items()},
+        search_path=search_path,
+        arguments=dict(robot.arguments),
+    )
+
+
+def _disagreements(robot: Robot, path: str, verdict: Verdict, lines: Lines, today: date) -> Iterator[Disagreement]:
+    files = robot.files[0], path
+    if verdict.reason:
+        yield Disagreement(robot.name, files, "not comparable", verdict.reason, places=tuple(Origin(file, 1) for file in files))
+        return
+    failed = verdict.failed
+    causes = [check for check in failed if check.quantity not in _CONSEQUENCES]
+    for check in causes or failed:
+        for element, difference, values in _each(check):
+            if difference <= robot.tolerances.get(check.quantity, 0.0):
+                continue
+            allowances = (known for known in robot.allow if known.until >= today and known.covers(path, check.quantity, element))
+            message = _message(check, element, difference, values)
+            places = lines.places(files, element, of_joints=check.quantity.startswith("forward kinematics"))
+            yield Disagreement(robot.name, files, check.quantity, message, element, places, next(allowances, None))
+
+
+def _each(check: Check) -> Iterator[tuple[str, float, tuple[str, str] | None]]:
+    """The differences of a check that failed: their elements, sizes and values."""
+    for finding in check.findings:
+        yield finding.at, finding.difference, finding.values
+    if not check.findings:
+        yield check.at, check.worst, check.values
+
+
+def _message(check: Check, element: str, difference: float, values: tuple[str, str] | None) -> str:
+    if not check.unit:
+        return f"{check.quantity}: {element}"
+    size = f"{difference:.3g} {check.unit} off"
+    return (
+        f"{check.quantity} of {element}: {values[0]} and {values[1]} {check.unit} ({size})"
+        if values
+        else f"{check.quantity} of {element}: {size}"
+    )
