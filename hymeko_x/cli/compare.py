@@ -16,6 +16,7 @@ from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_of
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
+from hymeko_x.reporting.changes import markdown
 
 if TYPE_CHECKING:
     import argparse
@@ -36,16 +37,20 @@ def diff_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("b", metavar="B", help="the robot to compare it with")
     parser.add_argument("--tolerance", type=float, default=1e-12, metavar="T", help="numbers this close are equal (default 1e-12)")
     parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--markdown", action="store_true", help="print a list for a review, and exit 0: also for `git difftool`")
     input_arguments(parser)
     lenient_argument(parser)
 
 
 def run_diff(chosen: argparse.Namespace) -> int:
-    """Print one line per difference; exit 4 if there is any."""
+    """Print one line per difference; exit 4 if there is any, except as Markdown for difftools, which take that for a failure."""
     report = Report()
     a, b = (read_input(path, chosen, report) for path in (chosen.a, chosen.b))
     found = diff(a.mechanism, b.mechanism, Tolerance(chosen.tolerance, chosen.tolerance))
     show_diagnostics(report, chosen)
+    if chosen.markdown:
+        print(markdown((a.source.name, b.source.name), a.mechanism, b.mechanism, found), end="")
+        return exits.DONE
     print(json.dumps(_differences_json(a, b, found), indent=2, ensure_ascii=False)) if chosen.json else print_lines(found)
     return exits.DIFFERENT if found else exits.DONE
 

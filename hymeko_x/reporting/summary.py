@@ -109,7 +109,7 @@ def groups(losses: Iterable[Loss]) -> list[Group]:
     found: dict[tuple[str, str, str], list[Loss]] = {}
     for loss in losses:
         verb = "added" if loss.before is None and not loss.field else loss.fate
-        found.setdefault((verb, kind_of(loss), _word(loss.field)), []).append(loss)
+        found.setdefault((verb, kind_of(loss), word_of(loss.field)), []).append(loss)
     _replace_shapes(found)
     whole = {(verb, kind) for verb, kind, field in found if not field}
     kept = [Group(*key, tuple(losses)) for key, losses in found.items() if not _goes_with_another(*key, whole)]
@@ -150,7 +150,7 @@ def _rank(group: Group) -> tuple[int, bool, int]:
     return _VERBS.index(group.verb), bool(group.field), kind
 
 
-def _word(field: str) -> str:
+def word_of(field: str) -> str:
     """A field in a roboticist's words, the same for all places of a list."""
     path = _PLACE.sub("", field).strip(".")
     return _WORDS.get(path) or path.rpartition(".")[2].replace("_", " ") or ("connection" if field else "")
