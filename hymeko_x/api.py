@@ -68,6 +68,10 @@ class Writing(TypedDict, total=False):
     """USD: whether each body stands inside of its parent."""
     split: bool
     """xacro: whether the macros go into a file of their own."""
+    density: float | None
+    """The density in kg/m^3 with which bodies without inertia get that of their shapes (None = 1000 where ``inertia_from`` is given)."""
+    inertia_from: Literal["collision", "visual", "hull"] | None
+    """The shapes that count for it (None = those that collide)."""
     target: str | None
     """The program that the output is for, a row of `hymeko_x.targets`. What it expects belongs to the robot from then on."""
     keep: Literal["beside", "inside"] | None
@@ -195,6 +199,8 @@ def convert(
     split: bool = False,
     keep: Literal["beside", "inside"] | None = None,
     target: str | None = None,
+    density: float | None = None,
+    inertia_from: Literal["collision", "visual", "hull"] | None = None,
     lenient: bool = False,
     **reading: Unpack[Reading],
 ) -> pipeline.Result:
@@ -209,7 +215,9 @@ def convert(
     read_as = _input_format(given, from_format)
     format = formats.of_output(os.fspath(output), to_format)
     robot, passed = pipeline.read_for(format, given, read_as, report, lenient=lenient)
-    options = Options(base, actuators, layout, nested, split, keep, lenient, Path(output).stem, target=target)
+    options = Options(
+        base, actuators, layout, nested, split, keep, lenient, Path(output).stem, target=target, density=density, inertia_from=inertia_from
+    )
     own = unchanged(given, read_as, format)
     delivery = Delivery(robot, format, options, given.files, _place(output, assets), os.fspath(output), own, passed)
     result = delivery.convert(report)
@@ -228,12 +236,14 @@ def update(
     base: Literal["fixed", "free"] | None = None,
     actuators: Literal["none", "motor", "position", "velocity"] | None = None,
     target: str | None = None,
+    density: float | None = None,
+    inertia_from: Literal["collision", "visual", "hull"] | None = None,
     **reading: Unpack[Reading],
 ) -> Updated:
     """Bring the edits in ``edited``, which was once converted from ``original``, into the text of that, or into ``output``.
 
-    ``base``, ``actuators`` and ``target`` are those of the conversion, found out where they are not given. With ``dry_run`` nothing is
-    written.
+    ``base``, ``actuators`` and ``target`` are those of the conversion, found out where they are not given, and so are ``density`` and
+    ``inertia_from``, which are not found out. With ``dry_run`` nothing is written.
     The result has the edits, the differences of the texts, and the diagnostics.
 
     Raises: Refusal when a file cannot be read or written; then nothing was changed.
@@ -242,7 +252,7 @@ def update(
 
     given, changed = _source(original, **reading), _source(edited, **reading)
     report = Report()
-    options = Options(base, actuators, beside=Path(edited).stem, target=target)
+    options = Options(base, actuators, beside=Path(edited).stem, target=target, density=density, inertia_from=inertia_from)
     found = updating.update(given, _input_format(given, from_format), changed, _input_format(changed, edited_format), options, report)
     if not dry_run:
         disk.write_files(found.files(given.name, None if output is None else os.fspath(output)))

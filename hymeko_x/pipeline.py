@@ -203,7 +203,7 @@ def convert(
 def _chosen(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> tuple[Mechanism, Options]:
     """The robot as the options and the target among them ask for it, and the options with that target's defaults."""
     options, target = targets.chosen(options, format)
-    mechanism = actuate(choose(mechanism, options, report), format.name, options, report)
+    mechanism = actuate(choose(mechanism, options, report, files=_files_of(mechanism, files)), format.name, options, report)
     files = _files_of(mechanism, files)
 
     def printed(robot: Mechanism) -> Package:

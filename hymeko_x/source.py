@@ -47,6 +47,8 @@ class NoFiles:
         raise FileNotFoundError(path)
 
 
+NO_FILES = NoFiles()
+
 KEPT_SUFFIX = ".keep.hymeko"
 """What follows the name of a file in the name of the kept file beside it."""
 

@@ -7,10 +7,12 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from msgspec.structs import replace
+
 from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
+from hymeko_x.cli.inputs import inertia_arguments, input_arguments, lenient_argument, read_input
 from hymeko_x.cli.parser import count
 from hymeko_x.cli.report import one_line, report_arguments, show_report, written_line
 from hymeko_x.cli.terminal import is_coloured
@@ -174,6 +176,7 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of every verb that writes a robot."""
     parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the source leaves open")
     parser.add_argument("--actuators", choices=("none", "motor", "position", "velocity"), help="the actuators to write")
+    inertia_arguments(parser)
     for_help = "the program that the output is for (`hymeko-x formats` lists them): what it expects is added, and reported"
     parser.add_argument("--for", dest="target", metavar="TARGET", help=for_help)
     parser.add_argument("--assets", choices=("copy", "reference"), help="put meshes beside the output, or refer to them where they are")
@@ -202,6 +205,7 @@ def deliver(
         raise UsageError("standard output has nothing beside it: use --keep=inside, or -o FILE")
     layout = chosen.layout, chosen.nested, chosen.split
     options = Options(chosen.base, chosen.actuators, *layout, chosen.keep, chosen.lenient, Path(path).stem, target=chosen.target)
+    options = replace(options, density=chosen.density, inertia_from=chosen.inertia_from)
     place = _place(output, chosen.assets)
     delivery = Delivery(given.mechanism, output.format, options, given.source.files, place, path, own, given.passed)
     result = delivery.convert(report, measured=measured)

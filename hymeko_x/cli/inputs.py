@@ -53,6 +53,23 @@ def lenient_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--lenient", action="store_true", help="go on where the input has errors, with what each error says")
 
 
+def inertia_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options for bodies without inertia."""
+    given = "give bodies without inertia that of their shapes (default 1000 where --inertia-from is given)"
+    parser.add_argument("--density", type=_density, metavar="KG_PER_M3", help=given)
+    parser.add_argument("--inertia-from", choices=("collision", "visual", "hull"), help="of which shapes (default collision)")
+
+
+def _density(text: str) -> float:
+    try:
+        density = float(text)
+    except ValueError:
+        density = 0.0
+    if not 0.0 < density < float("inf"):
+        raise argparse.ArgumentTypeError(f"expected a positive number of kg/m^3, found '{text}'")
+    return density
+
+
 def read_input(path: str, chosen: argparse.Namespace, report: Report, target: Format | None = None, *, anyway: bool = False) -> Input:
     """Read a file, or standard input for `-`; for a conversion, into the target. ``anyway``: whatever errors it has.
 

@@ -16,10 +16,12 @@ from hymeko_x.ir.parts import Actuator, Coupling, Dof, DofKind, Drive, Joint
 from hymeko_x.ir.values import Z
 from hymeko_x.rewrite.actuators import MUJOCO_KINDS, without_actuators
 from hymeko_x.rewrite.context import Context
+from hymeko_x.rewrite.densities import WATER, give_inertials
 from hymeko_x.rewrite.joints import full_name, legal_dof
 from hymeko_x.rewrite.roots import stands_for_world, with_world
 from hymeko_x.rewrite.rotors import give_light_dofs_rotors
 from hymeko_x.rewrite.servos import SAG, gains, loads, with_followers
+from hymeko_x.source import NO_FILES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -29,10 +31,14 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Parameters
     from hymeko_x.rewrite.context import Options
     from hymeko_x.rewrite.servos import Load
+    from hymeko_x.source import Files
 
 
-def choose(mechanism: Mechanism, options: Options, report: Report) -> Mechanism:
-    """The robot as the options ask for it. Idempotent."""
+def choose(mechanism: Mechanism, options: Options, report: Report, *, files: Files = NO_FILES) -> Mechanism:
+    """The robot as the options ask for it; ``files`` has its meshes. Idempotent."""
+    if options.density is not None or options.inertia_from is not None:
+        density = WATER if options.density is None else options.density
+        mechanism = give_inertials(mechanism, density, options.inertia_from, Context(report, files, f"--density {density:g}"))
     if options.base is not None:
         mechanism = _with_bases(mechanism, is_free=options.base == "free", report=report)
     if options.actuators == "position":

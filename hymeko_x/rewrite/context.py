@@ -23,6 +23,7 @@ class Options(Struct, frozen=True):
     ``nested``: how a stage of USD is laid out (None = one file with flat bodies). ``split``: whether the macros of xacro
     go into a file of their own. ``keep``: where what the format cannot represent is kept: ``beside`` the output, or ``inside`` it.
     ``lenient``: whether errors are passed over. ``target``: the name of the program that the output is for, a row of `targets`.
+    ``density`` in kg/m^3 and ``inertia_from``: the inertials that bodies without one get, where one of the two is given.
     ``beside``: how files of our own that may stand beside the output begin, which is its own name; empty = there is no place.
     ``within``: the folder below the output's own that holds every file beside it, and ends in a slash; empty = each where it belongs.
     """
@@ -37,6 +38,8 @@ class Options(Struct, frozen=True):
     beside: str = ""
     within: str = ""
     target: str | None = None
+    density: float | None = None
+    inertia_from: Literal["collision", "visual", "hull"] | None = None
 
 
 def _write_nothing(mechanism: Mechanism) -> Package:

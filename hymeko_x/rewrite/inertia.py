@@ -83,7 +83,9 @@ def give_moving_bodies_mass(mechanism: Mechanism, context: Context) -> Mechanism
         new = _least_inertial(body.inertial)
         changed[key] = replace(body, inertial=new)
         old = "no mass" if body.inertial is None else f"mass {body.inertial.mass!r} and inertia {_words(body.inertial.tensor)}"
-        _report(mechanism, context.report, key, f"moves and has {old}; mass {new.mass!r} and inertia {_words(new.tensor)} are written")
+        hint = "--density 1000 computes masses from shapes (--inertia-from chooses which)" if body.inertial is None else ""
+        words = f"moves and has {old}; mass {new.mass!r} and inertia {_words(new.tensor)} are written"
+        _report(mechanism, context.report, key, words, hint=hint)
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 
@@ -244,9 +246,9 @@ def _words(tensor: Tensor | None) -> str:
     return "none" if tensor is None else numbers_text(tensor)
 
 
-def _report(mechanism: Mechanism, report: Report, body: Id, words: str, *, serious: bool = True) -> None:
+def _report(mechanism: Mechanism, report: Report, body: Id, words: str, *, serious: bool = True, hint: str = "") -> None:
     tell = report.warn if serious else report.note
-    tell(codes.INERTIA_REPAIRED, f"{body}: {words}", mechanism.origin(body), element=str(body))
+    tell(codes.INERTIA_REPAIRED, f"{body}: {words}", mechanism.origin(body), element=str(body), hint=hint)
 
 
 def _matrix(tensor: Tensor) -> list[list[float]]:
@@ -297,7 +299,7 @@ def evenly_spread(views: Iterable[ShapeView]) -> Inertial | None:
 
     The shapes are those that collide, else those that are seen; ``mass`` is their volume in m^3.
     """
-    solids = [(view, solid) for view in views if (solid := _solid(view.shape.geometry)) is not None]
+    solids = [(view, solid) for view in views if (solid := solid_of_primitive(view.shape.geometry)) is not None]
     chosen = [item for item in solids if item[0].shape.role is not Role.VISUAL] or solids
     return _spread([(view, solid[0], solid) for view, solid in chosen])
 
@@ -311,7 +313,7 @@ def inertial_of_solids(views: Iterable[ShapeView], density: float) -> Inertial |
     for view in views:
         if view.shape.role is Role.VISUAL:
             continue
-        solid = _solid(view.shape.geometry)
+        solid = solid_of_primitive(view.shape.geometry)
         if solid is None:
             return None
         parts.append((view, solid[0] * (density if view.shape.density is None else view.shape.density), solid))
@@ -333,19 +335,20 @@ def _spread(parts: list[tuple[ShapeView, float, _Solid]]) -> Inertial | None:
     total = [0.0] * 6
     for view, share, (_, moments) in parts:
         own = rotate_tensor(view.pose.quat, (*moments, 0.0, 0.0, 0.0))
-        arm = _of_point(add(view.pose.xyz, scaled(centre, -1.0)))
+        arm = of_point(add(view.pose.xyz, scaled(centre, -1.0)))
         total = [value + share / whole * (a + b) for value, a, b in zip(total, own, arm, strict=True)]
     xx, yy, zz, xy, xz, yz = total
     return Inertial(whole, centre, (xx, yy, zz, xy, xz, yz))
 
 
-def _of_point(at: Vec3) -> Tensor:
+def of_point(at: Vec3) -> Tensor:
     """The tensor of 1 kg at a point, about the origin."""
     x, y, z = at
     return y * y + z * z, x * x + z * z, x * x + y * y, -x * y, -x * z, -y * z
 
 
-def _solid(geometry: Geometry) -> _Solid | None:
+def solid_of_primitive(geometry: Geometry) -> _Solid | None:
+    """The volume in m^3 of a primitive, and its principal moments in m^2 per kg; None for what is none."""
     match geometry:
         case Box((x, y, z)):
             return x * y * z, ((y * y + z * z) / 12.0, (x * x + z * z) / 12.0, (x * x + y * y) / 12.0)

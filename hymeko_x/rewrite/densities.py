@@ -1,0 +1,142 @@
+"""Inertials of bodies that have none, from their shapes and a density."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+from hymeko_x import codes
+from hymeko_x.formats import native_format
+from hymeko_x.ir.mechanism import suffix_of
+from hymeko_x.ir.parts import Body, Inertial, Mesh, MeshShape, Role
+from hymeko_x.ir.values import ZERO, add, apply, rotate_tensor, scaled
+from hymeko_x.rewrite.inertia import of_point, solid_of_primitive
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from hymeko_x.ir.mechanism import Id, Mechanism, ShapeView
+    from hymeko_x.ir.values import Tensor, Vec3
+    from hymeko_x.meshes.solids import Solid
+    from hymeko_x.rewrite.context import Context
+
+Source = Literal["collision", "visual", "hull"]
+WATER = 1000.0
+"""The density in kg/m^3 that is taken where the user gives none."""
+_SHOWN = 3
+_BY_SOURCE = {"collision": "their collision shapes", "visual": "their visual shapes", "hull": "the convex hulls of their shapes"}
+
+
+class _Part(NamedTuple):
+    """A part of a body: its volume in m^3, its centre in m, and its tensor about that in m^5, in the frame of the body."""
+
+    volume: float
+    centre: Vec3
+    tensor: Tensor
+
+
+class Solids:
+    """The solids of meshes, each measured once; ``hulls`` are the meshes that are open, ``missing`` those that cannot be measured."""
+
+    def __init__(self, mechanism: Mechanism, context: Context, *, as_hull: bool) -> None:
+        self.mechanism, self.context, self.as_hull = mechanism, context, as_hull
+        self.hulls: list[Id] = []
+        self.missing: list[Id] = []
+        self._found: dict[Id, Solid | None] = {}
+
+    def of(self, view: ShapeView) -> _Part | None:
+        """The solid of a shape in the frame of its body; None for a plane, and for a mesh that is not there or flat."""
+        if not isinstance(view.shape.geometry, MeshShape):
+            primitive = solid_of_primitive(view.shape.geometry)
+            if primitive is None or not primitive[0] > 0.0:
+                return None
+            volume, (a, b, c) = primitive
+            tensor = rotate_tensor(view.pose.quat, (a * volume, b * volume, c * volume, 0.0, 0.0, 0.0))
+            return _Part(volume, view.pose.xyz, tensor)
+        solid = None if view.mesh is None else self._of_mesh(view.mesh)
+        return None if solid is None else _Part(solid.volume, apply(view.pose, solid.centre), rotate_tensor(view.pose.quat, solid.tensor))
+
+    def _of_mesh(self, key: Id) -> Solid | None:
+        if key not in self._found:
+            found = self._found[key] = self._measured(self.mechanism.vertex(key, Mesh))
+            if found is None:
+                self.missing.append(key)
+            elif found.is_hull and not self.as_hull:
+                self.hulls.append(key)
+        return self._found[key]
+
+    def _measured(self, mesh: Mesh) -> Solid | None:
+        from hymeko_x.meshes.reader import inline_part, read_whole
+        from hymeko_x.meshes.solids import solid_of
+        from hymeko_x.meshes.submesh import Unreadable
+
+        files = self.context.files
+        try:
+            if mesh.vertices:
+                return solid_of(inline_part(mesh.vertices, mesh.faces), mesh.scale, as_hull=self.as_hull)
+            path = files.find(mesh.uri or "")
+            if path is None:
+                return None
+            part = read_whole(files.read(path), suffix_of(mesh.uri or ""), lambda name: files.read(files.find(name) or name))
+        except (Unreadable, OSError):  # the conversion reports it where it places the file
+            return None
+        return solid_of(part, mesh.scale, as_hull=self.as_hull)
+
+
+def give_inertials(mechanism: Mechanism, density: float, source: Source | None, context: Context) -> Mechanism:
+    """Each body without an inertial gets that of its shapes with this density in kg/m^3: of those that collide, unless asked otherwise.
+
+    Primitives and closed meshes count exactly, open meshes as their convex hull; where shapes overlap, both count.
+    """
+    bare = [key for key, body in mechanism.vertices(Body) if body.inertial is None]
+    if not bare or native_format(mechanism) is not None:
+        message = "its engine computes masses from shapes" if bare else "every body has an inertial"
+        context.report.note(codes.FOR_TARGET, f"{context.reason}: {message}; nothing is changed", element="mechanism")
+        return mechanism
+    solids = Solids(mechanism, context, as_hull=source == "hull")
+    found: dict[Id, Body] = {}
+    for key in bare:
+        inertial = _together([part for view in _chosen(mechanism.shapes.get(key, ()), source) if (part := solids.of(view))], density)
+        if inertial is not None:
+            found[key] = Body(inertial)
+    _report(found, bare, solids, source, context)
+    return mechanism.with_graph(mechanism.graph.replace(vertices=found)) if found else mechanism
+
+
+def _chosen(views: Iterable[ShapeView], source: Source | None) -> list[ShapeView]:
+    """The shapes of the asked role; where a body has none, the others."""
+    unwanted = Role.COLLISION if source == "visual" else Role.VISUAL
+    views = list(views)
+    return [view for view in views if view.shape.role is not unwanted] or views
+
+
+def _together(parts: list[_Part], density: float) -> Inertial | None:
+    """The inertial of some solids of one density."""
+    whole = sum(part.volume for part in parts)
+    if not whole > 0.0:
+        return None
+    centre = ZERO
+    for part in parts:
+        centre = add(centre, scaled(part.centre, part.volume / whole))
+    total = [0.0] * 6
+    for part in parts:
+        arm = of_point(add(part.centre, scaled(centre, -1.0)))
+        total = [value + own + part.volume * far for value, own, far in zip(total, part.tensor, arm, strict=True)]
+    xx, yy, zz, xy, xz, yz = (density * value for value in total)
+    return Inertial(density * whole, centre, (xx, yy, zz, xy, xz, yz))
+
+
+def _report(found: dict[Id, Body], bare: list[Id], solids: Solids, source: Source | None, context: Context) -> None:
+    mass = sum(body.inertial.mass or 0.0 for body in found.values() if body.inertial)
+    what = _BY_SOURCE[source or "collision"]
+    message = f"{context.reason}: {len(found)} bodies get masses and inertias of {what}, {mass:.4g} kg together"
+    context.report.note(codes.FOR_TARGET, message, element=str(bare[0]))
+    if solids.hulls:
+        message = f"{context.reason}: {len(solids.hulls)} meshes are not closed, and count as their convex hulls: {_listed(solids.hulls)}"
+        context.report.note(codes.FOR_TARGET, message, element=str(solids.hulls[0]))
+    if solids.missing:
+        message = f"{context.reason}: {len(solids.missing)} meshes are flat, missing or unreadable: {_listed(solids.missing)}"
+        context.report.warn(codes.INERTIA_REPAIRED, message, element=str(solids.missing[0]))
+
+
+def _listed(keys: list[Id]) -> str:
+    return ", ".join(f"'{key.name}'" for key in keys[:_SHOWN]) + (", ..." if len(keys) > _SHOWN else "")
