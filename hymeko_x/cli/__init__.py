@@ -51,6 +51,9 @@ GROUPS: Mapping[str, Mapping[str, Verb]] = {
         "dynamics": Verb("dynamics", "the equations of motion: state space, transfer functions, energies"),
         "simulate": Verb("dynamics", "the response over time to steps, pulses, sines, noise or a table"),
     },
+    "write": {
+        "fmt": Verb("fmt", "HyMeKo text in its usual layout; comments and order stay"),
+    },
     "more": {
         "formats": Verb("info", "the formats that can be read and written"),
         "explain": Verb("info", "what a code such as HX044 means"),

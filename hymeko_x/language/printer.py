@@ -241,7 +241,7 @@ def _needs_comma(item: Piece, following: Piece) -> bool:
 def _signature(node: Node) -> str:
     head = f"{_edge_word(node.edge)}{'.'.join(map(print_name, (*node.within, node.name)))}"
     if node.size is not None:
-        head += print_value(node.size)
+        head += f" {print_value(node.size)}"
     if node.parameters is not None:
         head += f"({', '.join(map(_parameter, node.parameters))})"
     if node.stereotypes:
