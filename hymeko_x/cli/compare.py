@@ -12,6 +12,7 @@ from hymeko_x import api, formats
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
+from hymeko_x.cli.names import located
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_of
 from hymeko_x.compare.diff import Tolerance, diff
@@ -95,6 +96,7 @@ def roundtrip_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_roundtrip(chosen: argparse.Namespace) -> int:
     """Print a row per leg; exit 4 when an engine sees another robot, 1 when one cannot tell."""
+    chosen.input = located(chosen.input).path
     report = Report()
     given = read_input(chosen.input, chosen, report)
     stops = [*_stops(chosen.through, given.format), given.format]

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes, disk
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
+from hymeko_x.cli.names import matching
 from hymeko_x.cli.parser import count
 from hymeko_x.cli.terminal import show
 from hymeko_x.corpus import cache, catalog
@@ -45,6 +46,8 @@ def corpus_arguments(parser: argparse.ArgumentParser) -> None:
     fetch = actions.add_parser("fetch", help="download and unpack packages; print their folders")
     fetch.add_argument("names", nargs="*", metavar="NAME", help="packages of the catalogue (default: all of them)")
     actions.add_parser("list", help="the packages of the catalogue, and which are here")
+    search = actions.add_parser("search", help="the robots whose name contains a word; the names stand for files in every verb")
+    search.add_argument("word", metavar="WORD", help="a part of the name of a robot or of a package, such as panda")
     _run_arguments(actions.add_parser("run", help="every robot through every format, measured"))
     _stats_arguments(actions.add_parser("stats", help="tables and figures of a run"))
 
@@ -54,6 +57,8 @@ def run_corpus(chosen: argparse.Namespace) -> int:
     if chosen.action in ("run", "stats"):
         _needs_extra()
         return _run(chosen) if chosen.action == "run" else _stats(chosen)
+    if chosen.action == "search":
+        return _search(chosen.word)
     root = cache.cache_root(os.environ)
     if chosen.action == "list":
         return _list(root)
@@ -73,6 +78,19 @@ def _list(root: Path) -> int:
         here = "yes" if cache.is_fetched(package, root) else "no"
         size = f"{package.bytes / 1e6:.1f}"
         print(f"{package.name:<20} {package.version:<8} {size:>5}  {here:<4} {package.licence:<13} {package.carries}")
+    return exits.DONE
+
+
+def _search(word: str) -> int:
+    """Print the robots with this word in their name; exit 1 when there is none."""
+    found = list(matching(word))
+    if not found:
+        print(f"no robot has '{word}' in its name", file=sys.stderr)
+        return exits.FAILED
+    width = max(len(name) for name, _, _ in found)
+    print(f"{'name':<{width}}  {'format':<7} here")
+    for name, format, here in found:
+        print(f"{name:<{width}}  {format:<7} {here}")
     return exits.DONE
 
 

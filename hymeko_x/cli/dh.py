@@ -9,6 +9,7 @@ from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.dh_tables import FORMATS
 from hymeko_x.cli.inputs import input_arguments
+from hymeko_x.cli.names import located
 
 if TYPE_CHECKING:
     import argparse
@@ -33,7 +34,9 @@ def run_dh(chosen: argparse.Namespace) -> int:
     """Print one table per chain: a row per joint between two constant transformations. Angles in rad, lengths in m."""
     from hymeko_x.verify import dh, model_of
 
-    model = model_of(chosen.input, packages=dict(chosen.package), search_path=search_path(os.environ), arguments=dict(chosen.arg))
+    found = located(chosen.input)
+    arguments = {**found.arguments, **dict(chosen.arg)}
+    model = model_of(found.path, packages=dict(chosen.package), search_path=search_path(os.environ), arguments=arguments)
     tips = [chosen.tip] if chosen.tip else [tip for tip in dh.chains(model) if dh.chain(model, tip)[1]]
     tables = [dh.table(model, tip, dh.Convention(chosen.convention), as_data_sheet=True) for tip in tips or [None]]
     errors = [dh.error_against_pinocchio(model, table) if chosen.check else None for table in tables]

@@ -13,6 +13,7 @@ from msgspec.structs import replace
 from hymeko_x import formats
 from hymeko_x.assets.resolve import DiskFiles, search_path
 from hymeko_x.cli.exits import UsageError
+from hymeko_x.cli.names import located
 from hymeko_x.source import Source
 
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report, target: Fo
         raise UsageError(f"{option} is for formats that take arguments, and {source.name} is {format.name}")
     if chosen.variant and not format.has_variants:
         raise UsageError(f"--variant is for formats that have variants, and {source.name} is {format.name}")
-    values = {"variants": dict(chosen.variant), "arguments": dict(chosen.arg), "environment": dict(chosen.env)}
+    values = {"variants": dict(chosen.variant), "arguments": {**source.arguments, **dict(chosen.arg)}, "environment": dict(chosen.env)}
     source = replace(source, **values, ignores_kept=chosen.ignore_kept)
     if anyway:
         return Input(pipeline.read_anyway(source, format, report), format, source)
@@ -95,10 +96,12 @@ def read_input(path: str, chosen: argparse.Namespace, report: Report, target: Fo
 
 
 def source_of(path: str, chosen: argparse.Namespace) -> Source:
-    """A file with the files around it. Raises: Refusal when it cannot be read."""
+    """A file, or the robot of this name, with the files around it. Raises: Refusal when it cannot be read."""
     from hymeko_x import disk
 
-    return disk.open_source(path, packages=dict(chosen.package), search_path=search_path(os.environ), confine=chosen.confine)
+    found = located(path)
+    source = disk.open_source(found.path, packages=dict(chosen.package), search_path=search_path(os.environ), confine=chosen.confine)
+    return replace(source, arguments=found.arguments) if found.arguments else source
 
 
 def _standard_input(chosen: argparse.Namespace) -> Source:

@@ -65,7 +65,7 @@ def _studio(path: str, chosen: argparse.Namespace) -> Studio:
     given = read_input(path, chosen, report)
     show_diagnostics(report, chosen)
     look = Look(chosen.size, chosen.view, chosen.pose, chosen.collision, chosen.frames, chosen.inertia)
-    return open_studio(given.mechanism, path if is_drawn(given.format) and path != "-" else None, look)
+    return open_studio(given.mechanism, given.source.name if is_drawn(given.format) and path != "-" else None, look)
 
 
 def _size(text: str) -> tuple[int, int]:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.inputs import input_arguments
+from hymeko_x.cli.names import located
 from hymeko_x.cli.terminal import is_coloured, paint
 
 if TYPE_CHECKING:
@@ -59,16 +60,17 @@ def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = 
     os.environ.setdefault("MUJOCO_GL", "disable")  # nothing is drawn, and importing what draws takes a twentieth of the time
     from hymeko_x.verify import verify
 
+    first, second = located(a), located(b)
     return verify(
-        a,
-        b,
+        first.path,
+        second.path,
         samples=chosen.samples,
         seed=chosen.seed,
         structure=structure,
         meshes=chosen.meshes,
         packages=dict(chosen.package),
         search_path=search_path(os.environ),
-        arguments=dict(chosen.arg),
+        arguments={**first.arguments, **second.arguments, **dict(chosen.arg)},
         variants=dict(chosen.variant),
     )
 
