@@ -74,6 +74,10 @@ class Writing(TypedDict, total=False):
     """The shapes that count for it (None = those that collide)."""
     target: str | None
     """The program that the output is for, a row of `hymeko_x.targets`. What it expects belongs to the robot from then on."""
+    sites: bool | None
+    """URDF: whether each frame on a body is a link with a fixed joint."""
+    mesh_prefix: str | None
+    """URDF: what stands before the paths of meshes; ``package://`` is the package in which the output lies."""
     keep: Literal["beside", "inside"] | None
     """Where to keep what the format cannot represent, so that it comes back: in a file beside the output, or inside of it."""
     lenient: bool
@@ -197,6 +201,8 @@ def convert(
     layout: Literal["single", "layered"] | None = None,
     nested: bool | None = None,
     split: bool = False,
+    sites: bool | None = None,
+    mesh_prefix: str | None = None,
     keep: Literal["beside", "inside"] | None = None,
     target: str | None = None,
     density: float | None = None,
@@ -215,9 +221,8 @@ def convert(
     read_as = _input_format(given, from_format)
     format = formats.of_output(os.fspath(output), to_format)
     robot, passed = pipeline.read_for(format, given, read_as, report, lenient=lenient)
-    options = Options(
-        base, actuators, layout, nested, split, keep, lenient, Path(output).stem, target=target, density=density, inertia_from=inertia_from
-    )
+    options = Options(base, actuators, layout, nested, split, keep, lenient, Path(output).stem, target=target)
+    options = replace(options, density=density, inertia_from=inertia_from, sites=sites, mesh_prefix=mesh_prefix)
     own = unchanged(given, read_as, format)
     delivery = Delivery(robot, format, options, given.files, _place(output, assets), os.fspath(output), own, passed)
     result = delivery.convert(report)
@@ -284,7 +289,8 @@ def _input_format(source: Source, format: str | None) -> formats.Format:
 
 
 def _place(path: Place, assets: Assets) -> pipeline.Place:
-    return pipeline.Place(os.path.dirname(os.fspath(path)) or ".", assets)
+    folder = os.path.dirname(os.fspath(path)) or "."
+    return pipeline.Place(folder, assets, disk.package_uri(folder))
 
 
 def _folders(packages: Mapping[str, Place] | None) -> dict[str, Path]:

@@ -229,6 +229,11 @@ OPTIONS_FOUND = Code(
     "the options of an earlier conversion were found out",
     "The edited file differs least from what its original gives with these options. Give them to update if others were used.",
 )
+READ_BESIDE = Code(
+    "HX014",
+    "a file beside the robot was read with it",
+    "An SRDF file that has the name of a URDF file and lies beside it belongs to the robot: pairs of links that never touch, named poses, groups.",
+)
 FOR_TARGET = Code(
     "HX114",
     "something was added or changed for the program that takes the output",

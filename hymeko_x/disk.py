@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 from hymeko_x import codes
-from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.assets.resolve import DiskFiles, package_name
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.source import KEPT_FOLDER, KEPT_SUFFIX, Kept, Package, PackageFiles, Source
@@ -154,6 +154,16 @@ def write_files(contents: Mapping[str, bytes]) -> None:
         raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
     finally:
         staging.clean()
+
+
+def package_uri(folder: str) -> str:
+    """The uri of a folder as a part of its package: the one whose ``package.xml`` is there or above, else the folder is the package."""
+    home = Path(folder or ".").resolve()
+    for above in (home, *home.parents):
+        name = package_name(above)
+        if name is not None:
+            return "/".join([f"package://{name}", *home.relative_to(above).parts])
+    return f"package://{home.name or 'robot'}"
 
 
 def in_the_way(package: Package, path: str, folder: str, files: Files) -> str | None:

@@ -11,7 +11,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats, targets
-from hymeko_x.assets.pack import pack, with_stand_ins
+from hymeko_x.assets.pack import pack, with_prefix, with_stand_ins
 from hymeko_x.assets.shelf import read_file, safe_name
 from hymeko_x.collector import uncollected
 from hymeko_x.compare.geometry import meshes_as_files, with_points_of_files, without_points
@@ -58,12 +58,15 @@ class Writer(Protocol):
 class Place(Struct, frozen=True):
     """Where the output goes: its ``folder``, and whether files go beside it or are referred to (None = the format's own way).
 
+    ``package`` is the uri of the folder as a part of a package (``package://NAME``), where that is known.
+
     ``in_the_way(package, other_folder)`` names a file of another output that one of the package's would overwrite; then all of them go
     below the other folder, which ends in a slash.
     """
 
     folder: str = "."
     assets: Literal["copy", "reference"] | None = None
+    package: str = ""
     in_the_way: Callable[[Package, str], str | None] | None = None
 
 
@@ -262,8 +265,13 @@ def _check_is_robot(mechanism: Mechanism, format: Format, report: Report) -> Non
 
 def _placed_and_printed(legal: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
     """A legal mechanism with its files placed, and printed."""
-    placed, new, copies = pack(legal, format, files, place.assets, report, out_dir=place.folder, within=options.within)
-    package = writer(format)(placed, options, report)
+    options = replace(options, mesh_prefix=_prefix(options, format, place))
+    prefix = options.mesh_prefix or ""
+    placed, new, copies = pack(
+        legal, format, files, place.assets, report, out_dir=place.folder, within=options.within, is_laid_out=bool(prefix)
+    )
+    placed = with_prefix(placed, prefix, {*new, *copies}) if prefix else placed
+    package = replace(writer(format)(placed, options, report), prefix=prefix)
     if package.enclose is not None and (new or copies):
         return _Printed(package.enclose({**new, **dict(_contents(copies, files))}), placed, bool(options.within))
     beside = targets.files_beside(placed, options) if options.beside else {}
@@ -271,12 +279,19 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
     return _Printed(package, placed, bool(options.within))
 
 
+def _prefix(options: Options, format: Format, place: Place) -> str | None:
+    """What stands before the paths of files beside the output; None where they are relative, or no files are put there."""
+    prefix = options.mesh_prefix if "mesh_prefix" in format.layout_options and (place.assets or format.assets) == "copy" else None
+    return (place.package or None) if prefix == "package://" else prefix and prefix.rstrip("/")
+
+
 def read_back(package: Package, format: Format, files: Files) -> Mechanism:
     """The mechanism that the format's own frontend reads from a package that was just written.
 
     Raises: Refusal HX901 when it refuses it.
     """
-    result = Source(f"<written {format.name}>", package.main, PackageFiles(package, files))
+    companion = next((name for name in package.files if name.endswith(format.companions)), "") if format.companions else ""
+    result = Source(companion or f"<written {format.name}>", package.main, PackageFiles(package, files))
     try:
         return reader(format)(result, Report()).mechanism
     except Refusal as error:

@@ -127,6 +127,7 @@ class Package(Struct, frozen=True):
     main file again with the text of a residue where other readers of the format ignore it; None for a format that represents
     everything. ``enclose`` gives the package with files inside of the main one; None where they stand beside it. ``kept`` is the text of
     the kept file beside the main one; where it is empty there is none. ``originals`` are copies in the folder of what is kept.
+    ``prefix`` is what stands before the paths of its files in its text.
     """
 
     main: bytes
@@ -136,6 +137,7 @@ class Package(Struct, frozen=True):
     enclose: Callable[[Mapping[str, bytes]], Package] | None = None
     kept: str = ""
     originals: Mapping[str, str] = field(default_factory=dict)
+    prefix: str = ""
 
 
 class PackageFiles(Struct, frozen=True):
@@ -146,7 +148,8 @@ class PackageFiles(Struct, frozen=True):
 
     def find(self, uri: str) -> str | None:
         """The normalised relative name if the package has it."""
-        name = posixpath.normpath(uri)
+        prefix = f"{self.package.prefix}/"
+        name = posixpath.normpath(uri.removeprefix(prefix) if self.package.prefix else uri)
         return name if name in self.package.files or name in self.package.copies else self.behind.find(uri)
 
     def read(self, path: str) -> bytes:

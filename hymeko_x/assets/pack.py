@@ -26,7 +26,7 @@ from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Mesh, Role, Texture
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Set
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
@@ -39,19 +39,28 @@ Mode = Literal["copy", "reference"]
 
 
 def pack(
-    mechanism: Mechanism, format: Format, files: Files, mode: Mode | None, report: Report, *, out_dir: str | None = None, within: str = ""
+    mechanism: Mechanism,
+    format: Format,
+    files: Files,
+    mode: Mode | None,
+    report: Report,
+    *,
+    out_dir: str | None = None,
+    within: str = "",
+    is_laid_out: bool = False,
 ) -> tuple[Mechanism, dict[str, bytes], dict[str, str]]:
     """The mechanism with its files' new paths, the new files by relative path, and the copies by relative path.
 
     ``mode`` copy puts files beside the output, reference refers to them where they are, relative to ``out_dir`` (the
-    output's folder); None is the format's own default. ``within`` is the folder below ``out_dir`` for what is put there. A file that
+    output's folder); None is the format's own default. ``within`` is the folder below ``out_dir`` for what is put there. With
+    ``is_laid_out`` copies go to the folders ``meshes`` and ``textures``, wherever they are in the source. A file that
     is not there is a warning. For MJCF its shapes are left out, since MuJoCo reads no model with a missing file; in the other
     formats the reference stays as it is.
     """
     shelf = Shelf(mode or format.assets, out_dir, within)
     if format.pack is None:
         read = mechanism if format.is_exact else _with_meshes_of_source(mechanism, files, report)
-        packed = keep_references(read, shelf, files, report, Keep.of(format, shelf.mode))
+        packed = keep_references(read, shelf, files, report, Keep.PACKAGES if is_laid_out else Keep.of(format, shelf.mode))
         row = formats.of_source(mechanism)
         if format.is_exact and row is not None and row.place_extras is not None:
             packed = formats.loaded(row.place_extras)(mechanism, packed, shelf, files, report, Keep.of(format, shelf.mode))
@@ -103,6 +112,14 @@ def keep_references(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
             )
         elif uri != part.uri:
             changed[key] = replace(part, uri=uri)
+    return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
+
+
+def with_prefix(mechanism: Mechanism, prefix: str, paths: Set[str]) -> Mechanism:
+    """The mechanism with this prefix before the paths of files that are put beside the output."""
+    changed: dict[Id, Mesh | Texture] = {
+        key: replace(part, uri=f"{prefix}/{part.uri}") for key, part in mechanism.assets() if part.uri in paths
+    }
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 

@@ -10,6 +10,7 @@ import io
 import os
 import re
 import zipfile
+from contextlib import suppress
 from fnmatch import fnmatchcase
 from functools import cached_property
 from itertools import chain, islice
@@ -206,12 +207,7 @@ class DiskFiles(Struct, frozen=True, dict=True):
 
     def _package_name(self, folder: Path) -> str | None:
         """The <name> in the folder's `package.xml`, or None."""
-        path = folder / "package.xml"
-        if not self._may_read(path):
-            return None
-        with path.open("rb") as file:
-            found = _PACKAGE_NAME.search(file.read(2**16))
-        return found[1].decode("utf-8", "replace") if found else None
+        return package_name(folder) if self._may_read(folder / "package.xml") else None
 
     def _may_read(self, path: Path) -> bool:
         """Whether this is a readable regular file inside the border. Odd names (NUL bytes, too long) are just not there."""
@@ -288,3 +284,11 @@ def _read_packed(package: bytes, name: str) -> bytes:
             return inside.read(name)
     except (zipfile.BadZipFile, KeyError, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name) from error
+
+
+def package_name(folder: Path) -> str | None:
+    """The <name> in the folder's `package.xml`; None where it has none."""
+    with suppress(OSError), (folder / "package.xml").open("rb") as file:
+        found = _PACKAGE_NAME.search(file.read(2**16))
+        return found[1].decode("utf-8", "replace") if found else None
+    return None

@@ -187,6 +187,11 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--keep", "--keep=beside", dest="keep", action="store_const", const="beside", help=beside)
     inside = "the same, inside the output, where other programs ignore it"
     parser.add_argument("--keep=inside", dest="keep", action="store_const", const="inside", help=inside)
+    sites = "URDF: make every site (frame on a body) a link with a fixed joint"
+    parser.add_argument("--sites", action="store_true", default=None, help=sites)
+    parser.add_argument("--no-sites", dest="sites", action="store_false", help="leave sites out where the target makes them links")
+    prefix = "URDF: what stands before the paths of meshes; `package://` is the package in which the output lies"
+    parser.add_argument("--mesh-prefix", metavar="URI", help=prefix)
     parser.add_argument("--split", action="store_true", help="xacro: put the macros into a file of their own")
     report_arguments(parser)
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
@@ -206,6 +211,7 @@ def deliver(
     layout = chosen.layout, chosen.nested, chosen.split
     options = Options(chosen.base, chosen.actuators, *layout, chosen.keep, chosen.lenient, Path(path).stem, target=chosen.target)
     options = replace(options, density=chosen.density, inertia_from=chosen.inertia_from)
+    options = replace(options, sites=chosen.sites, mesh_prefix=chosen.mesh_prefix)
     place = _place(output, chosen.assets)
     delivery = Delivery(given.mechanism, output.format, options, given.source.files, place, path, own, given.passed)
     result = delivery.convert(report, measured=measured)
@@ -230,17 +236,18 @@ def deliver(
 
 def _check_applicable(format: Format, chosen: argparse.Namespace) -> None:
     """Refuse options that change nothing in this format. Raises: UsageError."""
-    for option in ("layout", "nested", "split"):
+    for option in ("layout", "nested", "split", "sites", "mesh_prefix"):
         if getattr(chosen, option) and option not in format.layout_options:
             takers = ", ".join(row.name for row in formats.FORMATS if option in row.layout_options)
-            raise UsageError(f"--{option} is for {takers}, and the output is {format.name}")
+            raise UsageError(f"--{option.replace('_', '-')} is for {takers}, and the output is {format.name}")
 
 
 def _place(output: Output, assets: Literal["copy", "reference"] | None) -> pipeline.Place:
     """Beside standard output nothing can be put, so that files are referred to from the working folder."""
     if output.path == "-":
         return pipeline.Place(assets="reference")
-    return pipeline.Place(os.path.dirname(output.path) or ".", assets)
+    folder = os.path.dirname(output.path) or "."
+    return pipeline.Place(folder, assets, disk.package_uri(folder))
 
 
 def _write(delivery: Delivery, output: Output, result: Result) -> None:

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import formats
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
-from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Shape
+from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Shape, Stance
 from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 from hymeko_x.rewrite.efforts import actuator_efforts
+from hymeko_x.rewrite.sites import is_link
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -36,15 +37,18 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
 
     No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
     on a body whose mass and tensor are given; other frames of a joint that moves its body alike; an effort limit that is what the actuators
-    of the source can exert. What an author wrote counts, used or not.
+    of the source can exert; a frame that is where the body of its name is; a pose that is a keyframe.
+    What an author wrote counts, used or not.
     """
     alike: dict[Id, bool] = {}
     native = formats.native_format(before)
-    efforts = actuator_efforts(before)
+    efforts, described = actuator_efforts(before), {*_links(before, after), *_keyframes(before, after)}
     weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
     for difference in found:
         key = difference.element
         if _is_described_otherwise(difference, before, after):
+            continue
+        if not difference.field and difference.after is None and key in described:
             continue
         if key.kind == "shape" and difference.field in _WEIGHTS and weighed and _needs_no_weight(before, key, difference.field):
             continue
@@ -71,6 +75,22 @@ def _is_described_otherwise(difference: Difference, before: Mechanism, after: Me
 def _came_as_file(before: object, after: object) -> bool:
     """Whether a mesh that was a file is held by the file that was written, which the mesh's uri tells."""
     return isinstance(before, Mesh) and before.uri is not None and not before.vertices and isinstance(after, Mesh) and after.uri is None
+
+
+def _links(before: Mechanism, after: Mechanism) -> frozenset[Id]:
+    """The frames, with their mounts, that are links of their own in both mechanisms."""
+    views = [view for views in before.mounts.values() for view in views if is_link(view) and view.body in after.graph.vertices]
+    return frozenset(key for view in views for key in (view.id, view.thing))
+
+
+def _keyframes(before: Mechanism, after: Mechanism) -> Iterator[Id]:
+    """The poses, with their stances, that the other mechanism keeps as texts of its format."""
+    row = formats.of_source(after)
+    kept = dict(formats.loaded(row.poses)(after)) if row is not None and row.poses is not None else {}
+    for key, _, arcs in before.edges(Stance) if kept else ():
+        pose = next((arc.target for arc in arcs if arc.sign > 0), None)
+        if pose is not None and all(kept.get(pose.name, {}).get(arc.target) == arc.weight for arc in arcs if arc.sign == 0):
+            yield from (key, pose)
 
 
 def _is_effort_of_actuators(

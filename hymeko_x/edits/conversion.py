@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec.structs import replace
 
-from hymeko_x import codes, formats, pipeline, targets
+from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Report
@@ -58,7 +58,7 @@ class Conversion:
 
         Raises: Refusal when ORIGINAL cannot be written in the format.
         """
-        guess = self._found_out(self._guess(options, pipeline.Place(self.folder)))
+        guess = self._found_out(self._guess(options, pipeline.Place(self.folder, package=disk.package_uri(self.folder))))
         self._report_found(options, guess)
         residue = residue_of(self.mechanism, guess.image)
         names = renames(self.edited, guess.image)

@@ -38,7 +38,7 @@ class Format(Struct, frozen=True):
     beginning: bytes | None = None
     """The pattern with which its texts begin, where they have neither a root element nor first bytes of their own (HyMeKo)."""
     layout_options: frozenset[str] = frozenset()
-    """Those of the options ``layout``, ``nested`` and ``split`` that it takes when it is written."""
+    """Those of the options ``layout``, ``nested``, ``split``, ``sites`` and ``mesh_prefix`` that it takes when it is written."""
     is_exact: bool = False
     """Whether it represents every mechanism exactly, so that it carries no residue and keeps what only another format understands."""
     container_of: str = ""
@@ -63,8 +63,13 @@ class Format(Struct, frozen=True):
     names_in: str | None = None
     """The function ``(extra, change, is_of_whole) -> extra or None`` that changes the names in an extra of a part that becomes one of a
     robot; None for what a robot has once."""
+    poses: str | None = None
+    """The function ``mechanism -> list of (name, {joint: coordinates})`` that reads the named configurations that it keeps as texts."""
     joins: str | None = None
     """The function ``(whole, host, part, change) -> whole`` that gives a composed mechanism what depends on all of its elements."""
+
+    companions: tuple[str, ...] = ()
+    """The suffixes of files of the same name beside one of its files that are read with it (SRDF)."""
 
     # ---- its files
     assets: Literal["copy", "reference"] = "copy"

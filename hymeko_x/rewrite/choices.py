@@ -21,6 +21,7 @@ from hymeko_x.rewrite.joints import full_name, legal_dof
 from hymeko_x.rewrite.roots import stands_for_world, with_world
 from hymeko_x.rewrite.rotors import give_light_dofs_rotors
 from hymeko_x.rewrite.servos import SAG, gains, loads, with_followers
+from hymeko_x.rewrite.sites import make_frames_links
 from hymeko_x.source import NO_FILES
 
 if TYPE_CHECKING:
@@ -45,6 +46,8 @@ def choose(mechanism: Mechanism, options: Options, report: Report, *, files: Fil
         mechanism = give_light_dofs_rotors(mechanism, Context(report, reason="--actuators position"))
     if options.actuators is not None:
         mechanism = _with_actuators(mechanism, options.actuators, report)
+    if options.sites:
+        mechanism = make_frames_links(mechanism, report, "--sites" if options.target is None else f"--for {options.target}")
     return mechanism
 
 

@@ -24,6 +24,8 @@ class Options(Struct, frozen=True):
     go into a file of their own. ``keep``: where what the format cannot represent is kept: ``beside`` the output, or ``inside`` it.
     ``lenient``: whether errors are passed over. ``target``: the name of the program that the output is for, a row of `targets`.
     ``density`` in kg/m^3 and ``inertia_from``: the inertials that bodies without one get, where one of the two is given.
+    ``sites``: whether frames on bodies are links of their own. ``mesh_prefix``: what stands before the paths of files beside the output;
+    ``package://`` alone is the package in which the output lies.
     ``beside``: how files of our own that may stand beside the output begin, which is its own name; empty = there is no place.
     ``within``: the folder below the output's own that holds every file beside it, and ends in a slash; empty = each where it belongs.
     """
@@ -40,6 +42,8 @@ class Options(Struct, frozen=True):
     target: str | None = None
     density: float | None = None
     inertia_from: Literal["collision", "visual", "hull"] | None = None
+    sites: bool | None = None
+    mesh_prefix: str | None = None
 
 
 def _write_nothing(mechanism: Mechanism) -> Package:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 from hymeko_x import codes
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.names import names_in_use, rename
-from hymeko_x.ir.parts import Body, Joint, World
+from hymeko_x.ir.parts import Body, DofKind, Joint, Plane, Shape, Stance, World
 
 if TYPE_CHECKING:
+    from hymeko_x.ir.mechanism import JointView, RobotEdge
     from hymeko_x.rewrite.context import Context
 
 
@@ -93,6 +96,54 @@ def _without_held_worlds(mechanism: Mechanism) -> Mechanism:
         if not joint.joint.dofs and joint.parent_pose == joint.child_pose and stands_for_world(joint.child, mechanism)
     ]
     return mechanism.with_graph(mechanism.graph.replace(without=idle)) if idle else mechanism
+
+
+def open_floating_base(mechanism: Mechanism, context: Context) -> Mechanism:
+    """The base of the only tree is open instead of floating by a joint: programs that expect this let an open base float."""
+    held = floating_joint(mechanism)
+    if held is None:
+        return mechanism
+    moved = held.parent_pose != held.child_pose
+    where = ", and starts at the origin of the world" if moved else ""
+    message = f"{held.child} is the open base, which floats; {held.id} is left out{where} ({context.reason})"
+    context.report.note(codes.FOR_TARGET, message, mechanism.origin(held.id), element=str(held.id))
+    return without(mechanism, [held.id])
+
+
+def floating_joint(mechanism: Mechanism) -> JointView | None:
+    """The free joint of the only tree's root; None where there are several trees or the base does not float."""
+    held = mechanism.parent_joint.get(mechanism.roots[0]) if len(mechanism.roots) == 1 else None
+    return held if held is not None and [dof.kind for dof in held.joint.dofs] == [DofKind.FREE] else None
+
+
+def leave_scenery_out(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Planes, lights and cameras on the world are left out: they belong to a simulation, and to no robot."""
+    shapes = [view.id for view in mechanism.shapes.get(WORLD, ()) if isinstance(view.shape.geometry, Plane)]
+    things = [view.thing for view in mechanism.mounts.get(WORLD, ()) if view.thing.kind in ("light", "camera")]
+    if not shapes and not things:
+        return mechanism
+    named = [data.name for key in shapes if isinstance(data := mechanism.graph.edges[key].data, Shape)]
+    names = [f"plane '{name}'" if name else "a plane" for name in named] + [f"{key.kind} '{key.name}'" for key in things]
+    message = (
+        f"what only a simulation has on the world is left out ({context.reason}): {', '.join(names[:4])}{', ...' if len(names) > 4 else ''}"
+    )
+    context.report.note(codes.FOR_TARGET, message)
+    return without(mechanism, [*shapes, *things])
+
+
+def without(mechanism: Mechanism, elements: list[Id]) -> Mechanism:
+    """The mechanism without these elements, and without edges that lose an end; a stance only loses what it says of them."""
+    gone = set(elements)
+    edges: dict[Id, RobotEdge] = {}
+    for key, edge in mechanism.graph.edges.items():
+        left = tuple([arc for arc in edge.arcs if arc.target not in gone])
+        if len(left) == len(edge.arcs) or key in gone:
+            continue
+        if isinstance(edge.data, Stance):
+            edges[key] = replace(edge, arcs=left)
+        else:
+            elements = [*elements, key]
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=elements))
 
 
 def join_roots(mechanism: Mechanism, context: Context) -> Mechanism:

@@ -45,8 +45,20 @@ class Target(Struct, frozen=True):
 
 
 MUJOCO = Target("mujoco", "MuJoCo 4.0, laid out as in MuJoCo Menagerie", ("mjcf",), "hymeko_x.targets.mujoco")
+ROS2 = Target(
+    "ros2",
+    "ROS 2 Jazzy: robot_state_publisher, MoveIt, ros2_control",
+    ("urdf",),
+    "hymeko_x.targets.ros2",
+    MappingProxyType({"sites": True, "mesh_prefix": "package://"}),
+    "hymeko_x.backends.urdf.srdf:srdf_beside",
+)
+PINOCCHIO = Target(
+    "pinocchio", "Pinocchio 4.1, with mimic=True", ("urdf",), "hymeko_x.targets.pinocchio", MappingProxyType({"sites": True})
+)
+DRAKE = Target("drake", "Drake 1.51", ("urdf",), "hymeko_x.targets.drake")
 
-TARGETS: tuple[Target, ...] = (MUJOCO,)
+TARGETS: tuple[Target, ...] = (MUJOCO, ROS2, PINOCCHIO, DRAKE)
 """Every target, by format."""
 
 
@@ -76,7 +88,7 @@ def chosen(options: Options, format: Format) -> tuple[Options, Target | None]:
     if format.family not in target.formats:
         takes = " or ".join(target.formats)
         raise refuse(codes.UNKNOWN_TARGET, f"target '{target.name}' takes {takes}, and the output is {format.name}")
-    unset = {name: value for name, value in target.defaults.items() if not getattr(options, name)}
+    unset = {name: value for name, value in target.defaults.items() if getattr(options, name) is None}
     return replace(options, **unset), target
 
 

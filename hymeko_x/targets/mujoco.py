@@ -14,7 +14,7 @@ from hymeko_x.formats.mjcf.keyframes import Key, has_keyframes, with_keys
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.mechanism import ROOT, Id, numbers_weight
 from hymeko_x.ir.names import names_in_use
-from hymeko_x.ir.parts import Actuator, Contact, Coupling, DofKind, Drive
+from hymeko_x.ir.parts import Actuator, Contact, Coupling, DofKind, Drive, PoseSet
 from hymeko_x.rewrite import legalize
 from hymeko_x.rewrite.rotors import give_light_dofs_rotors
 from hymeko_x.rewrite.servos import dof_of, home
@@ -34,7 +34,7 @@ def _listed(words: list[str]) -> str:
 
 def name_home(mechanism: Mechanism, context: Context) -> Mechanism:
     """A keyframe ``home``: every joint at its reference, or at the limit next to it, and every position servo there."""
-    if has_keyframes(mechanism):
+    if has_keyframes(mechanism) or any(True for _ in mechanism.vertices(PoseSet)):
         return mechanism
     legal = legalize(mechanism, NAME, Report())
     places = _at_home(legal)

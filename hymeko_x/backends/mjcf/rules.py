@@ -10,6 +10,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.backends.mjcf.steady import integrate_implicitly
+from hymeko_x.formats.mjcf.keyframes import with_poses
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import NAME, compiler_has
 from hymeko_x.ir.mechanism import ROOT
@@ -38,6 +39,12 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.rewrite.context import Context, Rule
 
+
+def write_poses_as_keyframes(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """Named poses are keyframes."""
+    return with_poses(mechanism)
+
+
 RULES: tuple[Rule, ...] = (
     make_names_usable,
     name_assets_once,
@@ -65,6 +72,7 @@ RULES: tuple[Rule, ...] = (
     name_wrapped_shapes,
     drop_foreign_actuators,
     drop_idle_actuators,
+    write_poses_as_keyframes,
     make_names_usable,  # once more, for what the rules have added
 )
 
@@ -134,6 +142,7 @@ _REPLACED: Mapping[Rule, Rule | None] = MappingProxyType(
         give_moving_bodies_mass: None,
         make_tensors_physical: _make_tensors_physical,
         drop_empty_shapes: _drop_empty_shapes,
+        write_poses_as_keyframes: None,
     }
 )
 """Rules that a robot from MJCF does without, since MJCF has more than one form of it or MuJoCo finds it out, and those that do less."""

@@ -24,7 +24,7 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
     Raises: Refusal with HX104 for a joint or a shape that URDF cannot represent; rewriting replaces those beforehand.
     """
     del report  # printing takes no decisions, so there is nothing to report
-    made = document(mechanism, options.within)
+    made = document(mechanism, options.within, options.mesh_prefix or "")
     made.root.children += [element if isinstance(element, str) else ready(element, 1) for element in made.elements]
 
     def printed(residue: str) -> bytes:

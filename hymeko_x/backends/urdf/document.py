@@ -36,13 +36,14 @@ class Document(NamedTuple):
     meshes: dict[str, bytes]
 
 
-def document(mechanism: Mechanism, within: str = "") -> Document:
-    """The URDF document of a mechanism; tags at top level have their owner. Files beside it are in the folder ``within``.
+def document(mechanism: Mechanism, within: str = "", prefix: str = "") -> Document:
+    """The URDF document of a mechanism; tags at top level have their owner. Files beside it are in the folder ``within``,
+    and their paths stand behind the ``prefix``.
 
     Raises: Refusal with HX104 for a joint or a shape that URDF cannot represent.
     """
     root = _root_tag(mechanism)
-    sheet = UrdfSheet(mechanism, _declared(root), within)
+    sheet = UrdfSheet(mechanism, _declared(root), within, prefix)
     extras = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.FORMAT, COMMENT)]
     meshes = contents_of(mechanism, sheet.mesh_files, sheet.materials.textures)
     return Document(root, _merged(extras, sheet), _around(extras, PRECEDING, sheet), _around(extras, FOLLOWING, sheet), meshes)

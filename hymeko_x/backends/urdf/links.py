@@ -89,7 +89,7 @@ def _add_mesh(tag: Tag, view: ShapeView, sheet: UrdfSheet) -> None:
         return
     mesh = sheet.mechanism.vertex(view.mesh, Mesh)
     child = tag.add("mesh")
-    uri = sheet.mesh_files.get(view.mesh, mesh.uri)
+    uri = sheet.uri(view.mesh)
     if uri is not None:
         child.attributes["filename"] = uri
     if mesh.scale != (1.0, 1.0, 1.0) or Explicit.SCALE in sheet.explicit:

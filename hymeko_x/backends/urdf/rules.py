@@ -5,8 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.backends.urdf.srdf import as_virtual_joint
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.urdf.notations import STYLE, TYPE, Explicit, Style
+from hymeko_x.formats.urdf.notations import STYLE, TYPE, VIRTUAL, Explicit, Style
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Capsule, Dof, DofKind, Ellipsoid, Plane
 from hymeko_x.ir.values import IDENTITY, plane_axes
@@ -15,7 +16,7 @@ from hymeko_x.rewrite.efforts import limit_efforts_by_actuators
 from hymeko_x.rewrite.inertia import fill_tensors
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
-from hymeko_x.rewrite.roots import join_roots, make_world_a_link
+from hymeko_x.rewrite.roots import floating_joint, join_roots, make_world_a_link
 from hymeko_x.rewrite.shapes import approximate_shapes, drop_engine_shapes, drop_unused_assets, prefer_own_colours, split_shared_shapes
 from hymeko_x.rewrite.subsets import part_meshes_by_looks
 
@@ -65,8 +66,15 @@ def _is_bounded(view: JointView, mechanism: Mechanism) -> bool:
     return word is not None and word.bounded
 
 
+def leave_virtual_joint_out(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """The joint that stands in the SRDF is none of the URDF, whose base is open then."""
+    held = floating_joint(mechanism)
+    return mechanism if held is None or mechanism.notation(held.id, VIRTUAL) is None else as_virtual_joint(mechanism, held)
+
+
 RULES: tuple[Rule, ...] = (
     make_names_usable,
+    leave_virtual_joint_out,
     drop_engine_shapes,
     fill_tensors,
     expand_screws,

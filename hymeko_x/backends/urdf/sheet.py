@@ -12,7 +12,7 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
 from hymeko_x.formats.urdf.notations import Style
 from hymeko_x.ir.mechanism import ROOT, numbers_weight
-from hymeko_x.ir.parts import Coupling
+from hymeko_x.ir.parts import Coupling, Mesh
 from hymeko_x.ir.values import IDENTITY, numbers_text, rpy_of
 from hymeko_x.xml.printing import put_back
 
@@ -31,10 +31,11 @@ E = TypeVar("E")
 class UrdfSheet:
     """A mechanism to be printed; all look-ups are linear to build. Files beside the output are in the folder ``within``."""
 
-    def __init__(self, mechanism: Mechanism, declared: Mapping[str, str], within: str) -> None:
+    def __init__(self, mechanism: Mechanism, declared: Mapping[str, str], within: str, prefix: str = "") -> None:
         self.mechanism = mechanism
         self.declared = declared
         self.within = within
+        self._prefix = f"{prefix}/" if prefix else ""
         style = mechanism.notation(ROOT, notations.STYLE) or Style()
         self.explicit = style.explicit
         self.materials = Materials(mechanism, lambda key: self.choice(key, notations.DEFINED))
@@ -57,6 +58,11 @@ class UrdfSheet:
     def mesh_files(self) -> Mapping[Id, str]:
         """The new files of the meshes that have points and no file."""
         return files_of_meshes(self.mechanism, self.within)
+
+    def uri(self, key: Id) -> str | None:
+        """How a mesh is referred to."""
+        path = self.mesh_files.get(key)
+        return self.mechanism.vertex(key, Mesh).uri if path is None else f"{self._prefix}{path}"
 
     @cached_property
     def leaders(self) -> Mapping[Id, RobotArc]:

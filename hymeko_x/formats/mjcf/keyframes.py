@@ -9,8 +9,8 @@ from msgspec.structs import replace
 
 from hymeko_x.formats.mjcf import NAME
 from hymeko_x.formats.mjcf.tree import parse_text, verbatim
-from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism
-from hymeko_x.ir.parts import Actuator, DofKind
+from hymeko_x.ir.mechanism import ROOT, Extra, Id, Mechanism, numbers_weight
+from hymeko_x.ir.parts import Actuator, DofKind, Stance
 from hymeko_x.ir.values import compose, inverse, numbers_text
 from hymeko_x.xml.tree import read_numbers
 
@@ -43,6 +43,15 @@ def keys_of(mechanism: Mechanism) -> list[Key]:
     return [key for key in keys if key is not None]
 
 
+def poses(mechanism: Mechanism) -> list[tuple[str, Mapping[Id, tuple[float, ...]]]]:
+    """The name of each keyframe with coordinates, and these by joint, in rad or m."""
+    found = [
+        (key.attributes.get("name", ""), {of: numbers for (word, of), numbers in key.numbers.items() if word == "qpos"})
+        for key in keys_of(mechanism)
+    ]
+    return [(name, values) for name, values in found if values]
+
+
 def with_keys(mechanism: Mechanism, keys: Sequence[Key]) -> Mechanism:
     """The mechanism with these keyframes and no others; what a key has no numbers for stays as it is without one."""
     own = tuple(extra for extra in mechanism.extras.get(ROOT, ()) if not _is_keyframes(extra))
@@ -52,6 +61,20 @@ def with_keys(mechanism: Mechanism, keys: Sequence[Key]) -> Mechanism:
         own += (Extra(NAME, "", f"<keyframe>{lines}</keyframe>", place),)
     extras = {**mechanism.extras, ROOT: own}
     return replace(mechanism, extras={key: found for key, found in extras.items() if found})
+
+
+def with_poses(mechanism: Mechanism) -> Mechanism:
+    """The mechanism with its named poses as keyframes; a joint that a pose has no fitting numbers of is as it is without one."""
+    own = keys_of(mechanism)
+    known = {key.attributes.get("name") for key in own}
+    widths = {key: len(rest) for key, rest in _slots(mechanism, "qpos")}
+    new = []
+    for _, _, arcs in mechanism.edges(Stance):
+        pose = next((arc.target for arc in arcs if arc.sign > 0), None)
+        if pose is not None and pose.name not in known:
+            values = {("qpos", arc.target): numbers_weight(arc) for arc in arcs if arc.sign == 0}
+            new.append(Key({"name": pose.name}, {(of, key): found for (of, key), found in values.items() if widths.get(key) == len(found)}))
+    return with_keys(mechanism, [*own, *new]) if new else mechanism
 
 
 def _is_keyframes(extra: Extra) -> bool:

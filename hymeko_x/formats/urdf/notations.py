@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
 
-from hymeko_x.ir.notations import Notation, choice, word
+from hymeko_x.ir.notations import Notation, choice, flag, word
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -47,6 +47,9 @@ REDUCTION = choice("urdf.reduction", Reduction)
 """Drive: where its reduction is, if not where most are."""
 TYPE_AS = choice("urdf.type-as", TypeAs)
 """Drive: how its type is written, if not as most are."""
+
+VIRTUAL = flag("urdf.virtual", "yes")
+"""Joint: it lets the base float, and stands in the SRDF as a virtual joint, not in the URDF."""
 
 USUAL: Mapping[Notation[Any], Enum] = MappingProxyType(
     {DEFINED: Defined.ROBOT, REDUCTION: Reduction.ACTUATOR, TYPE_AS: TypeAs.CHILD},

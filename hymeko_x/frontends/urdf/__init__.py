@@ -16,8 +16,11 @@ from hymeko_x.frontends.urdf.builder import UrdfBuilder
 from hymeko_x.frontends.urdf.joints import read_joints
 from hymeko_x.frontends.urdf.links import read_link
 from hymeko_x.frontends.urdf.materials import finish_materials, read_robot_material
+from hymeko_x.frontends.urdf.ros2_control import read_ros2_control
+from hymeko_x.frontends.urdf.srdf import read_srdf
 from hymeko_x.frontends.urdf.structure import check_structure
 from hymeko_x.frontends.urdf.transmissions import read_transmission
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.source import Reading
 from hymeko_x.xml.parse import parse
 from hymeko_x.xml.unread import FOLLOWING, PRECEDING, Unread, extra_of
@@ -48,9 +51,11 @@ def read(source: Source, report: Report) -> Reading:
     read_joints(root, builder)
     for node in root.take_children("transmission"):
         read_transmission(node, builder)
+    read_ros2_control(root, builder)
     finish_materials(builder)
     check_structure(root, builder, carries=bool("".join(carried)))
     _check_templates(root, builder)
+    builder.add_extras(ROOT, *read_srdf(source, builder))
     return Reading(builder.finish(name, _around(document), source.name), "".join(carried))
 
 

@@ -1,0 +1,105 @@
+"""<ros2_control> of the drives of a robot: which joint takes which command, within which limits, and from which state it starts."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from hymeko_x import codes
+from hymeko_x.formats import urdf as urdf_words
+from hymeko_x.formats.urdf import ros2_control as words
+from hymeko_x.ir.mechanism import ROOT, Extra, numbers_weight
+from hymeko_x.ir.parts import Actuator, Coupling, Drive, Stance
+from hymeko_x.ir.values import number_text, numbers_text
+from hymeko_x.xml.printing import Tag, ready
+from hymeko_x.xml.text import escaped
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.parts import Dof
+    from hymeko_x.rewrite.context import Context
+
+_SHOWN = 4
+Command = tuple[str, "Id", Actuator, tuple[float, ...]]
+"""What a joint is commanded, the actuator that takes it with its id, and its gear."""
+
+
+def declare_ros2_control(mechanism: Mechanism, context: Context) -> Mechanism:
+    """The drives of joints as command interfaces of <ros2_control>, unless the robot has such an element already."""
+    own = mechanism.extras.get(ROOT, ())
+    if any(extra.text.startswith(f"<{words.TAG}") for extra in own):
+        return mechanism
+    commands, left = _commands(mechanism)
+    if left:
+        listed = ", ".join(f"'{key.name}'" for key in left[:_SHOWN]) + (", ..." if len(left) > _SHOWN else "")
+        message = f"{len(left)} actuators drive no single joint by a command of its own, and have no <{words.TAG}>: {listed}"
+        context.report.warn(codes.NOT_SAID, message, element=str(left[0]))
+    if not commands:
+        return mechanism
+    context.report.note(codes.FOR_TARGET, f"<{words.TAG}> has the drives of {len(commands)} joints ({context.reason})")
+    text = ready(_system(mechanism, commands), 1)
+    extra = Extra(urdf_words.FORMAT, "", text, 1 + max((extra.index for extra in own), default=len(mechanism.graph.vertices)))
+    return replace(mechanism, extras={**mechanism.extras, ROOT: (*own, extra)})
+
+
+def _commands(mechanism: Mechanism) -> tuple[dict[Id, list[Command]], list[Id]]:
+    """The commands of each joint, and the actuators that have none."""
+    found: dict[Id, list[Command]] = {}
+    left: list[Id] = []
+    for _, drive, arcs in mechanism.edges(Drive):
+        key = next((arc.target for arc in arcs if arc.sign > 0), None)
+        part = mechanism.graph.vertices.get(key) if key is not None else None
+        if key is None or not isinstance(part, Actuator) or part.kind == "transmission":
+            continue
+        targets = [arc for arc in arcs if arc.sign < 0]
+        view = mechanism.joints.get(targets[0].target) if len(targets) == 1 and not drive.kind else None
+        interface = words.interface_of(part.kind, dict(part.parameters))
+        if view is None or len(view.joint.dofs) != 1 or interface is None or interface in [name for name, *_ in found.get(view.id, ())]:
+            left.append(key)
+        else:
+            found.setdefault(view.id, []).append((interface, key, part, numbers_weight(targets[0])))
+    return found, left
+
+
+def _system(mechanism: Mechanism, commands: dict[Id, list[Command]]) -> Tag:
+    system = Tag(words.TAG, {"name": mechanism.name, "type": "system"})
+    system.add("hardware").add("plugin").children.append(words.PLUGIN)
+    start = _start(mechanism)
+    for joint, found in commands.items():
+        tag = system.add("joint", name=joint.name)
+        dof = mechanism.joints[joint].joint.dofs[0]
+        for interface, key, actuator, gear in found:
+            command = tag.add("command_interface", name=interface)
+            _add_parameters(command, _limits(interface, dof))
+            _add_parameters(command, [(words.NAME, key.name), (words.TYPE, actuator.kind)])
+            _add_parameters(command, [(words.GEAR, gear)] if gear else [])
+            _add_parameters(command, actuator.parameters)
+        for interface in (words.POSITION, words.VELOCITY, words.EFFORT):
+            state = tag.add("state_interface", name=interface)
+            if interface == words.POSITION and start.get(joint):
+                _add_parameters(state, [("initial_value", start[joint])])
+    return system
+
+
+def _limits(interface: str, dof: Dof) -> Iterator[tuple[str, float]]:
+    limits = dof.limits
+    most = limits.velocity if interface == words.VELOCITY else limits.effort
+    low, high = (limits.lower, limits.upper) if interface == words.POSITION else (None if most is None else -most, most)
+    yield from ((name, value) for name, value in (("min", low), ("max", high)) if value is not None)
+
+
+def _start(mechanism: Mechanism) -> dict[Id, float]:
+    """The coordinate of each joint in the first named pose; a follower has none of its own."""
+    following = {arc.target for _, _, arcs in mechanism.edges(Coupling) for arc in arcs if arc.sign > 0}
+    first = next((arcs for _, _, arcs in mechanism.edges(Stance)), ())
+    values = {arc.target: numbers_weight(arc) for arc in first if arc.sign == 0 and arc.target not in following}
+    return {joint: numbers[0] for joint, numbers in values.items() if len(numbers) == 1}
+
+
+def _add_parameters(tag: Tag, parameters: Iterable[tuple[str, float | str | tuple[float, ...]]]) -> None:
+    for name, value in parameters:
+        text = value if isinstance(value, str) else numbers_text(value) if isinstance(value, tuple) else number_text(value)
+        tag.add("param", name=name).children.append(escaped(text))

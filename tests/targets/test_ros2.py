@@ -1,0 +1,310 @@
+"""`--for ros2`: a URDF with an SRDF beside it that ROS, MoveIt, ros2_control and Pinocchio take as they are."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import mujoco
+import numpy as np
+import pinocchio as pin
+import pytest
+from lxml import etree
+
+import hymeko_x as hx
+from hymeko_x.diagnostics import Report
+
+ARM = """
+<mujoco model="arm">
+  <compiler angle="radian"/>
+  <default><default class="limb"><geom type="capsule" size="0.03" fromto="0 0 0 0 0 0.3"/></default></default>
+  <worldbody>
+    <light name="sun" pos="0 0 3"/>
+    <geom name="floor" type="plane" size="0 0 1"/>
+    <body name="base" childclass="limb">BASE<geom/>
+      <body name="upper" pos="0 0 0.3"><joint name="shoulder" axis="0 1 0" range="-2 2"/><geom/>
+        <site name="imu" pos="0 0 0.1" euler="0 0 1.57"/>
+        <body name="hand" pos="0 0 0.3"><geom size="0.02"/>
+          <body name="left"><joint name="b_left" type="slide" axis="0 1 0" range="0 0.04"/><geom size="0.01"/></body>
+          <body name="right"><joint name="c_right" type="slide" axis="0 -1 0" range="0 0.04"/><geom size="0.01"/></body>
+          <body name="thumb"><joint name="a_thumb" type="slide" axis="1 0 0" range="0 0.1"/><geom size="0.01"/></body>
+        </body>
+      </body>
+    </body>
+  </worldbody>
+  <equality>
+    <joint joint1="b_left" joint2="c_right"/>
+    <joint joint1="a_thumb" joint2="b_left" polycoef="0.01 2 0 0 0"/>
+  </equality>
+  <contact><exclude body1="base" body2="hand"/></contact>
+  <actuator>
+    <position name="turn" joint="shoulder" kp="300" kv="20" forcerange="-40 40" ctrlrange="-2 2" gear="2"/>
+    <velocity name="slow" joint="shoulder" kv="3"/>
+    <motor name="grip" joint="c_right" ctrlrange="-5 5"/>
+  </actuator>
+  <keyframe><key name="home" qpos="QPOS0.5 0.01 0.01 0.03"/></keyframe>
+</mujoco>
+"""
+FIXED = ARM.replace("BASE", "").replace("QPOS", "")
+FLOATING = ARM.replace("BASE", "<freejoint name='root'/>").replace("QPOS", "0 0 1 1 0 0 0 ")
+
+
+def package(text: str, folder: Path) -> Path:
+    """The URDF in a ROS package, made of this MJCF."""
+    source, output = folder / "arm.xml", folder / "arm_description" / "arm.urdf"
+    source.write_text(text, "utf-8")
+    output.parent.mkdir()
+    hx.convert(source, output, target="ros2")
+    return output
+
+
+def srdf_of(urdf: Path) -> etree._Element:
+    return etree.parse(str(urdf.with_suffix(".srdf"))).getroot()
+
+
+@pytest.fixture
+def urdf(tmp_path: Path) -> Path:
+    return package(FIXED, tmp_path)
+
+
+# ---- the URDF ------------------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("text", [FIXED, FLOATING])
+def test_pinocchio_with_mimic_joints_finds_each_link_and_joint_once(text: str, tmp_path: Path) -> None:
+    urdf = package(text, tmp_path)
+    model = pin.buildModelFromUrdf(str(urdf), mimic=True)
+    tree = etree.parse(str(urdf))
+    names = [element.get("name") for element in (*tree.findall("link"), *tree.findall("joint"))]
+    counts = Counter(frame.name for frame in model.frames)
+    assert {name: counts[name] for name in names} == dict.fromkeys(names, 1)
+    assert [model.frames[model.getFrameId(name)].name for name in names] == names
+    assert (model.nq, model.nv) == (2, 2)  # the shoulder, and the first finger of the tree, which both others follow
+
+
+def test_the_joint_that_comes_first_leads_and_the_coordinates_stay(urdf: Path) -> None:
+    mimics = {joint.get("name"): joint.find("mimic") for joint in etree.parse(str(urdf)).findall("joint")}
+    found = {name: dict(mimic.attrib) for name, mimic in mimics.items() if mimic is not None}
+    assert found == {
+        "b_left": {"joint": "a_thumb", "multiplier": "0.5", "offset": "-0.005"},
+        "c_right": {"joint": "a_thumb", "multiplier": "0.5", "offset": "-0.005"},
+    }
+
+
+def test_a_joint_is_called_apart_from_a_link_and_a_site_is_a_link(urdf: Path) -> None:
+    tree = etree.parse(str(urdf))
+    joints = {joint.get("name"): joint.find("child").get("link") for joint in tree.findall("joint")}
+    assert joints["hand_joint"] == "hand"
+    assert joints["imu_joint"] == "imu"
+    assert tree.find("joint[@name='imu_joint']/origin").get("xyz") == "0 0 0.1"
+    assert not {link.get("name") for link in tree.findall("link")} & joints.keys()
+
+
+def test_without_sites_there_is_no_such_link(tmp_path: Path) -> None:
+    (tmp_path / "arm.xml").write_text(FIXED, "utf-8")
+    hx.convert(tmp_path / "arm.xml", tmp_path / "arm.urdf", target="ros2", sites=False)
+    assert etree.parse(str(tmp_path / "arm.urdf")).find("link[@name='imu']") is None
+
+
+def test_a_floating_base_is_open_and_a_virtual_joint_of_the_srdf(tmp_path: Path) -> None:
+    urdf = package(FLOATING, tmp_path)
+    tree = etree.parse(str(urdf))
+    assert tree.find("link[@name='world']") is None
+    assert [dict(node.attrib) for node in srdf_of(urdf).findall("virtual_joint")] == [
+        {"name": "root", "type": "floating", "parent_frame": "world", "child_link": "base"}
+    ]
+    back = hx.load(urdf)
+    assert [dof.kind.value for view in back.joints.values() if view.id.name == "root" for dof in view.joint.dofs] == ["free"]
+
+
+def test_what_only_a_simulation_has_is_left_out_with_a_note(tmp_path: Path) -> None:
+    (tmp_path / "arm.xml").write_text(FLOATING, "utf-8")
+    result = hx.convert(tmp_path / "arm.xml", tmp_path / "arm.urdf", target="ros2")
+    messages = [diagnostic.message for diagnostic in result.report if diagnostic.code.id == "HX114"]
+    assert "what only a simulation has on the world is left out (--for ros2): plane 'floor', light 'sun'" in messages
+    assert [loss for loss in result.losses or () if "floor" in loss.element or "imu" in loss.element] == []
+
+
+# ---- ros2_control --------------------------------------------------------------------------------------------------------------
+
+
+def test_ros2_control_has_a_command_interface_for_each_drive(urdf: Path) -> None:
+    system = etree.parse(str(urdf)).find("ros2_control")
+    assert system.find("hardware/plugin").text == "mock_components/GenericSystem"
+    found = {
+        joint.get("name"): {
+            interface.get("name"): {item.get("name"): item.text for item in interface} for interface in joint.findall("command_interface")
+        }
+        for joint in system.findall("joint")
+    }
+    turn = {"actuator": "turn", "actuator_type": "position", "gear": "2", "kp": "300", "kv": "20"}
+    assert found["shoulder"]["position"] == {"min": "-2", "max": "2", **turn, "ctrlrange": "-2 2", "forcerange": "-40 40"}
+    assert found["shoulder"]["velocity"] == {"actuator": "slow", "actuator_type": "velocity", "kv": "3"}
+    assert found["c_right"]["effort"]["actuator_type"] == "motor"
+    assert [node.get("name") for node in system.findall("joint[@name='shoulder']/state_interface")] == ["position", "velocity", "effort"]
+    assert system.find("joint[@name='shoulder']/state_interface[@name='position']/param[@name='initial_value']").text == "0.5"
+
+
+def test_an_interface_of_which_nothing_is_known_is_no_actuator() -> None:
+    text = '<ros2_control name="s" type="system"><joint name="j"><command_interface name="position"/></joint></ros2_control>'
+    joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
+    robot = hx.loads(f'<robot name="r"><link name="a"/><link name="b"/>{joint}{text}</robot>', "urdf")
+    assert [key for key in robot.graph.vertices if key.kind == "actuator"] == []
+
+
+@pytest.mark.parametrize("text", [FIXED, FLOATING])
+def test_the_way_through_urdf_and_srdf_and_back_gives_the_same_torques(text: str, tmp_path: Path) -> None:
+    urdf = package(text, tmp_path)
+    hx.convert(urdf, tmp_path / "back.xml", target="mujoco")
+    before, after = (mujoco.MjModel.from_xml_path(str(tmp_path / name)) for name in ("arm.xml", "back.xml"))
+    assert [before.actuator(i).name for i in range(before.nactuator)] == [after.actuator(i).name for i in range(after.nactuator)]
+    random = np.random.default_rng(1)
+    data, other = mujoco.MjData(before), mujoco.MjData(after)
+    moved = ("shoulder", "a_thumb", "b_left", "c_right")
+    for _ in range(50):
+        data.ctrl[:] = other.ctrl[:] = random.uniform(-3, 3, before.nu)
+        for name in moved:
+            data.joint(name).qpos[:] = other.joint(name).qpos[:] = random.normal()
+            data.joint(name).qvel[:] = other.joint(name).qvel[:] = random.normal()
+        mujoco.mj_forward(before, data)
+        mujoco.mj_forward(after, other)
+        ours, theirs = (np.array([found.joint(name).qfrc_actuator[0] for name in moved]) for found in (data, other))
+        assert np.abs(ours - theirs).max() <= 1e-6 * np.abs(ours).max()
+    assert [after.key(i).name for i in range(after.nkey)] == ["home"]
+    assert after.key("home").qpos[after.joint("shoulder").qposadr[0]] == 0.5
+
+
+def test_a_pose_comes_back_as_a_keyframe(urdf: Path, tmp_path: Path) -> None:
+    hx.convert(urdf, tmp_path / "back.xml")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "back.xml"))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("home").id)
+    assert [float(data.joint(name).qpos[0]) for name in ("shoulder", "b_left", "c_right", "a_thumb")] == [0.5, 0.01, 0.01, 0.03]
+
+
+# ---- SRDF ----------------------------------------------------------------------------------------------------------------------
+
+
+def srdf_problems(urdf: Path) -> list[str]:
+    """What srdfdom's model.cpp reports of an SRDF file, rule by rule; nothing for a file that it takes."""
+    tree, root = etree.parse(str(urdf)).getroot(), srdf_of(urdf)
+    links, joints = ({element.get("name") for element in tree.findall(tag)} for tag in ("link", "joint"))
+    virtual = {node.get("name") for node in root.findall("virtual_joint")}
+    groups = [group.get("name") for group in root.findall("group")]
+    wrong = [] if root.tag == "robot" else ["the root is not <robot>"]
+    wrong += [] if root.get("name") == tree.get("name") else ["the robot has another name"]
+    wrong += [f"<{node.tag}> is unknown" for node in root if node.tag not in KNOWN]
+    wrong += [f"<{node.tag} {name}> is missing" for node in root for name in KNOWN.get(node.tag, ()) if not node.get(name)]
+    wrong += [f"group {name} is there twice" for name, count in Counter(groups).items() if count > 1]
+    for group in root.findall("group"):
+        wrong += [f"group {group.get('name')} is empty"] if not len(group) else []
+        wrong += [f"link {node.get('name')}" for node in group.findall("link") if node.get("name") not in links]
+        wrong += [f"joint {node.get('name')}" for node in group.findall("joint") if node.get("name") not in joints | virtual]
+    for state in root.findall("group_state"):
+        wrong += [] if state.get("group") in groups else [f"group {state.get('group')} of a state"]
+        wrong += [f"joint {node.get('name')} of a state" for node in state if node.get("name") not in joints | virtual]
+        wrong += [f"value '{node.get('value')}'" for node in state if not [float(item) for item in (node.get("value") or "").split()]]
+    wrong += [f"child {node.get('child_link')}" for node in root.findall("virtual_joint") if node.get("child_link") not in links]
+    wrong += [f"type {n.get('type')}" for n in root.findall("virtual_joint") if n.get("type") not in ("fixed", "floating", "planar")]
+    wrong += [f"passive {node.get('name')}" for node in root.findall("passive_joint") if node.get("name") not in joints | virtual]
+    for pair in root.findall("disable_collisions"):
+        wrong += [f"link {pair.get(end)} of a pair" for end in ("link1", "link2") if pair.get(end) not in links]
+    return wrong
+
+
+KNOWN = {
+    "group": ("name",),
+    "group_state": ("name", "group"),
+    "end_effector": ("name", "parent_link", "group"),
+    "virtual_joint": ("name", "type", "parent_frame", "child_link"),
+    "passive_joint": ("name",),
+    "disable_collisions": ("link1", "link2", "reason"),
+}
+"""The elements that are written, with the attributes that srdfdom (and MoveIt's setup assistant, of reasons) requires."""
+
+
+@pytest.mark.parametrize("text", [FIXED, FLOATING])
+def test_the_srdf_keeps_the_rules_of_srdfdom(text: str, tmp_path: Path) -> None:
+    assert srdf_problems(package(text, tmp_path)) == []
+
+
+def test_the_rules_find_what_is_wrong(urdf: Path) -> None:
+    path = urdf.with_suffix(".srdf")
+    text = path.read_text("utf-8").replace('link1="base"', 'link1="nowhere"').replace('group="all"', 'group="none"', 1)
+    path.write_text(text.replace('value="0.5"', 'value=""'), "utf-8")
+    assert sorted(set(srdf_problems(urdf))) == ["group none of a state", "link nowhere of a pair", "value ''"]
+
+
+def test_the_srdf_has_the_group_the_pose_and_the_exclusions_with_their_reasons(urdf: Path) -> None:
+    root = srdf_of(urdf)
+    assert [node.get("name") for node in root.find("group")] == ["shoulder"]
+    assert [node.get("name") for node in root.findall("passive_joint")] == ["a_thumb"]
+    assert {node.get("name"): node.get("value") for node in root.find("group_state[@name='home']")} == {
+        "shoulder": "0.5",
+        "b_left": "0.01",
+        "c_right": "0.01",
+        "a_thumb": "0.03",
+    }
+    pairs = {(node.get("link1"), node.get("link2")): node.get("reason") for node in root.findall("disable_collisions")}
+    assert pairs == {
+        ("base", "hand"): "User",
+        ("base", "upper"): "Adjacent",
+        ("upper", "hand"): "Adjacent",
+        ("hand", "left"): "Adjacent",
+        ("hand", "right"): "Adjacent",
+        ("hand", "thumb"): "Adjacent",
+    }
+
+
+def test_the_srdf_beside_a_urdf_is_read_with_it_and_one_line_says_so(urdf: Path, tmp_path: Path) -> None:
+    report = Report()
+    robot = hx.load(urdf, report=report)
+    assert [str(diagnostic) for diagnostic in report] == [
+        "note[HX014]: 'arm.srdf' beside the robot is read with it: its exclusions, poses and groups"
+    ]
+    kinds = Counter(key.kind for key in (*robot.graph.vertices, *robot.graph.edges))
+    assert (kinds["contact"], kinds["pose"], kinds["stance"]) == (6, 1, 1)
+    (tmp_path / "other").mkdir()
+    result = hx.convert(urdf, tmp_path / "other" / "arm.urdf", target="ros2")
+    assert (tmp_path / "other" / "arm.srdf").read_bytes() == urdf.with_suffix(".srdf").read_bytes()
+    assert result.losses == ()
+
+
+@pytest.mark.parametrize("damage", ["<robot", "<other/>"])
+def test_an_srdf_that_cannot_be_read_is_left_out_with_a_warning(damage: str, urdf: Path) -> None:
+    urdf.with_suffix(".srdf").write_text(damage, "utf-8")
+    report = Report()
+    robot = hx.load(urdf, report=report)
+    assert [diagnostic.severity.value for diagnostic in report if diagnostic.code.id == "HX014"] == ["warning"]
+    assert not [key for key in robot.graph.edges if key.kind == "contact"]
+
+
+# ---- paths of meshes -----------------------------------------------------------------------------------------------------------
+
+TETRAHEDRON = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+MESH = """<mujoco model="m"><asset><mesh name="hull" file="parts/hull.obj"/></asset>
+<worldbody><body name="base"><geom type="mesh" mesh="hull"/><geom type="ellipsoid" size="1 2 3"/></body></worldbody></mujoco>"""
+
+
+def test_meshes_are_in_the_package_in_which_the_output_lies(tmp_path: Path) -> None:
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "hull.obj").write_text(TETRAHEDRON, "utf-8")
+    urdf = package(MESH, tmp_path)
+    files = {node.get("filename") for node in etree.parse(str(urdf)).iter("mesh")}
+    assert files == {"package://arm_description/meshes/hull.obj", "package://arm_description/shapes/base_ellipsoid.obj"}
+    assert all((tmp_path / file.removeprefix("package://")).is_file() for file in files)
+    assert hx.verify(tmp_path / "arm.xml", urdf, samples=2).is_same
+
+
+def test_the_package_is_that_of_the_nearest_package_xml_and_a_prefix_can_be_given(tmp_path: Path) -> None:
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "hull.obj").write_text(TETRAHEDRON, "utf-8")
+    (tmp_path / "arm.xml").write_text(MESH, "utf-8")
+    (tmp_path / "pkg" / "urdf").mkdir(parents=True)
+    (tmp_path / "pkg" / "package.xml").write_text("<package><name>my_robot</name></package>", "utf-8")
+    hx.convert(tmp_path / "arm.xml", tmp_path / "pkg" / "urdf" / "arm.urdf", target="ros2")
+    assert "package://my_robot/urdf/meshes/hull.obj" in (tmp_path / "pkg" / "urdf" / "arm.urdf").read_text("utf-8")
+    result = hx.convert(tmp_path / "arm.xml", tmp_path / "plain.urdf", mesh_prefix="package://other/")
+    assert "package://other/meshes/hull.obj" in (tmp_path / "plain.urdf").read_text("utf-8")
+    plain = hx.convert(tmp_path / "arm.xml", tmp_path / "plain.urdf")
+    assert [(loss.element, loss.field) for loss in result.losses or ()] == [(loss.element, loss.field) for loss in plain.losses or ()]
