@@ -12,30 +12,24 @@ from msgspec.structs import replace
 
 from hymeko_x import codes, formats, targets
 from hymeko_x.assets.pack import pack, with_prefix, with_stand_ins
-from hymeko_x.assets.shelf import read_file, safe_name
+from hymeko_x.assets.shelf import safe_name
 from hymeko_x.collector import uncollected
-from hymeko_x.compare.geometry import meshes_as_files, with_points_of_files, without_points
-from hymeko_x.compare.leaves import leaves_again, leaves_between
-from hymeko_x.compare.ledger import losses_between
+from hymeko_x.compare.geometry import with_points_of_files
 from hymeko_x.diagnostics import Refusal, Report, Stopped, refuse
 from hymeko_x.ir.mechanism import LUMPED_KINDS
-from hymeko_x.ir.parts import Body, Mesh, Texture
-from hymeko_x.residue.align import align
-from hymeko_x.residue.delta import residue_between
+from hymeko_x.ir.parts import Body
 from hymeko_x.residue.kept import restored
-from hymeko_x.residue.originals import OriginalFiles, originals_of, with_originals
-from hymeko_x.residue.realign import alignment_differences
-from hymeko_x.residue.text import print_residue
+from hymeko_x.residue.measuring import compared
+from hymeko_x.residue.originals import fetch_from, files_of, originals_of, with_originals
 from hymeko_x.rewrite import Options, actuate, choose, legalize
-from hymeko_x.source import Kept, PackageFiles, PlacedFiles, Source
+from hymeko_x.source import Kept, PackageFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from hymeko_x.compare.ledger import Loss
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import Extra, Id, Mechanism
-    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files, Package, Reading
 
 
@@ -116,7 +110,7 @@ def read_anyway(source: Source, format: Format, report: Report) -> Mechanism:
     """As :func:`read`, whatever errors there are: for those who look at the errors. Raises: Refusal when nothing can be read."""
     image, kept = _native(source, format, report)
     if kept is not None and kept.text:
-        image = with_points_of_files(restored(image, kept, report), _fetch(source.files))
+        image = with_points_of_files(restored(image, kept, report), fetch_from(source.files))
     return image if kept is None else with_originals(image, kept.originals)
 
 
@@ -192,13 +186,13 @@ def convert(
     if format.frontend is None or not measured:
         return Result(mechanism, package, report, None)
     image = read_back(package, format, files)
-    contents = None if place.assets == "reference" else PackageFiles(package, _files_of(mechanism, files))
+    contents = None if place.assets == "reference" else PackageFiles(package, files_of(mechanism, files))
     is_kept = options.keep is not None and passed is None and not format.is_exact
-    losses, residue, aligned = _compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_kept=is_kept)
+    losses, residue, aligned = compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_kept=is_kept)
     kept = Kept(residue, "") if passed is None else passed
     if passed is None and options.keep is not None:
         named, is_inside = printed if format.is_exact else mechanism, options.keep == "inside" and not format.is_exact
-        originals = originals_of(named, aligned, package, _files_of(mechanism, files), missing_only=is_inside)
+        originals = originals_of(mechanism, named, aligned, package, files_of(mechanism, files), missing_only=is_inside)
         kept = kept._replace(originals=originals)
     return Result(mechanism, with_kept(package, kept, options, report), report, losses)
 
@@ -206,8 +200,8 @@ def convert(
 def _chosen(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> tuple[Mechanism, Options]:
     """The robot as the options and the target among them ask for it, and the options with that target's defaults."""
     options, target = targets.chosen(options, format)
-    mechanism = actuate(choose(mechanism, options, report, files=_files_of(mechanism, files)), format.name, options, report)
-    files = _files_of(mechanism, files)
+    mechanism = actuate(choose(mechanism, options, report, files=files_of(mechanism, files)), format.name, options, report)
+    files = files_of(mechanism, files)
 
     def printed(robot: Mechanism) -> Package:
         return _printed(robot, format, replace(options, beside="", lenient=True), files, Report(), HERE).package
@@ -230,17 +224,11 @@ def with_kept(package: Package, kept: Kept, options: Options, report: Report) ->
     return replace(package, main=package.carry(kept.text))
 
 
-def _files_of(mechanism: Mechanism, files: Files) -> Files:
-    """The files of a mechanism, among them those that another file carried or kept for it."""
-    files = PlacedFiles(mechanism.places, files) if mechanism.places else files
-    return OriginalFiles(mechanism.originals, files) if mechanism.originals else files
-
-
 def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
     """Rewritten, with its files placed, and printed."""
     since = len(report)
     _check_is_robot(mechanism, format, report)
-    files = _files_of(mechanism, files)
+    files = files_of(mechanism, files)
     complete = completed(with_stand_ins(mechanism, format, files, report), format, files, report)
     legal = legalize(complete, format.name, report)
     printed = _placed_and_printed(legal, format, options, files, report, place)
@@ -300,33 +288,6 @@ def read_back(package: Package, format: Format, files: Files) -> Mechanism:
         raise refuse(codes.BUG, f"what was written as {format.name} cannot be read back: {error}") from error
 
 
-def _compared(
-    mechanism: Mechanism, printed: Mechanism, image: Mechanism, format: Format, contents: Files | None, *, is_moved: bool, is_kept: bool
-) -> tuple[tuple[Loss, ...], str, Mechanism]:
-    """The losses, the text of the residue if it is to be kept (empty where the image is the mechanism), and the aligned image.
-
-    ``contents`` are the files of the output (None where the main file goes alone): points that the mechanism holds and that are in one of
-    them are no difference. Where files are moved, the residue has nothing that leads back to those in the way.
-    """
-    alignment, aligned = align(image, mechanism)
-    as_files = mechanism if contents is None else meshes_as_files(mechanism, aligned, _fetch(contents))
-    moved = with_references_of(printed, as_files)
-    leaves = leaves_between(moved, aligned)
-    losses = losses_between(moved, aligned, alignment_differences(alignment), format, leaves, is_carried=is_kept)
-    if not is_kept:
-        return losses, "", aligned
-    source = without_points(mechanism, as_files)
-    if is_moved:
-        source = moved if formats.native_format(moved) is None else replace(moved, extras=printed.extras)
-    residue = residue_between(source, image, alignment, aligned, leaves_again(source, moved, aligned, leaves))
-    return losses, "" if residue.is_empty else print_residue(residue), aligned
-
-
-def _fetch(files: Files) -> Callable[[str], bytes | None]:
-    """Gives the content of a file by its uri, or None."""
-    return lambda uri: (read_file(files, uri) or ("", None))[1]
-
-
 # ---- steps of the stages ---------------------------------------------------------------------------------------------------------
 
 
@@ -364,29 +325,6 @@ def _contents(copies: Mapping[str, str], files: Files) -> Iterator[tuple[str, by
     for name, path in copies.items():
         with suppress(OSError):
             yield name, files.read(path)
-
-
-def with_references_of(printed: Mechanism, mechanism: Mechanism) -> Mechanism:
-    """The mechanism with the printed one's paths of files, in extras as well: that a file has moved is no loss."""
-    moved: dict[Id, VertexPart] = {}
-    for key, part in mechanism.assets():
-        other = printed.graph.vertices.get(key)
-        if isinstance(other, Mesh | Texture) and other.uri and part.uri != other.uri:
-            moved[key] = replace(part, uri=other.uri)
-    row = formats.of_source(mechanism)
-    if row is not None and row.tells_places is not None and printed.extras is not mechanism.extras:
-        mechanism = replace(mechanism, extras=_with_places_of(printed, mechanism, formats.loaded(row.tells_places)))
-    return mechanism.with_graph(mechanism.graph.replace(vertices=moved)) if moved else mechanism
-
-
-def _with_places_of(printed: Mechanism, mechanism: Mechanism, tells_places: Callable[[Extra], bool]) -> dict[Id, tuple[Extra, ...]]:
-    """The extras, those that tell of places being the printed one's."""
-    extras = dict(mechanism.extras)
-    for key, found in mechanism.extras.items():
-        new = printed.extras.get(key, ())
-        if len(new) == len(found) and any(map(tells_places, found)):
-            extras[key] = tuple([b if tells_places(a) and a.path == b.path else a for a, b in zip(found, new, strict=True)])
-    return extras
 
 
 def reader(format: Format) -> Reader:

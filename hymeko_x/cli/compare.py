@@ -15,9 +15,11 @@ from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.names import located
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_of
+from hymeko_x.compare.contents import Contents, content_differences, with_same_files
 from hymeko_x.compare.diff import Tolerance, diff
 from hymeko_x.diagnostics import Report
 from hymeko_x.reporting.changes import markdown
+from hymeko_x.residue.originals import fetcher
 
 if TYPE_CHECKING:
     import argparse
@@ -47,13 +49,19 @@ def run_diff(chosen: argparse.Namespace) -> int:
     """Print one line per difference; exit 4 if there is any, except as Markdown for difftools, which take that for a failure."""
     report = Report()
     a, b = (read_input(path, chosen, report) for path in (chosen.a, chosen.b))
-    found = diff(a.mechanism, b.mechanism, Tolerance(chosen.tolerance, chosen.tolerance))
+    found = _differences(a, b, Tolerance(chosen.tolerance, chosen.tolerance))
     show_diagnostics(report, chosen)
     if chosen.markdown:
         print(markdown((a.source.name, b.source.name), a.mechanism, b.mechanism, found), end="")
         return exits.DONE
     print(json.dumps(_differences_json(a, b, found), indent=2, ensure_ascii=False)) if chosen.json else print_lines(found)
     return exits.DIFFERENT if found else exits.DONE
+
+
+def _differences(a: Input, b: Input, tolerance: Tolerance) -> tuple[Difference, ...]:
+    """The differences of two robots; of their files those of the contents, and places only where a file is missing."""
+    ours, theirs = (Contents(given.mechanism, fetcher(given.mechanism, given.source.files)) for given in (a, b))
+    return (*diff(a.mechanism, with_same_files(ours, theirs), tolerance), *content_differences(ours, theirs))
 
 
 def print_lines(found: tuple[Difference, ...]) -> None:

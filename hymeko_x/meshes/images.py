@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.meshes.png import SIGNATURE, png_fault, without_faulty_chunks
 
@@ -12,6 +12,18 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 2**27
 _JPEG = b"\xff\xd8\xff"
+
+
+class Pixels(NamedTuple):
+    """The decoded points of an image, row by row, with 8 bits for each of red, green, blue and opacity."""
+
+    size: tuple[int, int]
+    data: bytes
+
+    def rows(self) -> list[bytes]:
+        """The points of each row."""
+        width = 4 * self.size[0]
+        return [self.data[start : start + width] for start in range(0, len(self.data), width)]
 
 
 class UnreadableImage(Exception):
@@ -38,6 +50,17 @@ def shown_image(data: bytes) -> tuple[bytes, str]:
     """
     found = _encoded(data, (SIGNATURE, _JPEG), decode=False)
     return found, ".jpg" if found.startswith(_JPEG) else ".png"
+
+
+def pixels(data: bytes) -> Pixels:
+    """The points of an image. Raises: UnreadableImage."""
+    from PIL import Image
+
+    try:
+        with Image.open(io.BytesIO(png_bytes(data))) as image:
+            return Pixels(image.size, image.convert("RGBA").tobytes())
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
+        raise UnreadableImage(str(error)) from error
 
 
 def _encoded(data: bytes, as_it_is: tuple[bytes, ...], *, decode: bool) -> bytes:

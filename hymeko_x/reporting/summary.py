@@ -43,6 +43,7 @@ _WORDS = {
     "inertial": "mass and inertia",
     "inertial.com": "centre of mass",
     "inertial.tensor": "inertia tensor",
+    "content.distance": "surface",
     "weight": "pose",
     "weight.xyz": "position",
     "weight.rotation": "orientation",

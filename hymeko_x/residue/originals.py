@@ -14,12 +14,12 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import formats
-from hymeko_x.assets.shelf import safe_name
+from hymeko_x.assets.shelf import read_file, safe_name
 from hymeko_x.residue.stand_ins import is_copy
-from hymeko_x.source import PackageFiles
+from hymeko_x.source import PackageFiles, PlacedFiles
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.source import Files, Package
@@ -50,20 +50,25 @@ def files_named(mechanism: Mechanism) -> Iterator[tuple[Id, str]]:
         yield from formats.loaded(row.files_in_extras)(mechanism)
 
 
-def originals_of(mechanism: Mechanism, aligned: Mechanism, package: Package, files: Files, *, missing_only: bool) -> dict[str, str]:
+def originals_of(
+    mechanism: Mechanism, printed: Mechanism, aligned: Mechanism, package: Package, files: Files, *, missing_only: bool
+) -> dict[str, str]:
     """The files to keep, by their names in the folder of originals: those that the aligned image of the package does not have as they are.
 
-    With ``missing_only`` without those for which the image has something else, which stands in for them.
+    ``printed`` has their references as they will be looked for. With ``missing_only`` without those for which the image has something
+    else, which stands in for them.
     """
     found: dict[str, str] = {}
     contents = PackageFiles(package, files)
+    references = list(files_named(mechanism))
+    names = list(files_named(printed))
     shown = set(_shown(mechanism, aligned)) if missing_only else ()
-    for key, uri in files_named(mechanism):
+    for (key, uri), (_, there) in zip(references, names if len(names) == len(references) else references, strict=True):
         path = files.find(uri)
         if key in shown and uri == getattr(mechanism.graph.vertices.get(key), "uri", None):
             continue
-        if path is not None and not _is_there(mechanism, aligned, key, uri, path, contents):
-            found.setdefault(kept_name(uri), path)
+        if path is not None and not _is_there(mechanism, aligned, key, there, path, contents):
+            found.setdefault(kept_name(there), path)
     return found
 
 
@@ -119,3 +124,19 @@ def _holds(files: Files, path: str, data: bytes) -> bool:
         return files.read(path) == data
     except OSError:
         return False
+
+
+def files_of(mechanism: Mechanism, files: Files) -> Files:
+    """The files of a mechanism, among them those that another file carried or kept for it."""
+    files = PlacedFiles(mechanism.places, files) if mechanism.places else files
+    return OriginalFiles(mechanism.originals, files) if mechanism.originals else files
+
+
+def fetcher(mechanism: Mechanism, files: Files) -> Callable[[str], bytes | None]:
+    """Gives the contents of a mechanism's files by their references."""
+    return fetch_from(files_of(mechanism, files))
+
+
+def fetch_from(files: Files) -> Callable[[str], bytes | None]:
+    """Gives the content of a file by its uri, or None."""
+    return lambda uri: (read_file(files, uri) or ("", None))[1]

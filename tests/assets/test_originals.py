@@ -82,13 +82,13 @@ def test_every_file_of_the_source_comes_home_when_the_source_is_gone(through: st
     source = home(tmp_path)
     before = mujoco.MjModel.from_xml_path(str(source))
     for place in ("away", "back"):
-        (tmp_path / place).mkdir()
-    hx.convert(source, tmp_path / "away" / through, keep="beside")
+        (tmp_path / "further" / place).mkdir(parents=True)
+    hx.convert(source, tmp_path / "further" / "away" / through, keep="beside")
     shutil.rmtree(source.parent)
     shutil.rmtree(tmp_path / "parts")
-    hx.convert(tmp_path / "away" / through, tmp_path / "back" / "robot.xml")
-    shutil.rmtree(tmp_path / "away")
-    assert differences(before, mujoco.MjModel.from_xml_path(str(tmp_path / "back" / "robot.xml"))) == []
+    hx.convert(tmp_path / "further" / "away" / through, tmp_path / "further" / "back" / "robot.xml")
+    shutil.rmtree(tmp_path / "further" / "away")
+    assert differences(before, mujoco.MjModel.from_xml_path(str(tmp_path / "further" / "back" / "robot.xml"))) == []
 
 
 @pytest.mark.parametrize("through", ["robot.urdf", "robot.usda", "robot.usdz", "robot.sdf"])

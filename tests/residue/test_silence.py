@@ -10,6 +10,7 @@ import pytest
 from hymeko_x import formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Report
+from hymeko_x.residue import measuring
 from hymeko_x.rewrite import Options
 from hymeko_x.source import Files, NoFiles, Package, Source
 from tests.residue import silence
@@ -60,5 +61,5 @@ def test_without_a_ledger_silence_is_found(monkeypatch: pytest.MonkeyPatch) -> N
     frozen = pipeline.write(robot, formats.URDF, Options(), NoFiles(), Report())
     monkeypatch.setattr(pipeline, "writer", lambda _: lambda mechanism, options, report: Package(frozen.main))
     assert len(silent(URDF.encode(), "urdf", ["urdf"], most=20)) < 3
-    monkeypatch.setattr(pipeline, "losses_between", lambda *_, **__: ())
+    monkeypatch.setattr(measuring, "losses_between", lambda *_, **__: ())
     assert len(silent(URDF.encode(), "urdf", ["urdf"], most=20)) > 10
