@@ -9,7 +9,9 @@ from pathlib import Path
 
 import pytest
 
+import hymeko_x as hx
 from hymeko_x import extras
+from hymeko_x.cli import VERBS
 
 ROOT = Path(__file__).parents[1]
 CORE = ("lark", "lxml", "msgspec")
@@ -61,23 +63,44 @@ def test_text_formats_need_the_core_alone(folder: Path) -> None:
         assert "HX011" not in done.stderr
 
 
-@pytest.mark.parametrize(
-    ("words", "extra"),
-    [
-        (("convert", "arm.urdf", "arm.usda"), "usd"),
-        (("convert", "arm.urdf", "arm.xacro"), "xacro"),
-        (("verify", "arm.urdf", "arm.urdf"), "verify"),
-        (("roundtrip", "arm.urdf"), "verify"),
-        (("dh", "arm.urdf"), "verify"),
-        (("corpus", "list"), "corpus"),
-    ],
-)
-def test_a_verb_without_its_libraries_names_the_extra(folder: Path, words: tuple[str, ...], extra: str) -> None:
-    done = run(folder, *words)
+ADVICE = {
+    "agree": ("", "verify"),
+    "attach": ("arm.urdf arm.urdf --at tip -o two.urdf", None),
+    "check": ("arm.urdf", None),
+    "completion": ("bash", "completion"),
+    "convert": ("arm.urdf arm.usda", "usd"),
+    "corpus": ("list", "corpus"),
+    "dh": ("arm.urdf", "verify"),
+    "diff": ("arm.urdf arm.urdf", None),
+    "dynamics": ("arm.urdf", "dynamics"),
+    "explain": ("HX011", None),
+    "export": ("arm.hymeko --to xacro", "xacro"),
+    "fmt": ("arm.hymeko", None),
+    "formats": ("", None),
+    "import": ("arm.urdf", None),
+    "info": ("arm.urdf", None),
+    "render": ("arm.urdf -o arm.png", "draw"),
+    "roundtrip": ("arm.urdf", "verify"),
+    "simulate": ("arm.urdf", "dynamics"),
+    "update": ("arm.urdf arm.urdf", None),
+    "verify": ("arm.urdf arm.urdf", "verify"),
+}
+"""For each verb words that it works with on the core alone, or else the extra whose installation it advises."""
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_a_verb_works_with_the_core_alone_or_names_its_extra(verb: str, folder: Path) -> None:
+    (folder / "arm.hymeko").write_text(hx.dumps(hx.loads(ROBOT, "urdf", lenient=True), "hymeko", lenient=True))
+    (folder / "hymeko.toml").write_text('[[robot]]\nname = "arm"\nfiles = ["arm.urdf", "arm.hymeko"]\n')
+    words, extra = ADVICE[verb]
+    done = run(folder, verb, *words.split())
+    assert "HX901" not in done.stderr
+    if extra is None:
+        assert done.returncode == 0, done.stderr
+        return
     assert done.returncode == 1
     assert "HX011" in done.stderr
     assert f"pip install 'hymeko-x[{extra}]'" in done.stderr
-    assert "HX901" not in done.stderr
 
 
 def test_every_extra_that_is_named_exists() -> None:
