@@ -27,8 +27,12 @@ SERVOS = ("position", "velocity")
 
 
 def write_drives(sheet: UsdSheet) -> None:
-    """Each servo or motor on one dof as a DriveAPI of its joint; gains per degree, force limits from its force range."""
+    """Each servo or motor on one dof as a DriveAPI of its joint; gains per degree, force limits from its force range or the dof's limit.
+
+    A dof with an effort limit and no such drive has one without gains, for programs that know effort limits only of drives.
+    """
     driven_prims: set[Any] = set()
+    limited = _limited_dofs(sheet)
     for key, _, arcs in sheet.mechanism.edges(Drive):
         source = next((arc.target for arc in arcs if arc.sign > 0), None)
         driven = next((arc for arc in arcs if arc.sign < 0), None)
@@ -37,10 +41,29 @@ def write_drives(sheet: UsdSheet) -> None:
         if found is None or source is None or not isinstance(actuator, Actuator) or not _is_drive(sheet, source, actuator):
             continue
         spec, axis, dof = found
-        _write_drive(spec, axis or ("angular" if dof.kind is DofKind.HINGE else "linear"), actuator, dof)
+        instance = axis or _instance(dof)
+        _write_drive(spec, instance, actuator, dof)
+        limited.pop((spec.path, instance), None)
         if spec.path not in driven_prims:
             driven_prims.add(spec.path)
             sheet.paths |= {source: spec.path, key: spec.path}
+    for (path, instance), effort in limited.items():
+        apply(sheet.prims[path], f"PhysicsDriveAPI:{instance}")
+        put(sheet.prims[path], f"drive:{instance}:physics:maxForce", T.Float, effort)
+
+
+def _limited_dofs(sheet: UsdSheet) -> dict[tuple[Any, str], float]:
+    """The effort limit of each hinge and slide that has one, by its prim and the instance of its drive."""
+    found: dict[tuple[Any, str], float] = {}
+    for (key, number), (path, axis) in sheet.dofs.items():
+        dof = sheet.mechanism.joints[key].joint.dofs[number] if key in sheet.mechanism.joints else None
+        if dof is not None and dof.kind in (DofKind.HINGE, DofKind.SLIDE) and dof.limits.effort:
+            found[path, axis or _instance(dof)] = dof.limits.effort
+    return found
+
+
+def _instance(dof: Dof) -> str:
+    return "angular" if dof.kind is DofKind.HINGE else "linear"
 
 
 def _is_drive(sheet: UsdSheet, key: Id, actuator: Actuator) -> bool:
@@ -60,6 +83,8 @@ def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None
     most = authored.get("forcerange")
     if isinstance(most, tuple) and len(most) == 2:
         put(spec, f"drive:{instance}:physics:maxForce", T.Float, max(map(abs, most)))
+    elif dof.limits.effort:
+        put(spec, f"drive:{instance}:physics:maxForce", T.Float, dof.limits.effort)
 
 
 # ---- MjcActuator -------------------------------------------------------------------------------------------------------------------

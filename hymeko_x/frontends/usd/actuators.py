@@ -60,6 +60,10 @@ def _add_drive(prim: Prim, key: Id, instance: str, number: int, joint: Joint, bu
     kp = builder.number(prim, f"{prefix}:stiffness", 0.0) * gain
     kv = builder.number(prim, f"{prefix}:damping", 0.0) * gain
     most = builder.number(prim, f"{prefix}:maxForce", math.inf) * effort
+    if _is_limit(most, joint.dofs[number].limits.effort):
+        if not (kp or kv):
+            return  # a drive without gains only repeats the limit
+        most = math.inf
     kind = "position" if kp else "velocity" if kv else "motor"
     gains = [(name, value) for name, value in (("kp", kp), ("kv", kv)) if value]
     limits: list[tuple[str, float | str | tuple[float, ...]]] = [("forcerange", (-most, most))] if math.isfinite(most) else []
@@ -70,6 +74,11 @@ def _add_drive(prim: Prim, key: Id, instance: str, number: int, joint: Joint, bu
     builder.note(actuator, words.TYPE, instance)
     role = "" if len(joint.dofs) == 1 else own or str(number)
     builder.edges[builder.new_id(prim, "drive", name)] = Edge(Drive(), (Arc(actuator, 1), Arc(key, -1, None, role)))
+
+
+def _is_limit(most: float, effort: float | None) -> bool:
+    """Whether the greatest force of a drive is the effort limit of its dof, in single precision."""
+    return effort is not None and math.isclose(most, effort, rel_tol=1e-6)
 
 
 # ---- MjcActuator -------------------------------------------------------------------------------------------------------------------
