@@ -30,8 +30,8 @@ PLAIN = replace(TREES, dof_kinds=(parts.DofKind.HINGE, parts.DofKind.SLIDE, part
 """Trees without joints that float and turn at once, which USD says in other words."""
 _HEAD = re.compile(r'^(\w+(?: \w+)?) "[^"]*"')
 """The name of the prim in an extra of USD, which follows the name of its element."""
-ROUGHLY = {"usd": Tolerance(1e-5, 1e-6)}
-"""USD has the frames of joints in single precision, up to 100 m away, and a rotation of unit length is rounded anew each time."""
+ROUGHLY = {"usd": Tolerance(1e-6, 1e-6, by_vector=True)}
+"""USD has the frames of joints in single precision, that of the largest number of each, and a rotation is rounded anew each time."""
 
 
 def through(mechanism: Mechanism, format: str) -> Mechanism:
