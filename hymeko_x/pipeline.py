@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from contextlib import suppress
 from importlib import import_module
 from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
@@ -16,12 +15,11 @@ from hymeko_x.assets.shelf import safe_name
 from hymeko_x.collector import uncollected
 from hymeko_x.compare.geometry import with_points_of_files
 from hymeko_x.diagnostics import Refusal, Report, Stopped, refuse
-from hymeko_x.ir.mechanism import LUMPED_KINDS
-from hymeko_x.ir.parts import Body
 from hymeko_x.residue.kept import restored
 from hymeko_x.residue.measuring import compared
 from hymeko_x.residue.originals import fetch_from, files_of, originals_of, with_originals
 from hymeko_x.rewrite import Options, actuate, choose, legalize
+from hymeko_x.rewrite.networks import robot_of_network
 from hymeko_x.source import Kept, PackageFiles, Source
 
 if TYPE_CHECKING:
@@ -200,6 +198,9 @@ def convert(
 def _chosen(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> tuple[Mechanism, Options]:
     """The robot as the options and the target among them ask for it, and the options with that target's defaults."""
     options, target = targets.chosen(options, format)
+    since = len(report)
+    mechanism = robot_of_network(mechanism, format, report)
+    stop_on_errors(report, since, lenient=options.lenient)
     mechanism = actuate(choose(mechanism, options, report, files=files_of(mechanism, files)), format.name, options, report)
     files = files_of(mechanism, files)
 
@@ -227,7 +228,6 @@ def with_kept(package: Package, kept: Kept, options: Options, report: Report) ->
 def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
     """Rewritten, with its files placed, and printed."""
     since = len(report)
-    _check_is_robot(mechanism, format, report)
     files = files_of(mechanism, files)
     complete = completed(with_stand_ins(mechanism, format, files, report), format, files, report)
     legal = legalize(complete, format.name, report)
@@ -239,16 +239,6 @@ def _printed(mechanism: Mechanism, format: Format, options: Options, files: File
         return printed
     report.note(codes.ASSETS_APART, f"'{other}' beside the output has another content and stays; files of this output go to '{folder}'")
     return _placed_and_printed(legal, format, replace(options, within=folder), files, Report(), place)
-
-
-def _check_is_robot(mechanism: Mechanism, format: Format, report: Report) -> None:
-    """Report a graph or a lumped system that goes to a format for robots: nothing of it would be there."""
-    kinds = Counter(key.kind for key in mechanism.graph.vertices if key.kind in LUMPED_KINDS)
-    if format.is_exact or not kinds or any(True for _ in mechanism.vertices(Body)):
-        return
-    found = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
-    message = f"'{mechanism.name}' has no bodies, and {format.name} can represent nothing of it: {found}"
-    report.error(codes.NOT_A_ROBOT, message, hint="hymeko represents graphs and lumped systems")
 
 
 def _placed_and_printed(legal: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:

@@ -18,7 +18,7 @@ LAYERS = (
     ("collector", "diagnostics", "codes", "severities"),
     ("ir",),
     ("source", "outline"),
-    ("xml", "meshes"),
+    ("xml", "meshes", "networks"),
     ("formats",),
     ("rewrite", "compare", "language", "factor", "extras"),
     ("residue", "assets", "reporting", "joining"),

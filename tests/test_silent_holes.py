@@ -24,8 +24,8 @@ LUMPED = """quarter_vehicle {
   spring { spring_constant = 50000.0 }
   damping { damping_const = 1000.0 }
   wheel { mass = 50.0 }
-  chassis {}
-  @suspension { + chassis, - wheel, + damping, - spring }
+  road : motion {}
+  @suspension { + road, - wheel, + damping, - spring }
 }
 """
 PENDULUM = """pendulum : robot {
@@ -102,7 +102,8 @@ def test_a_lumped_system_that_cannot_be_written_says_so(target: str) -> None:
     with pytest.raises(Stopped) as caught:
         hx.dumps(hx.loads(LUMPED, "hymeko"), target)
     assert str(caught.value) == (
-        f"error[HX065]: 'quarter_vehicle' has no bodies, and {target} can represent nothing of it: 1 spring, 1 damper, 1 mass, 1 port\n"
+        f"error[HX065]: 'quarter_vehicle' has no bodies, and {target} can represent nothing of it: "
+        "1 spring, 1 damper, 1 mass, 1 port; port 'road' moves as an input gives it, and joints have no such motion\n"
         "  hint: hymeko represents graphs and lumped systems"
     )
 

@@ -220,7 +220,7 @@ def deliver(
     failed = is_reached(chosen.fail_on, report, result.losses)
     if not failed:
         _write(delivery, output, result)
-    written = "" if failed or not path else written_line(path, given.mechanism, result.package)
+    written = "" if failed or not path else written_line(path, result.mechanism, result.package)
     if getattr(chosen, "brief", False):
         print(one_line(written, report, result.losses or ()), file=sys.stderr)
     else:

@@ -38,9 +38,9 @@ def dynamics(
 
     Raises: Refusal (HX4xx) that names the element for which there are none.
     """
-    from hymeko_x.dynamics.assembly import has_network, network_of
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.multibody import multibody_of
+    from hymeko_x.networks.assembly import has_network, network_of
 
     if has_network(robot):
         return Lumped(network_of(robot))

@@ -8,13 +8,13 @@ from msgspec import Struct
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.dynamics.domains import UNITS
 from hymeko_x.dynamics.equations import Moment, participation
 from hymeko_x.dynamics.layout import layout_of, tex
 from hymeko_x.dynamics.linear import parameter_symbols
 from hymeko_x.dynamics.numbers import symbols, times
 from hymeko_x.dynamics.system import System, Variable
 from hymeko_x.ir import lumped
+from hymeko_x.networks.domains import UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from hymeko_x.diagnostics import Refusal
-    from hymeko_x.dynamics.network import Branch, Network
     from hymeko_x.ir.ids import Id
+    from hymeko_x.networks.network import Branch, Network
 
     Floats = NDArray[np.floating[Any]]
 

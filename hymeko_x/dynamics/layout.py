@@ -13,15 +13,15 @@ from msgspec import Struct
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.dynamics.domains import UNITS
 from hymeko_x.dynamics.system import Variable
 from hymeko_x.ir import lumped
+from hymeko_x.networks.domains import UNITS
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.dynamics.network import Element, Network
     from hymeko_x.ir.ids import Id
+    from hymeko_x.networks.network import Element, Network
 
 
 class Layout(Struct, frozen=True):

@@ -17,9 +17,9 @@ from hymeko_x.dynamics.system import input_of
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.dynamics.network import Network
     from hymeko_x.dynamics.signals import Signal
     from hymeko_x.dynamics.system import System, Variable
+    from hymeko_x.networks.network import Network
 
 
 class Lumped(Struct, frozen=True, dict=True):

@@ -8,8 +8,8 @@ import mujoco
 from msgspec import Struct
 
 import hymeko_x as hx
-from hymeko_x.dynamics.network import Network
 from hymeko_x.ir import lumped
+from hymeko_x.networks.network import Network
 
 
 class Case(Struct):

@@ -13,9 +13,9 @@ from hymeko_x.ir import lumped, parts
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.dynamics.network import Branch
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.networks.network import Branch
 
 DOMAINS = ("translation", "rotation")
 

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.dynamics.domains import domains_of
-from hymeko_x.dynamics.laws import parse_law
-from hymeko_x.dynamics.network import EFFORTS, MOTIONS, Branch, Element, Network
 from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.mechanism import numbers_weight
+from hymeko_x.networks.domains import domains_of
+from hymeko_x.networks.laws import parse_law
+from hymeko_x.networks.network import EFFORTS, MOTIONS, Branch, Element, Network
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Refusal
