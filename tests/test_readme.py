@@ -23,7 +23,7 @@ PAGES = (
     README,
     *(
         README.parent / "docs" / f"{name}.md"
-        for name in ("agree", "command-line", "dh", "dynamics", "errors", "lossless", "report", "update", "verify")
+        for name in ("agree", "command-line", "dh", "dynamics", "errors", "lossless", "report", "tour", "update", "verify")
     ),
 )
 BLOCK = re.compile(r"```(\w+)(?: (\S+))?\n(.*?)```\n", re.DOTALL)
