@@ -18,6 +18,7 @@ from msgspec import field
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats
+from hymeko_x.assets.companions import copy_companions
 from hymeko_x.assets.resolve import is_of_nameless_package
 from hymeko_x.assets.shelf import Shelf, read_file
 from hymeko_x.ir.builder import Builder
@@ -95,8 +96,13 @@ class Keep(Enum):
         return Keep.PACKAGES_AND_PATHS if format.keeps_package_uris else Keep.NOTHING
 
 
-def keep_references(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report, keep: Keep) -> Mechanism:
-    """The mechanism with every uri kept or rewritten; a file that is not there keeps its uri, with a warning."""
+def keep_references(
+    mechanism: Mechanism, shelf: Shelf, files: Files, report: Report, keep: Keep, *, with_companions: bool = True
+) -> Mechanism:
+    """The mechanism with every uri kept or rewritten; a file that is not there keeps its uri, with a warning.
+
+    Files that meshes refer to go along, unless the target's programs never look at them.
+    """
     changed: dict[Id, Mesh | Texture] = {}
     for key, part in mechanism.assets():
         if part.uri is None:
@@ -110,8 +116,11 @@ def keep_references(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
                 element=str(key),
                 hint=package_hint(part.uri),
             )
-        elif uri != part.uri:
+            continue
+        if uri != part.uri:
             changed[key] = replace(part, uri=uri)
+        if with_companions and isinstance(part, Mesh) and posixpath.normpath(uri) in shelf.copies:
+            copy_companions(part.uri, posixpath.normpath(uri), shelf.copies[posixpath.normpath(uri)], shelf, files)
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 

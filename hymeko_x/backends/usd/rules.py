@@ -12,6 +12,7 @@ from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Contact, Loop
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
+from hymeko_x.rewrite.shapes import drop_unused_assets
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Mechanism
@@ -55,4 +56,5 @@ RULES: tuple[Rule, ...] = (
     expand_screws,
     drop_loops_without_bodies,
     drop_stale_groups,
+    drop_unused_assets,
 )

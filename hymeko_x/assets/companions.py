@@ -1,0 +1,84 @@
+"""Companions: files that a mesh file refers to by paths from its own folder: libraries of materials, images, buffers."""
+
+from __future__ import annotations
+
+import json
+import posixpath
+import re
+from typing import TYPE_CHECKING
+from urllib.parse import unquote
+
+from hymeko_x.assets.shelf import read_file
+from hymeko_x.ir.mechanism import suffix_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.assets.shelf import Shelf
+    from hymeko_x.source import Files
+
+_LIBRARY = re.compile(rb"mtllib[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE)  # a word to search for, since files may be large
+_MAP = re.compile(rb"^[ \t]*(?:map_\w+|bump|disp|decal|refl|norm)[ \t]+(.+?)[ \t]*\r?$", re.MULTILINE | re.IGNORECASE)
+_OPTION = re.compile(r"-\w+(?:[ \t]+(?:on|off|[-+.\d][-+.\deE]*|[rgbmlz]\b))*[ \t]+")
+_IMAGE = re.compile(rb"<init_from>\s*(?:<ref>)?\s*([^<]+?)\s*<")
+_GLB_HEADER = 20
+_SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
+
+
+def copy_companions(uri: str, new: str, path: str, shelf: Shelf, files: Files) -> None:
+    """Copy what the mesh file of a reference refers to beside its copy ``new``, under the same relative paths."""
+    if shelf.mode == "reference" or path.endswith("]"):
+        return
+    waiting = list(named_in(path, files))
+    seen = set()
+    while waiting:
+        name = waiting.pop()
+        place = posixpath.normpath(posixpath.join(posixpath.dirname(new), name))
+        there = files.find(posixpath.join(posixpath.dirname(uri), name)) or files.find(posixpath.join(posixpath.dirname(path), name))
+        if there is None or name in seen or place.startswith(("../", "/")):
+            continue
+        seen.add(name)
+        shelf.copy_as(place, there)
+        for further in named_in(there, files):  # some programs look beside the library, others beside the mesh
+            waiting += [further, posixpath.join(posixpath.dirname(name), further)]
+
+
+def named_in(path: str, files: Files) -> Iterator[str]:
+    """The relative paths that a mesh file, or a library of materials, has for other files."""
+    suffix = suffix_of(path)
+    if suffix not in (".obj", ".mtl", ".dae", ".gltf", ".glb"):
+        return
+    data = (read_file(files, path) or ("", b""))[1]
+    for name in dict.fromkeys(_names(data, suffix)):
+        plain = name.replace("\\", "/")
+        if plain and not _SCHEME.match(plain) and not plain.startswith("/"):
+            yield plain
+
+
+def _names(data: bytes, suffix: str) -> Iterator[str]:
+    if suffix == ".obj":
+        yield from (_text(found) for found in _LIBRARY.findall(data))
+    elif suffix == ".mtl":
+        yield from (_OPTION.sub("", _text(found)) for found in _MAP.findall(data))
+    elif suffix == ".dae":
+        yield from (unquote(_text(found)).removeprefix("file://./") for found in _IMAGE.findall(data))
+    else:
+        yield from _of_scene(data[_GLB_HEADER:] if suffix == ".glb" else data)
+
+
+def _of_scene(data: bytes) -> Iterator[str]:
+    """The files of a glTF document, whose binary form has its text first."""
+    try:
+        found, _ = json.JSONDecoder().raw_decode(data.decode("utf-8", "replace").lstrip("\ufeff \t\r\n"))
+    except (ValueError, RecursionError):
+        return
+    for kind in ("buffers", "images"):
+        rows = found.get(kind) if isinstance(found, dict) else None
+        for row in rows if isinstance(rows, list) else ():
+            uri = row.get("uri") if isinstance(row, dict) else None
+            if isinstance(uri, str) and not uri.startswith("data:"):
+                yield unquote(uri)
+
+
+def _text(name: bytes) -> str:
+    return name.decode("utf-8", "replace")
