@@ -12,6 +12,7 @@ from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.copying import copied
 from hymeko_x.pipeline import Result
+from hymeko_x.reporting.mark import marked
 from hymeko_x.rewrite import Options
 from hymeko_x.source import Kept
 
@@ -48,7 +49,16 @@ class Delivery(Struct, frozen=True):
             package = pipeline.with_kept(package, self.passed or Kept("", ""), self.options, report)
             return Result(self.mechanism, package, report, ())
         place = replace(self.place, in_the_way=self._in_the_way if self.path else None)
-        return pipeline.convert(self.mechanism, self.format, self.options, self.files, report, place, measured=measured, passed=self.passed)
+        result = pipeline.convert(
+            self.mechanism, self.format, self.options, self.files, report, place, measured=measured, passed=self.passed
+        )
+        return replace(result, package=self._marked(result.package))
+
+    def _marked(self, package: Package) -> Package:
+        """A file begins with the comment that says what made it; a text in a pipe does not."""
+        if not self.path:
+            return package
+        return replace(package, main=marked(package.main, self.format, self.mechanism.source.file))
 
     def _copied(self, report: Report) -> Package | None:
         """The output with the source's own text, where that is the robot and holds neither more nor less than is to be kept."""
@@ -62,7 +72,8 @@ class Delivery(Struct, frozen=True):
     def below(self, folder: str) -> Package:
         """The output with every file beside the main one below this folder, which ends in a slash. Raises: as :meth:`convert`."""
         options = replace(self.options, within=folder)
-        return pipeline.convert(self.mechanism, self.format, options, self.files, Report(), self.place, passed=self.passed).package
+        result = pipeline.convert(self.mechanism, self.format, options, self.files, Report(), self.place, passed=self.passed)
+        return self._marked(result.package)
 
     def put(self, result: Result) -> None:
         """Write what :meth:`convert` made, whole or not at all. Raises: Refusal HX002."""

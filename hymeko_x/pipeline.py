@@ -15,6 +15,7 @@ from hymeko_x.assets.shelf import safe_name
 from hymeko_x.collector import uncollected
 from hymeko_x.compare.geometry import with_points_of_files
 from hymeko_x.diagnostics import Refusal, Report, Stopped, refuse
+from hymeko_x.reporting.mark import without_mark
 from hymeko_x.residue.kept import restored
 from hymeko_x.residue.measuring import compared
 from hymeko_x.residue.originals import fetch_from, files_of, originals_of, with_originals
@@ -318,15 +319,20 @@ def _contents(copies: Mapping[str, str], files: Files) -> Iterator[tuple[str, by
 
 
 def reader(format: Format) -> Reader:
-    """The format's frontend, loaded now.
+    """The format's frontend, loaded now; the comment that an earlier conversion wrote is not part of the robot.
 
     Raises: Refusal HX003 when the format can only be written.
     """
     if format.frontend is None:
         readable = ", ".join(row.name for row in formats.FORMATS if row.frontend)
         raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} cannot be read", hint=f"readable: {readable}")
-    found: Reader = import_module(format.frontend).read
-    return found
+    native: Reader = import_module(format.frontend).read
+
+    def read_without_mark(source: Source, report: Report) -> Reading:
+        found = native(source, report)
+        return found._replace(mechanism=without_mark(found.mechanism))
+
+    return read_without_mark
 
 
 def writer(format: Format) -> Writer:

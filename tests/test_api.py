@@ -12,8 +12,8 @@ import hymeko_x as hx
 from hymeko_x import api, codes
 from hymeko_x.cli.convert import convert_arguments
 
-NAMED = {"package": "packages", "arg": "arguments", "env": "environment", "variant": "variants", "input": "source", "output": "target"}
-OF_THE_SHELL = {"help", "json", "report", "fail_on", "verify", "samples", "seed", "meshes", "quiet", "verbose"}
+NAMED = {"package": "packages", "arg": "arguments", "env": "environment", "variant": "variants", "paths": "source"}
+OF_THE_SHELL = {"help", "jobs", "json", "report", "fail_on", "verify", "samples", "seed", "meshes", "quiet", "verbose"}
 """Options about what is shown and which exit code is returned."""
 
 ARM = """<robot name="arm"><link name="base"/><link name="fore"><visual><geometry><mesh filename="package://arm/a.stl"/></geometry></visual>

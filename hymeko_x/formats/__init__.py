@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     MeshReader = Callable[[bytes, str], Submesh | None]
 
 _XML_TOKENS = "hymeko_x.corpus.lengths:xml_tokens"
+_XML_COMMENT = (rb"(?:<\?xml[^>]*\?>\n)?", "<!-- {} -->")
 
 
 HYMEKO = Format(
@@ -44,6 +45,7 @@ HYMEKO = Format(
     tokens="hymeko_x.language.grammar:tokens",
     includes=rb"(?m)^\s*(?:@?import|#include)\b|^\s*\w+\s*:\s*import\b",
     colour="#ff7f0e",
+    comment=(rb"", "// {}"),
 )
 URDF = Format(
     "urdf",
@@ -65,6 +67,7 @@ URDF = Format(
     missing_shapes=frozenset({"plane", "hfield", "ellipsoid"}),
     claimed_reduction=50.0,
     colour="#1f77b4",
+    comment=_XML_COMMENT,
 )
 XACRO = Format(
     "xacro",
@@ -86,6 +89,7 @@ XACRO = Format(
     missing_shapes=URDF.missing_shapes,
     includes=rb"<xacro:include\b",
     colour="#9467bd",
+    comment=_XML_COMMENT,
 )
 MJCF = Format(
     "mjcf",
@@ -121,6 +125,7 @@ MJCF = Format(
     includes=rb"<include\b",
     claimed_reduction=20.0,
     colour="#d62728",
+    comment=_XML_COMMENT,
 )
 USD = Format(
     "usd",
@@ -143,6 +148,7 @@ USD = Format(
     includes=rb"@[^@\n]+\.usd[acz]?@",
     holds_points=True,
     colour="#2ca02c",
+    comment=(rb"#usda 1.0\n", "# {}"),
 )
 USDC = replace(
     USD,
@@ -152,6 +158,7 @@ USDC = replace(
     backend="hymeko_x.backends.usd.crate",
     magic=(),
     container_of="usd",
+    comment=None,
 )
 USDZ = replace(
     USD,
@@ -161,6 +168,7 @@ USDZ = replace(
     backend="hymeko_x.backends.usd.bundle",
     magic=(),
     container_of="usd",
+    comment=None,
 )
 SDF = Format(
     "sdf",
@@ -179,6 +187,7 @@ SDF = Format(
     tokens=_XML_TOKENS,
     reference="hymeko_x.verify.readers.sdf",
     libraries=MappingProxyType({"pydrake": "sdf"}),
+    comment=_XML_COMMENT,
 )
 
 FORMATS: tuple[Format, ...] = (HYMEKO, URDF, XACRO, MJCF, USD, USDC, USDZ, SDF)

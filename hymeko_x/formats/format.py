@@ -39,6 +39,8 @@ class Format(Struct, frozen=True):
     """The pattern with which its texts begin, where they have neither a root element nor first bytes of their own (HyMeKo)."""
     layout_options: frozenset[str] = frozenset()
     """Those of the options ``layout``, ``nested``, ``split``, ``sites`` and ``mesh_prefix`` that it takes when it is written."""
+    comment: tuple[bytes, str] | None = None
+    """The pattern of what stands before a first comment, and a line of comment with ``{}`` for its text; None where there are none."""
     is_exact: bool = False
     """Whether it represents every mechanism exactly, so that it carries no residue and keeps what only another format understands."""
     container_of: str = ""
