@@ -57,8 +57,10 @@ PINOCCHIO = Target(
     "pinocchio", "Pinocchio 4.1, with mimic=True", ("urdf",), "hymeko_x.targets.pinocchio", MappingProxyType({"sites": True})
 )
 DRAKE = Target("drake", "Drake 1.51", ("urdf",), "hymeko_x.targets.drake")
+NEWTON = Target("newton", "Newton 1.8, and REP 158's rules for the whole stage", ("usd",), "hymeko_x.targets.newton")
+ISAAC = Target("isaac", "Isaac Sim 5, which takes the same stages as Newton", ("usd",), "hymeko_x.targets.newton")
 
-TARGETS: tuple[Target, ...] = (MUJOCO, ROS2, PINOCCHIO, DRAKE)
+TARGETS: tuple[Target, ...] = (MUJOCO, ROS2, PINOCCHIO, DRAKE, NEWTON, ISAAC)
 """Every target, by format."""
 
 
