@@ -56,6 +56,7 @@ def test_text_formats_need_the_core_alone(folder: Path) -> None:
         ("check", "again.urdf"),
         ("info", "again.urdf"),
         ("diff", "arm.urdf", "again.urdf"),
+        ("graph", "arm.urdf", "-o", "all.svg", "--view", "incidence"),
     ):
         done = run(folder, *words)
         assert done.returncode in (0, 4), (words, done.stderr)
@@ -77,6 +78,7 @@ ADVICE = {
     "export": ("arm.hymeko --to xacro", "xacro"),
     "fmt": ("arm.hymeko", None),
     "formats": ("", None),
+    "graph": ("arm.urdf -o tree.svg", None),
     "import": ("arm.urdf", None),
     "info": ("arm.urdf", None),
     "render": ("arm.urdf -o arm.png", "draw"),

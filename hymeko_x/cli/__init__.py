@@ -44,6 +44,7 @@ GROUPS: Mapping[str, Mapping[str, Verb]] = {
     "look": {
         "info": Verb("info", "what is in a file"),
         "check": Verb("info", "is a robot complete and sane? for people and for repair loops"),
+        "graph": Verb("graph", "draw the hypergraph: kinematic tree, or vertices, edges and arcs"),
         "render": Verb("render", "draw a robot, or a film of its joints, without a screen"),
     },
     "compute": {

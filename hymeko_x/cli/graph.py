@@ -1,0 +1,71 @@
+"""`hymeko-x graph`: the hypergraph of a robot as a picture, or as text for other programs that draw graphs."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hymeko_x import disk
+from hymeko_x.cli import exits
+from hymeko_x.cli.exits import UsageError
+from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
+from hymeko_x.cli.report import show_diagnostics
+from hymeko_x.diagnostics import Report
+from hymeko_x.draw.graph.diagram import diagram
+from hymeko_x.draw.graph.incidence import incidence_picture
+from hymeko_x.draw.graph.listings import WRITERS
+from hymeko_x.draw.graph.selection import EDGE_KINDS, Wanted
+from hymeko_x.draw.graph.tree import tree
+from hymeko_x.draw.graph.tree_picture import tree_picture
+from hymeko_x.ir import parts
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.mechanism import Mechanism
+
+_SUFFIXES = (".svg", *WRITERS)
+
+
+def graph_arguments(parser: argparse.ArgumentParser) -> None:
+    """The options of `graph`."""
+    parser.add_argument("input", metavar="FILE", help="what to draw; - is standard input")
+    parser.add_argument(
+        "-o", "--output", required=True, metavar="OUT", help="the picture (.svg), or Graphviz (.dot), Mermaid (.mmd), D2 (.d2)"
+    )
+    parser.add_argument("--view", choices=("tree", "incidence"), help="a robot's kinematic tree, or vertices and edges with all arcs")
+    parser.add_argument("--depth", type=_count, metavar="N", help="no bodies more than N joints below a base")
+    only = "only edges of this kind, and what they lead to (repeatable)"
+    parser.add_argument("--only", action="append", default=[], choices=EDGE_KINDS, metavar="KIND", help=only)
+    parser.add_argument("--fold", action="store_true", help="equal parts of one parent once, with their names")
+    input_arguments(parser)
+    lenient_argument(parser)
+
+
+def run_graph(chosen: argparse.Namespace) -> int:
+    """Draw, and write the picture."""
+    suffix = Path(chosen.output).suffix.lower()
+    if suffix not in _SUFFIXES:
+        raise UsageError(f"the suffix of the output is one of {', '.join(_SUFFIXES)}, not '{suffix}'")
+    report = Report()
+    robot = read_input(chosen.input, chosen, report).mechanism
+    show_diagnostics(report, chosen)
+    wanted = Wanted(chosen.depth, tuple(chosen.only), chosen.fold)
+    disk.write_files({chosen.output: _drawn(robot, wanted, suffix, chosen.view).encode()})
+    return exits.DONE
+
+
+def _drawn(robot: Mechanism, wanted: Wanted, suffix: str, view: str | None) -> str:
+    """The text of the output. Without a wish for a view, a robot is a tree, and whatever has no bodies an incidence graph."""
+    if suffix != ".svg":
+        if view == "tree":
+            raise UsageError("--view tree is for .svg: other programs make their own layout of the incidence graph")
+        return WRITERS[suffix](diagram(robot, wanted))
+    if view == "tree" or (view is None and any(True for _ in robot.vertices(parts.Body))):
+        return tree_picture(tree(robot, wanted))
+    return incidence_picture(diagram(robot, wanted))
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal():
+        raise argparse.ArgumentTypeError(f"expected a number of joints, found '{text}'")
+    return int(text)
