@@ -6,12 +6,14 @@ Source: libsdformat's reader of such files. Fixed joints always stay, so what as
 
 from __future__ import annotations
 
+import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 from xml.parsers.expat import ExpatError
 
 from msgspec.structs import replace
 
+from hymeko_x import codes
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf.values import NUMBER, BadText
 from hymeko_x.ir.mechanism import ROOT, Extra, Id
@@ -40,6 +42,8 @@ _OF_COLLISION: Mapping[str, tuple[str, str]] = MappingProxyType(
         "maxContacts": ("", "max_contacts"),
     }
 )
+_OF_MODEL = frozenset(("static", "self_collide", "allow_auto_disable", "enable_wind", "plugin", "gripper", "frame", "link", "joint"))
+"""The children of <model>; other elements of a fragment without a link are those of older programs, and SDF has none of them."""
 _OF_JOINT: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         "provideFeedback": ("physics", "provide_feedback"),
@@ -50,11 +54,15 @@ _OF_JOINT: Mapping[str, tuple[str, str]] = MappingProxyType(
 )
 """The path and the name in SDF of what a fragment calls otherwise."""
 _OBEYED = ("preserveFixedJoint", "disableFixedJointLumping")
+_IMU_NOISE = re.compile(r"(?<=<imu>)\s*(?:<!--.*?-->\s*)*(<noise>.*?</noise>)", re.DOTALL)
+_IMU_PARTS: Mapping[str, str] = MappingProxyType({"rate": "angular_velocity", "accel": "linear_acceleration"})
+_PREFIX = re.compile(r"<([A-Za-z_][\w.-]*):|\s([A-Za-z_][\w.-]*):[\w.-]+=")
+_XMLNS = "@xmlns:"
 _MATERIALS = "file://media/materials/scripts/gazebo.material"
 
 
-def obey_gazebo_fragments(mechanism: Mechanism, _context: Context) -> Mechanism:
-    """What <gazebo> elements say becomes what SDF says; the elements themselves belong to the format that they came from."""
+def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
+    """<gazebo> elements become the elements of SDF that they stand for; they themselves belong to the format that they came from."""
     fragments = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.text.startswith(_START) and extra.format != words.FORMAT]
     if not fragments:
         return mechanism
@@ -65,11 +73,28 @@ def obey_gazebo_fragments(mechanism: Mechanism, _context: Context) -> Mechanism:
             node = parse_text(text)
         except ExpatError:
             continue
-        for key, extra in _extras_of(node, mechanism, edges):
-            if extra not in (*mechanism.extras.get(key, ()), *added.get(key, ())):
+        for key, found in _extras_of(node, mechanism, edges):
+            extra = _with_namespaces(found, mechanism, context)
+            if extra is not None and extra not in (*mechanism.extras.get(key, ()), *added.get(key, ())):
                 added.setdefault(key, []).append(extra)
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), *found) for key, found in added.items()}}
     return replace(mechanism, graph=mechanism.graph.replace(edges=edges) if edges else mechanism.graph, extras=extras)
+
+
+def _with_namespaces(extra: Extra, mechanism: Mechanism, context: Context) -> Extra | None:
+    """An extra that declares its prefixes as the root of its file did. None, with a warning, where that did not declare one."""
+    declared = {found.path.removeprefix(_XMLNS): found.text for found in mechanism.extras.get(ROOT, ()) if found.path.startswith(_XMLNS)}
+    for prefix in dict.fromkeys(a or b for a, b in _PREFIX.findall(extra.text)):
+        if prefix in ("xml", "xmlns") or f"xmlns:{prefix}=" in extra.text:
+            continue
+        if prefix not in declared:
+            context.report.warn(codes.NOT_SAID, f"'{extra.text[:60]}' is left out: its file does not declare the prefix '{prefix}'")
+            return None
+        name = re.match(r"<[^\s/>]+", extra.text)
+        assert name is not None
+        text = f'{name[0]} xmlns:{prefix}="{escaped(declared[prefix])}"{extra.text[name.end() :]}'
+        extra = replace(extra, text=text)
+    return extra
 
 
 def _extras_of(node: Node, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> Iterator[tuple[Id, Extra]]:
@@ -79,13 +104,20 @@ def _extras_of(node: Node, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> 
         if not child.is_element or child.tag in _OBEYED:
             continue
         if not reference:
-            yield ROOT, Extra(words.FORMAT, "model", markup(child))
+            if (child.tag in _OF_MODEL or ":" in child.tag) and not _is_taken(child, mechanism):
+                yield ROOT, Extra(words.FORMAT, "model", markup(child))
         elif body in mechanism.graph.vertices:
             yield from _of_link(child, body, mechanism, edges)
         elif joint in mechanism.graph.edges and child.tag in _OF_JOINT:
             yield joint, _extra(*_OF_JOINT[child.tag], child)
         elif joint in mechanism.graph.edges and child.tag == "sensor":
             yield joint, Extra(words.FORMAT, "", markup(child))
+
+
+def _is_taken(child: Node, mechanism: Mechanism) -> bool:
+    """Whether a child of a model would have the name of a link or joint of the robot, which SDF refuses."""
+    name = child.attributes.get("name", "")
+    return Id("body", name) in mechanism.graph.vertices or Id("joint", name) in mechanism.graph.edges
 
 
 def _of_link(child: Node, body: Id, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> Iterator[tuple[Id, Extra]]:
@@ -95,7 +127,7 @@ def _of_link(child: Node, body: Id, mechanism: Mechanism, edges: dict[Id, RobotE
     elif child.tag == "turnGravityOff":
         yield body, Extra(words.FORMAT, "", f"<gravity>{'false' if _text(child) in ('true', '1') else 'true'}</gravity>")
     elif child.tag in ("sensor", "projector"):
-        yield body, Extra(words.FORMAT, "", markup(child))
+        yield body, Extra(words.FORMAT, "", _IMU_NOISE.sub(_noise_by_axis, markup(child)))
     elif child.tag in _OF_COLLISION:
         yield from ((view.id, _extra(*_OF_COLLISION[child.tag], child)) for view in shapes if view.shape.role is Role.COLLISION)
     elif child.tag == "material" and _text(child):
@@ -110,6 +142,20 @@ def _of_link(child: Node, body: Id, mechanism: Mechanism, edges: dict[Id, RobotE
             edge = mechanism.graph.edges[view.id]
             if view.shape.role is Role.COLLISION:
                 edges[view.id] = replace(edge, data=replace(view.shape, friction=friction))
+
+
+def _noise_by_axis(found: re.Match[str]) -> str:
+    """The noise of an <imu> of SDF 1.4, one of all rates and one of all accelerations, as that of each axis since SDF 1.5."""
+    noise = parse_text(found[1])
+    kind = next((_text(child) for child in noise.children if child.tag == "type"), "none")
+    texts = []
+    for old, new in _IMU_PARTS.items():
+        part = next((child for child in noise.children if child.tag == old), None)
+        if part is not None:
+            numbers = "".join(markup(child) for child in part.children if child.is_element)
+            axes = "".join(f'<{axis}><noise type="{escaped(kind)}">{numbers}</noise></{axis}>' for axis in "xyz")
+            texts.append(f"<{new}>{axes}</{new}>")
+    return "".join(texts)
 
 
 def _text(node: Node) -> str:

@@ -52,6 +52,8 @@ FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JO
 _SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS})
 UNREAD = _SHAPES | {Feature.FRICTION, Feature.EFFORT_LIMITS, Feature.SPRINGS, Feature.REFS, Feature.SENSORS}
 """What SDF represents and this reader leaves out."""
+UNREPRESENTED = frozenset({(Feature.DAMPING, Kind.FREE), (Feature.VELOCITY_LIMITS, Kind.FREE)})
+"""A free base is a link without a joint, which has no damping and no limits."""
 _TURNS = {"ball_rpy": Kind.BALL, "quaternion_floating": Kind.FREE, "rpy_floating": Kind.FREE}
 _ROLES = {Role.VISUAL: GeometryRole.kIllustration, Role.COLLISION: GeometryRole.kProximity}
 _LEAST = 2e-10
@@ -137,6 +139,7 @@ def _model(plant: Any, scene: Any | None, path: Path, screws: Mapping[int, Array
         loops=tuple(_loop(joint, numbers, words) for joint in closing),
         features=FEATURES if scene is None else FEATURES | _SHAPES,
         unread=UNREAD,
+        unrepresented=UNREPRESENTED,
     )
     return replace(model, couplings=tuple(_couplings(path, model)))
 

@@ -1,0 +1,58 @@
+"""<gazebo> elements of URDF in the words of older programs: prefixes, noise of an IMU, elements that SDF does not have."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from msgspec.structs import replace
+
+import hymeko_x as hx
+from hymeko_x.diagnostics import Report
+from hymeko_x.ir.mechanism import ROOT
+
+ROBOT = """<robot name="r"{}><link name="b"><inertial><mass value="1"/>
+<inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>{}</robot>"""
+MANAGER = '<gazebo><controller:manager name="m"><rate>100</rate></controller:manager></gazebo>'
+IMU = """<gazebo reference="b"><sensor name="imu" type="imu"><imu>
+<noise><type>gaussian</type><rate><mean>0.0</mean><stddev>2e-4</stddev></rate><accel><stddev>1.7e-2</stddev></accel></noise></imu></sensor></gazebo>"""
+
+
+def sdf(text: str) -> str:
+    return hx.dumps(hx.loads(text, "urdf"), "sdf")
+
+
+def test_a_prefix_is_declared_as_the_source_declares_it() -> None:
+    text = sdf(ROBOT.format(' xmlns:controller="http://example.org/controller"', MANAGER))
+    assert '<controller:manager xmlns:controller="http://example.org/controller" name="m">' in text
+    assert len(hx.loads(text, "sdf").graph.vertices) == 1
+
+
+def test_an_undeclared_prefix_is_reported_and_left_out() -> None:
+    robot = hx.loads(ROBOT.format(' xmlns:controller="http://example.org/controller"', MANAGER), "urdf")
+    extras = tuple(extra for extra in robot.extras[ROOT] if not extra.path.startswith("@xmlns"))
+    report = Report()
+    text = hx.dumps(replace(robot, extras={ROOT: extras}), "sdf", report=report)
+    assert "controller" not in text
+    assert "does not declare the prefix 'controller'" in "\n".join(map(str, report))
+
+
+def test_a_link_of_a_fragment_does_not_take_the_name_of_one_of_the_robot() -> None:
+    text = sdf(ROBOT.format("", '<gazebo><link name="b"/><link name="c"/></gazebo>'))
+    assert (text.count('<link name="b"'), text.count('<link name="c"')) == (1, 1)
+
+
+def test_elements_of_older_programs_are_no_children_of_a_model() -> None:
+    assert "canonicalBody" not in sdf(ROBOT.format("", "<gazebo><canonicalBody>b</canonicalBody><static>true</static></gazebo>"))
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_the_noise_of_an_imu_is_that_of_each_axis(tmp_path: Path) -> None:
+    (tmp_path / "r.urdf").write_text(ROBOT.format("", IMU))
+    hx.convert(tmp_path / "r.urdf", tmp_path / "r.sdf")
+    text = "".join((tmp_path / "r.sdf").read_text().split())
+    assert text.count('<noisetype="gaussian"><mean>0.0</mean><stddev>2e-4</stddev></noise>') == 3
+    assert text.count('<noisetype="gaussian"><stddev>1.7e-2</stddev></noise>') == 3
+    assert "<angular_velocity><x>" in text
+    assert "<linear_acceleration><x>" in text
+    assert hx.verify(tmp_path / "r.urdf", tmp_path / "r.sdf").verdict == "same"
