@@ -29,7 +29,7 @@ run hymeko-x export g1.hymeko -o back.urdf
 run hymeko-x diff g1.urdf back.urdf && echo "no difference"
 
 say "4. URDF -> MJCF with its meshes"
-run hymeko-x convert g1.urdf g1.xml --base free --actuators position --package "$package"
+run hymeko-x convert g1.urdf g1.xml --for mujoco --base free --actuators position --package "$package"
 echo "demo/g1.xml and $(ls meshes | wc -l | tr -d ' ') meshes beside it"
 
 say "5. MuJoCo reads the result and simulates one second"
@@ -38,6 +38,7 @@ import mujoco
 
 model = mujoco.MjModel.from_xml_path("g1.xml")
 data = mujoco.MjData(model)
+mujoco.mj_resetDataKeyframe(model, data, model.key("home").id)
 while data.time < 1.0:
     mujoco.mj_step(model, data)
 print(f"{model.nbody - 1} bodies, {model.nv} degrees of freedom, {model.nu} actuators, {model.nmesh} meshes, {model.body_mass.sum():.3f} kg")

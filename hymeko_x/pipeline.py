@@ -253,8 +253,9 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
     package = replace(writer(format)(placed, options, report), prefix=prefix)
     if package.enclose is not None and (new or copies):
         return _Printed(package.enclose({**new, **dict(_contents(copies, files))}), placed, bool(options.within))
-    beside = targets.files_beside(placed, options) if options.beside else {}
-    package = replace(package, files={**package.files, **new, **beside}, copies={**package.copies, **copies})
+    package = replace(package, files={**package.files, **new}, copies={**package.copies, **copies})
+    beside = targets.files_beside(placed, package, files, options) if options.beside else {}
+    package = replace(package, files={**package.files, **beside}) if beside else package
     return _Printed(package, placed, bool(options.within))
 
 

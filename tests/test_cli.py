@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from hymeko_x import codes
+from hymeko_x import codes, formats, targets
 from hymeko_x.cli import GROUPS, VERBS, exits, main, terminal
 from hymeko_x.diagnostics import Diagnostic, Origin, Severity, refuse
 
@@ -89,7 +89,7 @@ def test_formats_prints_json(capsys: pytest.CaptureFixture[str]) -> None:
         "read": True,
         "write": True,
         "verify": True,
-        "targets": [],
+        "targets": [target.name for target in targets.of_format(formats.URDF)],
     }
 
 

@@ -41,10 +41,19 @@ class Target(Struct, frozen=True):
     defaults: Mapping[str, Any] = field(default_factory=dict)
     """Options where the user gives none, by their names in :class:`hymeko_x.rewrite.Options`."""
     beside: str | None = None
-    """The function ``(printed, options) -> files`` that gives what stands beside the main file, by relative path."""
+    """The function ``(printed, package, files, options) -> files`` that gives what stands beside the main file, by relative path."""
 
 
-MUJOCO = Target("mujoco", "MuJoCo 4.0, laid out as in MuJoCo Menagerie", ("mjcf",), "hymeko_x.targets.mujoco")
+MUJOCO = Target(
+    "mujoco",
+    "MuJoCo 4.0, laid out as in MuJoCo Menagerie",
+    ("mjcf",),
+    "hymeko_x.targets.mujoco",
+    beside="hymeko_x.targets.scene:scene_beside",
+)
+MJX = Target(
+    "mjx", "MuJoCo MJX 3.17, its implementation in JAX", ("mjcf",), "hymeko_x.targets.mjx", beside="hymeko_x.targets.scene:scene_beside"
+)
 ROS2 = Target(
     "ros2",
     "ROS 2 Jazzy: robot_state_publisher, MoveIt, ros2_control",
@@ -60,7 +69,7 @@ DRAKE = Target("drake", "Drake 1.51", ("urdf",), "hymeko_x.targets.drake")
 NEWTON = Target("newton", "Newton 1.8, and REP 158's rules for the whole stage", ("usd",), "hymeko_x.targets.newton")
 ISAAC = Target("isaac", "Isaac Sim 5, which takes the same stages as Newton", ("usd",), "hymeko_x.targets.newton")
 
-TARGETS: tuple[Target, ...] = (MUJOCO, ROS2, PINOCCHIO, DRAKE, NEWTON, ISAAC)
+TARGETS: tuple[Target, ...] = (MUJOCO, MJX, ROS2, PINOCCHIO, DRAKE, NEWTON, ISAAC)
 """Every target, by format."""
 
 
@@ -105,10 +114,10 @@ def aimed(mechanism: Mechanism, target: Target | None, files: Files, report: Rep
     return mechanism
 
 
-def files_beside(printed: Mechanism, options: Options) -> Mapping[str, bytes]:
-    """The files that the program of the options' target expects beside the main one, by relative path."""
+def files_beside(printed: Mechanism, package: Package, files: Files, options: Options) -> Mapping[str, bytes]:
+    """The files that the program of the options' target expects beside the main one of a package, by relative path."""
     target = None if options.target is None else by_name(options.target)
     if target is None or target.beside is None:
         return MappingProxyType({})
-    found: Mapping[str, bytes] = formats.loaded(target.beside)(printed, options)
+    found: Mapping[str, bytes] = formats.loaded(target.beside)(printed, package, files, options)
     return found

@@ -11,7 +11,7 @@ import pytest
 import hymeko_x as hx
 from hymeko_x import formats, targets
 from hymeko_x.cli import exits, main
-from hymeko_x.diagnostics import Refusal
+from hymeko_x.diagnostics import Refusal, Severity
 
 ARM = """arm : robot {
   base { mass 1 inertia [0.1 0.1 0.1] }
@@ -116,3 +116,48 @@ def test_without_a_target_nothing_is_added(arm: Path) -> None:
     report = hx.convert(arm, arm.with_suffix(".xml"), base="fixed").report
     assert "<option" not in arm.with_suffix(".xml").read_text()
     assert "HX114" not in {d.code.id for d in report}
+
+
+def test_a_scene_stands_beside_the_model(tmp_path: Path) -> None:
+    (tmp_path / "arm.hymeko").write_text(TOUCHING)
+    hx.convert(tmp_path / "arm.hymeko", tmp_path / "arm.xml", base="fixed", actuators="position", target="mujoco")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["arm.hymeko", "arm.xml", "scene.xml"]
+    model, scene = (mujoco.MjModel.from_xml_path(str(tmp_path / name)) for name in ("arm.xml", "scene.xml"))
+    assert (scene.nbody, scene.nq, scene.nu, scene.nkey) == (model.nbody, model.nq, model.nu, model.nkey)
+    assert (scene.ngeom, scene.nlight) == (model.ngeom + 1, 1)
+    assert scene.geom("ground").pos[2] == -0.1
+    data = mujoco.MjData(scene)
+    mujoco.mj_resetDataKeyframe(scene, data, 0)
+    mujoco.mj_forward(scene, data)
+    assert (data.contact.dist >= -1e-9).all()
+
+
+def test_a_second_robot_in_the_folder_has_a_scene_of_its_own(tmp_path: Path) -> None:
+    for name in ("arm", "leg"):
+        (tmp_path / f"{name}.hymeko").write_text(TOUCHING)
+        hx.convert(tmp_path / f"{name}.hymeko", tmp_path / f"{name}.xml", base="fixed", target="mujoco")
+    assert '<include file="arm.xml"/>' in (tmp_path / "scene.xml").read_text()
+    assert '<include file="leg.xml"/>' in (tmp_path / "leg_scene.xml").read_text()
+
+
+CYLINDERS = """arm : robot {
+  base { mass 1 inertia [0.1 0.1 0.1] collision { box [0.2 0.2 0.2] } }
+  upper { mass 1 inertia [0.1 0.1 0.1] }
+  fore { mass 1 inertia [0.1 0.1 0.1] collision { cylinder [0.1 0.2] } }
+  @shoulder : revolute { limit [-1rad 1rad] + base - upper axis=Z }
+  @elbow : revolute { limit [-1rad 1rad] [0.5 0 0] + upper - fore axis=Z }
+}
+"""
+
+
+def test_mjx_is_given_what_it_has_and_told_what_it_lacks(tmp_path: Path) -> None:
+    (tmp_path / "arm.hymeko").write_text(CYLINDERS)
+    done = hx.convert(tmp_path / "arm.hymeko", tmp_path / "arm.xml", base="fixed", target="mjx")
+    assert [d.message for d in done.report if d.severity is Severity.WARNING] == [
+        "--for mjx: MJX refuses contacts of box and cylinder, and 1 pairs of shapes may touch: bodies 'base' and 'fore'"
+    ]
+    (tmp_path / "a.xml").write_text(
+        '<mujoco><option integrator="implicit" solver="PGS"/><worldbody><body><joint name="j"/><geom size="1"/></body></worldbody></mujoco>'
+    )
+    hx.convert(tmp_path / "a.xml", tmp_path / "b.xml", target="mjx")
+    assert '<option integrator="implicitfast" solver="Newton"/>' in (tmp_path / "b.xml").read_text()

@@ -21,10 +21,11 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import JointView, Mechanism
     from hymeko_x.rewrite.context import Options
+    from hymeko_x.source import Files, Package
     from hymeko_x.xml.tree import Node
 
 
-def srdf_beside(printed: Mechanism, options: Options) -> Mapping[str, bytes]:
+def srdf_beside(printed: Mechanism, _package: Package, _files: Files, options: Options) -> Mapping[str, bytes]:
     """The SRDF file of a robot that was printed as URDF, by its name; none where there is nothing to write."""
     tags: list[Tag] = [*_extras(printed), *_poses(printed), *_exclusions(printed)]
     if not tags:
