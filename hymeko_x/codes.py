@@ -217,7 +217,7 @@ KEPT_USED = Code(
 KEPT_LEFT = Code(
     "HX113",
     "what is kept for the input does not go along",
-    "Within one format all that the output needs stands in the input itself. What is kept for the input beside it or inside of it goes along with --keep or --keep=inside.",
+    "Within one format all that the output needs stands in the input itself. A kept file beside the input goes along; what is kept inside of the input goes along with --keep or --keep=inside.",
 )
 EDIT_REWRITTEN = Code(
     "HX108",

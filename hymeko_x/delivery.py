@@ -44,6 +44,8 @@ class Delivery(Struct, frozen=True):
 
         Without ``measured`` it is not read back. Raises: as :func:`hymeko_x.pipeline.convert`.
         """
+        if self._follows():
+            return replace(self, options=replace(self.options, keep="beside")).convert(report, measured=measured)
         package = self._copied(report)
         if package is not None and self._in_the_way(package, f"{safe_name(self.options.beside)}/") is None:
             package = pipeline.with_kept(package, self.passed or Kept("", ""), self.options, report)
@@ -59,6 +61,10 @@ class Delivery(Struct, frozen=True):
         if not self.path:
             return package
         return replace(package, main=marked(package.main, self.format, self.mechanism.source.file))
+
+    def _follows(self) -> bool:
+        """Whether what is kept beside the source goes along without being asked for: the output, of the same format, needs it as much."""
+        return self.options.keep is None and bool(self.path) and self.passed is not None and self.passed.is_beside
 
     def _copied(self, report: Report) -> Package | None:
         """The output with the source's own text, where that is the robot and holds neither more nor less than is to be kept."""

@@ -71,6 +71,11 @@ class Kept(NamedTuple):
     file: str
     originals: Mapping[str, str] = NOTHING_KEPT
 
+    @property
+    def is_beside(self) -> bool:
+        """Whether it has a file of its own."""
+        return bool(self.text) and self.file.endswith(KEPT_SUFFIX)
+
 
 def with_prefix(text: str, prefix: str) -> str:
     """The text of a residue for a robot all of whose names begin so by now."""

@@ -135,10 +135,19 @@ def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], 
     """Converts from leg to leg; compares each result with the original, by our own eyes and by the engines'."""
     packages = dict(chosen.package)
     before = chosen.input
+    first = {
+        "from_format": chosen.from_format,
+        "arguments": dict(chosen.arg),
+        "environment": dict(chosen.env),
+        "variants": dict(chosen.variant),
+        "confine": chosen.confine,
+        "ignore_kept": chosen.ignore_kept,
+    }
     for number, format in enumerate(stops, start=1):
         after = folder / f"leg{number}" / f"robot{format.suffixes[0]}"
         after.parent.mkdir(exist_ok=True)
-        result = api.convert(before, after, to_format=format.name, packages=packages, keep="beside", lenient=chosen.lenient)
+        result = api.convert(before, after, to_format=format.name, packages=packages, keep="beside", lenient=chosen.lenient, **first)
+        first = {}  # what says how to read the file says nothing of the results
         back = api.load(after, format.name, packages=packages, lenient=chosen.lenient)
         losses = None if result.losses is None else len(result.losses)
         differences = len(diff(original, back, _TOLERANCE))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.dh_tables import FORMATS
-from hymeko_x.cli.inputs import input_arguments
+from hymeko_x.cli.inputs import input_arguments, refuse_own_reading
 from hymeko_x.cli.names import located
 
 if TYPE_CHECKING:
@@ -34,6 +34,7 @@ def run_dh(chosen: argparse.Namespace) -> int:
     """Print one table per chain: a row per joint between two constant transformations. Angles in rad, lengths in m."""
     from hymeko_x.verify import dh, model_of
 
+    refuse_own_reading(chosen)
     found = located(chosen.input)
     arguments = {**found.arguments, **dict(chosen.arg)}
     model = model_of(found.path, packages=dict(chosen.package), search_path=search_path(os.environ), arguments=arguments)

@@ -49,6 +49,19 @@ def input_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--ignore-kept", action="store_true", help="leave out what is kept for the file, beside it or inside of it")
 
 
+def refuse_own_reading(chosen: argparse.Namespace) -> None:
+    """Refuse options of this program's own readers for a verb whose files the formats' engines read. Raises: UsageError."""
+    for given, option in (
+        (chosen.from_format, "--from"),
+        (chosen.confine, "--confine"),
+        (chosen.env, "--env"),
+        (chosen.ignore_kept, "--ignore-kept"),
+    ):
+        if given:
+            reason = "which choose by the suffix, open files themselves and know nothing of what is kept"
+            raise UsageError(f"{option} changes nothing here: the files are read by the formats' own engines, {reason}")
+
+
 def lenient_argument(parser: argparse.ArgumentParser) -> None:
     """The option of every verb that an error ends."""
     parser.add_argument("--lenient", action="store_true", help="go on where the input has errors, with what each error says")

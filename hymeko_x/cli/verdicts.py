@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
-from hymeko_x.cli.inputs import input_arguments
+from hymeko_x.cli.inputs import input_arguments, refuse_own_reading
 from hymeko_x.cli.names import located
 from hymeko_x.cli.terminal import is_coloured, paint
 
@@ -46,6 +46,7 @@ def engine_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_verify(chosen: argparse.Namespace) -> int:
     """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared, as :func:`exit_code` says."""
+    refuse_own_reading(chosen)
     verdict = verdict_of(chosen.a, chosen.b, chosen, structure=chosen.match == "structure")
     if chosen.json:
         print(json.dumps(verdict.as_json(), indent=2, ensure_ascii=False))

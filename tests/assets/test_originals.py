@@ -169,3 +169,17 @@ def test_originals_follow_a_conversion_within_the_format(name: str, tmp_path: Pa
         shutil.rmtree(tmp_path / place)
     hx.convert(tmp_path / "further" / name, tmp_path / "back" / "robot.xml")
     assert differences(before, mujoco.MjModel.from_xml_path(str(tmp_path / "back" / "robot.xml"))) == []
+
+
+def test_a_kept_file_follows_a_conversion_within_the_format(tmp_path: Path) -> None:
+    source = home(tmp_path)
+    for place in ("away", "further", "back"):
+        (tmp_path / place).mkdir()
+    before = mujoco.MjModel.from_xml_path(str(source))
+    hx.convert(source, tmp_path / "away" / "robot.urdf", keep="beside")
+    hx.convert(tmp_path / "away" / "robot.urdf", tmp_path / "further" / "robot.urdf")
+    hx.convert(tmp_path / "further" / "robot.urdf", tmp_path / "further" / "robot.urdf", base="free")
+    for place in ("away", "home", "parts"):
+        shutil.rmtree(tmp_path / place)
+    hx.convert(tmp_path / "further" / "robot.urdf", tmp_path / "back" / "robot.xml")
+    assert differences(before, mujoco.MjModel.from_xml_path(str(tmp_path / "back" / "robot.xml"))) == []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.backends.mjcf.steady import integrate_implicitly
+from hymeko_x.diagnostics import Origin
 from hymeko_x.formats.mjcf.keyframes import with_poses
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.words import NAME, compiler_has
@@ -31,11 +33,11 @@ from hymeko_x.rewrite.names import make_names_usable, name_assets_once
 from hymeko_x.rewrite.roots import put_world_link_into_world, report_open_bases
 from hymeko_x.rewrite.shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.rewrite.subsets import split_subsets
+from hymeko_x.xml.text import unescaped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.rewrite.context import Context, Rule
 
@@ -98,6 +100,7 @@ def _drop_empty_shapes(mechanism: Mechanism, context: Context) -> Mechanism:
 _COORDINATES: Mapping[DofKind, tuple[int, int]] = MappingProxyType({DofKind.FREE: (7, 6), DofKind.BALL: (4, 3)})
 """How many coordinates and velocities a dof has; one of each for all others."""
 _KEY = re.compile(r"<key\b[^>]*?/>|<key\b.*?</key>", re.DOTALL)
+_NAMED = re.compile(r'\sname="([^"]*)"')
 _NUMBERS = re.compile(r'\b(qpos|qvel|ctrl)="([^"]*)"')
 
 
@@ -112,7 +115,14 @@ def _drop_stale_keyframes(mechanism: Mechanism, context: Context) -> Mechanism:
         "qvel": sum(_COORDINATES.get(kind, (1, 1))[1] for kind in kinds),
         "ctrl": sum(1 for _ in mechanism.vertices(Actuator)),
     }
-    kept = tuple(_with_fitting_keys(extra, counts, context.report) if _is_keyframes(extra) else extra for extra in own)
+    stale: dict[str, list[str]] = defaultdict(list)
+    kept = tuple(_with_fitting_keys(extra, counts, stale) if _is_keyframes(extra) else extra for extra in own)
+    file = mechanism.source.file
+    origin = mechanism.origin(ROOT) or (Origin(file) if file else None)
+    for reason, names in stale.items():
+        which = f"keyframe {names[0]} has" if len(names) == 1 else f"{len(names)} keyframes ({', '.join(names[:2])}, ...) have"
+        left = "it is" if len(names) == 1 else "they are"
+        context.report.warn(codes.NOT_SAID, f"{which} {reason}; {left} left out", origin)
     return mechanism if kept == own else replace(mechanism, extras={**mechanism.extras, ROOT: kept})
 
 
@@ -120,12 +130,15 @@ def _is_keyframes(extra: Extra) -> bool:
     return extra.format == NAME and extra.text.startswith("<keyframe")
 
 
-def _with_fitting_keys(extra: Extra, counts: dict[str, int], report: Report) -> Extra:
+def _with_fitting_keys(extra: Extra, counts: dict[str, int], stale: dict[str, list[str]]) -> Extra:
+    """The keyframes that fit the robot; the names of others are added to ``stale``, by the reason."""
+
     def fitting(found: re.Match[str]) -> str:
         for name, numbers in _NUMBERS.findall(found[0]):
             if len(numbers.split()) != counts[name]:
-                message = f"a keyframe has {len(numbers.split())} numbers in {name}, and the robot has {counts[name]}; it is left out"
-                report.warn(codes.NOT_SAID, message)
+                called = _NAMED.search(found[0])
+                reason = f"{len(numbers.split())} numbers in {name}, and the robot has {counts[name]}"
+                stale[reason].append(f"'{unescaped(called[1])}'" if called else "without a name")
                 return ""
         return found[0]
 
