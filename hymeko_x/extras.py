@@ -14,7 +14,9 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Refusal
 
-OF_ROOMS: Mapping[str, str] = MappingProxyType({room: room for room in ("corpus", "draw", "dynamics", "testing", "verify")})
+OF_ROOMS: Mapping[str, str] = MappingProxyType(
+    {room: room for room in ("corpus", "draw", "dynamics", "testing", "verify")} | {"server": "lsp"}
+)
 """Rooms all of whose libraries come with one extra."""
 OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
     {
@@ -26,6 +28,7 @@ OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
         "hypothesis": "testing",
         "imageio_ffmpeg": "draw",
         "ray": "ray",
+        **dict.fromkeys(("lsprotocol", "pygls"), "lsp"),
     }
 )
 

@@ -27,7 +27,7 @@ LAYERS = (
     ("pipeline", "importing", "disk", "verify", "validation", "corpus"),
     ("agree", "delivery", "edits", "robot", "dynamics"),
     ("api",),
-    ("draw",),
+    ("draw", "server"),
     ("cli", "testing"),
     ("__main__",),
 )

@@ -81,6 +81,7 @@ ADVICE = {
     "graph": ("arm.urdf -o tree.svg", None),
     "import": ("arm.urdf", None),
     "info": ("arm.urdf", None),
+    "lsp": ("", "lsp"),
     "render": ("arm.urdf -o arm.png", "draw"),
     "roundtrip": ("arm.urdf", "verify"),
     "simulate": ("arm.urdf", "dynamics"),

@@ -54,6 +54,7 @@ GROUPS: Mapping[str, Mapping[str, Verb]] = {
     },
     "write": {
         "fmt": Verb("fmt", "HyMeKo text in its usual layout; comments and order stay"),
+        "lsp": Verb("lsp", "the language server for editors"),
     },
     "more": {
         "formats": Verb("info", "the formats that can be read and written"),

@@ -36,6 +36,7 @@ HYMEKO = Format(
     "hymeko_x.frontends.hymeko",
     "hymeko_x.backends.hymeko",
     outline="hymeko_x.frontends.hymeko.outline:outline",
+    vocabulary="hymeko_x.formats.hymeko.vocabulary",
     imports="hymeko_x.importing:with_imports",
     flat="hymeko_x.backends.hymeko:write_flat",
     is_exact=True,

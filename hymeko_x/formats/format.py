@@ -47,6 +47,8 @@ class Format(Struct, frozen=True):
     """The name of the format of which it is another container, with the same reader and the same extras (usdc, usdz)."""
     expands_to: str = ""
     """The name of the format that its files expand to (xacro)."""
+    vocabulary: str | None = None
+    """The module with ``fields_of(kind)``, ``units()`` and ``si_of(unit)`` for editors."""
     outline: str | None = None
     """The function ``(source, report) -> outline`` that finds where everything stands in its text."""
     imports: str | None = None
