@@ -60,7 +60,10 @@ def _drawn(robot: Mechanism, wanted: Wanted, suffix: str, view: str | None) -> s
         if view == "tree":
             raise UsageError("--view tree is for .svg: other programs make their own layout of the incidence graph")
         return WRITERS[suffix](diagram(robot, wanted))
-    if view == "tree" or (view is None and any(True for _ in robot.vertices(parts.Body))):
+    has_bodies = any(True for _ in robot.vertices(parts.Body))
+    if view == "tree" and not has_bodies:
+        raise UsageError("the input has no bodies, and so no tree; --view incidence draws what it has")
+    if has_bodies and view != "incidence":
         return tree_picture(tree(robot, wanted))
     return incidence_picture(diagram(robot, wanted))
 

@@ -25,11 +25,12 @@ from hymeko_x.draw.graph.tree import tree
 from hymeko_x.draw.graph.tree_picture import tree_picture
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import KINDS, Id, Mechanism, RobotEdge, coupling_edge, joint_edge
+from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Mechanism, RobotEdge, coupling_edge, joint_edge, shape_edge
 from hymeko_x.ir.values import Pose
 from hymeko_x.testing import mechanisms
 
 HINGE = parts.Joint((parts.Dof(axis=(0.0, 0.0, 1.0)),))
+FLOOR = parts.Shape(parts.Box((1.0, 1.0, 1.0)), parts.Role.BOTH)
 WHOLE = Wanted()
 SVG = "{http://www.w3.org/2000/svg}"
 ROOT = Path(__file__).parents[2]
@@ -122,7 +123,7 @@ def test_every_body_joint_and_hyperedge_is_in_the_tree_once(path: Path) -> None:
     assert_no_labels_overlap(picture)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(mechanisms())
 def test_whatever_the_mechanism_labels_do_not_overlap_and_bytes_are_stable(robot: Mechanism) -> None:
     for wanted in (Wanted(), Wanted(only=EDGE_KINDS), Wanted(depth=1, fold=True)):
@@ -174,6 +175,13 @@ def test_only_some_edges_leave_the_bodies_to_which_they_lead() -> None:
     assert [key[1] for key in named(only, "vertex")] == [f"link{number}" for number in range(7)]
 
 
+def test_a_tree_without_bodies_has_the_hyperedges_alone() -> None:
+    ground = Mechanism("ground", Hypergraph({WORLD: parts.World()}, {Id("shape", "floor"): shape_edge(FLOOR, WORLD)}))
+    picture = tree_picture(tree(ground, Wanted(only=("shape",))))
+    assert named(picture, "edge") == {("shape", "floor"): 1}
+    assert_no_labels_overlap(picture)
+
+
 def test_cycles_and_loops_on_one_node_have_a_layout() -> None:
     sizes = [Size(10, 5, 5)] * 4
     arcs = [(0, 1), (1, 2), (2, 0), (0, 3)]
@@ -201,4 +209,6 @@ def test_a_wrong_suffix_and_a_tree_for_other_programs_are_refused(tmp_path: Path
     assert main(["graph", path, "-o", str(tmp_path / "a.png")]) == 2
     assert "the suffix of the output is one of .svg, .dot, .mmd, .d2, not '.png'" in capsys.readouterr().err
     assert main(["graph", path, "-o", str(tmp_path / "a.dot"), "--view", "tree"]) == 2
+    assert main(["graph", str(ROOT / "corpus/listings/simple.hymeko"), "-o", str(tmp_path / "a.svg"), "--view", "tree"]) == 2
+    assert "the input has no bodies, and so no tree" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

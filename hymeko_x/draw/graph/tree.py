@@ -61,7 +61,7 @@ class Tree(Struct, frozen=True):
 
 
 def tree(robot: Mechanism, wanted: Wanted) -> Tree:
-    """The chosen part of a robot as rows."""
+    """The chosen part of a robot as rows; hyperedges come first where there is no body."""
     wanted = Wanted(wanted.depth, wanted.only or ("joint", *OVER_THE_TREE), wanted.fold)
     chosen = select(robot, wanted)
     over = [key for key in chosen.edges if not _is_in_tree(robot, key)]
@@ -97,9 +97,10 @@ class _Rows:
         for key, members in self.members.items():
             below.setdefault(max(members, default=len(self.bodies) - 1), []).append(key)
         row = 0.0
-        for number, body in enumerate(self.bodies):
-            self.row[body] = row
-            row += 1
+        for number, body in enumerate((None, *self.bodies), -1):
+            if body is not None:
+                self.row[body] = row
+                row += 1
             for key in below.get(number, ()):
                 self.row[key] = row
                 row += 1 + LINE * (len(self.text[key]) - 1)
