@@ -65,6 +65,7 @@ HOMES = {
     "casadi": ("dynamics/",),
     "ray": ("corpus/",),
     "hypothesis": ("testing/",),
+    "pygls": ("server/",),
 }
 """Heavy libraries and the only places that may import them."""
 
