@@ -5,7 +5,7 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 JOBS ?= 2
 
-.PHONY: demo test test-full test-format coverage lint types pytest bench peers fuzz corpus clean help
+.PHONY: demo docs test test-full test-format coverage lint types pytest bench peers fuzz corpus clean help
 
 help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
@@ -14,6 +14,7 @@ help:
 	@echo "make test-format FORMAT=urdf  what belongs to one format, without real robots"
 	@echo "make coverage  which lines no test runs; writes docs/coverage.md"
 	@echo "make bench  speed as ratios against yardsticks timed in the same run, other people's programs among them; writes docs/speed.md"
+	@echo "make docs   the pages as a site with search in build/site; a warning is an error"
 	@echo "make peers  other people's programs, each into .peers/, and the tests that compare with them"
 	@echo "make fuzz   damage texts of every format and read them; PROFILE=ci (minutes) or nightly (hours)"
 	@echo "make corpus every robot of the catalogue through every format, verified; renews corpus/results and its pages"
@@ -56,6 +57,10 @@ coverage: $(STAMP)
 bench: $(STAMP)
 	@$(BIN)/python -m peers || echo "what could not be installed has no figures"
 	@for name in parse load load_mjcf growth size residue speed whole usd meshes contest; do $(BIN)/python -m benchmarks.$$name || failed=1; done; exit $${failed:-0}
+
+docs: $(STAMP)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet
+	@echo "build/site is there; $(BIN)/python -m http.server -d build/site shows it at http://localhost:8000"
 
 peers: $(STAMP)
 	$(BIN)/python -m peers

@@ -25,13 +25,15 @@ PAGES = (
         README.parent / "docs" / f"{name}.md"
         for name in ("agree", "command-line", "dh", "dynamics", "errors", "lossless", "report", "tour", "update", "verify")
     ),
+    *sorted((README.parent / "docs/tasks").glob("*.md")),
 )
 BLOCK = re.compile(r"```(\w+)(?: (\S+))?\n(.*?)```\n", re.DOTALL)
 
 
 def shell(command: str, folder: Path) -> str:
     """What a user sees who types the command."""
-    program = f'hymeko-x() {{ {shlex.quote(sys.executable)} -m hymeko_x "$@"; }}\n{command}'
+    python = shlex.quote(sys.executable)
+    program = f'hymeko-x() {{ {python} -m hymeko_x "$@"; }}\npython() {{ {python} "$@"; }}\n{command}'
     environment = {**os.environ, "PYTHONPATH": str(README.parent), "COLUMNS": "120"}
     run = subprocess.run(
         ["bash", "-c", program], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment, check=False

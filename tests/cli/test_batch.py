@@ -71,7 +71,7 @@ def test_a_broken_robot_costs_one_line_and_not_the_others(folder: Path) -> None:
 def test_what_could_not_be_represented_is_counted_and_listed_on_request(folder: Path) -> None:
     done = run(folder, "-m", "hymeko_x", "convert", "one.urdf", "two.urdf", "--to", "mjcf", "-o", "out", "--base", "fixed")
     assert done.returncode == exits.DONE
-    assert done.stderr.splitlines()[0] == f"wrote {Path('out/one.xml')} (2 bodies, 1 joint); 1 loss"
+    assert done.stderr.splitlines()[0] == f"wrote {Path('out/one.xml')} (2 bodies, 2 joints); 1 loss"
     verbose = run(folder, "-m", "hymeko_x", "convert", "one.urdf", "two.urdf", "--to", "mjcf", "-o", "out", "--base", "fixed", "-v")
     assert "joint 'j' dofs[0].limits.velocity" in verbose.stderr
     quiet = run(folder, "-m", "hymeko_x", "convert", "one.urdf", "two.urdf", "--to", "mjcf", "-o", "out", "-q")
