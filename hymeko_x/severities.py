@@ -98,6 +98,7 @@ ERRORS: Mapping[Code, str] = {
 
 WARNINGS: Mapping[Code, str] = {
     codes.REPAIRED_XML: "every element and attribute is there as it was written; other readers overlook the mistake, or refuse the file",
+    codes.ENGINE_REFUSED: "the output is complete; what only the engine finds out about it is not in it",
     codes.NO_FORM: "the equations are those of what they cover",
     codes.PASSED_OVER: "the user allowed it, and has to remember",
     codes.BAD_NUMBER: "one number as a scale means the same in all directions",
