@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import NODEFAULT, Struct
 
-from hymeko_x.ir import geometry, parts, values
+from hymeko_x.ir import geometry, lumped, parts, values
 from hymeko_x.ir.fields import NUMBERS, attributes_of, identical
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import Id
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _CLASSES: Mapping[str, type] = MappingProxyType(
     {
         kind.__name__: kind
-        for module in (geometry, parts, values)
+        for module in (geometry, lumped, parts, values)
         for kind in vars(module).values()
         if isinstance(kind, type) and kind.__module__ == module.__name__ and issubclass(kind, Struct)
     }
