@@ -20,7 +20,7 @@ from hymeko_x.rewrite.densities import WATER, give_inertials
 from hymeko_x.rewrite.joints import full_name, legal_dof
 from hymeko_x.rewrite.roots import stands_for_world, with_world
 from hymeko_x.rewrite.rotors import give_light_dofs_rotors
-from hymeko_x.rewrite.servos import SAG, gains, loads, with_followers
+from hymeko_x.rewrite.servos import SAG, gains, loads
 from hymeko_x.rewrite.sites import make_frames_links
 from hymeko_x.source import NO_FILES
 
@@ -102,7 +102,7 @@ def _with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanis
     names = names_in_use(bare)
     vertices: dict[Id, Actuator] = {}
     edges: dict[Id, RobotEdge] = {}
-    carried = with_followers(bare, loads(bare)) if kind == "position" else {}
+    carried = loads(bare) if kind == "position" else {}
     for view, number, dof in _driven_dofs(bare) if kind != "none" else ():
         name = full_name(view, number)
         key = names.take("actuator", f"{name}_{kind}" if Id("actuator", name) in bare.graph.vertices else name)

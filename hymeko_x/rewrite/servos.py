@@ -7,12 +7,12 @@ import operator
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir.kinematics import dof_number
-from hymeko_x.ir.mechanism import WORLD, numbers_weight
-from hymeko_x.ir.parts import Body, Coupling, DofKind
+from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.parts import Body, DofKind
 from hymeko_x.ir.values import IDENTITY, Pose, add, apply, compose, cross, inverse, quat_about, rotate, rotate_tensor, scaled
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterator, Sequence
 
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc
     from hymeko_x.ir.parts import Dof
@@ -92,21 +92,6 @@ def loads(mechanism: Mechanism) -> dict[tuple[Id, int], Load]:
         if view.parent != WORLD:
             _add(held[view.parent], held[body])
             _add(free[view.parent], free[body])
-    return found
-
-
-def with_followers(mechanism: Mechanism, alone: Mapping[tuple[Id, int], Load]) -> dict[tuple[Id, int], Load]:
-    """The loads of dofs that carry those of their followers as well, each by the coefficient of its coupling."""
-    found = dict(alone)
-    for _, _, arcs in mechanism.edges(Coupling):
-        ends = [(place, arc) for arc in arcs if (place := dof_of(mechanism, arc)) in alone]
-        followers = [alone[place] for place, arc in ends if arc.sign > 0]
-        for place, arc in ends if followers else ():
-            ratio = abs((*numbers_weight(arc), 0.0, 0.0)[1])
-            if arc.sign < 0 and ratio:
-                own, more = found[place], followers[0]
-                inertia, gravity = own.inertia + ratio**2 * more.inertia, own.gravity + ratio * more.gravity
-                found[place] = Load(inertia, own.free, gravity, own.weight)
     return found
 
 

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 import hymeko_x as hx
-from hymeko_x.ir.mechanism import Id, coupling_edge
 from hymeko_x.ir.parts import Limits
 from hymeko_x.ir.values import Z
-from hymeko_x.rewrite.servos import Load, gains, home, loads, with_followers
+from hymeko_x.rewrite.servos import Load, gains, home, loads
 from tests.robots import hinge
 
 ARM = Path(__file__).parents[2] / "corpus" / "robots" / "arm6.hymeko"
@@ -74,16 +73,3 @@ def test_a_servo_asks_for_all_effort_at_a_hundredth_at_the_soonest() -> None:
 def test_home_is_the_reference_or_the_limit_next_to_it() -> None:
     dofs = [hinge(axis=Z, limits=Limits(*span)).dofs[0] for span in ((-1.0, 1.0), (0.5, 1.0), (-2.0, -0.5), (None, None), (1.0, -1.0))]
     assert [home(dof) for dof in dofs] == [0.0, 0.5, -0.5, 0.0, 0.0]
-
-
-def test_a_leader_carries_its_followers() -> None:
-    text = """g : robot { base {} a { mass 1 com [0.1 0 0] inertia [1 1 1] } b { mass 2 com [0.1 0 0] inertia [1 1 1] }
-      @j : revolute { limit [0 1] + base - a axis=Y }
-      @k : revolute { limit [0 1] + base - b axis=Y } }"""
-    robot = hx.loads(text, "hymeko")
-    edge = coupling_edge(Id("joint", "k"), ((Id("joint", "j"), (0.0, -2.0)),))
-    robot = robot.with_graph(robot.graph.replace(edges={Id("coupling", "k"): edge}))
-    alone = loads(robot)
-    led = with_followers(robot, alone)[Id("joint", "j"), 0]
-    assert (led.inertia, led.gravity) == pytest.approx((1.01 + 4 * 1.02, 0.981 + 2 * 1.962))
-    assert with_followers(robot, alone)[Id("joint", "k"), 0] == alone[Id("joint", "k"), 0]
