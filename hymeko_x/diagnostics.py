@@ -158,6 +158,11 @@ class Stopped(Refusal):
         return self._diagnostics
 
 
+def counted(count: int, one: str, many: str = "") -> str:
+    """A number of things for a message: ``1 body``, ``2 bodies``; ``many`` is the plural, by default with an ``s`` at the end."""
+    return f"{count} {one if count == 1 else many or f'{one}s'}"
+
+
 def refuse(
     code: Code, message: str, origin: Origin | None = None, *, element: str = "", hint: str = "", excerpt: tuple[str, ...] = ()
 ) -> Refusal:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
+from hymeko_x import diagnostics
 from hymeko_x.ir.values import number_text
 from hymeko_x.reporting.aspects import Aspect, aspect_of, kind_of
 from hymeko_x.reporting.values import error_of, size_of
@@ -171,7 +172,7 @@ def _what(group: Group) -> str:
 
 def counted(count: int, kind: str) -> str:
     """A number of elements or things: ``1 body``, ``2 bodies``."""
-    return f"{count} {kind if count == 1 else _PLURALS.get(kind, f'{kind}s')}"
+    return diagnostics.counted(count, kind, _PLURALS.get(kind, ""))
 
 
 def _counts(losses: Sequence[Loss]) -> str:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import counted
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import free_name, rename
 from hymeko_x.ir.parts import Body, Coupling, Drive, Joint, Sense, Tendon
@@ -36,7 +37,7 @@ def call_joints_apart(mechanism: Mechanism, context: Context) -> Mechanism:
         return mechanism
     listed = [f"'{old}' is '{new}'" for old, new in changed.items()]
     shown = ", ".join(listed[:_SHOWN]) + (", ..." if len(listed) > _SHOWN else "")
-    message = f"{len(listed)} joints are called apart from the links of their names ({context.reason}): {shown}"
+    message = f"{counted(len(listed), 'joint')} renamed apart from the links of the same name ({context.reason}): {shown}"
     context.report.note(codes.FOR_TARGET, message, element=str(next(iter(joints or dofs))))
     return rename(_with_dof_names(mechanism, dofs), joints)
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import counted
 from hymeko_x.ir.graph import Arc, Edge
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import WORLD, Id, joint_edge
@@ -114,7 +115,9 @@ def _with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanis
     _report_gains(bare, carried, report)
     if present:
         what = "left out" if kind == "none" else f"replaced by one {kind} per driven dof"
-        report.note(codes.REWRITTEN, f"{len(present)} actuators of the source are {what}, as asked", element=str(next(iter(present))))
+        report.note(
+            codes.REWRITTEN, f"{counted(len(present), 'actuator')} of the source {what}, as asked", element=str(next(iter(present)))
+        )
     return bare.with_graph(bare.graph.replace(vertices=vertices, edges=edges))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import counted
 from hymeko_x.formats import native_format
 from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.ir.parts import Body, Inertial, Mesh, MeshShape, Role
@@ -128,14 +129,18 @@ def _together(parts: list[_Part], density: float) -> Inertial | None:
 def _report(found: dict[Id, Body], bare: list[Id], solids: Solids, source: Source | None, context: Context) -> None:
     mass = sum(body.inertial.mass or 0.0 for body in found.values() if body.inertial)
     what = _BY_SOURCE[source or "collision"]
-    message = f"{context.reason}: {len(found)} bodies get masses and inertias of {what}, {mass:.4g} kg together"
+    message = f"{context.reason}: {counted(len(found), 'body', 'bodies')} with masses and inertias of {what}, {mass:.4g} kg together"
     context.report.note(codes.FOR_TARGET, message, element=str(bare[0]))
     if solids.hulls:
-        message = f"{context.reason}: {len(solids.hulls)} meshes are not closed, and count as their convex hulls: {_listed(solids.hulls)}"
+        message = f"{context.reason}: {_meshes(solids.hulls)} not closed, taken as convex hulls: {_listed(solids.hulls)}"
         context.report.note(codes.FOR_TARGET, message, element=str(solids.hulls[0]))
     if solids.missing:
-        message = f"{context.reason}: {len(solids.missing)} meshes are flat, missing or unreadable: {_listed(solids.missing)}"
+        message = f"{context.reason}: {_meshes(solids.missing)} flat, missing or unreadable: {_listed(solids.missing)}"
         context.report.warn(codes.INERTIA_REPAIRED, message, element=str(solids.missing[0]))
+
+
+def _meshes(found: list[Id]) -> str:
+    return counted(len(found), "mesh", "meshes")
 
 
 def _listed(keys: list[Id]) -> str:

@@ -40,6 +40,11 @@ class _Server(LanguageServer):
             self.known[uri] = unread(text, known)
         return self.known[uri]
 
+    def text(self, uri: str) -> Analysis | None:
+        """A document of HyMeKo text in its latest version; None for one of another format."""
+        document = self.document(uri)
+        return document if document.is_text else None
+
     def show_soon(self, uri: str) -> None:
         """Send the diagnostics of a document as soon as nothing was typed for a moment: questions are answered before."""
         if uri in self._waiting:
@@ -107,36 +112,33 @@ def make_server() -> LanguageServer:
         server.known.pop(given.text_document.uri, None)
         server.text_document_publish_diagnostics(types.PublishDiagnosticsParams(given.text_document.uri, []))
 
-    _add_answers(server)
+    _add_answers_at_places(server)
+    _add_answers_about_texts(server)
     return server
 
 
-def _add_answers(server: _Server) -> None:
-    """The features that answer questions, for HyMeKo text."""
-
-    def text(uri: str) -> Analysis | None:
-        document = server.document(uri)
-        return document if document.is_text else None
+def _add_answers_at_places(server: _Server) -> None:
+    """The features that answer questions about a place in HyMeKo text."""
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def hover(given: types.HoverParams) -> types.Hover | None:
-        document = text(given.text_document.uri)
+        document = server.text(given.text_document.uri)
         return None if document is None else answers.hover(document, given.position)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     def definition(given: types.DefinitionParams) -> types.Location | None:
-        document = text(given.text_document.uri)
+        document = server.text(given.text_document.uri)
         return None if document is None else answers.definition(document, given.position)
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     def references(given: types.ReferenceParams) -> list[types.Location]:
-        document = text(given.text_document.uri)
+        document = server.text(given.text_document.uri)
         found = [] if document is None else answers.references(document, given.position)
         return [types.Location(given.text_document.uri, place) for place in found]
 
     @server.feature(types.TEXT_DOCUMENT_RENAME)
     def rename(given: types.RenameParams) -> types.WorkspaceEdit | None:
-        document = text(given.text_document.uri)
+        document = server.text(given.text_document.uri)
         if document is None:
             return None
         edits = answers.rename(document, given.position, given.new_name)
@@ -146,27 +148,31 @@ def _add_answers(server: _Server) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=[".", ":", "+", "-", "~", "=", "@"]))
     def completion(given: types.CompletionParams) -> list[types.CompletionItem]:
-        document = text(given.text_document.uri)
+        document = server.text(given.text_document.uri)
         return [] if document is None else answers.completion(document, given.position)
+
+
+def _add_answers_about_texts(server: _Server) -> None:
+    """The features that answer questions about a whole HyMeKo text, or a part of it."""
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     def symbols(given: types.DocumentSymbolParams) -> list[types.DocumentSymbol]:
-        document = text(given.text_document.uri)
+        document = server.text(given.text_document.uri)
         return [] if document is None else answers.symbols(document)
 
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
     def folding(given: types.FoldingRangeParams) -> list[types.FoldingRange]:
-        document = text(given.text_document.uri)
+        document = server.text(given.text_document.uri)
         return [] if document is None else answers.folding(document)
 
     @server.feature(types.TEXT_DOCUMENT_FORMATTING)
     def formatting(given: types.DocumentFormattingParams) -> list[types.TextEdit]:
-        document = text(given.text_document.uri)
+        document = server.text(given.text_document.uri)
         return [] if document is None else answers.formatting(document)
 
     @server.feature(types.TEXT_DOCUMENT_INLAY_HINT)
     def inlays(given: types.InlayHintParams) -> list[types.InlayHint]:
-        document = text(given.text_document.uri)
+        document = server.text(given.text_document.uri)
         return [] if document is None else answers.inlays(document, given.range)
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION)

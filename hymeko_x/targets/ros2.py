@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.backends.urdf.ros2_control import declare_ros2_control
+from hymeko_x.diagnostics import counted
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import srdf
 from hymeko_x.formats.urdf.notations import VIRTUAL
@@ -71,7 +72,7 @@ def exclude_neighbours(mechanism: Mechanism, context: Context) -> Mechanism:
     names = names_in_use(mechanism)
     data = Contact("exclude", ((srdf.REASON, srdf.ADJACENT),))
     edges: dict[Id, RobotEdge] = {names.take("contact", f"{a.name}_{b.name}"): Edge(data, (Arc(a, 0), Arc(b, 0))) for a, b in pairs}
-    context.report.note(codes.FOR_TARGET, f"{len(pairs)} pairs of adjacent links are excluded from collision ({context.reason})")
+    context.report.note(codes.FOR_TARGET, f"{counted(len(pairs), 'pair')} of adjacent links excluded from collision ({context.reason})")
     notations = {**mechanism.notations, **{key: {UNNAMED.name: UNNAMED.write(True)} for key in edges}}
     for body in {body for pair in pairs for body in pair} & notations.keys():  # what is referred to has its name written
         notations[body] = {name: text for name, text in notations[body].items() if name != UNNAMED.name}
@@ -110,7 +111,7 @@ def declare_groups(mechanism: Mechanism, context: Context) -> Mechanism:
     joints = Tag("group", {"name": srdf.ALL}, [Tag("joint", {"name": key.name}) for key in group])
     tags = [joints, *(Tag("passive_joint", {"name": key.name}) for key in passive)]
     extras = tuple(Extra(words.FORMAT, srdf.PATH, "".join(line.strip() for line in render(tag))) for tag in tags)
-    context.report.note(codes.FOR_TARGET, f"the SRDF has the group '{srdf.ALL}' of {len(group)} joints ({context.reason})")
+    context.report.note(codes.FOR_TARGET, f"the SRDF has the group '{srdf.ALL}' of {counted(len(group), 'joint')} ({context.reason})")
     poses = {key: replace(pose, group=pose.group or srdf.ALL) for key, pose in mechanism.vertices(PoseSet)}
     mechanism = mechanism.with_graph(mechanism.graph.replace(vertices=poses)) if poses else mechanism
     return replace(mechanism, extras={**mechanism.extras, ROOT: (*own, *extras)})

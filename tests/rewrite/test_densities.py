@@ -36,7 +36,7 @@ def test_a_box_counts_exactly_where_it_is(tmp_path: Path) -> None:
     assert (inertial.mass, inertial.com) == (pytest.approx(3.0), (0.0, 0.0, 1.0))
     expected = (0.25 * (0.1**2 + 0.3**2), 0.25 * (0.2**2 + 0.3**2), 0.25 * (0.1**2 + 0.2**2), 0.0, 0.0, 0.0)
     assert inertial.tensor == pytest.approx(expected, abs=1e-12)
-    assert said == ["--density 500: 1 bodies get masses and inertias of their collision shapes, 3 kg together"]
+    assert said == ["--density 500: 1 body with masses and inertias of their collision shapes, 3 kg together"]
 
 
 def test_a_closed_mesh_counts_as_the_box_that_it_is(tmp_path: Path) -> None:
@@ -56,8 +56,8 @@ def test_an_open_mesh_counts_as_its_hull_and_that_is_reported(tmp_path: Path) ->
     assert inertial is not None
     assert inertial.mass == pytest.approx(12.0, rel=1e-6)
     assert said == [
-        "--density 1000: 1 bodies get masses and inertias of their visual shapes, 12 kg together",
-        "--density 1000: 1 meshes are not closed, and count as their convex hulls: 'open'",
+        "--density 1000: 1 body with masses and inertias of their visual shapes, 12 kg together",
+        "--density 1000: 1 mesh not closed, taken as convex hulls: 'open'",
     ]
 
 
@@ -75,7 +75,7 @@ def test_hulls_are_taken_where_they_are_asked_for(tmp_path: Path) -> None:
 def test_a_missing_mesh_has_no_mass_and_is_named(tmp_path: Path) -> None:
     inertial, said = converted(tmp_path, MESH.format(role="collision", file="nowhere.stl"), density=1000.0)
     assert inertial is None
-    assert said[1] == "--density 1000: 1 meshes are flat, missing or unreadable: 'nowhere'"
+    assert said[1] == "--density 1000: 1 mesh flat, missing or unreadable: 'nowhere'"
 
 
 def test_without_the_options_nothing_is_made_up_and_the_warning_names_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

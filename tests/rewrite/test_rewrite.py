@@ -482,7 +482,7 @@ def test_by_default_native_actuators_stay_and_transmissions_go() -> None:
 def test_chosen_actuators_replace_those_of_the_source() -> None:
     result, said = legal(driven("motor"), Options("fixed", "velocity"))
     assert actuators(result) == {"j1": ("velocity", {"kv": 25.0, "ctrlrange": (-4.0, 4.0)})}
-    assert said == ["note HX101 1 actuators of the source are replaced by one velocity per driven dof, as asked"]
+    assert said == ["note HX101 1 actuator of the source replaced by one velocity per driven dof, as asked"]
     assert actuators(legal(driven("motor"), Options("fixed", "none"))[0]) == {}
 
 

@@ -100,7 +100,7 @@ def test_home_is_a_keyframe_in_which_nothing_pushes(tmp_path: Path) -> None:
     mujoco.mj_forward(model, data)
     assert (model.key(0).name, list(data.qpos), list(data.ctrl), data.ncon) == ("home", [0.5, 0.0], [0.5, 0.0], 0)
     assert [d.message for d in done.report if "touch" in d.message] == [
-        "--for mujoco: 1 pairs of bodies touch at home and are excluded from collision: 'base' and 'fore'"
+        "--for mujoco: 1 pair of bodies touching at home excluded from collision: 'base' and 'fore'"
     ]
     assert done.losses == ()
 

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import counted
 from hymeko_x.formats import urdf as urdf_words
 from hymeko_x.formats.urdf import ros2_control as words
 from hymeko_x.ir.mechanism import ROOT, Extra, numbers_weight
@@ -35,11 +36,11 @@ def declare_ros2_control(mechanism: Mechanism, context: Context) -> Mechanism:
     commands, left = _commands(mechanism)
     if left:
         listed = ", ".join(f"'{key.name}'" for key in left[:_SHOWN]) + (", ..." if len(left) > _SHOWN else "")
-        message = f"{len(left)} actuators drive no single joint by a command of its own, and have no <{words.TAG}>: {listed}"
+        message = f"{counted(len(left), 'actuator')} without a single joint and a command of its own, and without <{words.TAG}>: {listed}"
         context.report.warn(codes.NOT_SAID, message, element=str(left[0]))
     if not commands:
         return mechanism
-    context.report.note(codes.FOR_TARGET, f"<{words.TAG}> has the drives of {len(commands)} joints ({context.reason})")
+    context.report.note(codes.FOR_TARGET, f"<{words.TAG}> has the drives of {counted(len(commands), 'joint')} ({context.reason})")
     text = ready(_system(mechanism, commands), 1)
     extra = Extra(urdf_words.FORMAT, "", text, 1 + max((extra.index for extra in own), default=len(mechanism.graph.vertices)))
     return replace(mechanism, extras={**mechanism.extras, ROOT: (*own, extra)})
