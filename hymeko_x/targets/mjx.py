@@ -37,7 +37,7 @@ _UNKNOWN: Mapping[str, tuple[str, frozenset[str]]] = MappingProxyType(
 """The fields of mjModel of which MJX has some values only, with their enumerations and these values."""
 _NO_CONTACT = frozenset(
     frozenset(pair.split())
-    for pair in ("ELLIPSOID BOX", "ELLIPSOID MESH", "CYLINDER BOX", "CYLINDER MESH", "HFIELD ELLIPSOID", "HFIELD CYLINDER", "HFIELD PLANE")
+    for pair in ("ELLIPSOID BOX", "ELLIPSOID MESH", "CYLINDER BOX", "CYLINDER MESH", "HFIELD ELLIPSOID", "HFIELD CYLINDER")
 )
 """The pairs of shapes for which MJX has no contacts."""
 _SHOWN = 3
