@@ -41,11 +41,17 @@ def _text(source: str) -> str:
 def without_mark(mechanism: Mechanism) -> Mechanism:
     """The mechanism without the comment that an earlier conversion wrote."""
     own = mechanism.extras.get(ROOT, ())
-    kept = tuple(extra for extra in own if not _is_mark(extra))
-    if len(kept) == len(own):
+    marks = [extra for extra in own if _is_mark(extra)]
+    if not marks:
         return mechanism
+    kept = tuple(replace(extra, index=extra.index - _before(extra, marks)) for extra in own if extra not in marks)
     extras = {key: found for key, found in {**mechanism.extras, ROOT: kept}.items() if found}
     return replace(mechanism, extras=extras)
+
+
+def _before(extra: Extra, marks: list[Extra]) -> int:
+    """How many of the comments stand before an extra at the same place."""
+    return sum(mark.path == extra.path and mark.index < extra.index for mark in marks)
 
 
 def _is_mark(extra: Extra) -> bool:

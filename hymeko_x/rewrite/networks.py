@@ -10,6 +10,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import Refusal
 from hymeko_x.ir import lumped
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import LUMPED_KINDS, WORLD, Id, Mechanism, joint_edge
@@ -50,9 +51,9 @@ def robot_of_network(mechanism: Mechanism, format: Format, report: Report) -> Me
     kinds = Counter(key.kind for key in mechanism.graph.vertices if key.kind in LUMPED_KINDS)
     if format.is_exact or not kinds or next(mechanism.vertices(Body), None) is not None:
         return mechanism
-    network = network_of(mechanism) if has_network(mechanism) else None
+    network, reason = _network(mechanism)
     steps = () if network is None else _tree(network)
-    reason = "it has no masses" if network is None else _obstacle(network, steps)
+    reason = reason or ("" if network is None else _obstacle(network, steps))
     if network is None or reason:
         found = ", ".join(f"{count} {kind}" for kind, count in kinds.items())
         message = f"'{mechanism.name}' has no bodies, and {format.name} can represent nothing of it: {found}; {reason}"
@@ -62,6 +63,16 @@ def robot_of_network(mechanism: Mechanism, format: Format, report: Report) -> Me
     moving = f"its {len(steps)} masses move" if len(steps) > 1 else "its mass moves"
     report.note(codes.REWRITTEN, f"the network '{mechanism.name}' becomes a robot: {moving} {axes}")
     return _robot(mechanism, network, steps)
+
+
+def _network(mechanism: Mechanism) -> tuple[Network | None, str]:
+    """The network of a mechanism, or why it has none."""
+    if not has_network(mechanism):
+        return None, "it has no masses"
+    try:
+        return network_of(mechanism), ""
+    except Refusal as error:
+        return None, error.diagnostic.message
 
 
 _AXES: Mapping[str, str] = {"translation": "along x", "rotation": "about z"}

@@ -15,6 +15,7 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.rewrite import Options, choose, legalize
+from hymeko_x.rewrite.networks import robot_of_network
 from hymeko_x.source import NoFiles
 from hymeko_x.testing import mechanisms
 from tests.usd.test_rules import complaints
@@ -35,7 +36,8 @@ def stage(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @given(mechanism=mechanisms(), options=OPTIONS)
 def test_every_legal_mechanism_is_a_stage_that_the_rules_have_nothing_against(mechanism: Mechanism, options: Options, stage: Path) -> None:
     own_words = replace(mechanism, extras={})  # the generated ones are not USD
-    legal = legalize(choose(own_words, options, Report()), "usd", Report())
+    robot = robot_of_network(own_words, formats.by_name("usd"), Report())
+    legal = legalize(choose(robot, options, Report()), "usd", Report())
     package = pipeline.write(
         own_words, formats.by_name("usd"), replace(options, lenient=True), NoFiles(), Report(), pipeline.Place(assets="reference")
     )
