@@ -105,7 +105,7 @@ DEVICES = (
     Case("a folder as input", {}, ("info", "."), 1, ("HX001",)),
     Case("a loop of links as input", {}, ("info", "r.urdf"), 1, ("HX001",), prepare=_link("r.urdf", "r.urdf")),  # type: ignore[arg-type]
     Case("a full device as output", {"r.urdf": ROBOT}, ("convert", "r.urdf", "/dev/full", "--to", "mjcf"), 1, ("HX002",)),
-    Case("a folder as output", {"r.urdf": ROBOT}, ("convert", "r.urdf", ".", "--to", "mjcf"), 0, leaves=("r.xml",)),
+    Case("a folder as output", {"r.urdf": ROBOT}, ("convert", "r.urdf", "../out", "--to", "mjcf"), 0, leaves=("r.xml",)),
     Case("an output below a file", {"r.urdf": ROBOT}, ("convert", "r.urdf", "r.urdf/m.xml"), 1, ("HX002",)),
     Case("an output name that is too long", {"r.urdf": ROBOT}, ("convert", "r.urdf", "x" * 300 + ".xml"), 1, ("HX002",)),
 )
