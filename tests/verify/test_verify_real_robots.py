@@ -19,6 +19,8 @@ FEW = [
     file for file in URDFS if file.path.endswith(("/hand.urdf", "double_pendulum.urdf", "cartpole.urdf", "r2d2.urdf", "al5d_robot.urdf"))
 ]
 
+MORE = [file for file in URDFS if file not in FEW][::3]
+
 pytestmark = pytest.mark.corpus
 
 
@@ -36,7 +38,13 @@ def test_a_real_robot_is_the_same_in_mjcf(robot: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("robot", [file for file in URDFS if file not in FEW], ids=lambda file: file.id, indirect=True)
+@pytest.mark.parametrize("robot", MORE, ids=lambda file: file.id, indirect=True)
+def test_more_real_robots_are_the_same_in_mjcf(robot: Path, tmp_path: Path) -> None:
+    assert_same_in_mjcf(robot, tmp_path, meshes=False)
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("robot", [file for file in URDFS if file not in (*FEW, *MORE)], ids=lambda file: file.id, indirect=True)
 def test_every_real_robot_is_the_same_in_mjcf(robot: Path, tmp_path: Path) -> None:
     assert_same_in_mjcf(robot, tmp_path, meshes=False)
 
