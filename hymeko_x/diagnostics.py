@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
 
 class Severity(Enum):
@@ -161,6 +161,11 @@ class Stopped(Refusal):
 def counted(count: int, one: str, many: str = "") -> str:
     """A number of things for a message: ``1 body``, ``2 bodies``; ``many`` is the plural, by default with an ``s`` at the end."""
     return f"{count} {one if count == 1 else many or f'{one}s'}"
+
+
+def listed(words: Sequence[str], most: int) -> str:
+    """The first words for a message, and ``...`` where there are more than ``most``."""
+    return ", ".join(words[:most]) + (", ..." if len(words) > most else "")
 
 
 def refuse(

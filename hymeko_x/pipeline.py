@@ -189,7 +189,8 @@ def convert(
     contents = None if place.assets == "reference" else PackageFiles(package, files_of(mechanism, files))
     is_kept = options.keep is not None and passed is None and not format.is_exact
     losses, residue, aligned = compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_kept=is_kept)
-    if is_kept and mechanism == robot_of_network(given, format, Report()) != given:  # the way home leads to the network
+    robot = robot_of_network(given, format, Report())
+    if is_kept and robot is not given and robot == mechanism:  # the way home leads to the network
         _, residue, aligned = compared(given, printed, image, format, contents, is_moved=is_moved, is_kept=True)
     kept = Kept(residue, "") if passed is None else passed
     if passed is None and options.keep is not None:

@@ -147,7 +147,7 @@ def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], 
         after = folder / f"leg{number}" / f"robot{format.suffixes[0]}"
         after.parent.mkdir(exist_ok=True)
         result = api.convert(before, after, to_format=format.name, packages=packages, keep="beside", lenient=chosen.lenient, **first)
-        first = {}  # what says how to read the file says nothing of the results
+        first = {}  # the options of reading are for the input alone, not for the results of the legs
         back = api.load(after, format.name, packages=packages, lenient=chosen.lenient)
         losses = None if result.losses is None else len(result.losses)
         differences = len(diff(original, back, _TOLERANCE))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import counted
+from hymeko_x.diagnostics import counted, listed
 from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.names import free_name, rename
 from hymeko_x.ir.parts import Body, Coupling, Drive, Joint, Sense, Tendon
@@ -35,9 +35,8 @@ def call_joints_apart(mechanism: Mechanism, context: Context) -> Mechanism:
     changed = {key.name: new.name for key, new in joints.items()} | {old: new for names in dofs.values() for old, new in names.items()}
     if not changed:
         return mechanism
-    listed = [f"'{old}' is '{new}'" for old, new in changed.items()]
-    shown = ", ".join(listed[:_SHOWN]) + (", ..." if len(listed) > _SHOWN else "")
-    message = f"{counted(len(listed), 'joint')} renamed apart from the links of the same name ({context.reason}): {shown}"
+    shown = listed([f"'{old}' is '{new}'" for old, new in changed.items()], _SHOWN)
+    message = f"{counted(len(changed), 'joint')} renamed apart from the links of the same name ({context.reason}): {shown}"
     context.report.note(codes.FOR_TARGET, message, element=str(next(iter(joints or dofs))))
     return rename(_with_dof_names(mechanism, dofs), joints)
 

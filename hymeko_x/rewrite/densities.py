@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import counted
+from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import native_format
 from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.ir.parts import Body, Inertial, Mesh, MeshShape, Role
@@ -144,4 +144,4 @@ def _meshes(found: list[Id]) -> str:
 
 
 def _listed(keys: list[Id]) -> str:
-    return ", ".join(f"'{key.name}'" for key in keys[:_SHOWN]) + (", ..." if len(keys) > _SHOWN else "")
+    return listed([f"'{key.name}'" for key in keys], _SHOWN)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import listed
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import numbers_weight
@@ -41,8 +42,8 @@ def limit_efforts_by_actuators(mechanism: Mechanism, context: Context) -> Mechan
         edges[key] = Edge(Joint(tuple(dofs)), edge.arcs)
     if not edges:
         return mechanism
-    shown = ", ".join(f"'{joint.name}' {effort:g}" for (joint, _), effort in list(efforts.items())[:_SHOWN])
-    message = f"effort limits are what the actuators can exert: {shown}{', ...' if len(efforts) > _SHOWN else ''}"
+    shown = listed([f"'{joint.name}' {effort:g}" for (joint, _), effort in efforts.items()], _SHOWN)
+    message = f"effort limits are what the actuators can exert: {shown}"
     context.report.note(codes.REWRITTEN, message, element=str(next(iter(edges))))
     return mechanism.with_graph(mechanism.graph.replace(edges=edges))
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import listed
 from hymeko_x.formats import native_format
 from hymeko_x.ir.notations import WITHOUT_TENSOR
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Ellipsoid, Inertial, Role, Sphere
@@ -96,8 +97,8 @@ def give_every_body_mass(mechanism: Mechanism, context: Context) -> Mechanism:
         if not _is_sound(body):
             changed[key] = replace(body, inertial=_least_inertial(body.inertial))
     if changed:
-        listed = ", ".join(f"'{key.name}'" for key in list(changed)[:5]) + (", ..." if len(changed) > 5 else "")
-        message = f"{len(changed)} links have no mass or no inertia; mass {LEAST!r} and inertia {LEAST!r} are written: {listed}"
+        names = listed([f"'{key.name}'" for key in changed], 5)
+        message = f"{len(changed)} links have no mass or no inertia; mass {LEAST!r} and inertia {LEAST!r} are written: {names}"
         context.report.note(codes.INERTIA_REPAIRED, message, element=str(next(iter(changed))))
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 

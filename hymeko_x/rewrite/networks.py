@@ -48,8 +48,10 @@ def robot_of_network(mechanism: Mechanism, format: Format, report: Report) -> Me
 
     A graph or a network of which a format for robots would represent nothing is an error (HX065) that gives the reason.
     """
+    if format.is_exact or next(mechanism.vertices(Body), None) is not None:
+        return mechanism
     kinds = Counter(key.kind for key in mechanism.graph.vertices if key.kind in LUMPED_KINDS)
-    if format.is_exact or not kinds or next(mechanism.vertices(Body), None) is not None:
+    if not kinds:
         return mechanism
     network, reason = _network(mechanism)
     steps = () if network is None else _tree(network)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import listed
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
 from hymeko_x.ir.names import names_in_use, rename
 from hymeko_x.ir.parts import Body, DofKind, Joint, Plane, Shape, Stance, World
@@ -124,9 +125,7 @@ def leave_scenery_out(mechanism: Mechanism, context: Context) -> Mechanism:
         return mechanism
     named = [data.name for key in shapes if isinstance(data := mechanism.graph.edges[key].data, Shape)]
     names = [f"plane '{name}'" if name else "a plane" for name in named] + [f"{key.kind} '{key.name}'" for key in things]
-    message = (
-        f"what only a simulation has on the world is left out ({context.reason}): {', '.join(names[:4])}{', ...' if len(names) > 4 else ''}"
-    )
+    message = f"what only a simulation has on the world is left out ({context.reason}): {listed(names, 4)}"
     context.report.note(codes.FOR_TARGET, message)
     return without(mechanism, [*shapes, *things])
 
@@ -156,10 +155,10 @@ def join_roots(mechanism: Mechanism, context: Context) -> Mechanism:
     root = world if world in roots else names.take("body", WORLD.name)
     others = [other for other in roots if other != root]
     edges = {names.take("joint", f"{other.name}_base"): joint_edge(Joint(), root, other) for other in others}
-    listed = ", ".join(f"'{other.name}'" for other in others[:5]) + (", ..." if len(others) > 5 else "")
+    fixed = listed([f"'{other.name}'" for other in others], 5)
     context.report.warn(
         codes.REWRITTEN,
-        f"the format has one root, and {len(roots)} links have no parent; fixed to link '{root.name}': {listed}",
+        f"the format has one root, and {len(roots)} links have no parent; fixed to link '{root.name}': {fixed}",
         element=str(root),
     )
     vertices = {} if root in mechanism.graph.vertices else {root: Body()}

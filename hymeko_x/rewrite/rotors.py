@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import counted
+from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import native_format
 from hymeko_x.ir.parts import Body, DofKind
 from hymeko_x.rewrite.servos import loads
@@ -44,8 +44,8 @@ def give_light_dofs_rotors(mechanism: Mechanism, context: Context) -> Mechanism:
         for number in numbers:
             dofs[number] = replace(dofs[number], armature=_ROTOR[dofs[number].kind])
         edges[key] = replace(mechanism.graph.edges[key], data=replace(mechanism.joints[key].joint, dofs=tuple(dofs)))
-    listed = ", ".join(f"'{key.name}'" for key in [*light][:_SHOWN]) + (", ..." if len(light) > _SHOWN else "")
-    message = f"armature is written for {counted(len(light), 'joint')}, moving less than {_LIGHT:g} kg m^2 or kg: {listed}"
+    names = listed([f"'{key.name}'" for key in light], _SHOWN)
+    message = f"armature is written for {counted(len(light), 'joint')}, moving less than {_LIGHT:g} kg m^2 or kg: {names}"
     context.report.note(codes.FOR_TARGET, f"{context.reason}: {message}", element=str(next(iter(light))))
     return mechanism.with_graph(mechanism.graph.replace(edges=edges))
 

@@ -102,11 +102,12 @@ def dof_of(mechanism: Mechanism, arc: RobotArc) -> tuple[Id, int]:
 
 
 def _frames(view: JointView, parent: Pose) -> Iterator[Pose]:
-    """The frame in the world in which each dof of a joint moves, at home."""
+    """The frame in the world in which each dof of a joint moves, at home, and behind the last one that of the joint in its child."""
     frame = compose(parent, view.parent_pose)
+    yield frame
     for dof in view.joint.dofs:
-        yield frame
         frame = compose(frame, _motion(dof))
+        yield frame
 
 
 def home_poses(mechanism: Mechanism) -> dict[Id, Pose]:
@@ -117,10 +118,8 @@ def home_poses(mechanism: Mechanism) -> dict[Id, Pose]:
         if above is None:
             poses[body] = IDENTITY
             continue
-        frame = compose(poses.get(above.parent, IDENTITY), above.parent_pose)
-        for dof in above.joint.dofs:
-            frame = compose(frame, _motion(dof))
-        poses[body] = compose(frame, inverse(above.child_pose))
+        *_, last = _frames(above, poses.get(above.parent, IDENTITY))
+        poses[body] = compose(last, inverse(above.child_pose))
     return poses
 
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import counted
+from hymeko_x.diagnostics import counted, listed
 from hymeko_x.ir.mechanism import WORLD, joint_edge, mount_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Body, Frame, Joint, Tendon
@@ -40,7 +40,7 @@ def make_frames_links(mechanism: Mechanism, report: Report, reason: str) -> Mech
         edges[view.id] = mount_edge(body, view.thing)
         if view.thing in origins:
             origins[body] = origins[view.thing]
-    shown = ", ".join(f"'{view.thing.name}'" for view in chosen[:_SHOWN]) + (", ..." if len(chosen) > _SHOWN else "")
+    shown = listed([f"'{view.thing.name}'" for view in chosen], _SHOWN)
     message = f"{counted(len(chosen), 'site')} written as links with fixed joints ({reason}): {shown}"
     report.note(codes.FOR_TARGET, message, element=str(chosen[0].thing))
     return replace(mechanism.with_graph(mechanism.graph.replace(vertices=bodies, edges=edges)), origins=origins)

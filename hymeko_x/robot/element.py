@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from hymeko_x.diagnostics import listed
 from hymeko_x.robot.errors import EditError, unknown_name
 
 if TYPE_CHECKING:
@@ -82,4 +83,4 @@ class Elements(Mapping[str, V], Generic[V]):
 
     def __repr__(self) -> str:
         names = [*self]
-        return f"<{len(names)} of kind {self._kind}: {', '.join(names[:8])}{', ...' if len(names) > 8 else ''}>"
+        return f"<{len(names)} of kind {self._kind}: {listed(names, 8)}>"

@@ -5,6 +5,8 @@ from __future__ import annotations
 from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
+from hymeko_x.diagnostics import listed
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -27,7 +29,7 @@ def unknown_name(kind: str, name: object, known: Iterable[str]) -> UnknownName:
     if near:
         hint = f"did you mean {' or '.join(map(repr, near))}?"
     elif names:
-        hint = f"there are {', '.join(map(repr, names[:5]))}{', ...' if len(names) > 5 else ''}"
+        hint = f"there are {listed([*map(repr, names)], 5)}"
     else:
         hint = f"the robot has no {kind}"
     return UnknownName(f"there is no {kind} {name!r}; {hint}")

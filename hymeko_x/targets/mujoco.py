@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.backends.mjcf.steady import integrate_implicitly
-from hymeko_x.diagnostics import Report, counted
+from hymeko_x.diagnostics import Report, counted, listed
 from hymeko_x.formats.mjcf import NAME
 from hymeko_x.formats.mjcf.keyframes import Key, has_keyframes, with_keys
 from hymeko_x.ir.graph import Arc, Edge
@@ -26,10 +26,6 @@ if TYPE_CHECKING:
 
 _SHOWN = 3
 """How many pairs a note names."""
-
-
-def _listed(words: list[str]) -> str:
-    return ", ".join(words[:_SHOWN]) + (", ..." if len(words) > _SHOWN else "")
 
 
 def name_home(mechanism: Mechanism, context: Context) -> Mechanism:
@@ -90,8 +86,8 @@ def exclude_what_touches_at_home(mechanism: Mechanism, context: Context) -> Mech
     for pair in found:
         key = names.take("contact", "_".join(body.name for body in pair))
         edges[key] = Edge(Contact("exclude"), tuple(Arc(body, 0) for body in pair))
-    listed = _listed([f"'{a.name}' and '{b.name}'" for a, b in found])
-    message = f"{counted(len(found), 'pair')} of bodies touching at home excluded from collision: {listed}"
+    named = listed([f"'{a.name}' and '{b.name}'" for a, b in found], _SHOWN)
+    message = f"{counted(len(found), 'pair')} of bodies touching at home excluded from collision: {named}"
     context.report.note(codes.FOR_TARGET, f"{context.reason}: {message}", element=str(found[0][0]))
     return mechanism.with_graph(mechanism.graph.replace(edges=edges))
 

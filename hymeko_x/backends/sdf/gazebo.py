@@ -66,6 +66,7 @@ def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
     fragments = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.text.startswith(_START) and extra.format != words.FORMAT]
     if not fragments:
         return mechanism
+    declared = {extra.path.removeprefix(_XMLNS): extra.text for extra in mechanism.extras[ROOT] if extra.path.startswith(_XMLNS)}
     added: dict[Id, list[Extra]] = {}
     edges: dict[Id, RobotEdge] = {}
     for text in fragments:
@@ -74,16 +75,15 @@ def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
         except ExpatError:
             continue
         for key, found in _extras_of(node, mechanism, edges):
-            extra = _with_namespaces(found, mechanism, context)
+            extra = _with_namespaces(found, declared, context)
             if extra is not None and extra not in (*mechanism.extras.get(key, ()), *added.get(key, ())):
                 added.setdefault(key, []).append(extra)
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), *found) for key, found in added.items()}}
     return replace(mechanism, graph=mechanism.graph.replace(edges=edges) if edges else mechanism.graph, extras=extras)
 
 
-def _with_namespaces(extra: Extra, mechanism: Mechanism, context: Context) -> Extra | None:
+def _with_namespaces(extra: Extra, declared: Mapping[str, str], context: Context) -> Extra | None:
     """An extra that declares its prefixes as the root of its file did. None, with a warning, where that did not declare one."""
-    declared = {found.path.removeprefix(_XMLNS): found.text for found in mechanism.extras.get(ROOT, ()) if found.path.startswith(_XMLNS)}
     for prefix in dict.fromkeys(a or b for a, b in _PREFIX.findall(extra.text)):
         if prefix in ("xml", "xmlns") or f"xmlns:{prefix}=" in extra.text:
             continue

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
-from hymeko_x.diagnostics import counted
+from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import urdf as urdf_words
 from hymeko_x.formats.urdf import ros2_control as words
 from hymeko_x.ir.mechanism import ROOT, Extra, numbers_weight
@@ -35,8 +35,8 @@ def declare_ros2_control(mechanism: Mechanism, context: Context) -> Mechanism:
         return mechanism
     commands, left = _commands(mechanism)
     if left:
-        listed = ", ".join(f"'{key.name}'" for key in left[:_SHOWN]) + (", ..." if len(left) > _SHOWN else "")
-        message = f"{counted(len(left), 'actuator')} without a single joint and a command of its own, and without <{words.TAG}>: {listed}"
+        names = listed([f"'{key.name}'" for key in left], _SHOWN)
+        message = f"{counted(len(left), 'actuator')} without a single joint and a command of its own, and without <{words.TAG}>: {names}"
         context.report.warn(codes.NOT_SAID, message, element=str(left[0]))
     if not commands:
         return mechanism

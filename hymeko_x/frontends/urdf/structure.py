@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.diagnostics import listed
 from hymeko_x.ir.parts import Body, Joint
 
 if TYPE_CHECKING:
@@ -54,7 +55,7 @@ def _check_parents(parents: dict[Id, list[Id]], builder: UrdfBuilder) -> None:
 def _check_roots(root: Node, roots: list[Id], builder: UrdfBuilder) -> None:
     if len(roots) < 2:
         return
-    names = ", ".join(f"'{body.name}'" for body in roots[:5]) + (", ..." if len(roots) > 5 else "")
+    names = listed([f"'{body.name}'" for body in roots], 5)
     builder.report.warn(
         codes.SEVERAL_ROOTS,
         f"{len(roots)} links have no parent joint ({names}); each is kept as the root of a tree of its own",
