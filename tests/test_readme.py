@@ -23,7 +23,7 @@ PAGES = (
     README,
     *(
         README.parent / "docs" / f"{name}.md"
-        for name in ("agree", "command-line", "dh", "dynamics", "errors", "lossless", "report", "tour", "update", "verify")
+        for name in ("agree", "command-line", "comparison", "dh", "dynamics", "errors", "lossless", "report", "tour", "update", "verify")
     ),
     *sorted((README.parent / "docs/tasks").glob("*.md")),
 )

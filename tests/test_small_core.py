@@ -83,6 +83,7 @@ ADVICE = {
     "info": ("arm.urdf", None),
     "lsp": ("", "lsp"),
     "render": ("arm.urdf -o arm.png", "draw"),
+    "report": ("arm.urdf arm.urdf -o both.html", "verify"),
     "roundtrip": ("arm.urdf", "verify"),
     "simulate": ("arm.urdf", "dynamics"),
     "update": ("arm.urdf arm.urdf", None),

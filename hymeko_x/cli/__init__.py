@@ -39,6 +39,7 @@ GROUPS: Mapping[str, Mapping[str, Verb]] = {
         "verify": Verb("verdicts", "whether two files are the same robot, by the formats' own engines"),
         "agree": Verb("agree", "whether the files that are one robot in several formats agree, for CI"),
         "diff": Verb("compare", "what differs between two robots, element by element"),
+        "report": Verb("comparison", "two robots on one page: verdict, pictures and their difference, losses"),
         "roundtrip": Verb("compare", "through other formats and back, every leg verified"),
     },
     "look": {

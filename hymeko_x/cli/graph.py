@@ -13,14 +13,13 @@ from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.diagnostics import Report
 from hymeko_x.draw.graph.diagram import diagram
-from hymeko_x.draw.graph.incidence import incidence_picture
 from hymeko_x.draw.graph.listings import WRITERS
+from hymeko_x.draw.graph.picture import has_tree, picture
 from hymeko_x.draw.graph.selection import EDGE_KINDS, Wanted
-from hymeko_x.draw.graph.tree import tree
-from hymeko_x.draw.graph.tree_picture import tree_picture
-from hymeko_x.ir import parts
 
 if TYPE_CHECKING:
+    from typing import Literal
+
     from hymeko_x.ir.mechanism import Mechanism
 
 _SUFFIXES = (".svg", *WRITERS)
@@ -54,18 +53,15 @@ def run_graph(chosen: argparse.Namespace) -> int:
     return exits.DONE
 
 
-def _drawn(robot: Mechanism, wanted: Wanted, suffix: str, view: str | None) -> str:
-    """The text of the output. Without a wish for a view, a robot is a tree, and whatever has no bodies an incidence graph."""
+def _drawn(robot: Mechanism, wanted: Wanted, suffix: str, view: Literal["tree", "incidence"] | None) -> str:
+    """The text of the output."""
     if suffix != ".svg":
         if view == "tree":
             raise UsageError("--view tree is for .svg: other programs make their own layout of the incidence graph")
         return WRITERS[suffix](diagram(robot, wanted))
-    has_bodies = any(True for _ in robot.vertices(parts.Body))
-    if view == "tree" and not has_bodies:
+    if view == "tree" and not has_tree(robot):
         raise UsageError("the input has no bodies, and so no tree; --view incidence draws what it has")
-    if has_bodies and view != "incidence":
-        return tree_picture(tree(robot, wanted))
-    return incidence_picture(diagram(robot, wanted))
+    return picture(robot, wanted, view)
 
 
 def _count(text: str) -> int:

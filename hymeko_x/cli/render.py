@@ -28,7 +28,7 @@ def render_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-o", "--output", required=True, metavar="OUT", help="the picture (.png), or the film (.gif, .mp4) with --animate")
     parser.add_argument("--view", choices=VIEWS, default="iso", help="from where (default: iso)")
     parser.add_argument("--pose", metavar="NAME|FILE.json", help="a keyframe, or positions by joint (default: the keyframe home, if any)")
-    parser.add_argument("--size", type=_size, default=(960, 720), metavar="WxH", help="pixels of one picture (default: 960x720)")
+    parser.add_argument("--size", type=size_of, default=(960, 720), metavar="WxH", help="pixels of one picture (default: 960x720)")
     parser.add_argument("--collision", action="store_true", help="the collision shapes instead of the visual ones")
     parser.add_argument("--frames", action="store_true", help="the frames of the bodies too")
     parser.add_argument("--inertia", action="store_true", help="the inertias of the bodies too, as boxes")
@@ -60,15 +60,19 @@ def run_render(chosen: argparse.Namespace) -> int:
 
 def _studio(path: str, chosen: argparse.Namespace) -> Studio:
     from hymeko_x.draw.render import Look, is_drawn, open_studio
+    from hymeko_x.robot import Robot
 
     report = Report()
     given = read_input(path, chosen, report)
     show_diagnostics(report, chosen)
     look = Look(chosen.size, chosen.view, chosen.pose, chosen.collision, chosen.frames, chosen.inertia)
-    return open_studio(given.mechanism, given.source.name if is_drawn(given.format) and path != "-" else None, look)
+    return open_studio(
+        Robot(given.mechanism, given.source.files), given.source.name if is_drawn(given.format) and path != "-" else None, look
+    )
 
 
-def _size(text: str) -> tuple[int, int]:
+def size_of(text: str) -> tuple[int, int]:
+    """Width and height in pixels, as a user gives them."""
     found = re.fullmatch(r"(\d+)x(\d+)", text)
     if found is None or not all(16 <= int(number) <= _LARGEST for number in found.groups()):
         raise argparse.ArgumentTypeError(f"expected WIDTHxHEIGHT with numbers from 16 to {_LARGEST}, found '{text}'")

@@ -14,6 +14,7 @@ from msgspec import Struct
 
 from hymeko_x import api, codes, formats
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.ir.holder import mechanism_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.draw.camera import Corners
     from hymeko_x.formats import Format
+    from hymeko_x.ir.holder import Holder
     from hymeko_x.ir.mechanism import Mechanism
 
     Picture = NDArray[np.uint8]
@@ -37,7 +39,10 @@ _FIELD_OF_VIEW = 35.0
 
 
 class Look(Struct, frozen=True):
-    """How a picture is made. ``size`` is width and height in pixels; ``pose`` the name of a keyframe, or a JSON file of joint positions."""
+    """How a picture is made. ``size`` is width and height in pixels; ``pose`` the name of a keyframe, or a JSON file of joint positions.
+
+    ``is_authored``: in the pose in which the file places the bodies, whatever keyframes there are: for comparisons.
+    """
 
     size: tuple[int, int] = (960, 720)
     view: str = "iso"
@@ -45,15 +50,18 @@ class Look(Struct, frozen=True):
     collision: bool = False
     frames: bool = False
     inertia: bool = False
+    is_authored: bool = False
 
 
 class Studio:
     """A robot that MuJoCo has compiled, in a scene with light and ground.
 
+    ``corners`` are those of the scene and of the picture; None: those of the robot itself.
+
     Raises: Refusal HX302 when MuJoCo refuses the robot, HX501 when nothing is visible, HX502 when this machine cannot draw.
     """
 
-    def __init__(self, spec: Any, name: str, look: Look) -> None:
+    def __init__(self, spec: Any, name: str, look: Look, corners: Corners | None = None) -> None:
         import mujoco
 
         self._name = name
@@ -61,20 +69,19 @@ class Studio:
         self.model = _compiled(spec, name)
         self.data = mujoco.MjData(self.model)
         self._place(look.pose)
-        groups = _groups(self.model, collision=look.collision)
-        corners = self._corners(groups)
-        self.model = _compiled(_with_scene(spec, self.model, corners, look.size), name)
+        self._groups = _groups(self.model, collision=look.collision)
+        self.corners = corners or self._own_corners()
+        self.model = _compiled(_with_scene(spec, self.model, self.corners, look.size), name)
         placed, self.data = self.data, mujoco.MjData(self.model)
         self.data.qpos[:] = placed.qpos
         mujoco.mj_forward(self.model, self.data)
-        self._options = _options(look, groups)
-        self._groups = groups
+        self._options = _options(look, self._groups)
 
     def still(self) -> Picture:
         """One picture of the robot in its pose."""
         import mujoco
 
-        return next(self._drawn([self.data.qpos.copy()], self._corners(self._groups), mujoco))
+        return next(self._drawn([self.data.qpos.copy()], self.corners, mujoco))
 
     def sweep(self) -> Iterator[Picture]:
         """Pictures in which each joint in turn goes through its limits and back; joints without limits go half a turn or 0.1 m."""
@@ -107,17 +114,17 @@ class Studio:
         finally:
             renderer.close()
 
-    def _corners(self, groups: frozenset[int]) -> Corners:
+    def _own_corners(self) -> Corners:
         from hymeko_x.draw.camera import corners_of
 
-        return corners_of(self.model, [self.data], groups)
+        return corners_of(self.model, [self.data], self._groups)
 
     def _place(self, pose: str | None) -> None:
         """Put the robot into a keyframe, into the positions of a file, or into its home keyframe if it has one."""
         import mujoco
 
         keys = {self.model.key(number).name: number for number in range(self.model.nkey)}
-        wanted = pose or ("home" if "home" in keys else None)
+        wanted = pose or ("home" if "home" in keys and not self._look.is_authored else None)
         if wanted is not None and wanted in keys:
             mujoco.mj_resetDataKeyframe(self.model, self.data, keys[wanted])
         elif wanted is not None and wanted.endswith(".json"):
@@ -142,8 +149,12 @@ def is_drawn(format: Format) -> bool:
     return "mujoco" in format.memory
 
 
-def open_studio(robot: Mechanism, path: str | None, look: Look) -> Studio:
+def open_studio(robot: Mechanism | Holder, path: str | None, look: Look, corners: Corners | None = None) -> Studio:
     """The scene of a robot. ``path`` is its file where MuJoCo reads that format itself; other formats go through our own writer.
+
+    A holder that has ``files`` finds its meshes and images itself; those of a mechanism are looked for beside the file that it was read
+    from.
+    ``corners`` as for :class:`Studio`.
 
     Raises: Refusal as :class:`Studio`.
     """
@@ -152,14 +163,14 @@ def open_studio(robot: Mechanism, path: str | None, look: Look) -> Studio:
 
     if path is not None:
         try:
-            return Studio(mujoco.MjSpec.from_file(path), path, look)
+            return Studio(mujoco.MjSpec.from_file(path), path, look, corners)
         except ValueError as error:
             raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(path)) from error
     row = next(row for row in formats.FORMATS if is_drawn(row))
     with TemporaryDirectory(prefix="hymeko-x-") as folder:
         file = Path(folder) / f"robot{row.suffixes[0]}"
         api.dump(robot, file, row.name)
-        return Studio(mujoco.MjSpec.from_file(str(file)), robot.name, look)
+        return Studio(mujoco.MjSpec.from_file(str(file)), mechanism_of(robot).name, look, corners)
 
 
 def _compiled(spec: Any, name: str) -> mujoco.MjModel:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import formats
-from hymeko_x.compare.contents import Contents, content_differences
+from hymeko_x.compare.contents import Contents, content_differences, with_same_files
 from hymeko_x.compare.geometry import meshes_as_files, without_points
 from hymeko_x.compare.leaves import leaves_again, leaves_between
 from hymeko_x.compare.ledger import losses_between
@@ -58,6 +58,17 @@ def compared(
         source = moved if formats.native_format(moved) is None else replace(moved, extras=printed.extras)
     residue = residue_between(source, image, alignment, aligned, leaves_again(source, moved, aligned, leaves))
     return losses, "" if residue.is_empty else print_residue(residue), aligned
+
+
+def losses_between_files(source: Contents, image: Contents, format: Format) -> tuple[Loss, ...]:
+    """What one robot does not have as another one has it, whichever program wrote the files; ``format`` is that of the second.
+
+    Places and names of meshes and images do not count, their contents do.
+    """
+    alignment, aligned = align(image.mechanism, source.mechanism)
+    theirs = Contents(aligned, image.fetch)
+    changed = (*alignment_differences(alignment), *content_differences(source, theirs))
+    return losses_between(source.mechanism, with_same_files(source, theirs), changed, format)
 
 
 def _content_changes(mechanism: Mechanism, aligned: Mechanism, contents: PackageFiles | None) -> Iterator[Difference]:

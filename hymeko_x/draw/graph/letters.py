@@ -23,10 +23,15 @@ def width(text: str, size: float) -> float:
 
 
 def shown(name: str) -> str:
-    """A name in one line of visible letters: controls and marks that turn the direction of writing are escapes, as in HyMeKo text."""
-    if name.isascii() and name.isprintable():
-        return cut(name)
-    return cut("".join(rf"\u{ord(letter):04x}" if unicodedata.category(letter) in _INVISIBLE else letter for letter in name))
+    """A name in one line of at most 48 visible letters."""
+    return cut(visible(name))
+
+
+def visible(text: str) -> str:
+    """A text in one line of visible letters: controls and marks that turn the direction of writing are escapes, as in HyMeKo text."""
+    if text.isascii() and text.isprintable():
+        return text
+    return "".join(rf"\u{ord(letter):04x}" if unicodedata.category(letter) in _INVISIBLE else letter for letter in text)
 
 
 def cut(text: str) -> str:
