@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.delivery import Delivery, report_unwritten, unchanged
+from hymeko_x.delivery import Delivery, place_of, report_unwritten, unchanged
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.holder import mechanism_of
 from hymeko_x.rewrite import Options
@@ -157,7 +157,7 @@ def dump(
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
     files = _files_of(robot, packages, search_path, confine)
     delivery = Delivery(
-        mechanism_of(robot), target, Options(**writing, beside=Path(path).stem), files, _place(path, assets), os.fspath(path)
+        mechanism_of(robot), target, Options(**writing, beside=Path(path).stem), files, place_of(os.fspath(path), assets), os.fspath(path)
     )
     delivery.put(delivery.convert(report))
     return report
@@ -224,7 +224,7 @@ def convert(
     options = Options(base, actuators, layout, nested, split, keep, lenient, Path(output).stem, target=target)
     options = replace(options, density=density, inertia_from=inertia_from, sites=sites, mesh_prefix=mesh_prefix)
     own = unchanged(given, read_as, format)
-    delivery = Delivery(robot, format, options, given.files, _place(output, assets), os.fspath(output), own, passed)
+    delivery = Delivery(robot, format, options, given.files, place_of(os.fspath(output), assets), os.fspath(output), own, passed)
     result = delivery.convert(report)
     delivery.put(result)
     return result
@@ -286,11 +286,6 @@ def _source(
 
 def _input_format(source: Source, format: str | None) -> formats.Format:
     return formats.by_name(format) if format else formats.of_input(source.name, source.data)
-
-
-def _place(path: Place, assets: Assets) -> pipeline.Place:
-    folder = os.path.dirname(os.fspath(path)) or "."
-    return pipeline.Place(folder, assets, disk.package_uri(folder))
 
 
 def _folders(packages: Mapping[str, Place] | None) -> dict[str, Path]:

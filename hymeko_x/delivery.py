@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
 from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, disk, pipeline
+from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.copying import copied
@@ -87,6 +90,12 @@ class Delivery(Struct, frozen=True):
 
     def _in_the_way(self, package: Package, folder: str) -> str | None:
         return disk.in_the_way(package, self.path, folder, self.files)
+
+
+def place_of(path: str, assets: Literal["copy", "reference"] | None) -> pipeline.Place:
+    """The place of an output on the disk."""
+    folder = os.path.dirname(path) or "."
+    return pipeline.Place(folder, assets, disk.package_uri(folder), DiskFiles(Path(folder)))
 
 
 def unchanged(source: Source, from_format: Format, to_format: Format) -> Source | None:

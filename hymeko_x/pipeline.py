@@ -11,7 +11,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes, formats, targets
 from hymeko_x.assets.pack import pack, with_prefix, with_stand_ins
-from hymeko_x.assets.shelf import safe_name
+from hymeko_x.assets.shelf import Shelf, safe_name
 from hymeko_x.collector import uncollected
 from hymeko_x.compare.geometry import with_points_of_files
 from hymeko_x.diagnostics import Refusal, Report, Stopped, refuse
@@ -21,7 +21,7 @@ from hymeko_x.residue.measuring import compared
 from hymeko_x.residue.originals import fetch_from, files_of, originals_of, with_originals
 from hymeko_x.rewrite import Options, actuate, choose, legalize
 from hymeko_x.rewrite.networks import robot_of_network
-from hymeko_x.source import Kept, PackageFiles, Source
+from hymeko_x.source import NO_FILES, Kept, PackageFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -51,7 +51,8 @@ class Writer(Protocol):
 class Place(Struct, frozen=True):
     """Where the output goes: its ``folder``, and whether files go beside it or are referred to (None = the format's own way).
 
-    ``package`` is the uri of the folder as a part of a package (``package://NAME``), where that is known.
+    ``package`` is the uri of the folder as a part of a package (``package://NAME``), where that is known; ``around`` finds files
+    from the folder.
 
     ``in_the_way(package, other_folder)`` names a file of another output that one of the package's would overwrite; then all of them go
     below the other folder, which ends in a slash.
@@ -60,6 +61,7 @@ class Place(Struct, frozen=True):
     folder: str = "."
     assets: Literal["copy", "reference"] | None = None
     package: str = ""
+    around: Files = NO_FILES
     in_the_way: Callable[[Package, str], str | None] | None = None
 
 
@@ -250,9 +252,8 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
     """A legal mechanism with its files placed, and printed."""
     options = replace(options, mesh_prefix=_prefix(options, format, place))
     prefix = options.mesh_prefix or ""
-    placed, new, copies = pack(
-        legal, format, files, place.assets, report, out_dir=place.folder, within=options.within, is_laid_out=bool(prefix)
-    )
+    shelf = Shelf(place.assets or format.assets, place.folder, options.within, place.around)
+    placed, new, copies = pack(legal, format, files, shelf, report, is_laid_out=bool(prefix))
     placed = with_prefix(placed, prefix, {*new, *copies}) if prefix else placed
     package = replace(writer(format)(placed, options, report), prefix=prefix)
     if package.enclose is not None and (new or copies):

@@ -179,6 +179,29 @@ class PlacedFiles(Struct, frozen=True):
         return self.behind.read(path)
 
 
+class OriginalFiles(Struct, frozen=True):
+    """The files of a mechanism for which originals are kept, by their uris: these count, whatever else has their names."""
+
+    originals: Mapping[str, str]
+    behind: Files
+
+    def find(self, uri: str) -> str | None:
+        """The path of a file: that of the original, where one is kept."""
+        return self.originals.get(uri) or self.behind.find(uri)
+
+    def read(self, path: str) -> bytes:
+        """The content of a path that :meth:`find` returned. Raises: OSError."""
+        return self.behind.read(path)
+
+
+def find_stand_in(files: Files, uri: str) -> str | None:
+    """The path of the file that is kept, or that another file has, for one that is not where its uri leads; None where there is none."""
+    own = files
+    while isinstance(own, PlacedFiles | OriginalFiles):
+        own = own.behind
+    return None if own is files or own.find(uri) is not None else files.find(uri)
+
+
 class ManyFiles(Struct, frozen=True):
     """The files around several descriptions: what the first ones do not find, the others do."""
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
 import posixpath
 import re
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
-from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir.mechanism import suffix_of
 
 if TYPE_CHECKING:
@@ -25,30 +25,49 @@ _GLB_HEADER = 20
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 
 
+WITH_COMPANIONS = (".obj", ".mtl", ".dae", ".gltf", ".glb")
+"""The types of files that may refer to others."""
+
+
 def copy_companions(uri: str, new: str, path: str, shelf: Shelf, files: Files) -> None:
     """Copy what the mesh file of a reference refers to beside its copy ``new``, under the same relative paths."""
     if shelf.mode == "reference" or path.endswith("]"):
         return
+    for name, there in companions_of(uri, path, files):
+        place = beside(new, name)
+        if not place.startswith("../"):
+            shelf.copy_as(place, there)
+
+
+def companions_of(uri: str, path: str, files: Files) -> Iterator[tuple[str, str]]:
+    """The files that the mesh file of a reference, found at a path, refers to: by their paths from its folder, and where they are."""
     waiting = list(named_in(path, files))
     seen = set()
     while waiting:
         name = waiting.pop()
-        place = posixpath.normpath(posixpath.join(posixpath.dirname(new), name))
-        there = files.find(posixpath.join(posixpath.dirname(uri), name)) or files.find(posixpath.join(posixpath.dirname(path), name))
-        if there is None or name in seen or place.startswith(("../", "/")):
+        there = files.find(posixpath.join(posixpath.dirname(uri), name)) or files.find(os.path.abspath(beside(path, name)))
+        if there is None or name in seen:
             continue
         seen.add(name)
-        shelf.copy_as(place, there)
+        yield name, there
         for further in named_in(there, files):  # some programs look beside the library, others beside the mesh
             waiting += [further, posixpath.join(posixpath.dirname(name), further)]
+
+
+def beside(path: str, name: str) -> str:
+    """The path of a file that is named from the folder of another one."""
+    return posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
 
 
 def named_in(path: str, files: Files) -> Iterator[str]:
     """The relative paths that a mesh file, or a library of materials, has for other files."""
     suffix = suffix_of(path)
-    if suffix not in (".obj", ".mtl", ".dae", ".gltf", ".glb"):
+    if suffix not in WITH_COMPANIONS:
         return
-    data = (read_file(files, path) or ("", b""))[1]
+    try:
+        data = files.read(path)
+    except OSError:
+        return
     for name in dict.fromkeys(_names(data, suffix)):
         plain = name.replace("\\", "/")
         if plain and not _SCHEME.match(plain) and not plain.startswith("/"):

@@ -20,15 +20,17 @@ from msgspec.structs import replace
 from hymeko_x import codes, formats
 from hymeko_x.assets.companions import copy_companions
 from hymeko_x.assets.resolve import is_of_nameless_package
-from hymeko_x.assets.shelf import Shelf, read_file
+from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import file_stem, subset_edge, suffix_of
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Mesh, Role, Texture
+from hymeko_x.source import find_stand_in
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Set
 
+    from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
@@ -43,22 +45,17 @@ def pack(
     mechanism: Mechanism,
     format: Format,
     files: Files,
-    mode: Mode | None,
+    shelf: Shelf,
     report: Report,
     *,
-    out_dir: str | None = None,
-    within: str = "",
     is_laid_out: bool = False,
 ) -> tuple[Mechanism, dict[str, bytes], dict[str, str]]:
     """The mechanism with its files' new paths, the new files by relative path, and the copies by relative path.
 
-    ``mode`` copy puts files beside the output, reference refers to them where they are, relative to ``out_dir`` (the
-    output's folder); None is the format's own default. ``within`` is the folder below ``out_dir`` for what is put there. With
-    ``is_laid_out`` copies go to the folders ``meshes`` and ``textures``, wherever they are in the source. A file that
+    With ``is_laid_out`` copies go to the folders ``meshes`` and ``textures``, wherever they are in the source. A file that
     is not there is a warning. For MJCF its shapes are left out, since MuJoCo reads no model with a missing file; in the other
     formats the reference stays as it is.
     """
-    shelf = Shelf(mode or format.assets, out_dir, within)
     if format.pack is None:
         read = mechanism if format.is_exact else _with_meshes_of_source(mechanism, files, report)
         packed = keep_references(read, shelf, files, report, Keep.PACKAGES if is_laid_out else Keep.of(format, shelf.mode))
@@ -75,6 +72,7 @@ def pack(
 
 _SCHEME = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+:")
 _PACKAGE = re.compile(r"(package|model):", re.IGNORECASE)
+_PACKAGE_START = re.compile(r"(package|model)://", re.IGNORECASE)
 _REMOTE = re.compile(r"(https?|ftp):", re.IGNORECASE)
 _FOLDERS: Mapping[type, str] = MappingProxyType({Mesh: "meshes", Texture: "textures"})
 
@@ -119,8 +117,9 @@ def keep_references(
             continue
         if uri != part.uri:
             changed[key] = replace(part, uri=uri)
-        if with_companions and isinstance(part, Mesh) and posixpath.normpath(uri) in shelf.copies:
-            copy_companions(part.uri, posixpath.normpath(uri), shelf.copies[posixpath.normpath(uri)], shelf, files)
+        place = place_of(uri)
+        if with_companions and isinstance(part, Mesh) and place in shelf.copies:
+            copy_companions(part.uri, place, shelf.copies[place], shelf, files)
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 
@@ -133,19 +132,28 @@ def with_prefix(mechanism: Mechanism, prefix: str, paths: Set[str]) -> Mechanism
 
 
 def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> str | None:
-    """The uri to write, or None when there is no such file. What is kept because it is a package's is not looked for."""
-    if _REMOTE.match(uri) or (keep is not Keep.NOTHING and is_of_package(uri)):
+    """The uri to write, or None when there is no such file. A package's that stays is not looked for.
+
+    Where only a stand-in is left of a package's file, this goes into a folder of the package's name, in which the uri finds it.
+    """
+    is_kept = keep is not Keep.NOTHING and is_of_package(uri)
+    if _REMOTE.match(uri) or (is_kept and (find_stand_in(files, uri) is None or shelf.around.find(uri) is not None)):
         return uri
     path = files.find(uri)
     if path is None:
         return None
     if shelf.mode == "reference":
         return shelf.way_to(path, uri)
-    plain = posixpath.normpath(uri)
-    if keep is Keep.PACKAGES_AND_PATHS and _is_below(uri) and shelf.copy_as(plain, path):
+    place = place_of(uri)
+    if (is_kept or keep is Keep.PACKAGES_AND_PATHS) and _is_below(place) and shelf.copy_as(place, path):
         return uri
     found = read_file(files, uri)
     return None if found is None else shelf.copy(folder, file_stem(uri), suffix_of(path), *found)
+
+
+def place_of(uri: str) -> str:
+    """The path below the output at which a reference finds its file: that of a package is in a folder of its name."""
+    return posixpath.normpath(_PACKAGE_START.sub("", uri) if is_of_package(uri) else uri)
 
 
 def is_of_package(uri: str) -> bool:
@@ -208,7 +216,7 @@ class _Standing(Builder):
 def with_stand_ins(mechanism: Mechanism, format: Format, files: Files, report: Report) -> Mechanism:
     """The mechanism with what the file that was read has in the places of meshes and images whose files are missing.
 
-    An exact format keeps the reference, and one for which packages are elsewhere keeps those to packages.
+    An exact format keeps the reference.
     """
     if not mechanism.stored or format.is_exact:
         return mechanism
@@ -216,12 +224,7 @@ def with_stand_ins(mechanism: Mechanism, format: Format, files: Files, report: R
     found: dict[Id, StoredMesh] = {}
     for key, part in mechanism.assets():
         stored = mechanism.stored.get(key)
-        if (
-            stored is None
-            or part.uri is None
-            or (format.keeps_package_uris and is_of_package(part.uri))
-            or files.find(part.uri) is not None
-        ):
+        if stored is None or part.uri is None or files.find(part.uri) is not None:
             continue
         if not isinstance(stored, Texture):
             found[key] = stored

@@ -8,6 +8,7 @@ import re
 from typing import TYPE_CHECKING, Literal
 
 from hymeko_x.ir.names import free_name
+from hymeko_x.source import NO_FILES
 
 if TYPE_CHECKING:
     from hymeko_x.source import Files
@@ -20,12 +21,13 @@ _DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)", re.IGNORECASE)
 class Shelf:
     """Where packers put files. ``files`` and ``copies`` are what `source.Package` wants, in the order of arrival.
 
-    With ``within``, which ends in a slash, all of them are below that folder.
+    With ``within``, which ends in a slash, all of them are below that folder. ``around`` are the files around the output.
     """
 
-    def __init__(self, mode: Literal["copy", "reference"], out_dir: str | None, within: str = "") -> None:
+    def __init__(self, mode: Literal["copy", "reference"], out_dir: str | None, within: str = "", around: Files = NO_FILES) -> None:
         self.mode = mode
         self.within = within
+        self.around = around
         self.files: dict[str, bytes] = {}
         self.copies: dict[str, str] = {}
         self._out_dir = out_dir

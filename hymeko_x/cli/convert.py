@@ -17,7 +17,7 @@ from hymeko_x.cli.parser import count
 from hymeko_x.cli.report import one_line, report_arguments, show_report, written_line
 from hymeko_x.cli.terminal import is_coloured
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_lines, verdict_of
-from hymeko_x.delivery import Delivery, report_unwritten, unchanged
+from hymeko_x.delivery import Delivery, place_of, report_unwritten, unchanged
 from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.reporting.document import document
 from hymeko_x.reporting.sarif import sarif
@@ -246,8 +246,7 @@ def _place(output: Output, assets: Literal["copy", "reference"] | None) -> pipel
     """Beside standard output nothing can be put, so that files are referred to from the working folder."""
     if output.path == "-":
         return pipeline.Place(assets="reference")
-    folder = os.path.dirname(output.path) or "."
-    return pipeline.Place(folder, assets, disk.package_uri(folder))
+    return place_of(output.path, assets)
 
 
 def _write(delivery: Delivery, output: Output, result: Result) -> None:

@@ -10,13 +10,14 @@ import posixpath
 import re
 from typing import TYPE_CHECKING
 
-from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import formats
+from hymeko_x.assets.companions import WITH_COMPANIONS, beside, companions_of
 from hymeko_x.assets.shelf import read_file, safe_name
+from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.residue.stand_ins import is_copy
-from hymeko_x.source import PackageFiles, PlacedFiles
+from hymeko_x.source import OriginalFiles, PackageFiles, PlacedFiles
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
@@ -67,9 +68,16 @@ def originals_of(
         path = files.find(uri)
         if key in shown and uri == getattr(mechanism.graph.vertices.get(key), "uri", None):
             continue
-        if path is not None and not _is_there(mechanism, aligned, key, there, path, contents):
-            found.setdefault(kept_name(there), path)
-    return found
+        if path is None:
+            continue
+        copy = _copy_of(mechanism, aligned, key, there, path, contents)
+        along = dict(companions_of(uri, path, files)) if suffix_of(path) in WITH_COMPANIONS else {}
+        if copy is None or any(package.copies.get(beside(copy, name)) != source for name, source in along.items()):
+            home = kept_name(there)
+            found.setdefault(home, path)
+            for name, source in along.items():
+                found.setdefault(beside(home, name), source)
+    return {name: path for name, path in found.items() if not name.startswith("../")}
 
 
 def _shown(mechanism: Mechanism, aligned: Mechanism) -> Iterator[Id]:
@@ -78,19 +86,18 @@ def _shown(mechanism: Mechanism, aligned: Mechanism) -> Iterator[Id]:
     yield from (view.mesh for view in mechanism.every_shape() if view.mesh is not None and view.id in aligned.graph)
 
 
-def _is_there(mechanism: Mechanism, aligned: Mechanism, key: Id, uri: str, path: str, contents: PackageFiles) -> bool:
-    """Whether the file of a reference is found when the package is read: under the same reference, or as that of the same element."""
-    copies = contents.package.copies
-    if copies.get(posixpath.normpath(uri)) == path:
-        return True
+def _copy_of(mechanism: Mechanism, aligned: Mechanism, key: Id, uri: str, path: str, contents: PackageFiles) -> str | None:
+    """Where the package has the file of a reference as it is and it is found again: under the same reference, or as the same element's."""
+    package = contents.package
+    if package.copies.get(posixpath.normpath(uri)) == path:
+        return posixpath.normpath(uri)
     part, image = mechanism.graph.vertices.get(key), aligned.graph.vertices.get(key)
     other = getattr(image, "uri", None)
     if other is None or uri != getattr(part, "uri", None) or not is_copy(mechanism, key, part, image):
-        return False
-    if copies.get(posixpath.normpath(other)) == path:
-        return True
+        return None
     name = posixpath.normpath(other)
-    return name in contents.package.files and _holds(contents.behind, path, contents.package.files[name])
+    is_same = package.copies.get(name) == path or (name in package.files and _holds(contents.behind, path, package.files[name]))
+    return name if is_same else None
 
 
 def with_originals(mechanism: Mechanism, originals: Mapping[str, str]) -> Mechanism:
@@ -99,24 +106,6 @@ def with_originals(mechanism: Mechanism, originals: Mapping[str, str]) -> Mechan
         return mechanism
     places = {uri: originals[name] for _, uri in files_named(mechanism) if (name := kept_name(uri)) in originals}
     return replace(mechanism, originals=places) if places else mechanism
-
-
-class OriginalFiles(Struct, frozen=True):
-    """The files of a mechanism that kept originals: another file of the same name does not count as one; a :class:`Files`."""
-
-    originals: Mapping[str, str]
-    behind: Files
-
-    def find(self, uri: str) -> str | None:
-        """The path of a file: where it is found as ever, unless the original has another content."""
-        path, kept = self.behind.find(uri), self.originals.get(uri)
-        if kept is None or path is None:
-            return path or kept
-        return path if _holds(self.behind, kept, self.behind.read(path)) else kept
-
-    def read(self, path: str) -> bytes:
-        """The content of a path that :meth:`find` returned. Raises: OSError."""
-        return self.behind.read(path)
 
 
 def _holds(files: Files, path: str, data: bytes) -> bool:
@@ -128,8 +117,8 @@ def _holds(files: Files, path: str, data: bytes) -> bool:
 
 def files_of(mechanism: Mechanism, files: Files) -> Files:
     """The files of a mechanism, among them those that another file carried or kept for it."""
-    files = PlacedFiles(mechanism.places, files) if mechanism.places else files
-    return OriginalFiles(mechanism.originals, files) if mechanism.originals else files
+    files = OriginalFiles(mechanism.originals, files) if mechanism.originals else files
+    return PlacedFiles(mechanism.places, files) if mechanism.places else files
 
 
 def fetcher(mechanism: Mechanism, files: Files) -> Callable[[str], bytes | None]:

@@ -51,7 +51,8 @@ def packed(
     mechanism: Mechanism, files: dict[str, bytes], target: str = "mjcf", mode: Mode | None = None, out_dir: str | None = None
 ) -> tuple[Mechanism, dict[str, bytes], dict[str, str], list[str]]:
     report = Report()
-    result, new, copies = pack(mechanism, formats.by_name(target), MemoryFiles(files), mode, report, out_dir=out_dir)
+    format = formats.by_name(target)
+    result, new, copies = pack(mechanism, format, MemoryFiles(files), Shelf(mode or format.assets, out_dir), report)
     return result, new, copies, [f"{d.severity.value} {d.code.id} {d.message}" for d in report]
 
 
@@ -284,9 +285,9 @@ def test_the_author_s_own_way_to_a_file_is_kept_where_it_leads_there_from_the_ou
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes" / "c.stl").write_bytes(STL)
     robot = with_meshes(*map(Mesh, ("./meshes/c.stl", "meshes/../meshes/c.stl", str(tmp_path / "meshes/c.stl"))))
-    beside = pack(robot, formats.HYMEKO, DiskFiles(tmp_path), None, Report(), out_dir=str(tmp_path))[0]
+    beside = pack(robot, formats.HYMEKO, DiskFiles(tmp_path), Shelf("reference", str(tmp_path)), Report())[0]
     assert uris(beside) == ["./meshes/c.stl", "meshes/../meshes/c.stl", "meshes/c.stl"]
-    below = pack(robot, formats.HYMEKO, DiskFiles(tmp_path), None, Report(), out_dir=str(tmp_path / "out"))[0]
+    below = pack(robot, formats.HYMEKO, DiskFiles(tmp_path), Shelf("reference", str(tmp_path / "out")), Report())[0]
     assert uris(below) == ["../meshes/c.stl"] * 3
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from hymeko_x import formats
 from hymeko_x.assets.pack import pack
+from hymeko_x.assets.shelf import Shelf
 from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends import urdf
@@ -44,7 +45,7 @@ def convert(source: Source, options: Options = FIXED) -> Converted:
     report = Report()
     mechanism = urdf.read(source, report).mechanism
     legal = legalize(choose(mechanism, options, report), "mjcf", report)
-    packed, files, copies = pack(legal, formats.MJCF, source.files, None, report)
+    packed, files, copies = pack(legal, formats.MJCF, source.files, Shelf("copy", None), report)
     assets = files | {name: source.files.read(path) for name, path in copies.items()}
     return Converted(mechanism, legal, mjcf.write(packed, options, report).main.decode(), assets, report)
 
