@@ -41,13 +41,13 @@ class _Chains(Struct):
     moved: dict[tuple[Id, int], tuple[Id, str]]
 
 
-def chain_dofs(mechanism: Mechanism, context: Context, chained: list[JointView]) -> Mechanism:
-    """Each of these joints becomes a chain of joints with one dof; balls become three hinges about x, y and z."""
+def chain_dofs(mechanism: Mechanism, context: Context, chained: list[JointView], *, keeps_balls: bool = False) -> Mechanism:
+    """Each of these joints becomes a chain of joints with one dof; balls stay, or become three hinges about x, y and z."""
     if not chained:
         return mechanism
     chains = _Chains(names_in_use(mechanism), {}, {}, {})
     for view in chained:
-        count = _add_chain(view, chains)
+        count = _add_chain(view, chains, keeps_balls=keeps_balls)
         if count:
             message = f"{view.id} has dofs or a frame that the format cannot represent; it is written as a chain of {count + 1} joints"
             context.report.note(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
@@ -56,9 +56,9 @@ def chain_dofs(mechanism: Mechanism, context: Context, chained: list[JointView])
     return mechanism.with_graph(mechanism.graph.replace(vertices=chains.vertices, edges=edges, without=old - set(chains.edges)))
 
 
-def _add_chain(view: JointView, chains: _Chains) -> int:
+def _add_chain(view: JointView, chains: _Chains, *, keeps_balls: bool) -> int:
     """Add the chain of a joint; returns how many links it adds."""
-    steps, offset = _steps(view)
+    steps, offset = _steps(view, keeps_balls=keeps_balls)
     if not steps:
         chains.edges[view.id] = joint_edge(Joint(), view.parent, view.child, offset)
         return 0
@@ -87,7 +87,7 @@ def _joint_name(view: JointView, step: _Step, last: bool, chains: _Chains) -> Id
     return chains.names.take("joint", step.dof.name or f"{view.id.name}_{step.number + 1}")
 
 
-def _steps(view: JointView) -> tuple[list[_Step], Pose]:
+def _steps(view: JointView, *, keeps_balls: bool) -> tuple[list[_Step], Pose]:
     """The joints of the chain, each with its frame in the one before, and the child's frame in the last one.
 
     Tr(a) M(q - ref) Tr(-a) is a joint at Tr(a) M(-ref) with the same axis and coordinate, followed by Tr(-a).
@@ -95,7 +95,7 @@ def _steps(view: JointView) -> tuple[list[_Step], Pose]:
     steps = []
     frame = view.parent_pose
     for number, dof in enumerate(view.joint.dofs):
-        for single in _singles(dof):
+        for single in [dof] if keeps_balls else _singles(dof):
             at = compose(frame, Pose(dof.anchor))
             steps.append(_Step(compose(at, _moved_by(single, -dof.ref)), replace(single, anchor=ZERO, ref=0.0), number))
             frame = Pose(add(ZERO, scaled(dof.anchor, -1.0)))  # a sum has no negative zeros

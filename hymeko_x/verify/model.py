@@ -63,6 +63,7 @@ _WIDTHS = {Kind.HINGE: 1, Kind.SLIDE: 1, Kind.SCREW: 1, Kind.BALL: 4, Kind.FREE:
 class Feature(Enum):
     """What only some formats represent. It is checked only where both formats and readers do; else the verdict has a note."""
 
+    POSITION_LIMITS = "position limits"
     VELOCITY_LIMITS = "velocity limits"
     EFFORT_LIMITS = "effort limits"
     DAMPING = "damping"
@@ -78,6 +79,8 @@ class Feature(Enum):
     TENDONS = "tendons"
     TIED_TENDONS = "couplings of tendons"
     LOOPS = "loops"
+    HELD_BASES = "free bases that a closure holds"
+    OPEN_LOOPS = "closures that are open in the zero pose"
     CURVES = "couplings that are no straight line of one leader"
 
 

@@ -17,13 +17,14 @@ from hymeko_x import codes
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf.values import NUMBER, BadText
 from hymeko_x.ir.mechanism import ROOT, Extra, Id
+from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import Role
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import markup
-from hymeko_x.xml.text import escaped
+from hymeko_x.xml.text import escaped, unescaped
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from hymeko_x.ir.mechanism import Mechanism, RobotEdge
     from hymeko_x.rewrite.context import Context
@@ -57,6 +58,7 @@ _OBEYED = ("preserveFixedJoint", "disableFixedJointLumping")
 _IMU_NOISE = re.compile(r"(?<=<imu>)\s*(?:<!--.*?-->\s*)*(<noise>.*?</noise>)", re.DOTALL)
 _IMU_PARTS: Mapping[str, str] = MappingProxyType({"rate": "angular_velocity", "accel": "linear_acceleration"})
 _PREFIX = re.compile(r"<([A-Za-z_][\w.-]*):|\s([A-Za-z_][\w.-]*):[\w.-]+=")
+_SENSOR_NAME = re.compile(r"<(?:sensor|projector)\b[^>]*?\sname=([\"'])(.*?)\1")
 _XMLNS = "@xmlns:"
 _MATERIALS = "file://media/materials/scripts/gazebo.material"
 
@@ -77,7 +79,7 @@ def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
         for key, found in _extras_of(node, mechanism, edges):
             extra = _with_namespaces(found, declared, context)
             if extra is not None and extra not in (*mechanism.extras.get(key, ()), *added.get(key, ())):
-                added.setdefault(key, []).append(extra)
+                added.setdefault(key, []).append(_named_once(extra, key, added.get(key, ()), context))
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), *found) for key, found in added.items()}}
     return replace(mechanism, graph=mechanism.graph.replace(edges=edges) if edges else mechanism.graph, extras=extras)
 
@@ -95,6 +97,19 @@ def _with_namespaces(extra: Extra, declared: Mapping[str, str], context: Context
         text = f'{name[0]} xmlns:{prefix}="{escaped(declared[prefix])}"{extra.text[name.end() :]}'
         extra = replace(extra, text=text)
     return extra
+
+
+def _named_once(extra: Extra, key: Id, others: Iterable[Extra], context: Context) -> Extra:
+    """A sensor under a name that no other one of its link or joint has."""
+    found = _SENSOR_NAME.match(extra.text)
+    if found is None:
+        return extra
+    taken = {other[2] for other in (_SENSOR_NAME.match(added.text) for added in others) if other is not None}
+    name = free_name(found[2], taken.__contains__, "_")
+    if name == found[2]:
+        return extra
+    context.report.note(codes.RENAMED, f"{key} has two sensors called '{unescaped(found[2])}'; the second one is '{unescaped(name)}'")
+    return replace(extra, text=extra.text[: found.start(2)] + name + extra.text[found.end(2) :])
 
 
 def _extras_of(node: Node, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> Iterator[tuple[Id, Extra]]:

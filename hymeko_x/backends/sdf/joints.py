@@ -24,6 +24,7 @@ from hymeko_x.ir.mechanism import WORLD, numbers_weight
 from hymeko_x.ir.parts import Dof, DofKind, Joint, Loop
 from hymeko_x.ir.values import numbers_text, rotate, unit
 from hymeko_x.xml.printing import Tag
+from hymeko_x.xml.text import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -48,7 +49,7 @@ def joint_tag(key: Id, scope: str, sheet: SdfSheet) -> Tag:
     names = _end_names(key, parent, child, scope, sheet)
     sheet.add_pose(tag, key, scope, sheet.places.find(scope, names[1]) or child, base)
     for name, text in zip(("parent", "child"), names, strict=True):
-        tag.add(name).children.append(text)
+        tag.add(name).children.append(escaped(text))
     for number, dof in enumerate(joint.dofs):
         _add_dof(tag, dof, words.AXES[number], word, key, scope, sheet)
     sheet.put_back(tag, key)
@@ -89,9 +90,10 @@ def _add_dof(tag: Tag, dof: Dof, name: str, word: str, key: Id, scope: str, shee
     texts = sheet.written(key)
     if dof.kind is DofKind.BALL:
         if dof.damping:
-            sheet.put(tag.child(name), DYNAMICS[0], dof.damping, texts, f"{name}/")
+            axis = tag.child(name)
             if not sheet.from_sdf:
-                tag.child(name).add("xyz").children.append("0 0 1")
+                axis.add("xyz").children.append("0 0 1")
+            sheet.put(axis, DYNAMICS[0], dof.damping, texts, f"{name}/")
         return
     if dof.kind is DofKind.SCREW:
         _add_pitch(tag, dof, texts, sheet)
@@ -123,13 +125,13 @@ def _add_axis(axis: Tag, dof: Dof, name: str, key: Id, scope: str, texts: Mappin
         child = axis.add("xyz", **({} if expressed is None else {"expressed_in": expressed}))
         child.children.append(text)
         if flag is not None:
-            axis.add("use_parent_model_frame").children.append(flag)
+            axis.add("use_parent_model_frame").children.append(escaped(flag))
         return
     own = dof.written.numbers if dof.written is not None and dof.written.kind == "axis" else None
     same = own is not None and len(own) == 3 and _rounded(unit((own[0], own[1], own[2]))) == _rounded(dof.axis)
     axis.add("xyz").children.append(numbers_text(own if same and own is not None else dof.axis))
     if text is None and flag is not None:
-        axis.add("use_parent_model_frame").children.append(flag)
+        axis.add("use_parent_model_frame").children.append(escaped(flag))
     elif words.minor(sheet.version) < words.VERSION_OF_JOINT_AXES:
         axis.add("use_parent_model_frame").children.append("0")
 

@@ -8,12 +8,13 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.backends.sdf.gazebo import obey_gazebo_fragments
+from hymeko_x.backends.sdf.loops import close_loops_by_joints
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
-from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge, pose_weight
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge
 from hymeko_x.ir.names import free_name, names_in_use, rename
 from hymeko_x.ir.notations import UNNAMED
-from hymeko_x.ir.parts import Body, Dof, DofKind, Frame, Joint, Light, Loop, Mount, Shape
+from hymeko_x.ir.parts import Body, Dof, DofKind, Frame, Joint, Light, Mount, Shape
 from hymeko_x.ir.values import ZERO, Pose, compose, quat_about, scaled
 from hymeko_x.rewrite.chains import chain_dofs
 from hymeko_x.rewrite.couplings import make_couplings_scalar
@@ -73,7 +74,7 @@ def chain_joints(mechanism: Mechanism, context: Context) -> Mechanism:
     """A joint with dofs that no SDF joint has becomes a chain of joints with one dof each."""
     if _is_from_sdf(mechanism):
         return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if words.default_type(view.joint) is None])
-    return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if not _is_joint(view)])
+    return chain_dofs(mechanism, context, [view for view in mechanism.joints.values() if not _is_joint(view)], keeps_balls=True)
 
 
 def _is_joint(view: JointView) -> bool:
@@ -87,6 +88,25 @@ def _is_joint(view: JointView) -> bool:
     return words.default_type(view.joint) not in (None, "revolute2")
 
 
+def remove_crossed_limits(mechanism: Mechanism, context: Context) -> Mechanism:
+    """A dof whose lower limit is above its upper one has no position limits: libsdformat refuses such limits."""
+    edges: dict[Id, RobotEdge] = {}
+    for view in mechanism.joints.values():
+        dofs = tuple(_uncrossed(dof) for dof in view.joint.dofs)
+        if dofs == view.joint.dofs:
+            continue
+        edges[view.id] = replace(mechanism.graph.edges[view.id], data=replace(view.joint, dofs=dofs))
+        message = f"{view.id}: the lower limit is above the upper one, which SDF refuses; it is written without position limits"
+        context.report.warn(codes.REWRITTEN, message, mechanism.origin(view.id), element=str(view.id))
+    return mechanism.with_graph(mechanism.graph.replace(edges=edges)) if edges else mechanism
+
+
+def _uncrossed(dof: Dof) -> Dof:
+    lower, upper = dof.limits.lower, dof.limits.upper
+    crossed = lower is not None and upper is not None and lower > upper
+    return replace(dof, limits=replace(dof.limits, lower=None, upper=None)) if crossed else dof
+
+
 # ---- names -------------------------------------------------------------------------------------------------------------------
 
 
@@ -94,10 +114,11 @@ def make_names_unique_in_models(mechanism: Mechanism, context: Context) -> Mecha
     """Links, frames and joints of a model have different names; ``::`` only stands between a model and what is in it."""
     taken: set[str] = set()
     renamed: dict[Id, Id] = {}
+    unwritten = _unwritten(mechanism)
     order = ("body", "joint", "loop", "frame")
     named = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if key.kind in order]
     for key in sorted(named, key=lambda key: order.index(key.kind)):
-        if _is_unwritten(key, mechanism):
+        if key in unwritten:
             continue
         wanted = key.name.replace(words.SCOPE, "_")
         if (wanted.startswith("__") and wanted.endswith("__")) or wanted == words.WORLD_FRAME:
@@ -111,10 +132,13 @@ def make_names_unique_in_models(mechanism: Mechanism, context: Context) -> Mecha
     return rename(mechanism, renamed)
 
 
-def _is_unwritten(key: Id, mechanism: Mechanism) -> bool:
-    """Whether a joint to the world stays without a name in the file."""
-    view = mechanism.joints.get(key)
-    return view is not None and view.parent == WORLD and mechanism.notation(key, UNNAMED) is not None
+def _unwritten(mechanism: Mechanism) -> frozenset[Id]:
+    """The joints to the world that stay without a name in the file: those of bases that float, or of a robot in which nothing moves."""
+    views = mechanism.joints.values()
+    nameless = [view for view in views if view.parent == WORLD and mechanism.notation(view.id, UNNAMED) is not None]
+    free = [view.id for view in views if view.parent == WORLD and [dof.kind for dof in view.joint.dofs] == [DofKind.FREE]]
+    stands = not any(view.joint.dofs for view in views) and all(view in nameless for view in views if view.parent == WORLD)
+    return frozenset([*free, *(view.id for view in nameless if stands)])
 
 
 # ---- the world ---------------------------------------------------------------------------------------------------------------
@@ -144,27 +168,6 @@ def _on(edge: RobotEdge, link: Id) -> RobotEdge:
     return replace(edge, arcs=tuple([replace(arc, target=link) if arc.target == WORLD and arc.sign > 0 else arc for arc in edge.arcs]))
 
 
-def close_loops_by_joints(mechanism: Mechanism, context: Context) -> Mechanism:
-    """A closure joins two bodies, of which the second one is not the world; frames stand for the bodies that they are on."""
-    places = {view.thing: (view.body, view.pose) for views in mechanism.mounts.values() for view in views}
-    edges: dict[Id, RobotEdge] = {}
-    gone = []
-    for key, loop, arcs in mechanism.edges(Loop):
-        if len(arcs) != 2 or loop.kind not in ("connect", "weld", "joint") or words.default_type(Joint(loop.dofs)) is None:
-            context.report.warn(codes.NOT_SAID, f"{key} is no joint of SDF; it is left out", mechanism.origin(key), element=str(key))
-            gone.append(key)
-            continue
-        ends = []
-        for arc in arcs:
-            body, on = places.get(arc.target, (arc.target, Pose()))
-            ends.append(replace(arc, target=body, weight=compose(on, pose_weight(arc))) if body != arc.target else arc)
-        if ends[1].target == WORLD:
-            ends.reverse()
-        if tuple(ends) != arcs:
-            edges[key] = replace(mechanism.graph.edges[key], arcs=tuple(ends))
-    return mechanism.with_graph(mechanism.graph.replace(edges=edges, without=gone)) if edges or gone else mechanism
-
-
 RULES: tuple[Rule, ...] = (
     make_names_usable,
     unless_from_sdf(drop_engine_shapes),
@@ -173,6 +176,7 @@ RULES: tuple[Rule, ...] = (
     unless_from_sdf(make_tensors_physical),
     unless_from_sdf(lower_inner_free_joints),
     unless_from_sdf(limit_efforts_by_actuators),
+    unless_from_sdf(remove_crossed_limits),
     move_anchors_into_frames,
     chain_joints,
     unless_from_sdf(close_loops_by_joints),

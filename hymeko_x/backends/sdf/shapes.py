@@ -11,6 +11,7 @@ from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import Box, Capsule, Cylinder, Ellipsoid, Material, Mesh, MeshShape, NoShape, Plane, Role, Sphere
 from hymeko_x.ir.values import Pose, compose, inverse, quat_from_z, unit
 from hymeko_x.xml.printing import Tag
+from hymeko_x.xml.text import escaped
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -115,6 +116,6 @@ def _add_material(visual: Tag, view: ShapeView, texts: Mapping[str, str], sheet:
     metal = visual.child("material").child("pbr").child("metal")
     for name, use in materials.MAPS.items():
         if use in images:
-            metal.add(name).children.append(images[use])
+            metal.add(name).children.append(escaped(images[use]))
     for name, value in numbers:
         sheet.put(metal, Field(name, name, NUMBER), value, texts, "material/pbr/metal/")

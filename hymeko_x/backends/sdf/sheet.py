@@ -16,6 +16,7 @@ from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Camera, Coupling, DofKind, Joint, Layer, Sense, Sensor, Texture
 from hymeko_x.ir.values import IDENTITY, numbers_text, rotation_angle, rpy_of
 from hymeko_x.xml.printing import foreign_text, put_back
+from hymeko_x.xml.text import escaped
 from hymeko_x.xml.unread import COMMENT, FOLLOWING, PRECEDING
 
 if TYPE_CHECKING:
@@ -179,7 +180,7 @@ class SdfSheet:
             return
         for step in field.path.split("/"):
             tag = tag.child(step)
-        tag.children = [text] if text else []
+        tag.children = [escaped(text)] if text else []
 
     def text(self, codec: Codec, value: Any, default: Any, own: str | None) -> str | None:
         """The text of a value; None for the default, unless its author wrote it."""

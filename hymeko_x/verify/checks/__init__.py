@@ -21,6 +21,7 @@ from hymeko_x.verify.checks.pair import MOST_SHOWN, Pair, counted, pair_up
 from hymeko_x.verify.checks.shapes import check_shapes
 from hymeko_x.verify.checks.tendons import check_tendons
 from hymeko_x.verify.matching import BASE, BODIES, JOINTS, match
+from hymeko_x.verify.matching.held import with_bases_held
 from hymeko_x.verify.meshes import Meshes
 from hymeko_x.verify.verdict import Check, Gap, Verdict
 
@@ -110,6 +111,7 @@ def compare(
         reason = _unusable(model)
         if reason:
             return Verdict(engines, reason=reason)
+    a, b = with_bases_held(a, b), with_bases_held(b, a)
     reader = Meshes(read=meshes) if isinstance(meshes, bool) else meshes
     pair = pair_up(a, b, match(a, b, structure=structure), samples, seed, meshes=reader)
     for model, q in ((a, pair.q_a), (b, pair.q_b)):

@@ -50,10 +50,11 @@ def check_dofs(pair: Pair) -> Iterator[Check]:
 
 
 def _check_limits(pair: Pair) -> Iterator[Check]:
+    _add_unrepresented(pair, Feature.POSITION_LIMITS, lambda dof: dof.kind is not Kind.FREE and not _is_unlimited(dof))
     found = Differences("position limits", "rad or m")
     for (d, e), shift in zip(pair.match.dofs, pair.shifts, strict=True):
         ours, theirs = pair.a.dofs[d], pair.b.dofs[e]
-        if ours.kind is Kind.FREE:
+        if ours.kind is Kind.FREE or not _both_represent(pair, Feature.POSITION_LIMITS, d, e):
             continue
         lower = _distance(_bound(ours.lower), _bound(theirs.lower, shift))
         upper = _distance(_bound(ours.upper), _bound(theirs.upper, shift))

@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.verdict import Check
 
+_OPEN = 1e-6
+"""In m: a closure whose ends are this far apart is open."""
+
 LoopPair = tuple[Loop, Loop, bool]
 """A closure of each robot, and whether the second names the two bodies the other way round."""
 
@@ -28,6 +31,7 @@ LoopPair = tuple[Loop, Loop, bool]
 def check_loops(pair: Pair) -> Iterator[Check]:
     """Every closure of the first robot in the second, no new ones, and how open they are."""
     loops, findings = _pair_loops(pair)
+    loops = _without_open_ones(pair, loops)
     if not loops and not findings:
         return
     gaps, angles = Peaks(len(loops)), Peaks(len(loops))
@@ -46,6 +50,17 @@ def check_loops(pair: Pair) -> Iterator[Check]:
         position.add(gaps.values[k], 2 * allowed.metres, _loop_label(pair.a, loop))
         rotation.add(angles.values[k], 2 * allowed.radians, _loop_label(pair.a, loop))
     yield from (*position.checks(), *rotation.checks())
+
+
+def _without_open_ones(pair: Pair, loops: list[LoopPair]) -> list[LoopPair]:
+    """The pairs without closures that are open in the zero pose, where the second robot's format closes every one there."""
+    if Feature.OPEN_LOOPS in pair.b.features:
+        return loops
+    opened = [
+        found for found in loops if float(np.linalg.norm(_gap(*_ends(pair.zero_a[None], found[0], swapped=False), found[0].kind))) > _OPEN
+    ]
+    pair.add_gap(pair.b, Feature.OPEN_LOOPS, [_loop_label(pair.a, loop) for loop, _, _ in opened])
+    return [found for found in loops if found not in opened]
 
 
 # ---- counterparts ----------------------------------------------------------------------------------------------------

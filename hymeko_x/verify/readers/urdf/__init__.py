@@ -51,6 +51,7 @@ FEATURES = frozenset(Feature) - {
     Feature.TENDONS,
     Feature.TIED_TENDONS,
     Feature.LOOPS,
+    Feature.OPEN_LOOPS,
     Feature.CURVES,
 }
 UNREPRESENTED = frozenset(

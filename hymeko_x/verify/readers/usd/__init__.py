@@ -30,7 +30,14 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.readers import Lookup
 
-FEATURES = frozenset({Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES, Feature.TENDONS})
+FEATURES = frozenset(
+    {
+        *(Feature.POSITION_LIMITS, Feature.VISUALS, Feature.COLLISIONS, Feature.FIXED_JOINT_NAMES),
+        *(Feature.LOOPS, Feature.HELD_BASES, Feature.OPEN_LOOPS, Feature.CURVES, Feature.TENDONS),
+    }
+)
+UNREPRESENTED = frozenset({(Feature.POSITION_LIMITS, Kind.BALL)})
+"""The cone of a spherical joint bounds the swing of one axis, and no engine's ball has such limits."""
 SINGLE = 1.2e-7
 """The relative precision of what UsdPhysics stores."""
 _IDENTITY = 1e-6
@@ -101,6 +108,7 @@ def _model(scene: Scene, name: str, found: Mapping[Any, Any]) -> KinematicModel:
         bodies=tuple(bodies),
         loops=tuple(read_loop(edge, numbers.get(edge.parent, WORLD), numbers.get(edge.child, WORLD)) for edge in closing),
         features=FEATURES,
+        unrepresented=UNREPRESENTED,
         precision=SINGLE,
     )
     tendons = _names(scene.stage, tendon_paths(prims))

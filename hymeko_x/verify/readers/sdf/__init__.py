@@ -41,6 +41,7 @@ from hymeko_x.verify.model import (
     world_body,
 )
 from hymeko_x.verify.readers import native_output
+from hymeko_x.verify.readers.sdf.stand_ins import without_stand_ins
 from hymeko_x.verify.spatial import frame_with_z, shifted_tensor
 
 if TYPE_CHECKING:
@@ -48,18 +49,16 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.readers import Lookup
 
-FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.CURVES})
+FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.POSITION_LIMITS})
 _SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS})
+_LIMITS = (Feature.POSITION_LIMITS, Feature.VELOCITY_LIMITS)
 UNREAD = _SHAPES | {Feature.FRICTION, Feature.EFFORT_LIMITS, Feature.SPRINGS, Feature.REFS, Feature.SENSORS}
 """What SDF represents and this reader leaves out."""
-UNREPRESENTED = frozenset({(Feature.DAMPING, Kind.FREE), (Feature.VELOCITY_LIMITS, Kind.FREE)})
-"""A free base is a link without a joint, which has no damping and no limits."""
-_TURNS = {"ball_rpy": Kind.BALL, "quaternion_floating": Kind.FREE, "rpy_floating": Kind.FREE}
+UNREPRESENTED = frozenset({*((limit, kind) for limit in _LIMITS for kind in (Kind.BALL, Kind.FREE)), (Feature.DAMPING, Kind.FREE)})
+"""A free base is a link without a joint, which has no damping and no limits; the axes of a ball have no limits either."""
 _ROLES = {Role.VISUAL: GeometryRole.kIllustration, Role.COLLISION: GeometryRole.kProximity}
 _LEAST = 2e-10
 """kg and kg m^2: a link cannot be without mass, and so little stands for none."""
-_WORLD_LINK = "world_geometry"
-"""A link of this name that is fixed to the world holds what is on the world itself."""
 _MIMIC = (("multiplier", "1"), ("offset", "0"), ("reference", "0"))
 _STATIC = "sdformat_model_static_"
 """How the names of the joints begin that Drake adds to static models."""
@@ -130,28 +129,21 @@ def _model(plant: Any, scene: Any | None, path: Path, screws: Mapping[int, Array
     order = parents_first(children.get(WORLD, ()), children)
     numbers = {WORLD: WORLD} | {index: number for number, index in enumerate(order, start=1)}
     words = _Words(_scopes(plant), screws)
-    bodies = [_body(plant, scene, index, joints.get(index), numbers, words) for index in order]
+    is_alone = len(order) - len(joints) == 1
+    bodies = [_body(plant, scene, index, joints.get(index), numbers, words, is_alone=is_alone) for index in order]
+    world = world_body(shapes=tuple(_shapes(plant, scene, WORLD)))
+    found, loops = without_stand_ins([world, *bodies], [_loop(joint, numbers, words) for joint in closing])
     model = KinematicModel(
         name=path.stem,
         format="sdf",
         engine="libsdformat in Drake",
-        bodies=_without_world_link([world_body(shapes=tuple(_shapes(plant, scene, WORLD))), *bodies]),
-        loops=tuple(_loop(joint, numbers, words) for joint in closing),
+        bodies=found,
+        loops=loops,
         features=FEATURES if scene is None else FEATURES | _SHAPES,
         unread=UNREAD,
         unrepresented=UNREPRESENTED,
     )
     return replace(model, couplings=tuple(_couplings(path, model)))
-
-
-def _without_world_link(bodies: list[Body]) -> tuple[Body, ...]:
-    """The bodies, with the shapes of the link that stands for the world on the world."""
-    place = next((i for i, body in enumerate(bodies) if body.name == _WORLD_LINK and body.parent == WORLD and not body.joint.dofs), None)
-    if place is None or any(body.parent == place for body in bodies[1:]):
-        return tuple(bodies)
-    shapes = (*bodies[WORLD].shapes, *bodies[place].shapes)
-    rest = [replace(body, parent=body.parent - (body.parent > place)) for body in (*bodies[1:place], *bodies[place + 1 :])]
-    return (replace(bodies[WORLD], shapes=shapes), *rest)
 
 
 # ---- mimic joints ------------------------------------------------------------------------------------------------------------
@@ -199,7 +191,9 @@ class _Words(NamedTuple):
         return self.scopes.get(int(element.model_instance()), "") + str(element.name())
 
 
-def _body(plant: Any, scene: Any | None, index: int, joint: Any | None, numbers: Mapping[int, int], words: _Words) -> Body:
+def _body(
+    plant: Any, scene: Any | None, index: int, joint: Any | None, numbers: Mapping[int, int], words: _Words, *, is_alone: bool
+) -> Body:
     """A body; for an inertia that is not physical Drake takes a ball of water, of which the file knows nothing."""
     body = plant.get_body(BodyIndex(index))
     inertia = body.default_spatial_inertia()
@@ -209,17 +203,21 @@ def _body(plant: Any, scene: Any | None, index: int, joint: Any | None, numbers:
     if mass <= _LEAST and float(np.abs(tensor).max()) <= _LEAST:
         mass, com, tensor = 0.0, np.zeros(3), np.zeros((3, 3))
     name, shapes = words.name(body), tuple(_shapes(plant, scene, index))
-    parent, above = (WORLD, _base(plant, body)) if joint is None else (numbers[_parent(joint)], _joint(joint, words))
+    parent, above = (WORLD, _base(plant, body, is_alone=is_alone)) if joint is None else (numbers[_parent(joint)], _joint(joint, words))
     return Body(name, parent, above, mass, com, tensor, shapes, inertia_is_known=known)
 
 
 # ---- joints ------------------------------------------------------------------------------------------------------------------
 
 
-def _base(plant: Any, body: Any) -> Joint:
-    """The joint of a body without one: libsdformat says where it is, and that it floats; at the origin it is open."""
+def _base(plant: Any, body: Any, *, is_alone: bool) -> Joint:
+    """The joint of a body without one: libsdformat says where it is, and that it floats; the only one is open at the origin."""
     pose = np.array(plant.GetDefaultFloatingBaseBodyPose(body).GetAsMatrix4())
-    return Joint(open=True) if np.array_equal(pose, np.eye(4)) else Joint(None, pose, (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),))
+    return (
+        Joint(open=True)
+        if is_alone and np.array_equal(pose, np.eye(4))
+        else Joint(None, pose, (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),))
+    )
 
 
 def _joint(joint: Any, words: _Words) -> Joint:
@@ -292,8 +290,10 @@ def _dofs(joint: Any, name: str | None, words: _Words) -> Iterator[Dof]:
             yield _scalar(joint, Kind.SLIDE, x, 0, None)
             yield _scalar(joint, Kind.SLIDE, y, 1, None)
             yield _scalar(joint, Kind.HINGE, z, 2, None)
+        case "ball_rpy":
+            yield Dof(Kind.BALL, z, name=name, damping=float(joint.default_damping_vector()[0]))
         case _:
-            yield Dof(_TURNS.get(kind, Kind.FREE), z, name=name)
+            yield Dof(Kind.FREE, z, name=name)
 
 
 def _scalar(joint: Any, kind: Kind, axis: Array, index: int, name: str | None, pitch: float = 0.0) -> Dof:

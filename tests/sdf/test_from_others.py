@@ -1,0 +1,60 @@
+# ruff: noqa: E501 - files as they stand
+"""What only other formats have, as SDF: Drake accepts the file and sees the same robot, as far as SDF can represent it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import hymeko_x as hx
+
+BALL = '<geom type="sphere" size=".1"/>'
+UNNAMED_BODIES = f"""<mujoco model="m"><worldbody><body><joint type="slide"/>{BALL}<body pos="1 0 0"><joint type="hinge"/>{BALL}</body></body>
+<body pos="3 0 0">{BALL}</body></worldbody></mujoco>"""
+SAME_NAMES = f"""<mujoco model="m"><worldbody><body name="weight"><joint name="weight" type="slide"/>{BALL}
+<site name="weight"/></body></worldbody></mujoco>"""
+BALL_JOINT = f"""<mujoco model="m"><worldbody><body name="a">{BALL}<body name="b" pos="1 0 0"><joint name="j" type="ball" damping="0.5" range="0 30"/>
+{BALL}</body></body></worldbody></mujoco>"""
+TWO_BASES = f"""<mujoco model="m"><worldbody><body><freejoint/>{BALL}</body><body pos="4 0 0"><freejoint/>{BALL}
+<body pos="1 0 0"><joint type="slide"/>{BALL}</body></body></worldbody></mujoco>"""
+SLIDE_AND_BALL = f"""<mujoco model="m"><worldbody><body name="a"><joint name="s" type="slide" axis=".6 0 .8"/><joint name="j" type="ball"/>{BALL}
+</body></worldbody></mujoco>"""
+CLOSURES = f"""<mujoco model="m"><worldbody><site name="here" pos="0 0 1"/><body name="hung" pos="0 0 1"><freejoint/>{BALL}<site name="there"/></body>
+<body name="base" pos="2 0 0"><joint name="turn"/>{BALL}<body name="tip" pos="1 0 0"><joint name="bend"/>{BALL}</body></body>
+<body name="late" pos="5 0 0"><freejoint/>{BALL}</body><body name="led" pos="7 0 0"><joint name="led"/>{BALL}</body></worldbody>
+<equality><connect name="hook" site1="here" site2="there"/><connect name="again" body1="base" body2="tip" anchor="1 0 0"/>
+<weld name="stuck" body1="tip" body2="late"/><joint name="law" joint1="led" joint2="turn" polycoef="0 1 2 0 0"/></equality></mujoco>"""
+CROSSED = """<robot name="m"><link name="a"/><link name="b"/><joint name="j" type="prismatic"><parent link="a"/><child link="b"/>
+<axis xyz="1 0 0"/><limit lower="2" upper="1" effort="1" velocity="1"/></joint></robot>"""
+TWICE = """<robot name="m"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<gazebo reference="a"><sensor name="eye" type="camera"><camera/></sensor><sensor name="eye" type="imu"/></gazebo></robot>"""
+INNER_FREE = "m : robot { a { mass 1 } b { mass 1 } @j : floating { [1 2 3] + a - b } }"
+MARKUP = "m : robot { a { mass 1 } `<b> & c` { mass 1 } @j : fixed { [1 2 3] + a - `<b> & c` } }"
+CYCLE = """m : robot { a { mass 1 } b { mass 1 } c { mass 1 } @j : continuous { [1 0 0] + a - b } @k : continuous { [0 1 0] + b - c }
+@l : connect { [0 0 1] ~ c [1 1 1] ~ a } }"""
+
+SAME, LIMITED = "same", "same as far as sdf can say"
+CASES = {
+    "bodies without names": ("m.xml", UNNAMED_BODIES, SAME),
+    "a body, a joint and a site of one name": ("m.xml", SAME_NAMES, SAME),
+    "a ball with damping and limits": ("m.xml", BALL_JOINT, LIMITED),
+    "two free bases, one of them at the origin": ("m.xml", TWO_BASES, SAME),
+    "a slide and a ball above one body": ("m.xml", SLIDE_AND_BALL, SAME),
+    "closures that hold free bodies, or join what is joined": ("m.xml", CLOSURES, LIMITED),
+    "limits that are crossed": ("m.urdf", CROSSED, SAME),
+    "two sensors of one name": ("m.urdf", TWICE, SAME),
+    "a free joint below a body": ("m.hymeko", INNER_FREE, SAME),
+    "names with markup": ("m.hymeko", MARKUP, SAME),
+    "a cycle whose closure leads to its root": ("m.hymeko", CYCLE, SAME),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_drake_sees_the_same_robot(case: str, tmp_path: Path) -> None:
+    pytest.importorskip("pydrake")
+    name, text, expected = CASES[case]
+    (tmp_path / name).write_text(text, "utf-8")
+    hx.convert(str(tmp_path / name), str(tmp_path / "out.sdf"))
+    verdict = hx.verify(str(tmp_path / name), str(tmp_path / "out.sdf"), samples=20)
+    assert verdict.verdict == expected, [*verdict.failed, *verdict.limits, verdict.reason]
