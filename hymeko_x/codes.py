@@ -1,6 +1,6 @@
 """Every code that the program can say, in one table. `hymeko-x explain CODE` prints the explanation.
 
-HX00x files and XML, HX02x numbers and names, HX04x structure, HX05x xacro, HX06x the HyMeKo language, HX1xx loss and
+HX00x files and XML, HX02x numbers and names, HX04x structure, HX05x xacro, HX06x the HyMeKo language and its JSON form, HX1xx loss and
 rewriting for a target, HX2xx assets, HX3xx verification, HX9xx a bug of ours. A code never changes its meaning.
 """
 
@@ -48,6 +48,7 @@ NOT_WELL_FORMED = Code(
     "the XML is not well-formed",
     "An end tag is missing, the file is cut off, or a tag is damaged. What could be read was read, but nothing tells how much is missing.",
 )
+NOT_JSON = Code("HX013", "the input is not JSON", "The text breaks a rule of JSON, or a key stands twice in one object, so that one of its values would be lost.")
 UNKNOWN_TARGET = Code(
     "HX012",
     "the target is not known, or is for another format",
@@ -180,6 +181,11 @@ BAD_EXPRESSION = Code(
 )
 NOT_A_ROBOT = Code(
     "HX065", "the graph is not a mechanism", "The text is a well-formed hypergraph, but its edges do not describe joints between bodies."
+)
+BAD_DOCUMENT = Code(
+    "HX066",
+    "a document is not in the JSON form",
+    "The text is JSON, but not the form of a robot that `hymeko-x schema` prints: a key is missing or unknown, or a value is of another type. The message begins with the path of the value, as `$.edges[2].dofs[0].axis`.",
 )
 
 # ---- HX1xx: loss and rewriting ---------------------------------------------------------------------------------------

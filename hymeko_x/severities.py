@@ -29,6 +29,8 @@ ERRORS: Mapping[Code, str] = {
     codes.UNKNOWN_FORMAT: "reading a text by the rules of another format gives a wrong robot or none",
     codes.NOT_XML: _NOTHING_READ,
     codes.WRONG_ROOT: _NOTHING_READ,
+    codes.NOT_JSON: _NOTHING_READ,
+    codes.BAD_DOCUMENT: _NOTHING_READ,
     codes.TOO_LARGE: "reading goes no further, so that the rest would be missing",
     codes.ENTITIES: "without expanding them their content would be missing",
     codes.NOT_WELL_FORMED: "nothing tells how much of the robot is missing",

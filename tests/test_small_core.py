@@ -85,6 +85,7 @@ ADVICE = {
     "render": ("arm.urdf -o arm.png", "draw"),
     "report": ("arm.urdf arm.urdf -o both.html", "verify"),
     "roundtrip": ("arm.urdf", "verify"),
+    "schema": ("", None),
     "simulate": ("arm.urdf", "dynamics"),
     "update": ("arm.urdf arm.urdf", None),
     "verify": ("arm.urdf arm.urdf", "verify"),

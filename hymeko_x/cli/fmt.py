@@ -46,7 +46,7 @@ def run_fmt(chosen: argparse.Namespace) -> int:
 
 def _names(given: list[str]) -> Iterator[str]:
     """The files, and those in folders, hidden ones aside. Raises: UsageError for a folder without any."""
-    suffixes = tuple(suffix for row in formats.FORMATS if row.is_exact for suffix in row.suffixes)
+    suffixes = formats.OWN.suffixes
     for name in given:
         if name == "-" or not Path(name).is_dir():
             yield name

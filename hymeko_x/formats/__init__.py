@@ -100,6 +100,7 @@ MJCF = Format(
     "hymeko_x.backends.mjcf",
     "hymeko_x.backends.mjcf.rules",
     roots=("mujoco", "mujocoinclude"),
+    shared_suffixes=frozenset({".xml"}),
     outline="hymeko_x.frontends.mjcf.outline:outline",
     completes="hymeko_x.frontends.mjcf.complete:complete",
     flattens="hymeko_x.frontends.mjcf.flat:flatten",
@@ -191,7 +192,22 @@ SDF = Format(
     comment=_XML_COMMENT,
 )
 
-FORMATS: tuple[Format, ...] = (HYMEKO, URDF, XACRO, MJCF, USD, USDC, USDZ, SDF)
+JSON = Format(
+    "json",
+    "the hypergraph in JSON, with a schema",
+    (".json",),
+    "hymeko_x.frontends.json",
+    "hymeko_x.backends.json",
+    container_of="hymeko",
+    schema="hymeko_x.formats.json.schema:json_schema",
+    is_exact=True,
+    shared_suffixes=frozenset({".json"}),
+    beginning=rb'\s*+\{[^{}\[\]]{0,1000}"hymeko-x"\s*:',
+    assets="reference",
+    reference="hymeko_x.verify.readers.hymeko",
+)
+
+FORMATS: tuple[Format, ...] = (HYMEKO, URDF, XACRO, MJCF, USD, USDC, USDZ, SDF, JSON)
 """Every format that can be read, written or verified. Where two claim a suffix, the content decides, and then the first one."""
 
 OWN = HYMEKO
@@ -255,13 +271,13 @@ def of_output(path: str, name: str | None = None) -> Format:
 def of_input(name: str, data: bytes) -> Format:
     """The format of a file: by its suffix where that belongs to one format only, else by its content.
 
-    XML is recognised by its root element, other formats by their first bytes, and HyMeKo by a name that stands before a brace.
+    XML is recognised by its root element, other formats by their first bytes, and texts by the pattern with which they begin.
 
     Raises: Refusal HX003.
     """
     suffix = splitext(name.lower())[1]
     owners = [format for format in FORMATS if suffix in format.suffixes]
-    if len(owners) == 1 and suffix != ".xml":
+    if len(owners) == 1 and suffix not in owners[0].shared_suffixes:
         return owners[0]
     root = xml_root(data)
     found = of_root(root) or next((format for format in FORMATS if format.magic and data.startswith(format.magic)), None)
@@ -269,10 +285,11 @@ def of_input(name: str, data: bytes) -> Format:
         return found
     if root is not None:
         raise refuse(codes.UNKNOWN_FORMAT, f"the root element <{root}> belongs to no format", Origin(name), hint=_root_hint())
-    if owners:
+    if owners and owners[0].beginning is None:
         return owners[0]
-    found = next((format for format in FORMATS if format.beginning and re.match(format.beginning, data, re.DOTALL)), None)
-    if found is None or suffix not in ("", ".txt") or b"\0" in data[:4096]:
+    text = data.removeprefix(b"\xef\xbb\xbf")
+    found = next((format for format in FORMATS if format.beginning and re.match(format.beginning, text, re.DOTALL)), None)
+    if found is None or suffix not in ("", ".txt", *found.shared_suffixes) or b"\0" in data[:4096]:
         message = f"neither suffix nor content of '{name}' belongs to a format"
         raise refuse(codes.UNKNOWN_FORMAT, message, Origin(name), hint=_suffix_hint("--from"))
     return found

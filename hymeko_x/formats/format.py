@@ -36,7 +36,9 @@ class Format(Struct, frozen=True):
     magic: tuple[bytes, ...] = ()
     """The first bytes of its files."""
     beginning: bytes | None = None
-    """The pattern with which its texts begin, where they have neither a root element nor first bytes of their own (HyMeKo)."""
+    """The pattern with which its texts begin, where they have neither a root element nor first bytes of their own (HyMeKo, JSON)."""
+    shared_suffixes: frozenset[str] = frozenset()
+    """Those of its suffixes that other files have as well, so that the content decides."""
     layout_options: frozenset[str] = frozenset()
     """Those of the options ``layout``, ``nested``, ``split``, ``sites`` and ``mesh_prefix`` that it takes when it is written."""
     comment: tuple[bytes, str] | None = None
@@ -44,11 +46,13 @@ class Format(Struct, frozen=True):
     is_exact: bool = False
     """Whether it represents every mechanism exactly, so that it carries no residue and keeps what only another format understands."""
     container_of: str = ""
-    """The name of the format of which it is another container, with the same reader and the same extras (usdc, usdz)."""
+    """The name of the format of which it is another container, with the same content and the same extras (usdc, usdz; json)."""
     expands_to: str = ""
     """The name of the format that its files expand to (xacro)."""
     vocabulary: str | None = None
     """The module with ``fields_of(kind)``, ``units()`` and ``si_of(unit)`` for editors."""
+    schema: str | None = None
+    """The function that makes the JSON Schema of its texts."""
     outline: str | None = None
     """The function ``(source, report) -> outline`` that finds where everything stands in its text."""
     imports: str | None = None

@@ -37,7 +37,7 @@ class Layout(NamedTuple):
     compared: Callable[[object], tuple[Any, ...]]
 
 
-class Noted(Struct, frozen=True):
+class Noted(Struct, frozen=True, forbid_unknown_fields=True):
     """A value that also keeps how its author wrote it, or where: such fields are ``uncompared``."""
 
     uncompared = ("written",)  # not annotated: it is no field

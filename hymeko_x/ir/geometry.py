@@ -7,49 +7,53 @@ from msgspec import Struct
 from hymeko_x.ir.values import Vec3  # noqa: TC001 - msgspec and hypothesis resolve the types of fields here
 
 
-class Box(Struct, frozen=True):
+class _Solid(Struct, frozen=True, tag_field="type", tag=str.lower, forbid_unknown_fields=True):
+    """The ``type`` tells the geometries apart where they are data of another language (JSON)."""
+
+
+class Box(_Solid, frozen=True):
     """Full edge lengths in m, centred."""
 
     size: Vec3
 
 
-class Sphere(Struct, frozen=True):
+class Sphere(_Solid, frozen=True):
     """Radius in m, centred."""
 
     radius: float
 
 
-class Cylinder(Struct, frozen=True):
+class Cylinder(_Solid, frozen=True):
     """Radius and full length in m along z, centred."""
 
     radius: float
     length: float
 
 
-class Capsule(Struct, frozen=True):
+class Capsule(_Solid, frozen=True):
     """Radius and length in m along z without the caps, centred."""
 
     radius: float
     length: float
 
 
-class Ellipsoid(Struct, frozen=True):
+class Ellipsoid(_Solid, frozen=True):
     """The three half axes in m, centred."""
 
     radii: Vec3
 
 
-class Plane(Struct, frozen=True):
+class Plane(_Solid, frozen=True):
     """The xy plane with normal z; half extents in m for display, 0 = infinite."""
 
     half_size: tuple[float, float] = (0.0, 0.0)
 
 
-class MeshShape(Struct, frozen=True):
+class MeshShape(_Solid, frozen=True, tag="mesh"):
     """The mesh that the shape's arc of role ``mesh`` points at."""
 
 
-class NoShape(Struct, frozen=True):
+class NoShape(_Solid, frozen=True, tag="none"):
     """A geometry that the source left empty or wrote in a way that cannot be read; its text is an Extra."""
 
 

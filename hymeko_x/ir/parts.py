@@ -42,7 +42,7 @@ class Inertial(Noted, frozen=True):
     written: InertialWritten | None = None
 
 
-class InertialWritten(Struct, frozen=True):
+class InertialWritten(Struct, frozen=True, forbid_unknown_fields=True):
     """An inertia tensor as its author gave it: in the axes of ``frame`` (a pose at the centre of mass)."""
 
     frame: Pose
@@ -214,7 +214,7 @@ class DofKind(Enum):
     FREE = "free"
 
 
-class Limits(Struct, frozen=True):
+class Limits(Struct, frozen=True, forbid_unknown_fields=True):
     """Bounds of one dof in rad or m and s, N or Nm; None = unlimited."""
 
     lower: float | None = None
@@ -228,7 +228,7 @@ class Limits(Struct, frozen=True):
 UNLIMITED = Limits()
 
 
-class Safety(Struct, frozen=True):
+class Safety(Struct, frozen=True, forbid_unknown_fields=True):
     """A soft-limit controller (URDF <safety_controller>): soft bounds in rad or m, gains in 1/s and Nms/rad or Ns/m."""
 
     k_velocity: float
@@ -237,7 +237,7 @@ class Safety(Struct, frozen=True):
     soft_upper: float = 0.0
 
 
-class Calibration(Struct, frozen=True):
+class Calibration(Struct, frozen=True, forbid_unknown_fields=True):
     """Reference positions for homing (URDF <calibration>), in rad or m."""
 
     rising: float | None = None

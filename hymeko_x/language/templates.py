@@ -89,7 +89,7 @@ def _import(items: tuple[Item, ...], file: str, fetch: Fetch, found: Definitions
 def _is_text(path: str) -> bool:
     """Whether the suffix of an imported file leaves open that it is text of this language."""
     row = formats.of_file(path)
-    return row is None or row.is_exact
+    return row is None or row is formats.OWN
 
 
 def _imported(path: str, fetch: Fetch, found: Definitions, seen: _Imported, origin: Origin) -> dict[str, Node]:

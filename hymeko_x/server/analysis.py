@@ -50,7 +50,7 @@ class Analysis(Struct, dict=True):
     @property
     def is_text(self) -> bool:
         """Whether it is text of the HyMeKo language."""
-        return self.format is not None and self.format.is_exact
+        return self.format is formats.OWN
 
     def imports(self) -> dict[str, str]:
         """The imported files by alias, and by path."""

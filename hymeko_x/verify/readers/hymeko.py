@@ -1,7 +1,7 @@
-"""HyMeKo text, and mechanisms in memory, as kinematic models.
+"""HyMeKo text, its JSON form, and mechanisms in memory, as kinematic models.
 
-HyMeKo text has no other reader than this project's own; verdicts note that. Text that came from another format may leave values to that
-format's engine, like inertias to the shapes; they are computed by it, as for every export of such a text.
+HyMeKo text and its JSON form have no other readers than this project's own; verdicts note that. Text that came from another format may
+leave values to that format's engine, like inertias to the shapes; they are computed by it, as for every export of such a text.
 """
 
 from __future__ import annotations
@@ -12,8 +12,6 @@ import numpy as np
 
 from hymeko_x import codes, formats
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
-from hymeko_x.frontends import hymeko
-from hymeko_x.importing import with_imports
 from hymeko_x.ir import parts
 from hymeko_x.ir import tendons as roles
 from hymeko_x.ir.mechanism import WORLD as WORLD_ID
@@ -45,21 +43,25 @@ _TRANSMISSION = "transmission"
 
 def read(path: Path, lookup: Lookup) -> KinematicModel:
     """The robot in a text. Raises: Refusal HX302 when it cannot be read."""
+    files = lookup.files(path.parent)
+    source = Source(str(path), path.read_bytes(), files)
+    format = formats.of_input(source.name, source.data)
+    kind = "HyMeKo text" if format is formats.OWN else f"{format.name} document"
     try:
-        files = lookup.files(path.parent)
-        mechanism = hymeko.read(with_imports(Source(str(path), path.read_bytes(), files), Report()), Report()).mechanism
+        given = formats.loaded(format.imports)(source, Report()) if format.imports else source
+        mechanism = formats.loaded(str(format.frontend)).read(given, Report()).mechanism
     except Refusal as refusal:
-        raise refuse(codes.ENGINE_REFUSED, f"the HyMeKo text cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
+        raise refuse(codes.ENGINE_REFUSED, f"the {kind} cannot be read: {refusal.diagnostic}", Origin(str(path))) from refusal
     if next(mechanism.vertices(parts.Body), None) is None:
-        raise refuse(codes.ENGINE_REFUSED, "the HyMeKo text describes a hypergraph without bodies, which is no robot", Origin(str(path)))
+        raise refuse(codes.ENGINE_REFUSED, f"the {kind} describes a hypergraph without bodies, which is no robot", Origin(str(path)))
     native = formats.native_format(mechanism)
     if native is not None and native.completes is not None and native.backend is not None:
         write = formats.loaded(native.backend).write
         completed = formats.loaded(native.completes)(
             mechanism, lambda: (mechanism, write(mechanism, Options(), Report()).main), files, Report()
         )
-        return from_mechanism(completed, format="hymeko")
-    return from_mechanism(mechanism, format="hymeko")
+        return from_mechanism(completed, format=format.name)
+    return from_mechanism(mechanism, format=format.name)
 
 
 def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> KinematicModel:
