@@ -14,6 +14,7 @@ from msgspec import Struct, field
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.verify.renaming import is_renaming
 
 NAME = "hymeko.toml"
 
@@ -41,7 +42,11 @@ class Robot(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     tolerances: dict[str, float] = field(default_factory=dict)
     """By quantity of the verifier, in its unit: differences up to this size count as none."""
     allow: tuple[Allowed, ...] = ()
-    match: Literal["name", "structure"] = "name"
+    match: Literal["name", "structure", "joints"] = "name"
+    rename: dict[str, str] = field(default_factory=dict)
+    """Other names for joints, by patterns with at most one ``*``; with ``match = "joints"``."""
+    ignore: tuple[str, ...] = ()
+    """Patterns of the quantities that are not compared."""
     samples: int = 20
     seed: int = 0
     meshes: bool = False
@@ -92,9 +97,21 @@ def _check(robot: Robot, path: str) -> None:
         near = get_close_matches(unknown, QUANTITIES, 1)
         hint = f"did you mean '{near[0]}'?" if near else f"quantities: {', '.join(QUANTITIES)}"
         raise refuse(codes.CONFIG, f"robot '{robot.name}': there is no quantity '{unknown}'", Origin(path), hint=hint)
+    for pattern in robot.ignore:
+        _check_pattern(robot, pattern, path)
+    if stray := next((old for old, new in robot.rename.items() if not is_renaming(old, new)), None):
+        raise refuse(codes.CONFIG, f"robot '{robot.name}': '{stray}' and its new name may have one * each", Origin(path))
+    if robot.rename and robot.match != "joints":
+        raise refuse(codes.CONFIG, f"robot '{robot.name}': joints are renamed with match = \"joints\" only", Origin(path))
     for allowed in robot.allow:
-        if not any(fnmatchcase(quantity, allowed.what) for quantity in QUANTITIES):
-            message = f"robot '{robot.name}': no quantity is called '{allowed.what}'"
-            raise refuse(codes.CONFIG, message, Origin(path), hint=f"quantities: {', '.join(QUANTITIES)}")
+        _check_pattern(robot, allowed.what, path)
         if stray := next((file for file in allowed.files if file not in robot.files), None):
             raise refuse(codes.CONFIG, f"robot '{robot.name}' allows a difference in '{stray}', which is none of its files", Origin(path))
+
+
+def _check_pattern(robot: Robot, pattern: str, path: str) -> None:
+    from hymeko_x.verify.checks import QUANTITIES
+
+    if not any(fnmatchcase(quantity, pattern) for quantity in QUANTITIES):
+        message = f"robot '{robot.name}': no quantity is called '{pattern}'"
+        raise refuse(codes.CONFIG, message, Origin(path), hint=f"quantities: {', '.join(QUANTITIES)}")

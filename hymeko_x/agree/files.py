@@ -14,8 +14,12 @@ from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.ir.mechanism import Id
+from hymeko_x.ir.parts import Joint
+from hymeko_x.verify.renaming import renamed
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.agree.config import Config, Robot
     from hymeko_x.ir.mechanism import Mechanism
 
@@ -46,6 +50,7 @@ class Lines:
 
     def __init__(self, robot: Robot, folder: Path, search_path: tuple[Path, ...]) -> None:
         self._read = cache(lambda path: read(robot, folder, path, search_path)[0])
+        self._written = cache(lambda path: self._names(path, robot.rename))
 
     def places(self, files: tuple[str, str], words: str, *, of_joints: bool) -> tuple[Origin, ...]:
         """The lines of the element that these words name, in both files; line 1 where that is not known.
@@ -53,20 +58,26 @@ class Lines:
         ``of_joints``: a body stands for the joint above it.
         """
         named = _NAMED.findall(words)
-        renamed = _NEW_NAME.findall(words)
-        return self._place(files[0], named, of_joints), self._place(files[1], [*renamed, *named], of_joints)
+        others = _NEW_NAME.findall(words)
+        return self._place(files[0], named, of_joints), self._place(files[1], [*others, *named], of_joints)
 
     def _place(self, file: str, named: list[tuple[str, str]], of_joints: bool) -> Origin:
         mechanism = self._read(file)
         if mechanism is None:
             return Origin(file, 1)
-        for kind, name in named:
+        for kind, name in [(kind, self._written(file).get(name, name)) for kind, name in named]:
             above = mechanism.parent_joint.get(Id("body", name)) if of_joints else None
             keys = [*([above.id] if above else []), *(Id(known, name) for known in (kind, "joint", "body"))]
             for origin in filter(None, map(mechanism.origin, keys)):
                 if origin.line:
                     return Origin(_shown(origin.file, mechanism.source.file, file), origin.line)
         return Origin(file, 1)
+
+    def _names(self, path: str, rename: Mapping[str, str]) -> dict[str, str]:
+        """Of each joint that is compared by another name the one that its file has."""
+        mechanism = self._read(path) if rename else None
+        joints = [] if mechanism is None else [key.name for key, _, _ in mechanism.edges(Joint)]
+        return {renamed(name, rename): name for name in reversed(joints)}
 
 
 def _shown(place: str, main: str, file: str) -> str:

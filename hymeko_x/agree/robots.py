@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
@@ -93,6 +94,8 @@ def _verdict(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...
         samples=robot.samples,
         seed=robot.seed,
         structure=robot.match == "structure",
+        joints=robot.match == "joints",
+        rename=robot.rename,
         meshes=robot.meshes,
         packages={name: folder / place for name, place in robot.packages.items()},
         search_path=search_path,
@@ -105,7 +108,7 @@ def _disagreements(robot: Robot, path: str, verdict: Verdict, lines: Lines, toda
     if verdict.reason:
         yield Disagreement(robot.name, files, "not comparable", verdict.reason, places=tuple(Origin(file, 1) for file in files))
         return
-    failed = verdict.failed
+    failed = [check for check in verdict.failed if not any(fnmatchcase(check.quantity, ignored) for ignored in robot.ignore)]
     causes = [check for check in failed if check.quantity not in _CONSEQUENCES]
     for check in causes or failed:
         for element, difference, values in _each(check):

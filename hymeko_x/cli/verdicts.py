@@ -16,9 +16,10 @@ from hymeko_x.cli import exits
 from hymeko_x.cli.inputs import input_arguments, refuse_own_reading
 from hymeko_x.cli.names import located
 from hymeko_x.cli.terminal import is_coloured, paint
+from hymeko_x.verify.renaming import is_renaming
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.verify.verdict import Check, Verdict
 
@@ -32,7 +33,10 @@ def verify_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("b", metavar="B", help="the robot to compare it with")
     engine_arguments(parser)
     parser.add_argument("--strict", action="store_true", help="exit 4 as well where a format cannot say what the other robot has")
-    parser.add_argument("--match", choices=("name", "structure"), default="name", help="how to find each body's counterpart (default name)")
+    how = "find each body's counterpart by its name, by the structure of the tree, or by the joint above it, with what is fixed to it"
+    parser.add_argument("--match", choices=("name", "structure", "joints"), default="name", help=f"{how} (default name)")
+    names = "with --match joints: other names for joints, such as 'panda_*=*' (repeatable)"
+    parser.add_argument("--rename", action="append", type=_renaming, default=[], metavar="OLD=NEW", help=names)
     parser.add_argument("--json", action="store_true", help="print JSON")
     input_arguments(parser)
 
@@ -47,7 +51,7 @@ def engine_arguments(parser: argparse.ArgumentParser) -> None:
 def run_verify(chosen: argparse.Namespace) -> int:
     """Print the verdict; exit 4 when the robots are different, 1 when they cannot be compared, as :func:`exit_code` says."""
     refuse_own_reading(chosen)
-    verdict = verdict_of(chosen.a, chosen.b, chosen, structure=chosen.match == "structure")
+    verdict = verdict_of(chosen.a, chosen.b, chosen, match=chosen.match, rename=dict(chosen.rename))
     if chosen.json:
         print(json.dumps(verdict.as_json(), indent=2, ensure_ascii=False))
     else:
@@ -56,7 +60,7 @@ def run_verify(chosen: argparse.Namespace) -> int:
     return exit_code(verdict, strict=chosen.strict)
 
 
-def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = False) -> Verdict:
+def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, match: str = "name", rename: Mapping[str, str] | None = None) -> Verdict:
     """The verdict about two files, with the options of :func:`engine_arguments` and of every verb that reads a robot."""
     os.environ.setdefault("MUJOCO_GL", "disable")  # nothing is drawn, and importing what draws takes a twentieth of the time
     from hymeko_x.verify import verify
@@ -67,13 +71,22 @@ def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, structure: bool = 
         second.path,
         samples=chosen.samples,
         seed=chosen.seed,
-        structure=structure,
+        structure=match == "structure",
+        joints=match == "joints",
+        rename=rename,
         meshes=chosen.meshes,
         packages=dict(chosen.package),
         search_path=search_path(os.environ),
         arguments={**first.arguments, **second.arguments, **dict(chosen.arg)},
         variants=dict(chosen.variant),
     )
+
+
+def _renaming(text: str) -> tuple[str, str]:
+    old, equals, new = text.partition("=")
+    if not equals or not is_renaming(old, new):
+        raise argparse.ArgumentTypeError(f"expected OLD=NEW with at most one * in each, found '{text}'")
+    return old, new
 
 
 def _samples(text: str) -> int:

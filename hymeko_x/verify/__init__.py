@@ -35,6 +35,8 @@ def verify(
     samples: int = 100,
     seed: int = 0,
     structure: bool = False,
+    joints: bool = False,
+    rename: Mapping[str, str] | None = None,
     meshes: bool | Meshes = True,
     packages: Packages | None = None,
     search_path: tuple[Path, ...] = (),
@@ -44,7 +46,9 @@ def verify(
     """Whether two robots (files, mechanisms or models) are the same one.
 
     They are compared at the zero pose, at their limits and at ``samples`` random configurations drawn with ``seed``. Bodies
-    are matched by name, or with ``structure`` by the shape of the tree. Without ``meshes`` no mesh file is read, which takes
+    are matched by name, or with ``structure`` by the shape of the tree. With ``joints`` the robots are compared as their joints
+    see them: bodies that are fixed to each other are one, known by the joint above it, wherever their frames are; ``rename`` gives joints
+    other names first (:func:`hymeko_x.verify.groups.grouped`). Without ``meshes`` no mesh file is read, which takes
     most of the time; one reader of meshes in several verdicts reads each file once. ``packages`` are the folders of
     ``package://NAME``, ``search_path`` those with further packages, ``arguments`` the values of a file's macro arguments,
     ``variants`` the variant to select of each variant set, in every file that has the set.
@@ -66,6 +70,10 @@ def verify(
             reasons.append(str(refusal.diagnostic.message))
     if reasons:
         return Verdict(("", ""), reason="; ".join(reasons))
+    if joints:
+        from hymeko_x.verify.groups import grouped
+
+        models = [grouped(model, rename) for model in models]
     return compare(models[0], models[1], samples=samples, seed=seed, structure=structure, meshes=meshes)
 
 

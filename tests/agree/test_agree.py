@@ -278,3 +278,37 @@ def test_three_robots_take_seconds(folder: Path) -> None:
     start = time.monotonic()
     assert main(["agree", "-q"]) == exits.DONE
     assert time.monotonic() - start < 10
+
+
+BY_JOINTS = """[[robot]]
+name = "arm"
+files = ["arm.urdf", "other.urdf"]
+match = "joints"
+rename = { "my_*" = "*" }
+ignore = ["damping", "visual*"]
+"""
+
+
+def test_other_names_and_links_are_compared_by_joints(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    other = re.sub(r'joint name="', 'joint name="my_', ARM).replace('link name="fore"', 'link name="lower"').replace("base", "foot")
+    other = other.replace('link="fore"', 'link="lower"').replace('effort="12"', 'effort="13"')
+    (folder / "other.urdf").write_text(other.replace('<limit lower="-2"', '<dynamics damping="0.1"/><limit lower="-2"'))
+    Path("hymeko.toml").write_text(BY_JOINTS)
+    assert main(["agree"]) == exits.DIFFERENT
+    line = next(n for n, text in enumerate(ARM.splitlines(), 1) if 'joint name="elbow"' in text)
+    message = f"arm.urdf:{line} and other.urdf:{line}: effort limits of joint 'elbow': [-12 12] and [-13 13] N m or N (1 N m or N off)"
+    assert capsys.readouterr().out.splitlines() == ["arm: 2 files differ: 1 disagreement", f"  {message}"]
+
+
+@pytest.mark.parametrize(
+    ("line", "message"),
+    [
+        ('ignore = ["colour"]', "no quantity is called 'colour'"),
+        ('rename = { "a" = "b" }', "joints are renamed with match"),
+        ('match = "joints"\nrename = { "*" = "**" }', "may have one * each"),
+    ],
+)
+def test_joints_in_the_configuration_are_checked(folder: Path, line: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("hymeko.toml").write_text(f'[[robot]]\nname = "arm"\nfiles = ["arm.urdf", "b.urdf"]\n{line}\n')
+    assert main(["agree"]) == exits.FAILED
+    assert message in capsys.readouterr().err
