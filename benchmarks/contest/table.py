@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from benchmarks.contest.rows import CALL, PROCESS, TEXT
-from hymeko_x.corpus.pages import renewed_blocks
 from hymeko_x.corpus.report import table
+from hymeko_x.reporting.blocks import renewed_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

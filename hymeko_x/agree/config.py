@@ -47,6 +47,8 @@ class Robot(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     """Other names for joints, by patterns with at most one ``*``; with ``match = "joints"``."""
     ignore: tuple[str, ...] = ()
     """Patterns of the quantities that are not compared."""
+    consequences: bool = False
+    """Whether quantities that follow from others, such as the gravity torque, are listed beside these."""
     samples: int = 20
     seed: int = 0
     meshes: bool = False
@@ -60,6 +62,8 @@ class Config(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     robot: tuple[Robot, ...]
     tolerances: dict[str, float] = field(default_factory=dict)
     packages: dict[str, str] = field(default_factory=dict)
+    ignore: tuple[str, ...] = ()
+    consequences: bool = False
 
 
 def load(path: str) -> Config:
@@ -83,6 +87,8 @@ def _with_common(robot: Robot, config: Config) -> Robot:
     merged: dict[str, Any] = {
         "tolerances": {**config.tolerances, **robot.tolerances},
         "packages": {**config.packages, **robot.packages},
+        "ignore": (*config.ignore, *robot.ignore),
+        "consequences": config.consequences or robot.consequences,
     }
     return msgspec.structs.replace(robot, **merged)
 

@@ -12,6 +12,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes, disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
+from hymeko_x.corpus.names import located
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.ir.mechanism import Id
 from hymeko_x.ir.parts import Joint
@@ -27,12 +28,22 @@ _NAMED = re.compile(r"(\w+) '([^']*)'")
 _NEW_NAME = re.compile(r"(\w+) '[^']*' is called '([^']*)'")
 
 
+def path_of(folder: Path, file: str) -> Path:
+    """Where a file of a robot is: relative to ``folder``, or by the name of the robot, as every verb takes it.
+
+    Raises: Refusal HX001 for a name whose robot is not there.
+    """
+    path = folder / file
+    return path if path.exists() else folder / located(file).path
+
+
 def read(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...] = ()) -> tuple[Mechanism | None, set[Path]]:
     """A file of a robot by this program's own reader, None where it cannot be read; and all files that it needs, with links resolved."""
-    needed = {(folder / path).resolve()}
+    place = path_of(folder, path)
+    needed = {place.resolve()}
     packages = {name: folder / place for name, place in robot.packages.items()}
     try:
-        source = disk.open_source(str(folder / path), packages=packages, search_path=search_path)
+        source = disk.open_source(str(place), packages=packages, search_path=search_path)
         format = formats.of_input(source.name, source.data)
         arguments = dict(robot.arguments) if format.has_arguments else {}
         mechanism = pipeline.read_anyway(replace(source, arguments=arguments), format, Report())

@@ -23,16 +23,22 @@ def text(results: Sequence[Compared]) -> str:
     """A line per robot and per difference, with its places."""
     lines = []
     for result in results:
-        state = "agree" if not result.wrong else f"differ: {len(result.wrong)} disagreement{'s' if len(result.wrong) > 1 else ''}"
-        known = len(result.found) - len(result.wrong)
+        count = sum(found.count for found in result.wrong)
+        state = "agree" if not count else f"differ: {count} disagreement{'s' if count > 1 else ''}"
+        known = sum(found.count for found in result.found) - count
         lines.append(f"{result.robot.name}: {len(result.robot.files)} files {state}" + (f", {known} known" if known else ""))
-        lines += [f"  {_places(found)}: {found.message}" for found in result.wrong]
+        lines += [f"  {_places(found)}: {_words(found)}" for found in result.wrong]
         lines += [f"  note: {note}" for note in result.notes]
     return "".join(f"{line}\n" for line in lines)
 
 
 def _places(found: Disagreement) -> str:
     return " and ".join(map(str, found.places))
+
+
+def _words(found: Disagreement) -> str:
+    """The difference, and how many smaller ones of its quantity it stands for."""
+    return f"{found.message} ({found.count - 1} more)" if found.count > 1 else found.message
 
 
 def as_json(results: Sequence[Compared]) -> str:
@@ -150,17 +156,37 @@ def markdown(results: Sequence[Compared]) -> str:
     """A summary for a job or a pull request."""
     lines = ["| robot | files | |", "| --- | --- | --- |"]
     for result in results:
-        answer = f"{len(result.wrong)} disagreements" if result.wrong else "agree"
+        answer = f"{sum(found.count for found in result.wrong)} disagreements" if result.wrong else "agree"
         lines.append(f"| {_cell(result.robot.name)} | {_cell(', '.join(result.robot.files))} | {answer} |")
     wrong = [found for result in results for found in result.wrong]
     if wrong:
         lines += ["", "| robot | where | difference |", "| --- | --- | --- |"]
-        lines += [f"| {_cell(found.robot)} | {_cell(_places(found))} | {_cell(found.message)} |" for found in wrong]
+        lines += [f"| {_cell(found.robot)} | {_cell(_places(found))} | {_cell(_words(found))} |" for found in wrong]
     known = [found for result in results for found in result.found if found.allowed is not None]
     if known:
         lines += ["", "| known difference | reason | until |", "| --- | --- | --- |"]
         lines += [f"| {_cell(f.robot)}: {_cell(f.message)} | {_cell(f.allowed.reason)} | {f.allowed.until} |" for f in known if f.allowed]
     return "".join(f"{line}\n" for line in lines)
+
+
+def tables(results: Sequence[Compared]) -> str:
+    """A section for each robot: its files, and how each of them differs from the first one."""
+    return "\n".join("\n".join(_section(result)) for result in results)
+
+
+def _section(result: Compared) -> Iterator[str]:
+    first, *others = result.robot.files
+    yield f"### {_cell(result.robot.name)}\n\nAgainst `{first}`:\n"
+    for file in others:
+        found = [found for found in result.wrong if found.files[1] == file]
+        yield f"`{file}`\n" if found else f"`{file}`: no difference\n"
+        if found:
+            yield "| quantity | differences | the largest | lines |\n| --- | --- | --- | --- |"
+            for one in found:
+                lines = " and ".join(str(place.line or 1) for place in one.places)
+                values = one.message.removeprefix(one.quantity).removeprefix(" of ").removeprefix(": ")
+                yield f"| {one.quantity} | {one.count} | {_cell(values)} | {lines} |"
+            yield ""
 
 
 def _cell(words: str) -> str:

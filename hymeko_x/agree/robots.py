@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from fnmatch import fnmatchcase
+from math import inf, isinf
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
+from msgspec.structs import replace
 
-from hymeko_x.agree.files import Lines
+from hymeko_x.agree.files import Lines, path_of
 from hymeko_x.diagnostics import Origin
 
 if TYPE_CHECKING:
@@ -42,6 +44,10 @@ class Disagreement(Struct, frozen=True):
     element: str = ""
     places: tuple[Origin, ...] = ()
     allowed: Allowed | None = None
+    difference: float = inf
+    """Its size, in the unit of the quantity."""
+    count: int = 1
+    """So many differences of the quantity it stands for, the largest of them."""
 
     @property
     def key(self) -> tuple[str, ...]:
@@ -61,6 +67,15 @@ class Compared(Struct, frozen=True):
     def wrong(self) -> tuple[Disagreement, ...]:
         """The differences that are not allowed."""
         return tuple(found for found in self.found if found.allowed is None)
+
+    @property
+    def summary(self) -> Compared:
+        """The same with one difference of each quantity between two files: the largest."""
+        alike: dict[tuple[object, ...], list[Disagreement]] = {}
+        for found in self.found:
+            alike.setdefault((found.files, found.quantity, found.allowed), []).append(found)
+        largest = (replace(max(group, key=lambda found: found.difference), count=len(group)) for group in alike.values())
+        return replace(self, found=tuple(largest))
 
 
 def compare(robot: Robot, folder: Path, today: date, search_path: tuple[Path, ...] = ()) -> Compared:
@@ -87,10 +102,9 @@ def compare(robot: Robot, folder: Path, today: date, search_path: tuple[Path, ..
 def _verdict(robot: Robot, folder: Path, path: str, search_path: tuple[Path, ...]) -> Verdict:
     from hymeko_x.verify import verify
 
-    first = robot.files[0]
     return verify(
-        folder / first,
-        folder / path,
+        path_of(folder, robot.files[0]),
+        path_of(folder, path),
         samples=robot.samples,
         seed=robot.seed,
         structure=robot.match == "structure",
@@ -110,14 +124,14 @@ def _disagreements(robot: Robot, path: str, verdict: Verdict, lines: Lines, toda
         return
     failed = [check for check in verdict.failed if not any(fnmatchcase(check.quantity, ignored) for ignored in robot.ignore)]
     causes = [check for check in failed if check.quantity not in _CONSEQUENCES]
-    for check in causes or failed:
+    for check in failed if robot.consequences or not causes else causes:
         for element, difference, values in _each(check):
             if difference <= robot.tolerances.get(check.quantity, 0.0):
                 continue
             allowances = (known for known in robot.allow if known.until >= today and known.covers(path, check.quantity, element))
             message = _message(check, element, difference, values)
             places = lines.places(files, element, of_joints=check.quantity.startswith("forward kinematics"))
-            yield Disagreement(robot.name, files, check.quantity, message, element, places, next(allowances, None))
+            yield Disagreement(robot.name, files, check.quantity, message, element, places, next(allowances, None), difference)
 
 
 def _each(check: Check) -> Iterator[tuple[str, float, tuple[str, str] | None]]:
@@ -132,8 +146,7 @@ def _message(check: Check, element: str, difference: float, values: tuple[str, s
     if not check.unit:
         return f"{check.quantity}: {element}"
     size = f"{difference:.3g} {check.unit} off"
-    return (
-        f"{check.quantity} of {element}: {values[0]} and {values[1]} {check.unit} ({size})"
-        if values
-        else f"{check.quantity} of {element}: {size}"
-    )
+    if not values:
+        return f"{check.quantity} of {element}: {size}"
+    both = f"{check.quantity} of {element}: {values[0]} and {values[1]} {check.unit}"
+    return both if isinf(difference) else f"{both} ({size})"

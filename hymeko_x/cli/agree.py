@@ -15,6 +15,7 @@ from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.disk import write_files
+from hymeko_x.reporting.blocks import renewed_blocks
 
 if TYPE_CHECKING:
     import argparse
@@ -33,6 +34,11 @@ def agree_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", dest="style", choices=tuple(pages.STYLES), default="text", help="what to print (default text)")
     what = f"write the result to a file as well, by its suffix: {' '.join(pages.OF_SUFFIXES)} (repeatable)"
     parser.add_argument("--report", action="append", default=[], metavar="FILE", help=what)
+    largest = "of each quantity the largest difference between two files alone, and how many there are"
+    parser.add_argument("--summary", action="store_true", help=largest)
+    parser.add_argument(
+        "--page", metavar="FILE.md", help="renew the tables of the summary in this page, between the marks of `hymeko-x agree`"
+    )
     parser.add_argument("-q", "--quiet", action="store_true", help="print nothing where all robots agree")
 
 
@@ -44,10 +50,15 @@ def run_agree(chosen: argparse.Namespace) -> int:
     results = _results(chosen)
     if chosen.baseline:
         results = _without_known(results, chosen.baseline)
+    summary = [result.summary for result in results]
+    if chosen.summary:
+        results = summary
     is_wrong = any(result.wrong for result in results)
     if is_wrong or not chosen.quiet:
         print(pages.STYLES[chosen.style](results), end="")
     write_files({path: pages.STYLES[pages.OF_SUFFIXES[Path(path).suffix.lower()]](results).encode() for path in chosen.report})
+    if chosen.page:
+        _renew(chosen.page, pages.tables(summary))
     return exits.DIFFERENT if is_wrong else exits.DONE
 
 
@@ -65,6 +76,15 @@ def _results(chosen: argparse.Namespace) -> list[Compared]:
     if not wanted:
         print("no robot has changed" if chosen.changed_since else "there is no robot", file=sys.stderr)
     return [compare(robot, Path(chosen.config).parent, date.today(), where) for robot in wanted]
+
+
+def _renew(page: str, tables: str) -> None:
+    """Raises: UsageError where the page cannot be read or has no place for tables."""
+    try:
+        text = renewed_blocks(Path(page).read_text("utf-8"), "hymeko-x agree", lambda _: tables.rstrip("\n"))
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{page}: {error}") from error
+    write_files({page: text.encode()})
 
 
 def _without_known(results: list[Compared], path: str) -> list[Compared]:

@@ -12,11 +12,11 @@ from hymeko_x import api, formats
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
-from hymeko_x.cli.names import located
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_of
 from hymeko_x.compare.contents import Contents, content_differences, with_same_files
 from hymeko_x.compare.diff import Tolerance, diff
+from hymeko_x.corpus.names import located
 from hymeko_x.diagnostics import Report
 from hymeko_x.reporting.changes import markdown
 from hymeko_x.residue.originals import fetcher

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes, disk
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.names import matching
 from hymeko_x.cli.parser import count
 from hymeko_x.cli.terminal import show
 from hymeko_x.corpus import cache, catalog
+from hymeko_x.corpus.names import matching
 from hymeko_x.corpus.plan import Limits, Plan, pairs_of
 from hymeko_x.corpus.rows import CRASHED, FAILED, OUT_OF_MEMORY, TIMED_OUT
 from hymeko_x.diagnostics import Refusal, refuse

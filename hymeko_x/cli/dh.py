@@ -9,7 +9,7 @@ from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.dh_tables import FORMATS
 from hymeko_x.cli.inputs import input_arguments, refuse_own_reading
-from hymeko_x.cli.names import located
+from hymeko_x.corpus.names import located
 
 if TYPE_CHECKING:
     import argparse

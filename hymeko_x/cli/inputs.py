@@ -13,7 +13,7 @@ from msgspec.structs import replace
 from hymeko_x import formats
 from hymeko_x.assets.resolve import DiskFiles, search_path
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.names import located
+from hymeko_x.corpus.names import located
 from hymeko_x.source import Source
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.inputs import input_arguments, refuse_own_reading
-from hymeko_x.cli.names import located
 from hymeko_x.cli.terminal import is_coloured, paint
+from hymeko_x.corpus.names import located
 from hymeko_x.verify.renaming import is_renaming
 
 if TYPE_CHECKING:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
 from hymeko_x.corpus import statistics
 from hymeko_x.corpus.report import matrix, table
 from hymeko_x.corpus.statistics import FOUND, PRINTED, percentage
+from hymeko_x.reporting.blocks import renewed_blocks
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -185,18 +185,3 @@ _WRITERS: Mapping[str, Callable[[Tables], str]] = {
     "costs": _costs,
     "million": _million,
 }
-
-
-# ---- blocks between two marks, which a program writes and nothing else changes ----------------------------------------
-
-
-def renewed_blocks(text: str, by: str, content: Callable[[str], str]) -> str:
-    """The text with new content in every block of the program that is called ``by``; ``content`` is asked by the block's name.
-
-    Raises: ValueError when there is no such block.
-    """
-    mark = f": written by `{by}` -->"
-    pattern = re.compile(rf"<!-- (?P<name>[a-z]+){re.escape(mark)}\n.*?<!-- end of (?P=name) -->", re.DOTALL)
-    if not pattern.search(text):
-        raise ValueError(f"the page has no block <!-- NAME{mark} ... <!-- end of NAME -->")
-    return pattern.sub(lambda found: f"<!-- {found['name']}{mark}\n\n{content(found['name'])}\n\n<!-- end of {found['name']} -->", text)

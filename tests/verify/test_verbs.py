@@ -114,7 +114,7 @@ def test_a_check_that_failed_shows_both_values_with_their_unit(arm: str, written
         "  FAIL effort limits, joint 'shoulder': [-80 80] and [-70 70] N m or N (10 N m or N off, 8e-08 allowed)",
         "  FAIL mass, body 'upper': 2 and 2.5 kg (0.5 kg off, 2e-09 allowed)",
         "  FAIL mass matrix, joint 'shoulder' at all lower limits: 0.00599 relative off, 1e-08 allowed",
-        "  FAIL gravity torque, joint 'shoulder' in the zero pose: 0.0243 N m or N off, 1.61e-09 allowed",
+        "  FAIL gravity torque, joint 'shoulder' in the zero pose: 0.829312 and 0.8536 N m or N (0.0243 N m or N off, 1.61e-09 allowed)",
         "19 checks passed; -v has the table",
     ]
 

@@ -63,7 +63,9 @@ def check_dynamics(pair: Pair) -> Iterator[Check]:
             at = f"{_dof_of_column(pair.a, dofs, int(difference.argmax()))} {pair.row_label(row)}"
             matrix.add(float(difference.max()), pair.allowed(_MASS_MATRIX, _SUMMED), at)
             allowed = max(least, pair.allowed(RELATIVE, _SUMMED) * float(np.abs(gravity_a).max()))
-            torque.add(float(np.abs(gravity_a - gravity_b).max()), allowed, at)
+            column = int(np.abs(gravity_a - gravity_b).argmax())
+            at = f"{_dof_of_column(pair.a, dofs, column)} {pair.row_label(row)}"
+            torque.add(abs(gravity_a[column] - gravity_b[column]), allowed, at, gravity_a[column], gravity_b[column])
     yield from (*matrix.checks(), *torque.checks())
 
 
