@@ -7,6 +7,7 @@ in memory have no other reader; verdicts about them note that.
 from __future__ import annotations
 
 import sys
+from functools import partial
 from os import PathLike
 from pathlib import Path
 from types import ModuleType
@@ -16,7 +17,7 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import Refusal
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from hymeko_x.ir.holder import Holder
     from hymeko_x.ir.mechanism import Mechanism
@@ -59,15 +60,8 @@ def verify(
     from hymeko_x.verify.checks import compare
     from hymeko_x.verify.verdict import Verdict
 
-    models: list[KinematicModel] = []
-    reasons: list[str] = []
-    for robot in (a, b):
-        try:
-            models.append(model_of(robot, packages=packages, search_path=search_path, arguments=arguments, variants=variants))
-        except Refusal as refusal:
-            if refusal.diagnostic.code != codes.ENGINE_REFUSED:
-                raise
-            reasons.append(str(refusal.diagnostic.message))
+    read = partial(model_of, packages=packages, search_path=search_path, arguments=arguments, variants=variants)
+    models, reasons = _read((a, b), read)
     if reasons:
         return Verdict(("", ""), reason="; ".join(reasons))
     if joints:
@@ -75,6 +69,20 @@ def verify(
 
         models = [grouped(model, rename) for model in models]
     return compare(models[0], models[1], samples=samples, seed=seed, structure=structure, meshes=meshes)
+
+
+def _read(robots: tuple[Robot, Robot], read: Callable[[Robot], KinematicModel]) -> tuple[list[KinematicModel], list[str]]:
+    """The robots as models, and why engines refuse those that are missing."""
+    models: list[KinematicModel] = []
+    reasons: list[str] = []
+    for robot in robots:
+        try:
+            models.append(read(robot))
+        except Refusal as refusal:
+            if refusal.diagnostic.code != codes.ENGINE_REFUSED:
+                raise
+            reasons.append(str(refusal.diagnostic.message))
+    return models, reasons
 
 
 def model_of(
