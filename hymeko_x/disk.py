@@ -18,7 +18,7 @@ from hymeko_x import codes
 from hymeko_x.assets.resolve import DiskFiles, package_name
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Origin, Refusal, refuse
-from hymeko_x.source import KEPT_FOLDER, KEPT_SUFFIX, Kept, Package, PackageFiles, Source
+from hymeko_x.source import DIGESTS, KEPT_FOLDER, KEPT_SUFFIX, Kept, Package, PackageFiles, Source
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -120,6 +120,8 @@ def _kept_files(package: Package, target: Path, files: Files) -> Iterator[tuple[
     """What is kept beside the file for the way home: the originals of what was converted, and the text. Raises: OSError, ValueError."""
     for name, source in package.originals.items():
         yield _beside(target, f"{target.name}{KEPT_FOLDER}/{name}"), files.read(source)
+    if package.digests:
+        yield _beside(target, f"{target.name}{KEPT_FOLDER}/{DIGESTS}"), package.digests.encode("utf-8", "surrogatepass")
     if package.kept:
         yield target.with_name(f"{target.name}{KEPT_SUFFIX}"), package.kept.encode("utf-8", "surrogatepass")
 

@@ -112,7 +112,7 @@ def read_anyway(source: Source, format: Format, report: Report) -> Mechanism:
     image, kept = _native(source, format, report)
     if kept is not None and kept.text:
         image = with_points_of_files(restored(image, kept, report), fetch_from(source.files))
-    return image if kept is None else with_originals(image, kept.originals)
+    return image if kept is None else with_originals(image, kept.originals, source.files, report)
 
 
 @uncollected()
@@ -197,8 +197,8 @@ def convert(
     kept = Kept(residue, "") if passed is None else passed
     if passed is None and options.keep is not None:
         named, is_inside = printed if format.is_exact else mechanism, options.keep == "inside" and not format.is_exact
-        originals = originals_of(mechanism, named, aligned, package, files_of(mechanism, files), missing_only=is_inside)
-        kept = kept._replace(originals=originals)
+        originals, digests = originals_of(mechanism, named, aligned, package, files_of(mechanism, files), missing_only=is_inside)
+        kept = kept._replace(originals=originals, digests="" if is_inside else digests)
     return Result(mechanism, with_kept(package, kept, options, report), report, losses)
 
 
@@ -224,7 +224,7 @@ def with_kept(package: Package, kept: Kept, options: Options, report: Report) ->
     if options.keep is None:
         report.note(codes.KEPT_LEFT, "what is kept for the input stays there", hint="--keep takes it along")
         return package
-    package = replace(package, originals=kept.originals)
+    package = replace(package, originals=kept.originals, digests=kept.digests)
     if not kept.text:
         return package
     if options.keep == "beside" or package.carry is None:

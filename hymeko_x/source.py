@@ -56,6 +56,9 @@ KEPT_SUFFIX = ".keep.hymeko"
 KEPT_FOLDER = ".keep.files"
 """What follows the name of a file in the name of the folder beside it that has the originals kept for it."""
 
+DIGESTS = "digests.txt"
+"""The name of the text in that folder that tells what the output has in the places of originals."""
+
 NOTHING_KEPT: Mapping[str, str] = MappingProxyType({})
 """No originals."""
 
@@ -64,12 +67,13 @@ class Kept(NamedTuple):
     """What is kept for a file of the robot that it was made from.
 
     ``text`` is the text of a residue, and ``file`` the name of the file that has it; ``originals`` are files of that robot that are not
-    among the output's own, by their names in their folder, with their paths.
+    among the output's own, by their names in their folder, with their paths; ``digests`` is the text of :mod:`hymeko_x.residue.digests`.
     """
 
     text: str
     file: str
     originals: Mapping[str, str] = NOTHING_KEPT
+    digests: str = ""
 
     @property
     def is_beside(self) -> bool:
@@ -131,7 +135,8 @@ class Package(Struct, frozen=True):
     ``copies`` names files that are to be copied as they are: relative path -> path in the source's ``files``. ``carry`` prints the
     main file again with the text of a residue where other readers of the format ignore it; None for a format that represents
     everything. ``enclose`` gives the package with files inside of the main one; None where they stand beside it. ``kept`` is the text of
-    the kept file beside the main one; where it is empty there is none. ``originals`` are copies in the folder of what is kept.
+    the kept file beside the main one; where it is empty there is none. ``originals`` are copies in the folder of what is kept, and
+    ``digests`` a text there.
     ``prefix`` is what stands before the paths of its files in its text.
     """
 
@@ -142,6 +147,7 @@ class Package(Struct, frozen=True):
     enclose: Callable[[Mapping[str, bytes]], Package] | None = None
     kept: str = ""
     originals: Mapping[str, str] = field(default_factory=dict)
+    digests: str = ""
     prefix: str = ""
 
 

@@ -28,7 +28,7 @@ from hymeko_x.ir.parts import Mesh, Role, Texture
 from hymeko_x.source import find_stand_in
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Set
+    from collections.abc import Collection, Iterable, Mapping, Set
 
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Report
@@ -220,26 +220,33 @@ def with_stand_ins(mechanism: Mechanism, format: Format, files: Files, report: R
     """
     if not mechanism.stored or format.is_exact:
         return mechanism
-    standing = _Standing(names=names_in_use(mechanism))
+    missing = [key for key, part in mechanism.assets() if key in mechanism.stored and part.uri is not None and files.find(part.uri) is None]
+    for key in missing:
+        stored, uri = mechanism.stored[key], getattr(mechanism.graph.vertices[key], "uri", None)
+        other = stored if isinstance(stored, Texture) else stored.mesh
+        instead = "the points that the source has of it" if other.uri is None else f"'{other.uri}', which the source has in its place"
+        message = f"{key}: '{uri}' was not found; it becomes {instead}"
+        report.note(codes.ASSET_NOT_FOUND, message, mechanism.origin(key), element=str(key))
+    return standing(mechanism, missing)
+
+
+def standing(mechanism: Mechanism, keys: Collection[Id]) -> Mechanism:
+    """The mechanism in which these meshes and images are those that the file that was read has in their places."""
+    if not keys:
+        return mechanism
+    made = _Standing(names=names_in_use(mechanism))
     found: dict[Id, StoredMesh] = {}
-    for key, part in mechanism.assets():
-        stored = mechanism.stored.get(key)
-        if stored is None or part.uri is None or files.find(part.uri) is not None:
-            continue
+    for key in keys:
+        stored, part = mechanism.stored[key], mechanism.graph.vertices[key]
         if not isinstance(stored, Texture):
             found[key] = stored
-        other = stored if isinstance(stored, Texture) else stored.mesh
-        standing.vertices[key] = replace(other, name=part.name)
-        instead = "the points that the source has of it" if other.uri is None else f"'{other.uri}', which the source has in its place"
-        message = f"{key}: '{part.uri}' was not found; it becomes {instead}"
-        report.note(codes.ASSET_NOT_FOUND, message, mechanism.origin(key), element=str(key))
-    if not standing.vertices:
-        return mechanism
+        made.vertices[key] = replace(stored if isinstance(stored, Texture) else stored.mesh, name=getattr(part, "name", None))
     for view in mechanism.every_shape():
         if view.mesh in found and view.shape.role is Role.VISUAL and view.id not in mechanism.subsets:
             for look in found[view.mesh].looks:
-                standing.show(view.id, look)
-    return replace(standing.added_to(mechanism), extras=_unplaced(mechanism.extras, found))
+                made.show(view.id, look)
+    rest = {key: stored for key, stored in mechanism.stored.items() if key not in keys}
+    return replace(made.added_to(mechanism), extras=_unplaced(mechanism.extras, found), stored=rest)
 
 
 def _unplaced(extras: Mapping[Id, tuple[Extra, ...]], meshes: Iterable[Id]) -> dict[Id, tuple[Extra, ...]]:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.cli.terminal import alike_diagnostics, is_coloured, render, render_alike, show
 from hymeko_x.diagnostics import Severity
 from hymeko_x.reporting.summary import counted, kept_line, minor_line, summary_lines
-from hymeko_x.source import KEPT_FOLDER
+from hymeko_x.source import DIGESTS, KEPT_FOLDER
 
 if TYPE_CHECKING:
     import argparse
@@ -104,7 +104,7 @@ def written_line(path: str, mechanism: Mechanism, package: Package) -> str:
     where = f" and {counted(len(beside), 'file')} in {named}{more}" if beside else ""
     bodies = sum(key.kind == "body" for key in mechanism.graph.vertices)
     joints = sum(key.kind == "joint" for key in mechanism.graph.edges)
-    count = len(package.originals)
+    count = sum(name != DIGESTS for name in package.originals)
     originals = f", {counted(count, 'original')} in {os.path.basename(path)}{KEPT_FOLDER}/" if count else ""
     return f"wrote {path} ({counted(bodies, 'body')}, {counted(joints, 'joint')}){where}{originals}"
 

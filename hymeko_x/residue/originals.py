@@ -16,12 +16,14 @@ from hymeko_x import formats
 from hymeko_x.assets.companions import WITH_COMPANIONS, beside, companions_of
 from hymeko_x.assets.shelf import read_file, safe_name
 from hymeko_x.ir.mechanism import suffix_of
+from hymeko_x.residue.digests import digests_text, with_edited_files
 from hymeko_x.residue.stand_ins import is_copy
 from hymeko_x.source import OriginalFiles, PackageFiles, PlacedFiles
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
+    from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.source import Files, Package
 
@@ -53,17 +55,18 @@ def files_named(mechanism: Mechanism) -> Iterator[tuple[Id, str]]:
 
 def originals_of(
     mechanism: Mechanism, printed: Mechanism, aligned: Mechanism, package: Package, files: Files, *, missing_only: bool
-) -> dict[str, str]:
+) -> tuple[dict[str, str], str]:
     """The files to keep, by their names in the folder of originals: those that the aligned image of the package does not have as they are.
 
-    ``printed`` has their references as they will be looked for. With ``missing_only`` without those for which the image has something
-    else, which stands in for them.
+    With them come the digests of what the image has for them. ``printed`` has their references as they will be looked for. With
+    ``missing_only`` without those for which the image has something else, which stands in for them.
     """
     found: dict[str, str] = {}
     contents = PackageFiles(package, files)
     references = list(files_named(mechanism))
     names = list(files_named(printed))
     shown = set(_shown(mechanism, aligned)) if missing_only else ()
+    keys: list[Id] = []
     for (key, uri), (_, there) in zip(references, names if len(names) == len(references) else references, strict=True):
         path = files.find(uri)
         if key in shown and uri == getattr(mechanism.graph.vertices.get(key), "uri", None):
@@ -75,9 +78,12 @@ def originals_of(
         if copy is None or any(package.copies.get(beside(copy, name)) != source for name, source in along.items()):
             home = kept_name(there)
             found.setdefault(home, path)
+            keys.append(key)
             for name, source in along.items():
                 found.setdefault(beside(home, name), source)
-    return {name: path for name, path in found.items() if not name.startswith("../")}
+    return {name: path for name, path in found.items() if not name.startswith("../")}, digests_text(
+        keys, mechanism, aligned, contents
+    ) if keys else ""
 
 
 def _shown(mechanism: Mechanism, aligned: Mechanism) -> Iterator[Id]:
@@ -100,10 +106,11 @@ def _copy_of(mechanism: Mechanism, aligned: Mechanism, key: Id, uri: str, path: 
     return name if is_same else None
 
 
-def with_originals(mechanism: Mechanism, originals: Mapping[str, str]) -> Mechanism:
-    """The mechanism that finds its files among the originals kept for it, given by their names."""
+def with_originals(mechanism: Mechanism, originals: Mapping[str, str], files: Files, report: Report) -> Mechanism:
+    """The mechanism that finds its files among the originals kept for it, given by their names, unless those of its image were edited."""
     if not originals:
         return mechanism
+    mechanism = with_edited_files(mechanism, originals, files, report)
     places = {uri: originals[name] for _, uri in files_named(mechanism) if (name := kept_name(uri)) in originals}
     return replace(mechanism, originals=places) if places else mechanism
 

@@ -122,7 +122,7 @@ def test_originals_of_an_earlier_run_are_removed(tmp_path: Path, capsys: pytest.
     assert main(["convert", str(source), out, "--keep"]) == exits.DONE
     kept = tmp_path / "home" / "robot.urdf.keep.files"
     assert sorted(path.name for path in kept.rglob("*") if path.is_file()) == [
-        "b.png", "bent.obj", "ground.bin", "hide.skn", "spare.obj", "tet.obj",
+        "b.png", "bent.obj", "digests.txt", "ground.bin", "hide.skn", "spare.obj", "tet.obj",
     ]  # fmt: skip
     assert "6 originals in robot.urdf.keep.files/" in capsys.readouterr().err
     assert main(["convert", str(source), out]) == exits.DONE
