@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from hymeko_x import disk
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input, refuse_own_reading
-from hymeko_x.cli.names import located
 from hymeko_x.cli.render import size_of
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_lines, verdict_of
+from hymeko_x.corpus.names import located
 from hymeko_x.diagnostics import Report
 
 if TYPE_CHECKING:
