@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Refusal
 
 OF_ROOMS: Mapping[str, str] = MappingProxyType(
-    {room: room for room in ("corpus", "draw", "dynamics", "testing", "verify")} | {"server": "lsp"}
+    {room: room for room in ("corpus", "draw", "dynamics", "mcp", "testing", "verify")} | {"server": "lsp"}
 )
 """Rooms all of whose libraries come with one extra."""
 OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
@@ -29,6 +29,7 @@ OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
         "imageio_ffmpeg": "draw",
         "ray": "ray",
         **dict.fromkeys(("lsprotocol", "pygls"), "lsp"),
+        **dict.fromkeys(("anyio", "mcp"), "mcp"),
     }
 )
 

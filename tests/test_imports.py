@@ -27,7 +27,7 @@ LAYERS = (
     ("pipeline", "importing", "disk", "verify", "validation", "corpus"),
     ("agree", "delivery", "edits", "robot", "dynamics"),
     ("api",),
-    ("draw", "server"),
+    ("draw", "server", "mcp"),
     ("cli", "testing"),
     ("__main__",),
 )
@@ -66,6 +66,8 @@ HOMES = {
     "ray": ("corpus/",),
     "hypothesis": ("testing/",),
     "pygls": ("server/",),
+    "mcp": ("mcp/",),
+    "anyio": ("mcp/",),
 }
 """Heavy libraries and the only places that may import them."""
 

@@ -82,6 +82,7 @@ ADVICE = {
     "import": ("arm.urdf", None),
     "info": ("arm.urdf", None),
     "lsp": ("", "lsp"),
+    "mcp": ("", "mcp"),
     "render": ("arm.urdf -o arm.png", "draw"),
     "report": ("arm.urdf arm.urdf -o both.html", "verify"),
     "roundtrip": ("arm.urdf", "verify"),

@@ -56,6 +56,7 @@ GROUPS: Mapping[str, Mapping[str, Verb]] = {
     "write": {
         "fmt": Verb("fmt", "HyMeKo text in its usual layout; comments and order stay"),
         "lsp": Verb("lsp", "the language server for editors"),
+        "mcp": Verb("mcp", "tools for language models (Model Context Protocol), confined to one folder"),
     },
     "more": {
         "formats": Verb("info", "the formats that can be read and written"),

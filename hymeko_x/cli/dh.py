@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
 from hymeko_x.cli.dh_tables import FORMATS
-from hymeko_x.cli.inputs import input_arguments, refuse_own_reading
-from hymeko_x.corpus.names import located
+from hymeko_x.cli.inputs import engine_input, input_arguments, refuse_own_reading
 
 if TYPE_CHECKING:
     import argparse
@@ -35,7 +34,7 @@ def run_dh(chosen: argparse.Namespace) -> int:
     from hymeko_x.verify import dh, model_of
 
     refuse_own_reading(chosen)
-    found = located(chosen.input)
+    found = engine_input(chosen.input, chosen)
     arguments = {**found.arguments, **dict(chosen.arg)}
     model = model_of(found.path, packages=dict(chosen.package), search_path=search_path(os.environ), arguments=arguments)
     tips = [chosen.tip] if chosen.tip else [tip for tip in dh.chains(model) if dh.chain(model, tip)[1]]

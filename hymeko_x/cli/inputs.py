@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec.structs import replace
 
-from hymeko_x import formats
+from hymeko_x import codes, formats
 from hymeko_x.assets.resolve import DiskFiles, search_path
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.corpus.names import located
+from hymeko_x.corpus.names import Located, located
+from hymeko_x.diagnostics import Report, refuse
 from hymeko_x.source import Source
 
 if TYPE_CHECKING:
-    from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Kept
@@ -53,13 +53,35 @@ def refuse_own_reading(chosen: argparse.Namespace) -> None:
     """Refuse options of this program's own readers for a verb whose files the formats' engines read. Raises: UsageError."""
     for given, option in (
         (chosen.from_format, "--from"),
-        (chosen.confine, "--confine"),
         (chosen.env, "--env"),
         (chosen.ignore_kept, "--ignore-kept"),
     ):
         if given:
             reason = "which choose by the suffix, open files themselves and know nothing of what is kept"
             raise UsageError(f"{option} changes nothing here: the files are read by the formats' own engines, {reason}")
+
+
+def engine_input(path: str, chosen: argparse.Namespace) -> Located:
+    """A file that an engine is going to open, with every file that it refers to.
+
+    Raises: Refusal HX001 where reading is confined and the robot refers to a file outside; Stopped when it cannot be read within.
+    """
+    found = located(path)
+    if chosen.confine is None:
+        return found
+    from hymeko_x import disk, pipeline
+    from hymeko_x.residue.originals import files_named
+
+    report = Report()
+    source = disk.open_source(found.path, packages=dict(chosen.package), search_path=search_path(os.environ), confine=chosen.confine)
+    source = replace(source, arguments={**found.arguments, **dict(chosen.arg)}, variants=dict(chosen.variant), ignores_kept=True)
+    robot = pipeline.read(source, formats.of_input(source.name, source.data), report)
+    everywhere = DiskFiles(Path(found.path).parent, dict(chosen.package), search_path(os.environ))
+    for key, uri in files_named(robot):
+        if source.files.find(uri) is None and everywhere.find(uri) is not None:
+            message = f"{key} refers to '{uri}', outside '{chosen.confine}', to which reading is confined"
+            raise refuse(codes.CANNOT_READ, message, robot.origin(key))
+    return found
 
 
 def lenient_argument(parser: argparse.ArgumentParser) -> None:

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.assets.resolve import search_path
 from hymeko_x.cli import exits
-from hymeko_x.cli.inputs import input_arguments, refuse_own_reading
+from hymeko_x.cli.inputs import engine_input, input_arguments, refuse_own_reading
 from hymeko_x.cli.terminal import is_coloured, paint
-from hymeko_x.corpus.names import located
 from hymeko_x.verify.renaming import is_renaming
 
 if TYPE_CHECKING:
@@ -65,7 +64,7 @@ def verdict_of(a: str, b: str, chosen: argparse.Namespace, *, match: str = "name
     os.environ.setdefault("MUJOCO_GL", "disable")  # nothing is drawn, and importing what draws takes a twentieth of the time
     from hymeko_x.verify import verify
 
-    first, second = located(a), located(b)
+    first, second = engine_input(a, chosen), engine_input(b, chosen)
     return verify(
         first.path,
         second.path,

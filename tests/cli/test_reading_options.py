@@ -23,7 +23,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize("verb", [["verify", "r.urdf", "r.urdf"], ["dh", "r.urdf"]])
-@pytest.mark.parametrize("option", [["--from", "urdf"], ["--confine", "."], ["--env", "A=b"], ["--ignore-kept"]])
+@pytest.mark.parametrize("option", [["--from", "urdf"], ["--env", "A=b"], ["--ignore-kept"]])
 def test_what_an_engine_cannot_be_told_is_refused(
     verb: list[str], option: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
