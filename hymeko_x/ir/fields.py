@@ -16,6 +16,11 @@ if TYPE_CHECKING:
 Parameters = tuple[tuple[str, "float | str | tuple[float, ...]"], ...]
 """Named parameters of kinds that differ too much to be typed (an actuator's gains, a sensor's noise), in order."""
 
+DataValue = float | str | tuple[Any, ...] | None
+"""A value of plain data: a number, a text, a list of values of any shape; None is a value that is left open."""
+Data = tuple[tuple[str, DataValue], ...]
+"""Named values of the vertices and edges of plain hypergraphs, in order."""
+
 NUMBERS = (float, int)
 """The types of numbers, as a test of millions of values needs them."""
 

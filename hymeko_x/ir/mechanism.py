@@ -9,13 +9,13 @@ import posixpath
 from functools import cached_property
 from itertools import chain
 from types import MappingProxyType
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TypeGuard, TypeVar
 
 from msgspec import Struct, field
 from msgspec.structs import replace
 
 from hymeko_x.ir import lumped, parts
-from hymeko_x.ir.fields import Noted
+from hymeko_x.ir.fields import NUMBERS, Noted
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.ids import ROOT as ROOT
 from hymeko_x.ir.ids import WORLD as WORLD
@@ -70,6 +70,7 @@ KINDS: Mapping[type, str] = MappingProxyType(
         parts.Contact: "contact",
         lumped.Constitutive: "constitutive",
         parts.Relation: "relation",
+        parts.Nest: "nest",
     }
 )
 """The kind of every part: an element's id has the kind of its part."""
@@ -337,7 +338,12 @@ def pose_weight(arc: RobotArc) -> Pose:
 
 def numbers_weight(arc: RobotArc) -> tuple[float, ...]:
     """The arc's weight as numbers; an arc without one has none."""
-    return arc.weight if isinstance(arc.weight, tuple) else ()
+    return arc.weight if has_numbers(arc.weight) else ()
+
+
+def has_numbers(weight: parts.Weight | None) -> TypeGuard[tuple[float, ...]]:
+    """Whether a weight is a list of numbers."""
+    return isinstance(weight, tuple) and all(isinstance(number, NUMBERS) for number in weight)
 
 
 def joint_edge(joint: parts.Joint, parent: Id, child: Id, parent_pose: Pose = IDENTITY, child_pose: Pose = IDENTITY) -> RobotEdge:

@@ -10,6 +10,8 @@ from enum import Enum
 
 from msgspec import Struct
 
+from hymeko_x.ir.fields import Data as Data
+from hymeko_x.ir.fields import DataValue as DataValue
 from hymeko_x.ir.fields import Noted
 from hymeko_x.ir.fields import Parameters as Parameters
 from hymeko_x.ir.geometry import Box as Box
@@ -152,7 +154,7 @@ class PoseSet(Struct, frozen=True):
 class Datum(Struct, frozen=True):
     """A vertex that only carries data: data of a hypergraph that no robot part represents."""
 
-    parameters: Parameters = ()
+    parameters: Data = ()
 
 
 # ---- edges: shapes and mounts --------------------------------------------------------------------------------------------------
@@ -343,13 +345,19 @@ class Contact(Struct, frozen=True):
 
 
 class Relation(Struct, frozen=True):
-    """An edge of a plain hypergraph that means nothing in particular."""
+    """An edge of a plain hypergraph that means nothing in particular. The weights of its arcs are lists of any shape."""
 
-    parameters: Parameters = ()
+    parameters: Data = ()
+
+
+class Nest(Struct, frozen=True):
+    """What stands inside a vertex or an edge of a plain hypergraph. Arcs: ``+`` the outer element, ``-`` the inner ones in order."""
 
 
 VertexPart = (
     Body | World | Frame | Material | Texture | Mesh | Actuator | Sensor | Camera | Light | PoseSet | Spring | Damper | Mass | Port | Datum
 )
-EdgePart = Shape | Mount | Layer | Subset | Joint | Coupling | Loop | Tendon | Drive | Sense | Stance | Contact | Constitutive | Relation
-Weight = Pose | tuple[float, ...]
+EdgePart = (
+    Shape | Mount | Layer | Subset | Joint | Coupling | Loop | Tendon | Drive | Sense | Stance | Contact | Constitutive | Relation | Nest
+)
+Weight = Pose | tuple[DataValue, ...]

@@ -22,7 +22,8 @@ _ROUNDING = 1e-6
 def is_sound(part: object) -> bool:
     """Whether a part, or an edge with its arcs, holds nothing but what its fields may hold. Depth is that of the parts."""
     if isinstance(part, Edge):
-        return is_sound(part.data) and isinstance(part.arcs, tuple) and all(map(_is_sound_arc, part.arcs))
+        shape = tuple if isinstance(part.data, parts.Relation) else tuple[float, ...]
+        return is_sound(part.data) and isinstance(part.arcs, tuple) and all(_is_sound_arc(arc, shape) for arc in part.arcs)
     if isinstance(part, Pose) and not _is_placement(part):
         return False
     kind: Any = type(part)
@@ -38,10 +39,18 @@ def _is_placement(pose: Pose) -> bool:
     return all(map(isfinite, pose.xyz)) and abs(hypot(*pose.quat) - 1) < _ROUNDING
 
 
-def _is_sound_arc(arc: object) -> bool:
+def _is_sound_arc(arc: object, shape: Any) -> bool:
+    """Whether an arc holds what it may; ``shape`` is that of a weight that is no pose."""
     if not isinstance(arc, Arc) or not isinstance(arc.target, Id) or arc.sign not in (-1, 0, 1) or not isinstance(arc.role, str):
         return False
-    return arc.weight is None or fits(arc.weight, tuple[float, ...]) or (isinstance(arc.weight, Pose) and is_sound(arc.weight))
+    return arc.weight is None or fits(arc.weight, shape) or (isinstance(arc.weight, Pose) and is_sound(arc.weight))
+
+
+def _is_data(value: object) -> bool:
+    """Whether a value is one of plain data: a number, a text, nothing, or a list of such."""
+    if isinstance(value, tuple):
+        return all(map(_is_data, value))
+    return value is None or (isinstance(value, float | int | str) and not isinstance(value, bool))
 
 
 @cache
@@ -82,6 +91,8 @@ def fits(value: object, hint: Any) -> bool:
 def _fits_tuple(value: object, kinds: tuple[Any, ...]) -> bool:
     if not isinstance(value, tuple):
         return False
+    if kinds == (Any, Ellipsis):
+        return _is_data(value)
     if kinds[-1:] == (Ellipsis,):
         return all(fits(item, kinds[0]) for item in value)
     return len(kinds) == len(value) and all(fits(item, kind) for item, kind in zip(value, kinds, strict=True))

@@ -14,7 +14,7 @@ from hymeko_x.language.syntax import ArcItem, Comment, Document, Field, Import, 
 from hymeko_x.language.templates import MAX_DEPTH, Templates, definitions, is_definition, merge
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from hymeko_x.language.expressions import Environment
     from hymeko_x.language.templates import Fetch
@@ -25,10 +25,14 @@ EACH = 20
 
 
 class Scope(Struct):
-    """Where names are looked up: the elements of one assembly instance, inside those of its parent."""
+    """Where names are looked up: the elements of one assembly instance, or of one block of data, inside those of its parent.
+
+    ``name`` is that of the root, with which a path may begin.
+    """
 
     prefix: str = ""
     parent: Scope | None = None
+    name: str = ""
     elements: set[str] = field(default_factory=set)
     scopes: dict[str, Scope] = field(default_factory=dict)
 
@@ -41,13 +45,26 @@ class Scope(Struct):
         return next(self.meanings(path), None)
 
     def meanings(self, path: tuple[str, ...]) -> Iterator[str]:
-        """The full names that a path may mean, from here outwards: elements of different kinds may share a name."""
+        """The full names that a path may mean, from here outwards: elements of different kinds may share a name.
+
+        A path that begins with an empty name begins in the root, where another element has the same path from here.
+        """
         here: Scope | None = self
+        if len(path) > 1 and not path[0]:
+            here, path = self._root(), path[1:]
         while here is not None:
             found = here._inside(path)
             if found is not None:
                 yield found
+            if here.parent is None and len(path) > 1 and here.name == path[0] and (found := here._inside(path[1:])) is not None:
+                yield found
             here = here.parent
+
+    def _root(self) -> Scope:
+        here = self
+        while here.parent is not None:
+            here = here.parent
+        return here
 
     def _inside(self, path: tuple[str, ...]) -> str | None:
         scope = self
@@ -100,13 +117,16 @@ class Statement(NamedTuple):
 
 
 class Expanded(NamedTuple):
-    """A whole text, expanded: the root's name and types, and its elements and statements in order."""
+    """A whole text, expanded: the root's name and types, and its elements and statements in order.
+
+    ``inside`` expands the items in the block of an element in the same way, with the scope of their names.
+    """
 
     name: str
     types: tuple[str, ...]
     items: tuple[Expansion, ...]
-    scope: Scope
     root: str
+    inside: Callable[[Sequence[Item], Scope], tuple[Expansion, ...]]
     preceding: tuple[Comment, ...] = ()
     following: tuple[Comment, ...] = ()
 
@@ -121,14 +141,12 @@ def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
     defined = definitions(document.items, roots, file, fetch)
     templates = Templates(file, defined, MAX_ITEMS + EACH * sum(len(node.items) for node in roots))
     expansion = _Expansion(file, templates)
-    scope = Scope()
     if len(roots) != 1 or loose:
-        found = _changed(expansion.elements([*loose, *roots], {}, scope))
-        return Expanded(header, (), found, scope, "", preceding, following)
+        return Expanded(header, (), expansion.inside([*loose, *roots], Scope()), "", expansion.inside, preceding, following)
     root = roots[0]
     preset = templates.preset(root, {})
-    found = _changed(expansion.elements(merge(preset.items, root.items), {}, scope))
-    return Expanded(header or root.name, preset.types, found, scope, root.name, preceding, following)
+    found = expansion.inside(merge(preset.items, root.items), Scope(name=root.name))
+    return Expanded(header or root.name, preset.types, found, root.name, expansion.inside, preceding, following)
 
 
 def _changed(found: Iterator[Expansion]) -> tuple[Expansion, ...]:
@@ -189,6 +207,10 @@ class _Expansion:
         self._file = file
         self._templates = templates
 
+    def inside(self, items: Sequence[Item], scope: Scope) -> tuple[Expansion, ...]:
+        """The elements of a block, with the changes that other items of it make."""
+        return _changed(self.elements(items, {}, scope))
+
     def elements(
         self, items: Sequence[Item], environment: Environment, scope: Scope, depth: int = 0, *, made: bool = False
     ) -> Iterator[Expansion]:
@@ -199,6 +221,8 @@ class _Expansion:
             if isinstance(item, Node):
                 yield from self._element(item, environment, scope, depth, made=made)
             else:
+                if isinstance(item, Field):
+                    scope.elements.add(item.name)
                 yield Statement(fill(item, environment, self._file), scope)  # type: ignore[arg-type]
 
     def _element(self, node: Node, environment: Environment, scope: Scope, depth: int, *, made: bool) -> Iterator[Expansion]:

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from hymeko_x import formats, pipeline
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.graph import Hypergraph
-from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge
+from hymeko_x.ir.mechanism import WORLD, Id, Mechanism, joint_edge, numbers_weight
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import word
 from hymeko_x.ir.parts import Body, Dof, DofKind, Joint, World
@@ -124,7 +124,7 @@ def _remembered(name: str, edge: RobotEdge | None) -> str:
 
 
 def _numbers(arc: RobotArc) -> tuple[float, ...] | None:
-    return (*arc.weight.xyz, *arc.weight.quat) if isinstance(arc.weight, Pose) else arc.weight
+    return (*arc.weight.xyz, *arc.weight.quat) if isinstance(arc.weight, Pose) else numbers_weight(arc) or None
 
 
 def _with_states(whole: Mechanism, host: Mechanism, part: Mechanism, change: Callable[[str], str]) -> Mechanism:

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from hymeko_x.ir.geometry import Geometry
+    from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.parts import EdgePart, Limits, Rgba, VertexPart
     from hymeko_x.ir.values import Pose, Tensor, Vec3
 
@@ -227,7 +228,7 @@ class Editing(Named, Generic[R]):
     def add_pose(self, name: str, values: Mapping[str, float | Sequence[float]]) -> el.PoseSetElement:
         """A named configuration: the coordinates of joints in rad or m, of a ball the quaternion (w, x, y, z)."""
         key = self._draft.new_id("pose", name)
-        arcs: list[Arc[Id, Pose | tuple[float, ...]]] = [Arc(key, 1)]
+        arcs: list[RobotArc] = [Arc(key, 1)]
         for joint, value in values.items():
             view = self.joints[joint]
             numbers = plain_value(value)
@@ -315,7 +316,7 @@ class Editing(Named, Generic[R]):
         self._draft.set_edge(self._draft.free_id("mount", name), mount_edge(body, key, pose))
         return key
 
-    def _edge(self, kind: str, name: str, part: EdgePart, arcs: tuple[Arc[Id, Pose | tuple[float, ...]], ...]) -> None:
+    def _edge(self, kind: str, name: str, part: EdgePart, arcs: tuple[RobotArc, ...]) -> None:
         self._draft.set_edge(self._draft.free_id(kind, name), Edge(part, arcs))
 
     def _with(self, element: E_, **values: object) -> E_:

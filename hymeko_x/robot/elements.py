@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.ir.mechanism import WORLD, Id
+from hymeko_x.ir.mechanism import WORLD, Id, has_numbers
 from hymeko_x.ir.parts import Dof, Geometry, Limits, Parameters, Rgba, Role
 from hymeko_x.ir.values import Pose, Tensor, Vec3
 from hymeko_x.robot.element import Element
@@ -308,7 +308,7 @@ class PoseSetElement(Element):
     def values(self) -> dict[str, tuple[float, ...]]:
         """The coordinates by joint, in rad or m; quaternions as (w, x, y, z)."""
         arcs = [arc for _, edge in self.draft.at(self.id, "stance") for arc in edge.arcs if arc.target.kind == "joint"]
-        return {arc.target.name: arc.weight for arc in arcs if isinstance(arc.weight, tuple)}
+        return {arc.target.name: arc.weight for arc in arcs if has_numbers(arc.weight)}
 
 
 class TendonElement(Element):

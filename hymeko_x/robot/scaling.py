@@ -10,6 +10,7 @@ from msgspec.structs import replace
 from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Ellipsoid, Plane, Sphere
 from hymeko_x.ir.graph import Edge, Hypergraph
 from hymeko_x.ir.kinematics import dof_number
+from hymeko_x.ir.mechanism import has_numbers
 from hymeko_x.ir.parts import Body, Coupling, Dof, DofKind, Frame, Joint, Limits, Loop, Mesh, Shape, Stance, Tendon
 from hymeko_x.ir.values import Pose
 from hymeko_x.robot.errors import EditError
@@ -127,7 +128,7 @@ def _length(dof: Dof, s: float) -> float:
 def _arc(arc: RobotArc, part: EdgePart, mechanism: Mechanism, s: float) -> RobotArc:
     if isinstance(arc.weight, Pose):
         return replace(arc, weight=replace(arc.weight, xyz=_times(arc.weight.xyz, s)))
-    if isinstance(part, Stance) and isinstance(arc.weight, tuple) and arc.target in mechanism.joints:
+    if isinstance(part, Stance) and has_numbers(arc.weight) and arc.target in mechanism.joints:
         return replace(arc, weight=tuple(_coordinates(mechanism.joints[arc.target].joint, arc.weight, s)))
     return arc
 
@@ -142,7 +143,7 @@ def _coordinates(joint: Joint, numbers: tuple[float, ...], s: float) -> list[flo
 def _leader(arc: RobotArc, follower: RobotArc, mechanism: Mechanism, s: float) -> RobotArc:
     """Coefficient k of a coupling has the dimension of the follower divided by that of the leader to the power k."""
     own, other = (_length_of(end, mechanism, s) for end in (follower, arc))
-    if not isinstance(arc.weight, tuple):
+    if not has_numbers(arc.weight):
         return arc
     return replace(arc, weight=tuple([number * own / other**power for power, number in enumerate(arc.weight)]))
 

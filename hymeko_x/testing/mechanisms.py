@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from hypothesis import strategies as st
 from msgspec import Struct
 
+from hymeko_x.formats.hymeko.nesting import nest_edge, nest_key, prefix_of
 from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
 from hymeko_x.ir.mechanism import (
@@ -29,6 +30,7 @@ from hymeko_x.testing.parts import (
     CONTACTS,
     DATA,
     DRIVES,
+    LISTS_OF_ANY_SHAPE,
     LOOPS,
     LUMPED,
     MATERIALS,
@@ -256,6 +258,28 @@ def _add_any(
     return add
 
 
+def _add_blocks(builder: _Builder) -> None:
+    """Data and relations inside of others, with the edges that tell so, as blocks of text have them."""
+    for _ in range(builder.draw(st.integers(0, 3))):
+        outers = [key for key in builder.of("datum", "relation") if nest_key(key) not in builder.edges]
+        if not outers:
+            return
+        outer = builder.draw(st.sampled_from(outers))
+        inner = [_inside(builder, outer) for _ in range(builder.draw(st.integers(1, 3)))]
+        builder.edges[nest_key(outer)] = nest_edge(outer, inner)
+
+
+def _inside(builder: _Builder, outer: Id) -> Id:
+    """A new vertex or edge whose name tells that it stands inside of another one."""
+    name = prefix_of(outer) + builder.draw(builder.knobs.names)
+    if builder.draw(st.booleans()):
+        key = builder.id("datum", name)
+        builder.vertices[key] = builder.draw(DATA)
+        return key
+    arcs = builder.arcs(builder.draw(st.sampled_from([-1, 0, 1])), tuple(KINDS.values()), LISTS_OF_ANY_SHAPE)
+    return builder.edge("relation", Edge(builder.draw(RELATIONS), arcs), name)
+
+
 _LISTS = st.lists(NUMBERS, max_size=3).map(tuple)
 _PLACED = POSES.filter(lambda p: p != Pose() or p.written is not None)
 _ADDERS: tuple[tuple[Callable[[_Builder], None], Callable[[Knobs], bool]], ...] = (
@@ -273,7 +297,9 @@ _ADDERS: tuple[tuple[Callable[[_Builder], None], Callable[[Knobs], bool]], ...] 
         _add_any("constitutive", st.just(lumped.Constitutive()), -1, ("body", "spring", "damper", "mass", "port"), _LISTS),
         lambda knobs: knobs.lumped,
     ),
-    (_add_any("relation", RELATIONS, 0, tuple(KINDS.values()), _LISTS), lambda knobs: knobs.relations),
+    (_add_any("relation", RELATIONS, 0, tuple(KINDS.values()), LISTS_OF_ANY_SHAPE), lambda knobs: knobs.relations),
+    (_add_any("nest", st.just(parts.Nest()), 1, ("datum", "relation"), _LISTS), lambda knobs: knobs.relations),
+    (_add_blocks, lambda knobs: knobs.relations),
 )
 _EXTRAS = st.builds(
     Extra,
@@ -290,7 +316,8 @@ def _finished(builder: _Builder) -> Mechanism:
     extras = _extras(draw, keys) if knobs.extras else {}
     noted = draw(st.lists(st.sampled_from([ROOT, *keys]), max_size=2, unique=True)) if knobs.notations else []
     notations = {key: draw(st.dictionaries(TEXTS, TEXTS, min_size=1, max_size=2)) for key in noted}
-    alone = [key for key in keys if key.kind != "shape"]
+    inside = {arc.target for key, edge in builder.edges.items() if key.kind == "nest" for arc in edge.arcs[1:]}
+    alone = [key for key in keys if key.kind not in ("shape", "nest") and key not in inside]
     layout = draw(st.just([]) | st.lists(st.sampled_from(alone), unique=True)) if alone else []
     graph = Hypergraph(builder.vertices, builder.edges)
     return Mechanism(draw(knobs.names), graph, extras, {}, notations, {}, tuple(layout))

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from hymeko_x.ir import lumped, parts
 from hymeko_x.ir.values import Pose, Written, rotate_tensor, unit
-from hymeko_x.testing.values import COLOURS, DIRECTIONS, LENGTHS, NUMBERS, PARAMETERS, POSES, SMALL, TEXTS, VECTORS, maybe
+from hymeko_x.testing.values import COLOURS, DIRECTIONS, LENGTHS, NAMES, NUMBERS, PARAMETERS, POSES, SMALL, TEXTS, VECTORS, maybe
 
 TENSORS = st.tuples(*[SMALL] * 6)
 
@@ -97,9 +97,12 @@ LUMPED = st.one_of(
 )
 ACTUATORS = st.builds(parts.Actuator, TEXTS, PARAMETERS)
 POSE_SETS = st.builds(parts.PoseSet, maybe(TEXTS), maybe(NUMBERS), PARAMETERS)
-DATA = st.builds(parts.Datum, PARAMETERS)
+_VALUES = st.recursive(NUMBERS | TEXTS | st.none(), lambda inner: st.lists(inner, max_size=3).map(tuple), max_leaves=5)
+_DATA = st.lists(st.tuples(NAMES, _VALUES), max_size=3, unique_by=lambda pair: pair[0]).map(tuple)
+LISTS_OF_ANY_SHAPE = st.lists(_VALUES, max_size=3).map(tuple)
+DATA = st.builds(parts.Datum, _DATA)
 LOOPS = st.builds(parts.Loop, TEXTS, st.lists(dofs(), max_size=2).map(tuple), st.booleans(), PARAMETERS)
 TENDONS = st.builds(parts.Tendon, TEXTS, LIMITS, NUMBERS, NUMBERS, NUMBERS, NUMBERS, maybe(LENGTHS), maybe(COLOURS), PARAMETERS)
 DRIVES = st.builds(parts.Drive, TEXTS, PARAMETERS)
 CONTACTS = st.builds(parts.Contact, TEXTS, PARAMETERS)
-RELATIONS = st.builds(parts.Relation, PARAMETERS)
+RELATIONS = st.builds(parts.Relation, _DATA)

@@ -13,16 +13,18 @@ from hymeko_x.backends.hymeko.assemblies import Instance, assemblies, pieces_of,
 from hymeko_x.backends.hymeko.bodies import body_items, files_prefix, given_names, inline_assets
 from hymeko_x.backends.hymeko.extras import foreign_items, is_standing, sound_comment, standing_items
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
+from hymeko_x.backends.hymeko.nesting import name_of, nesting_of
 from hymeko_x.backends.hymeko.parts import attached_arcs, part_items
-from hymeko_x.backends.hymeko.sheet import HymekoSheet, name_of, written_items
+from hymeko_x.backends.hymeko.sheet import HymekoSheet, written_items
 from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
 from hymeko_x.backends.hymeko.values import ExplicitAngles, shortest_angles
 from hymeko_x.formats.hymeko import AXES, ROOT_NAME
+from hymeko_x.formats.hymeko.nesting import BLOCK_SETTINGS
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.provenance import kept_notations
 from hymeko_x.language.printer import print_document
-from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, Ref, Stereotype
+from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, QuotedName, Ref, Stereotype
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -36,7 +38,7 @@ if TYPE_CHECKING:
 _MOST_TRIES = 4
 """How often assemblies are chosen anew because names in them would hide others, before there are none."""
 _INLINE_EDGES = frozenset({"shape"})
-_PLAIN = frozenset({"datum", "relation"})
+_PLAIN = frozenset({"datum", "relation", "nest"})
 _ORDER = ("world", "material", "texture", "layer", "mesh", "body", "joint", "frame", "camera", "light", "sensor", "mount")
 
 
@@ -54,6 +56,8 @@ def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
     """The syntax tree of a mechanism; ``flat`` as :func:`write_flat`."""
     plain = _is_plain(mechanism)
     inline = inline_assets(mechanism)
+    root = mechanism.notation(ROOT, ROOT_NAME)
+    name = root if root is not None else mechanism.name
     sheet = HymekoSheet(
         mechanism,
         "" if flat else files_prefix(mechanism),
@@ -62,11 +66,10 @@ def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
         mimic_arcs(mechanism),
         attached_arcs(mechanism),
         ExplicitAngles() if flat else shortest_angles(mechanism),
+        nesting=nesting_of(mechanism, name),
     )
     items = _settings(sheet, plain)
     items += [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})] if plain or flat else _grouped(sheet)
-    root = mechanism.notation(ROOT, ROOT_NAME)
-    name = root if root is not None else mechanism.name
     header = mechanism.name if root is not None else ""
     kind = Stereotype(Ref(("graph" if plain else "robot",)))
     node = Node(name_of(name), tuple(items), (kind,))
@@ -196,6 +199,8 @@ def _order(sheet: HymekoSheet) -> list[Id]:
 def _stands_alone(sheet: HymekoSheet, key: Id) -> bool:
     if key in sheet.inline or key.kind in _INLINE_EDGES or key in sheet.mimics or key in sheet.attached_edges:
         return False
+    if key in sheet.nesting.outer or key in sheet.nesting.edges:
+        return False
     if key != WORLD:
         return True
     mechanism = sheet.mechanism
@@ -211,16 +216,34 @@ def _element(sheet: HymekoSheet, key: Id) -> Item:
     if isinstance(edge.data, parts.Joint):
         kind, items = joint_items(sheet, key)
         return sheet.node(key, items, kind, edge=True)
-    items = part_items(sheet, key, edge.data, edge.arcs)
+    items = part_items(sheet, key, edge.data, edge.arcs) + _inner(sheet, key)
     if isinstance(edge.data, parts.Loop):
         items.extend(dof_node(dof, sheet.angles) for dof in edge.data.dofs)
-    return sheet.node(key, items, key.kind, edge=True)
+    return sheet.node(key, items, _kind(sheet, key), edge=True)
 
 
 def _vertex(sheet: HymekoSheet, key: Id, part: parts.VertexPart) -> Item:
     if isinstance(part, parts.Body | parts.World):
         node = sheet.node(key, body_items(sheet, key, part), "")
         return node if node.items or key.name not in AXES else sheet.node(key, [], "link")
-    if isinstance(part, parts.Datum) and not part.parameters and not sheet.is_marked(key):
-        return Field(name_of(key.name))
-    return sheet.node(key, part_items(sheet, key, part, ()), key.kind)
+    items = part_items(sheet, key, part, ()) + _inner(sheet, key)
+    in_edge = sheet.within is not None and sheet.within.kind == "relation"  # where a name alone is a flag
+    if isinstance(part, parts.Datum) and not items and not in_edge and not sheet.is_marked(key):
+        return Field(_bare_name(sheet.nesting.name(key)))
+    return sheet.node(key, items, _kind(sheet, key))
+
+
+def _inner(sheet: HymekoSheet, key: Id) -> list[Item]:
+    """The elements that stand in the block of an element. As deep as the blocks, which have a limit."""
+    inner = sheet.nesting.inner.get(key, ())
+    return [_element(replace(sheet, within=key), found) for found in inner]
+
+
+def _kind(sheet: HymekoSheet, key: Id) -> str:
+    """The type of a vertex or an edge; inside of data, what has none is data as well."""
+    return "" if key in sheet.nesting.outer else key.kind
+
+
+def _bare_name(name: str) -> str:
+    """A name that stands alone, quoted where it would be a field."""
+    return QuotedName(name) if name in BLOCK_SETTINGS else name_of(name)

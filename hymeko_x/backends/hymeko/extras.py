@@ -19,14 +19,17 @@ _FORMATS = FOREIGN - {"hymeko"}
 _OWN_WORDS = frozenset({PLACE, INDENT, TEXT, markup.COMMENT})
 
 
-def foreign_items(extras: Iterable[Extra], *, at_root: bool = False) -> list[Item]:
-    """The items of all extras of one element: comments, a block for each format, and verbatim the texts that no block represents."""
+def foreign_items(extras: Iterable[Extra], *, at_root: bool = False, deep: bool = False) -> list[Item]:
+    """The items of all extras of one element: comments, a block for each format, and verbatim the texts that no block represents.
+
+    ``deep``: the element stands where the reader of text passes over comments.
+    """
     by_format: dict[str, list[Extra]] = {}
     for extra in extras:
         by_format.setdefault(extra.format, []).append(extra)
     items: list[Item] = []
     for format, found in by_format.items():
-        items.extend(_comments(found) if format == "comment" and not at_root else _of_format(format, found, at_root=at_root))
+        items.extend(_comments(found) if format == "comment" and not at_root and not deep else _of_format(format, found, at_root=at_root))
     return items
 
 

@@ -10,8 +10,6 @@ from hymeko_x.backends.hymeko.sheet import defaults_of
 from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.formats.hymeko import (
     ATTACHED,
-    CHILD_CLASS,
-    FOREIGN,
     LIMIT_WORDS,
     NAMED_AFTER_ID,
     PARTS,
@@ -20,6 +18,7 @@ from hymeko_x.formats.hymeko import (
     attached_edge,
     attached_key,
 )
+from hymeko_x.formats.hymeko.nesting import BLOCK_SETTINGS
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc
 from hymeko_x.language.syntax import Field, Item, QuotedName
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
     from hymeko_x.backends.hymeko.values import Angles
     from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc
 
-_SETTINGS = FOREIGN | {"unnamed", "kind", "moves", "scope", "extra", "class", CHILD_CLASS, "written"}
 _SPANS = frozenset({"limit", "limits", "range"}) | {word.word for word in LIMIT_WORDS}
 
 
@@ -46,7 +44,7 @@ def part_items(sheet: HymekoSheet, key: Id, part: parts.VertexPart | parts.EdgeP
     if isinstance(part, parts.Tendon):
         items.extend(limit_items(part.limits, sheet.angles, "length"))
     if words.open:
-        taken = {word.word for word in words.words} | _SETTINGS | _SPANS
+        taken = {word.word for word in words.words} | BLOCK_SETTINGS | _SPANS
         items.extend(
             Field(QuotedName(name) if name in taken else name, value_of(value))
             for name, value in part.parameters  # type: ignore[union-attr]

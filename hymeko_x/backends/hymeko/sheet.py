@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
 from hymeko_x.backends.hymeko.extras import foreign_items
+from hymeko_x.backends.hymeko.nesting import Nesting, name_of
 from hymeko_x.backends.hymeko.values import pose_value, value_of
 from hymeko_x.formats import native_format
-from hymeko_x.formats.hymeko import CHILD_CLASS, NAMED_AFTER_ID, PARTS, RESERVED, SHORT_TYPES, TARGETS, attached_key
+from hymeko_x.formats.hymeko import CHILD_CLASS, NAMED_AFTER_ID, PARTS, SHORT_TYPES, TARGETS, attached_key
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import Pose
 from hymeko_x.language.markup import value_of_text
-from hymeko_x.language.syntax import ArcItem, Field, Item, Node, QuotedName, Ref, Stereotype, Value, is_field
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Ref, Stereotype, Value, is_field
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -33,6 +34,7 @@ class HymekoSheet(Struct, frozen=True):
     first shape that does; ``given_names``: those among them that have an id there; ``mimics``: couplings in the block of the joint
     that follows; ``attached``: arcs of mounts, drives and the like in the block of the vertex that they attach; ``angles``: the unit
     of plain angles; ``homes``: the assemblies of elements, by the elements' names, and ``inside``: the one that is being printed;
+    ``nesting``: what stands in the blocks of data, and ``within``: the element whose block is being printed;
     ``clashes`` collects the assemblies in which a reference would mean another element.
     """
 
@@ -45,6 +47,8 @@ class HymekoSheet(Struct, frozen=True):
     angles: Angles
     homes: Mapping[str, str] = field(default_factory=dict)
     inside: str = ""
+    nesting: Nesting = Nesting()
+    within: Id | None = None
     clashes: set[str] = field(default_factory=set)
     names: dict[str, list[str]] = field(default_factory=dict)
 
@@ -68,10 +72,11 @@ class HymekoSheet(Struct, frozen=True):
         items.extend(self.class_items(key))
         if notations:
             items.extend(written_items(notations, flags=key.kind not in NAMED_AFTER_ID))
-        items.extend(foreign_items(self.mechanism.extras.get(key, ())))
+        items.extend(foreign_items(self.mechanism.extras.get(key, ()), deep=key in self.nesting.outer))
         path, items = _typed(kind, items)
         stereotypes = (Stereotype(Ref(path)),) if kind else ()
-        name = key.name if key == WORLD else name_of(key.name.removeprefix(f"{self.inside}_" if self.inside else ""))
+        own = self.nesting.name(key)
+        name = own if key == WORLD else name_of(own.removeprefix(f"{self.inside}_" if self.inside else ""))
         return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
 
     def class_items(self, key: Id) -> list[Item]:
@@ -87,6 +92,8 @@ class HymekoSheet(Struct, frozen=True):
             self._note_clash("world", kinds)
             alone = self.names.get("world") == ["world"]
             return Ref(("world",) if alone else ("world", "world"), direction)
+        if target in self.nesting.outer or self.within is not None:
+            return Ref(self.nesting.path(target, kinds, self.within, self.names), direction)
         first = next((kind for kind in kinds or _ALL_KINDS if kind in self.names.get(target.name, ())), None)
         path = self._path(target.name, kinds)
         return Ref(path if first == target.kind else (target.kind, *path), direction)
@@ -112,11 +119,11 @@ class HymekoSheet(Struct, frozen=True):
 
     def arc(self, kind: str, arc: RobotArc) -> ArcItem:
         """An arc of an edge of this kind."""
-        weight = None
+        weight: tuple[Value, ...] | None = None
         if isinstance(arc.weight, Pose):
             weight = pose_value(arc.weight, self.angles)
         elif arc.weight is not None:
-            weight = cast("tuple[Value, ...]", arc.weight)
+            weight = tuple(map(value_of, arc.weight))
         return ArcItem(self.ref(arc.target, TARGETS[kind], _DIRECTIONS[arc.sign]), arc.role, weight)
 
 
@@ -125,11 +132,6 @@ def defaults_of(part: type) -> dict[str, object]:
     layout = layout_of(part)
     assert layout is not None
     return {item.name: item.default for item in layout.attributes}
-
-
-def name_of(name: str) -> str:
-    """The name of an element, quoted where it would mean something else."""
-    return QuotedName(name) if name in RESERVED else name
 
 
 def _typed(kind: str, items: list[Item]) -> tuple[tuple[str, ...], list[Item]]:

@@ -10,7 +10,7 @@ from msgspec import Struct
 from hymeko_x.formats.hymeko import TURNING, unit_factor
 from hymeko_x.ir import parts
 from hymeko_x.ir.values import NO_ROTATION, Pose, number_text
-from hymeko_x.language.syntax import Quantity, Ref
+from hymeko_x.language.syntax import Quantity, Query, Ref
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -75,6 +75,8 @@ def value_of(value: object) -> Value:
         return tuple(value if isinstance(value, str) else value_of(value) for value in value)
     if isinstance(value, str) and _WORD.fullmatch(value) and value not in _NO_WORDS:
         return Ref((value,))
+    if value is None:
+        return Query()
     assert isinstance(value, float | str), value
     return value
 

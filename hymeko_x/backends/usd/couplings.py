@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x.backends.usd.sheet import T, apply, dof_of, point, put
 from hymeko_x.formats import usd as words
+from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Coupling, DofKind
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def _follower(sheet: UsdSheet, key: Id, coupling: Coupling, arcs: tuple[RobotArc
     if follower is None or len(leaders) != 1:
         return None
     here, there = dof_of(sheet, follower), dof_of(sheet, leaders[0])
-    weight = leaders[0].weight if isinstance(leaders[0].weight, tuple) else (0.0, 1.0)
+    weight = numbers_weight(leaders[0]) or (0.0, 1.0)
     if here is None or there is None or len(weight) > 5:
         return None
     return _Follower(key, coupling, here[0], here[2], there[0], weight)

@@ -101,10 +101,19 @@ def weight(arc: RobotArc) -> str:
         if any(abs(turn) > 1e-6 for turn in turns):
             words.append(_vector(turns, "°"))
     elif arc.weight is not None:
-        words.append(_vector(arc.weight) if len(arc.weight) != 1 else number(arc.weight[0]))
+        words.append(_value(arc.weight if len(arc.weight) != 1 else arc.weight[0]))
     if arc.role:
         words.append(shown(arc.role))
     return " ".join(words)
+
+
+def _value(value: parts.DataValue) -> str:
+    """A number, a text, or a list of such; ``?`` is a value that is left open."""
+    if isinstance(value, tuple):
+        return cut(f"[{' '.join(map(_value, value))}]")
+    if value is None:
+        return "?"
+    return shown(value) if isinstance(value, str) else number(value)
 
 
 def _vector(values: tuple[float, ...], unit: str = "") -> str:

@@ -31,9 +31,10 @@ EDGE_KINDS = (
     "subset",
     "constitutive",
     "relation",
+    "nest",
 )
 OVER_THE_TREE = ("coupling", "loop", "tendon")
-MEANT = ("joint", *OVER_THE_TREE, "constitutive", "relation")
+MEANT = ("joint", *OVER_THE_TREE, "constitutive", "relation", "nest")
 """The kinds of edges that are drawn where none is asked for: how a mechanism moves, and whatever a plain graph has."""
 PLAIN = frozenset({"body", "datum", "spring", "damper", "mass", "port"})
 """The kinds of vertices that are drawn with or without an edge."""

@@ -97,6 +97,7 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
         "contact": PartWords(parts.Contact, (_TYPE,), open=True),
         "constitutive": PartWords(lumped.Constitutive, ()),
         "relation": PartWords(parts.Relation, (), open=True),
+        "nest": PartWords(parts.Nest, ()),
     }
 )
 """The parts that fields alone represent; bodies, shapes and joints have readers and writers of their own."""
@@ -261,6 +262,7 @@ TARGETS: Mapping[str, tuple[str, ...]] = MappingProxyType(
         "contact": ("shape", "body", "world"),
         "constitutive": ("body", "spring", "damper", "mass", "port", "world"),
         "relation": (),
+        "nest": ("datum", "relation"),
     }
 )
 """The kinds that a reference in an edge may mean, the likeliest first; empty = any kind."""

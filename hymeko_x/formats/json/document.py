@@ -34,6 +34,17 @@ class Arc(Struct, frozen=True, forbid_unknown_fields=True):
     role: str = ""
 
 
+class FreeArc(Struct, frozen=True, forbid_unknown_fields=True):
+    """One end of a relation of a plain hypergraph. The weight is a list of any shape."""
+
+    to: Id
+    sign: Literal[1, 0, -1] = 0
+    weight: tuple[Any, ...] | None = None
+    role: str = ""
+
+
+_ARCS: Any = tuple[Arc, ...]
+_FREE_ARCS: Any = tuple[FreeArc, ...]
 _ABOUT: tuple[tuple[str, Any, Any], ...] = (
     ("extras", tuple[Extra, ...], ()),
     ("notations", Notations, ()),
@@ -63,7 +74,9 @@ def _element(part: type, *own: tuple[str, Any, Any]) -> Any:
 
 VERTICES: Mapping[type, Any] = MappingProxyType({part: _element(part) for part in get_args(parts.VertexPart)})
 """The type of the objects for each part of a vertex."""
-EDGES: Mapping[type, Any] = MappingProxyType({part: _element(part, ("arcs", tuple[Arc, ...], ())) for part in get_args(parts.EdgePart)})
+EDGES: Mapping[type, Any] = MappingProxyType(
+    {part: _element(part, ("arcs", _FREE_ARCS if part is parts.Relation else _ARCS, ())) for part in get_args(parts.EdgePart)}
+)
 """The type of the objects for each part of an edge."""
 PARTS: Mapping[type, type] = MappingProxyType({element: part for table in (VERTICES, EDGES) for part, element in table.items()})
 """The part of each type of objects."""

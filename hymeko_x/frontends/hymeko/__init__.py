@@ -13,6 +13,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.formats.hymeko import AXES, FOREIGN, ROOT_NAME, SETTINGS, attached_key
+from hymeko_x.formats.hymeko.nesting import OUTER
 from hymeko_x.frontends.hymeko.block import Block, is_written, read_written, read_written_block
 from hymeko_x.frontends.hymeko.bodies import is_base_arc, read_body, read_fixed
 from hymeko_x.frontends.hymeko.builder import HymekoBuilder
@@ -23,6 +24,7 @@ from hymeko_x.frontends.hymeko.instances import changes_in, declare_instance, fr
 from hymeko_x.frontends.hymeko.joints import read_joint, unit_axis
 from hymeko_x.frontends.hymeko.kinds import infer_kinds
 from hymeko_x.frontends.hymeko.lumped import remove_folded
+from hymeko_x.frontends.hymeko.nesting import declare_inside
 from hymeko_x.frontends.hymeko.parts import has_attached, read_part
 from hymeko_x.frontends.hymeko.values import ValueReader, read_units
 from hymeko_x.ir import parts
@@ -215,12 +217,12 @@ def _declare(builder: HymekoBuilder, expanded: Expanded, kinds: list[str], insta
             if isinstance(element.item, Field) and not _is_setting(element.item):
                 _read_datum(builder, element.item)
         elif isinstance(element, Element) and not _is_about_the_whole(element.node):
-            declared += _declared(builder, element, next(remaining))
+            declared += _declared(builder, expanded, element, next(remaining))
     return declared
 
 
-def _declared(builder: HymekoBuilder, element: Element, kind: str) -> list[tuple[Id, Element]]:
-    """The ids of an element: its own, and behind that of a fixed body the one of its joint."""
+def _declared(builder: HymekoBuilder, expanded: Expanded, element: Element, kind: str) -> list[tuple[Id, Element]]:
+    """The ids of an element: its own, behind that of a fixed body the one of its joint, behind that of data those inside of it."""
     if kind == "axis":
         builder.directions[element.name] = _direction(builder, element)
         return []
@@ -229,6 +231,8 @@ def _declared(builder: HymekoBuilder, element: Element, kind: str) -> list[tuple
         builder.layout.append(WORLD)
         return [(WORLD, element)]
     key = builder.declare(kind, element)
+    if kind in OUTER:
+        return declare_inside(builder, expanded, key, element)
     edge = attached_key(key)
     if edge is None or not _has_attached(kind, element.node):
         return [(key, element)]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from hymeko_x import codes
 from hymeko_x.formats.hymeko import CHILD_CLASS, FOREIGN
@@ -16,7 +16,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from hymeko_x.formats.hymeko import Word
-    from hymeko_x.frontends.hymeko.values import ParameterValue, ValueReader
+    from hymeko_x.frontends.hymeko.values import ValueReader
+
+T = TypeVar("T")
 
 
 class Block:
@@ -75,7 +77,7 @@ class Block:
         else:
             self.fields.setdefault(item.name, item)
 
-    def take_rest(self, read: Callable[[Field], ParameterValue]) -> list[tuple[str, ParameterValue]]:
+    def take_rest(self, read: Callable[[Field], T]) -> list[tuple[str, T]]:
         """The fields of an open block that are neither words nor settings, in order, as names and values."""
         left = [item for item in self.free or () if isinstance(item.name, QuotedName) or item.name in self.fields]
         self.fields.clear()

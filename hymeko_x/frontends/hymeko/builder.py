@@ -9,6 +9,7 @@ from msgspec import field
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
+from hymeko_x.formats.hymeko.nesting import OUTER
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Provenance
@@ -171,6 +172,8 @@ class HymekoBuilder(Builder):
             return None
         if kind in POSED_EDGES:
             return self.reader.pose(item.weight, item)
+        if kind in OUTER:
+            return tuple([self.reader.data(part, item) for part in item.weight])
         flat = tuple(part for part in item.weight if not is_list(part))
         if len(flat) != len(item.weight):
             raise self.reader.refuse(item, f"the weight of the arc to '{item.ref.dotted}' is a list of numbers")

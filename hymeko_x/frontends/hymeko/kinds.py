@@ -24,7 +24,7 @@ def infer_kinds(expanded: Expanded, elements: list[Element]) -> list[str]:
     by_name: dict[str, list[int]] = {}
     for number, element in enumerate(elements):
         by_name.setdefault(element.name, []).append(number)
-    kinds = [_typed(element) for element in elements]
+    kinds = [typed_kind(element) for element in elements]
     mode = next((name for name in expanded.types if name in ("robot", "graph")), "")
     if not mode:
         _infer_from_edges(elements, kinds, by_name)
@@ -43,7 +43,7 @@ def is_direction(element: Element) -> bool:
     return (not fields and element.name in AXES) or (len(fields) == 1 and bool(fields & {"axis", "ax", "direction"}))
 
 
-def _typed(element: Element) -> str:
+def typed_kind(element: Element) -> str:
     """The kind that the element's types preset, or nothing."""
     for item in element.node.items:
         if is_field(item, ("kind",)) and isinstance(item.value, str):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec.structs import fields
 
 from hymeko_x.formats.hymeko import ALIASES, ATTACHED, LUMPED_UNITS, NAMED_AFTER_ID, PARTS, TARGETS, TEXTURE, attached_edge, attached_key
+from hymeko_x.formats.hymeko.nesting import OUTER
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.joints import read_dofs, read_limits
 from hymeko_x.frontends.hymeko.lumped import set_domain
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.builder import HymekoBuilder
     from hymeko_x.frontends.hymeko.values import ParameterValue
     from hymeko_x.ir.mechanism import Id, RobotArc
+    from hymeko_x.ir.parts import DataValue
     from hymeko_x.language.expansion import Element
     from hymeko_x.language.syntax import Item
 
@@ -46,7 +48,7 @@ def read_part(builder: HymekoBuilder, key: Id, element: Element) -> None:
     if key.kind in LUMPED_UNITS:
         set_domain(builder, key.kind, element, values)
     if words.open:
-        values["parameters"] = (*block.take_rest(builder.reader.parameter), *_nested_parameters(builder, block))
+        values["parameters"] = _parameters(builder, key.kind, block)
     part = _made(builder, key, element, values)
     if key.kind in TARGETS:
         builder.edges[key] = Edge(part, tuple(builder.arc(key.kind, arc, element.scope) for arc in block.arcs))
@@ -60,6 +62,13 @@ def read_part(builder: HymekoBuilder, key: Id, element: Element) -> None:
             block.take(TEXTURE)
     block.rest(str(key))
     builder.keep(key, block)
+
+
+def _parameters(builder: HymekoBuilder, kind: str, block: Block) -> tuple[tuple[str, DataValue], ...]:
+    """The parameters in an open block: those of plain data have values of any shape, all others are flat."""
+    if kind in OUTER:
+        return tuple((name, value) for name, value in block.take_rest(builder.reader.datum))
+    return (*block.take_rest(builder.reader.parameter), *_nested_parameters(builder, block))
 
 
 def _made(builder: HymekoBuilder, key: Id, element: Element, values: Mapping[str, Any]) -> Any:

@@ -13,12 +13,12 @@ from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
 from hymeko_x.formats.hymeko import BASE_UNITS, unit_dimension, unit_factor
 from hymeko_x.ir.values import Pose, Vec3, Written, numbers_text, pose, pose_from_rpy
 from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
-from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, Ref, Value, is_list, origin_of
+from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, Query, Ref, Value, is_list, origin_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from hymeko_x.ir.parts import Rgba
+    from hymeko_x.ir.parts import DataValue, Rgba
 
 ParameterValue = float | str | tuple[float, ...]
 
@@ -125,6 +125,20 @@ class ValueReader(Struct):
         if isinstance(value, Ref):
             return value.path[0]
         return value if isinstance(value, str) else self.number(value, "", item)
+
+    def datum(self, item: Field) -> DataValue:
+        """The value of a field of plain data."""
+        return "" if item.value is None and not item.type else None if item.value is None else self.data(item.value, item)
+
+    def data(self, value: Value | None, item: Item) -> DataValue:
+        """A value of plain data: a number, a text, a list of any shape, or None for a value that is left open."""
+        if is_list(value):
+            return tuple([self.data(part, item) for part in value])
+        if isinstance(value, Query):
+            return None
+        if isinstance(value, float | Quantity):
+            return self.number(value, "", item)
+        return self.text(value, item)
 
     def _as_written(self, xyz: Vec3, kind: str, value: Value, item: Item) -> Pose:
         """A rotation with its notation: ``"euler:xyz" [a b c]``, ``"zaxis" [x y z]`` ...

@@ -12,6 +12,7 @@ from hymeko_x import codes, formats
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.json import ENDLESS, MARK, NUMBERS, VERSION
 from hymeko_x.formats.json.document import PARTS, Document
+from hymeko_x.frontends.json.data import settle
 from hymeko_x.frontends.json.sound import check
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.graph import Arc, Edge, Hypergraph
@@ -41,6 +42,7 @@ def read(source: Source, report: Report) -> Reading:
         raise refuse(codes.TOO_LARGE, f"the text has {len(source.data)} bytes, at most {MAX_BYTES} are read", Origin(source.name))
     root = _parsed(source)
     found = _converted(root, source.name)
+    settle(found, source.name)
     check(found, source.name)
     return Reading(_mechanism(found, source.name))
 
