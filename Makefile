@@ -78,7 +78,7 @@ fuzz: $(STAMP)
 corpus: $(STAMP)
 	$(BIN)/hymeko-x corpus fetch
 	$(BIN)/hymeko-x corpus run --verify --resume --jobs $(JOBS) -o corpus-run
-	$(BIN)/hymeko-x corpus stats corpus-run -o corpus/results --page README.md --page docs/results.md --page docs/scale.md
+	$(BIN)/hymeko-x corpus stats corpus-run -o corpus/results --page README.md --page docs/results.md --page docs/losses.md --page docs/scale.md
 
 clean:
 	rm -rf .venv .peers build dist demo .mypy_cache .pytest_cache .ruff_cache

@@ -68,10 +68,14 @@ class RealRobots:
             pytest.skip(refusal.diagnostic.message)
 
 
+LARGE = ("newton/ant_multi.usda",)
+"""Robots that take as long as all others of their format together."""
+
+
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """`@pytest.mark.robots("urdf")` runs a test once for each development file of that format, as its argument ``robot`` (a path).
 
-    With ``every=3`` each third file has its turn in `make test`, all have it in `make test-full`.
+    With ``every=3`` each third file has its turn in `make test`, all have it in `make test-full`; so have the robots of LARGE.
     """
     mark = metafunc.definition.get_closest_marker("robots")
     if mark is None:
@@ -80,7 +84,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     every = mark.kwargs.get("every", 1)
     robots = []
     for number, file in enumerate(files):
-        later = [pytest.mark.full] if number % every else []
+        later = [pytest.mark.full] if number % every or file.id in LARGE else []
         robots.append(pytest.param(file, id=file.id, marks=[pytest.mark.corpus, *later]))
     metafunc.parametrize("robot", robots, indirect=True)
 

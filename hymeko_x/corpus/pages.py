@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import formats
 from hymeko_x.corpus import statistics
+from hymeko_x.corpus.lost import losses
 from hymeko_x.corpus.report import matrix, table
 from hymeko_x.corpus.statistics import FOUND, PRINTED, percentage
 from hymeko_x.reporting.blocks import renewed_blocks
@@ -184,4 +185,5 @@ _WRITERS: Mapping[str, Callable[[Tables], str]] = {
     "shorter": _shorter,
     "costs": _costs,
     "million": _million,
+    "losses": losses,
 }

@@ -15,6 +15,7 @@ RESULTS = ROOT / "corpus/results"
 PAGES = {
     "README.md": ["pairs"],
     "docs/results.md": ["summary", "claims", "shorter", "failures"],
+    "docs/losses.md": ["losses"],
     "docs/scale.md": ["costs", "pace", "million"],
 }
 

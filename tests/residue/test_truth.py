@@ -88,7 +88,7 @@ def again(data: bytes, format: str, keep: Any) -> bytes:
 
 
 @pytest.mark.parametrize("format", ["urdf", "xacro", "mjcf", "usd"])
-@settings(max_examples=20, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=10, deadline=None, suppress_health_check=list(HealthCheck))
 @given(st.data(), st.sampled_from(BASES), st.sampled_from(ACTUATORS), st.sampled_from([None, "inside"]))
 def test_a_second_conversion_within_a_format_gives_the_same_robot(
     format: str, data: st.DataObject, base: Any, actuators: Any, keep: Any
@@ -123,7 +123,7 @@ def test_within_one_format_nothing_is_kept_but_what_was_kept_goes_along(text: st
 # ---- real robots -----------------------------------------------------------------------------------------------------------------
 
 CHOICES = ((None, None), ("free", "position"), ("fixed", "none"), ("free", "motor"), (None, "velocity"))
-EVERY = 97
+EVERY = 149
 WAYS = [
     (file, target, *CHOICES[(number + place) % len(CHOICES)])
     for number, (file, (place, target)) in enumerate(

@@ -175,7 +175,7 @@ def test_macros_in_a_file_of_their_own_expand_to_the_same(robot: Path, tmp_path:
 
 
 @pytest.mark.corpus
-@pytest.mark.slow
+@pytest.mark.full
 def test_xacro_is_shorter_than_urdf(real_robot: RealRobots) -> None:
     """Characters without white space and comments, over the development URDFs; and those with repeated limbs."""
     from hymeko_x.corpus import catalog
