@@ -43,6 +43,7 @@ HYMEKO = Format(
     beginning=rb"(?:\s|//[^\n]*\n|#[^\n]*\n|/\*.*?\*/)*+(?:[^\W\d]|[`\"@\[\x80-\xff])[^{}=;$]{0,1000}\{",
     assets="reference",
     reference="hymeko_x.verify.readers.hymeko",
+    missing_shapes=frozenset({"hfield"}),
     tokens="hymeko_x.language.grammar:tokens",
     includes=rb"(?m)^\s*(?:@?import|#include)\b|^\s*\w+\s*:\s*import\b",
     colour="#ff7f0e",
@@ -146,6 +147,7 @@ USD = Format(
     stated_notations=MappingProxyType({"pose on the stage": "usd.pose"}),
     names_are_identifiers=True,
     precision=1e-6,  # eight roundings of single precision: numbers are converted between units and frames on the way
+    missing_shapes=frozenset({"hfield"}),
     tokens="hymeko_x.formats.usd.tokens:tokens",
     includes=rb"@[^@\n]+\.usd[acz]?@",
     holds_points=True,

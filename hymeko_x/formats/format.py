@@ -133,7 +133,7 @@ class Format(Struct, frozen=True):
     requires_mass: bool = False
     """Whether its engine refuses moving bodies without mass (MJCF)."""
     missing_shapes: frozenset[str] = frozenset()
-    """The kinds of shapes that it cannot represent."""
+    """The kinds of shapes that it cannot represent, or only holds as the text of another format."""
 
     # ---- what the statistics of the corpus ask
     tokens: str | None = None

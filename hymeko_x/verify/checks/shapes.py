@@ -115,20 +115,20 @@ def _compare_body(pair: Pair, i: int, j: int, roles: tuple[Role, Role], meshes: 
 def _in_common_kinds(pair: Pair, ours: Sequence[Shape], theirs: Sequence[Shape], meshes: Meshes) -> tuple[Sequence[Shape], Sequence[Shape]]:
     """Without the kinds of shapes that one format lacks and what stands for them; a capsule is a cylinder with two spheres there."""
     lacking = pair.a.row.missing_shapes, pair.b.row.missing_shapes
-    if bool(lacking[0]) == bool(lacking[1]):
+    if lacking[0] == lacking[1]:
         return ours, theirs
-    rich, poor = (theirs, ours) if lacking[0] else (ours, theirs)
-    missing = lacking[0] or lacking[1]
-    poor = _without_stand_ins(pair, [shape for shape in rich if shape.kind in missing], poor, meshes)
+    is_first = lacking[0] > lacking[1]
+    side, rich, poor = (pair.a, theirs, ours) if is_first else (pair.b, ours, theirs)
+    missing = lacking[0] ^ lacking[1]
+    poor = _without_stand_ins(pair, side, [shape for shape in rich if shape.kind in missing], poor, meshes)
     capsules = not any(shape.kind == "capsule" for shape in poor)
     rich = [part for shape in rich if shape.kind not in missing for part in (_split_capsule(shape) if capsules else [shape])]
-    return (poor, rich) if lacking[0] else (rich, poor)
+    return (poor, rich) if is_first else (rich, poor)
 
 
-def _without_stand_ins(pair: Pair, missing: Sequence[Shape], poor: Sequence[Shape], meshes: Meshes) -> list[Shape]:
+def _without_stand_ins(pair: Pair, side: KinematicModel, missing: Sequence[Shape], poor: Sequence[Shape], meshes: Meshes) -> list[Shape]:
     """The shapes of the poorer format but those that stand for one that it cannot represent, one for each role of it."""
     waiting = list(poor)
-    side = pair.a if pair.a.row.missing_shapes else pair.b
     for shape in missing:
         stands = []
         for role in (Role.VISUAL, Role.COLLISION):
