@@ -46,7 +46,7 @@ def choose(mechanism: Mechanism, options: Options, report: Report, *, files: Fil
     if options.actuators == "position":
         mechanism = give_light_dofs_rotors(mechanism, Context(report, reason="--actuators position"))
     if options.actuators is not None:
-        mechanism = _with_actuators(mechanism, options.actuators, report)
+        mechanism = with_actuators(mechanism, options.actuators, report)
     if options.sites:
         mechanism = make_frames_links(mechanism, report, "--sites" if options.target is None else f"--for {options.target}")
     return mechanism
@@ -96,7 +96,7 @@ _FULL_EFFORT_AT = 0.1
 _DRIVEN = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 
 
-def _with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanism:
+def with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanism:
     """One actuator of a kind for every driven dof instead of those that a simulation would have; transmissions stay."""
     present = {key: actuator for key, actuator in mechanism.vertices(Actuator) if actuator.kind in MUJOCO_KINDS}
     bare = without_actuators(mechanism, list(present))

@@ -68,8 +68,9 @@ PINOCCHIO = Target(
 DRAKE = Target("drake", "Drake 1.51", ("urdf",), "hymeko_x.targets.drake")
 NEWTON = Target("newton", "Newton 1.8, and REP 158's rules for the whole stage", ("usd",), "hymeko_x.targets.newton")
 ISAAC = Target("isaac", "Isaac Sim 5, which takes the same stages as Newton", ("usd",), "hymeko_x.targets.newton")
+GAZEBO = Target("gazebo", "Gazebo Sim 9 (Ionic)", ("sdf",), "hymeko_x.targets.gazebo")
 
-TARGETS: tuple[Target, ...] = (MUJOCO, MJX, ROS2, PINOCCHIO, DRAKE, NEWTON, ISAAC)
+TARGETS: tuple[Target, ...] = (MUJOCO, MJX, ROS2, PINOCCHIO, DRAKE, NEWTON, ISAAC, GAZEBO)
 """Every target, by format."""
 
 
