@@ -182,6 +182,7 @@ SDF = Format(
     "hymeko_x.backends.sdf",
     "hymeko_x.backends.sdf.rules",
     roots=("sdf",),
+    fragments="hymeko_x.backends.sdf.fragments:fragments_of",
     keeps_package_uris=True,
     joints_share_names=True,
     has_single_dof_joints=True,

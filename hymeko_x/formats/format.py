@@ -76,6 +76,8 @@ class Format(Struct, frozen=True):
     joins: str | None = None
     """The function ``(whole, host, part, change) -> whole`` that gives a composed mechanism what depends on all of its elements."""
 
+    fragments: str | None = None
+    """The function ``mechanism -> texts``: the elements in which other formats hold what only it represents of its robots."""
     companions: tuple[str, ...] = ()
     """The suffixes of files of the same name beside one of its files that are read with it (SRDF)."""
 

@@ -15,6 +15,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.formats import sdf as words
+from hymeko_x.formats.sdf import fragments
 from hymeko_x.formats.sdf.values import NUMBER, BadText
 from hymeko_x.ir.mechanism import ROOT, Extra, Id
 from hymeko_x.ir.names import free_name
@@ -30,31 +31,7 @@ if TYPE_CHECKING:
     from hymeko_x.rewrite.context import Context
     from hymeko_x.xml.tree import Node
 
-_START = "<gazebo"
-_OF_LINK: Mapping[str, str] = MappingProxyType({"selfCollide": "self_collide", "gravity": "gravity"})
-_OF_COLLISION: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {
-        "mu2": ("surface/friction/ode", "mu2"),
-        "fdir1": ("surface/friction/ode", "fdir1"),
-        "kp": ("surface/contact/ode", "kp"),
-        "kd": ("surface/contact/ode", "kd"),
-        "minDepth": ("surface/contact/ode", "min_depth"),
-        "maxVel": ("surface/contact/ode", "max_vel"),
-        "maxContacts": ("", "max_contacts"),
-    }
-)
-_OF_MODEL = frozenset(("static", "self_collide", "allow_auto_disable", "enable_wind", "plugin", "gripper", "frame", "link", "joint"))
-"""The children of <model>; other elements of a fragment without a link are those of older programs, and SDF has none of them."""
-_OF_JOINT: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {
-        "provideFeedback": ("physics", "provide_feedback"),
-        "implicitSpringDamper": ("physics/ode", "implicit_spring_damper"),
-        "cfmDamping": ("physics/ode", "cfm_damping"),
-        "fudgeFactor": ("physics/ode", "fudge_factor"),
-    }
-)
-"""The path and the name in SDF of what a fragment calls otherwise."""
-_OBEYED = ("preserveFixedJoint", "disableFixedJointLumping")
+_START = f"<{fragments.TAG}"
 _IMU_NOISE = re.compile(r"(?<=<imu>)\s*(?:<!--.*?-->\s*)*(<noise>.*?</noise>)", re.DOTALL)
 _IMU_PARTS: Mapping[str, str] = MappingProxyType({"rate": "angular_velocity", "accel": "linear_acceleration"})
 _PREFIX = re.compile(r"<([A-Za-z_][\w.-]*):|\s([A-Za-z_][\w.-]*):[\w.-]+=")
@@ -65,13 +42,14 @@ _MATERIALS = "file://media/materials/scripts/gazebo.material"
 
 def obey_gazebo_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
     """<gazebo> elements become the elements of SDF that they stand for; they themselves belong to the format that they came from."""
-    fragments = [extra.text for extra in mechanism.extras.get(ROOT, ()) if extra.text.startswith(_START) and extra.format != words.FORMAT]
-    if not fragments:
+    own = mechanism.extras.get(ROOT, ())
+    texts = [extra.text for extra in own if extra.text.startswith(_START) and extra.format != words.FORMAT]
+    if not texts:
         return mechanism
     declared = {extra.path.removeprefix(_XMLNS): extra.text for extra in mechanism.extras[ROOT] if extra.path.startswith(_XMLNS)}
     added: dict[Id, list[Extra]] = {}
     edges: dict[Id, RobotEdge] = {}
-    for text in fragments:
+    for text in texts:
         try:
             node = parse_text(text)
         except ExpatError:
@@ -116,15 +94,15 @@ def _extras_of(node: Node, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> 
     reference = node.attributes.get("reference")
     body, joint = Id("body", reference or ""), Id("joint", reference or "")
     for child in node.children:
-        if not child.is_element or child.tag in _OBEYED:
+        if not child.is_element or child.tag in fragments.OBEYED:
             continue
         if not reference:
-            if (child.tag in _OF_MODEL or ":" in child.tag) and not _is_taken(child, mechanism):
+            if (child.tag in fragments.OF_MODEL or ":" in child.tag) and not _is_taken(child, mechanism):
                 yield ROOT, Extra(words.FORMAT, "model", markup(child))
         elif body in mechanism.graph.vertices:
             yield from _of_link(child, body, mechanism, edges)
-        elif joint in mechanism.graph.edges and child.tag in _OF_JOINT:
-            yield joint, _extra(*_OF_JOINT[child.tag], child)
+        elif joint in mechanism.graph.edges and child.tag in fragments.OF_JOINT:
+            yield joint, _extra(*fragments.OF_JOINT[child.tag], child)
         elif joint in mechanism.graph.edges and child.tag == "sensor":
             yield joint, Extra(words.FORMAT, "", markup(child))
 
@@ -137,14 +115,14 @@ def _is_taken(child: Node, mechanism: Mechanism) -> bool:
 
 def _of_link(child: Node, body: Id, mechanism: Mechanism, edges: dict[Id, RobotEdge]) -> Iterator[tuple[Id, Extra]]:
     shapes = mechanism.shapes.get(body, ())
-    if child.tag in _OF_LINK:
-        yield body, _extra("", _OF_LINK[child.tag], child)
+    if child.tag in fragments.OF_LINK:
+        yield body, _extra("", fragments.OF_LINK[child.tag], child)
     elif child.tag == "turnGravityOff":
         yield body, Extra(words.FORMAT, "", f"<gravity>{'false' if _text(child) in ('true', '1') else 'true'}</gravity>")
-    elif child.tag in ("sensor", "projector"):
+    elif child.tag in fragments.IN_LINK:
         yield body, Extra(words.FORMAT, "", _IMU_NOISE.sub(_noise_by_axis, markup(child)))
-    elif child.tag in _OF_COLLISION:
-        yield from ((view.id, _extra(*_OF_COLLISION[child.tag], child)) for view in shapes if view.shape.role is Role.COLLISION)
+    elif child.tag in fragments.OF_COLLISION:
+        yield from ((view.id, _extra(*fragments.OF_COLLISION[child.tag], child)) for view in shapes if view.shape.role is Role.COLLISION)
     elif child.tag == "material" and _text(child):
         script = f"<script><uri>{_MATERIALS}</uri><name>{escaped(_text(child))}</name></script>"
         yield from ((view.id, Extra(words.FORMAT, "material", script)) for view in shapes if view.shape.role is Role.VISUAL)

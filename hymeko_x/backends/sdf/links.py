@@ -73,9 +73,11 @@ def _add_inertial(link: Tag, key: Id, sheet: SdfSheet) -> None:
     tag = link.add("inertial")
     frame, tensor = _as_written(inertial)
     _add_pose(tag, frame, texts)
-    sheet.put(tag, Field("mass", "mass", NUMBER, 1.0), 1.0 if inertial.mass is None else inertial.mass, texts, "inertial/")
+    mass = 1.0 if inertial.mass is None else inertial.mass
+    sheet.put(tag, Field("mass", "mass", NUMBER, 1.0 if sheet.from_sdf else None), mass, texts, "inertial/")
     for field, value in zip(TENSOR, tensor, strict=True):
-        sheet.put(tag, field, value, texts, "inertial/")
+        is_left_out = sheet.from_sdf or not field.default
+        sheet.put(tag, field if is_left_out else field._replace(default=None), value, texts, "inertial/")
 
 
 def _as_written(inertial: Inertial) -> tuple[Pose, Tensor]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
+from hymeko_x.backends.urdf.gazebo import write_gazebo_fragments
 from hymeko_x.backends.urdf.srdf import as_virtual_joint
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf.notations import STYLE, TYPE, VIRTUAL, Explicit, Style
@@ -89,4 +90,5 @@ RULES: tuple[Rule, ...] = (
     report_missing_limits,
     drop_unused_assets,
     make_names_usable,  # once more, for what the rules have added
+    write_gazebo_fragments,
 )

@@ -1,0 +1,130 @@
+"""What SDF represents of a robot, as <gazebo> fragments for a format that has no more than them."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from hymeko_x.backends.sdf.joints import joint_tag
+from hymeko_x.backends.sdf.sensors import joint_sensor_tag, sensor_tag
+from hymeko_x.backends.sdf.sheet import SdfSheet
+from hymeko_x.formats import sdf as sdf_words
+from hymeko_x.formats.sdf import fragments as words
+from hymeko_x.formats.sdf.values import NUMBER
+from hymeko_x.ir.mechanism import ROOT, WORLD
+from hymeko_x.ir.parts import Body, Light, Loop, Role
+from hymeko_x.xml.parse import parse_text
+from hymeko_x.xml.printing import Tag, markup, put_back, ready
+from hymeko_x.xml.text import escaped
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.xml.tree import Node
+
+_SCRIPT = re.compile(r"<script>.*?<name>\s*([^<]*?)\s*</name>.*?</script>", re.DOTALL)
+_MODEL_PATHS = ("model", "world/model")
+
+
+def fragments_of(mechanism: Mechanism) -> list[str]:
+    """The <gazebo> elements of a robot that came from SDF: of links, of joints, and of the model. Empty for others."""
+    sheet = SdfSheet(mechanism, "")
+    if not sheet.from_sdf:
+        return []
+    bodies = [(key, list(_of_link(key, sheet))) for key, _ in mechanism.vertices(Body)]
+    joints = [(view.id, list(_of_joint(view.id, sheet))) for view in mechanism.joints.values() if not sheet.is_implied(view)]
+    found = [_fragment({"reference": key.name}, children) for key, children in (*bodies, *joints) if children]
+    found += [_fragment({}, [child]) for child in _of_model(sheet)]
+    return found
+
+
+def _fragment(attributes: dict[str, str], children: Sequence[Tag | str]) -> str:
+    return ready(Tag(words.TAG, attributes, children), 1)
+
+
+# ---- links -----------------------------------------------------------------------------------------------------------------------
+
+
+def _of_link(body: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
+    back = {name: word for word, name in words.OF_LINK.items()}
+    for node in _content(body, sheet):
+        yield _leaf(back[node.tag], _text(node)) if node.tag in back else markup(node)
+    shapes = sheet.mechanism.shapes.get(body, ())
+    collisions = [view.id for view in shapes if view.shape.role is Role.COLLISION]
+    frictions = {view.shape.friction[:1] for view in shapes if view.shape.role is Role.COLLISION}
+    if len(frictions) == 1 and (friction := next(iter(frictions))):
+        yield _leaf("mu1", NUMBER.write(friction[0]))
+    for word, (path, name) in words.OF_COLLISION.items():
+        yield from _shared(word, f"{path}/{name}".lstrip("/"), collisions, sheet)
+    scripts = {_script(view.id, sheet) for view in shapes if view.shape.role is Role.VISUAL}
+    if len(scripts) == 1 and (script := next(iter(scripts))):
+        yield _leaf("material", script)
+    for mount in sheet.mechanism.mounts.get(body, ()):
+        if not isinstance(sheet.mechanism.graph.vertices.get(mount.thing), Light) and sheet.is_sensor(mount.thing):
+            yield sensor_tag(mount, sdf_words.split_scope(body.name)[0], body, sheet)
+
+
+def _shared(word: str, path: str, keys: Sequence[Id], sheet: SdfSheet) -> Iterator[Tag]:
+    """The value below all of these elements, where they have the same one: a fragment is for the whole link."""
+    found = {_value(path, key, sheet) for key in keys}
+    if len(found) == 1 and (value := next(iter(found))) is not None:
+        yield _leaf(word, value)
+
+
+def _value(path: str, key: Id, sheet: SdfSheet) -> str | None:
+    """The text of the element at a path below an element of the mechanism, among what SDF alone represents."""
+    whole = Tag("x", {})
+    put_back(whole, sheet.extras(key), {})
+    nodes = [parse_text(ready(whole, 0))]
+    for step in path.split("/"):
+        nodes = [child for node in nodes for child in node.children if child.tag == step]
+    return _text(nodes[0]) if nodes else None
+
+
+def _script(key: Id, sheet: SdfSheet) -> str | None:
+    texts = [found[1] for extra in sheet.extras(key) if (found := _SCRIPT.search(extra.text)) is not None]
+    return texts[0] if texts else None
+
+
+# ---- joints and the model ----------------------------------------------------------------------------------------------------------
+
+
+def _of_joint(joint: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
+    for word, (path, name) in words.OF_JOINT.items():
+        yield from _shared(word, f"{path}/{name}", [joint], sheet)
+    if not sheet.mechanism.joints[joint].joint.dofs:
+        yield _leaf(words.OBEYED[0], "true")
+    for sensor in sheet.joint_sensors.get(joint, ()):
+        yield joint_sensor_tag(sensor, sdf_words.split_scope(joint.name)[0], sheet)
+
+
+def _of_model(sheet: SdfSheet) -> Iterator[Tag | str]:
+    """What the model has besides links and joints, and the closures of its loops."""
+    for extra in sheet.extras(ROOT):
+        if extra.path in _MODEL_PATHS and extra.text.startswith("<"):
+            yield from (markup(node) for node in _nodes(extra.text) if node.tag in words.OF_MODEL)
+    if sheet.is_static(""):
+        yield _leaf("static", "true")
+    for key, _, arcs in sheet.mechanism.edges(Loop):
+        if len(arcs) == 2 and all(arc.target.kind == "body" and arc.target != WORLD for arc in arcs):
+            yield joint_tag(key, sdf_words.split_scope(key.name)[0], sheet)
+
+
+def _content(key: Id, sheet: SdfSheet) -> Iterator[Node]:
+    """The elements right below an element of the mechanism that SDF alone represents."""
+    for extra in sheet.extras(key):
+        if not extra.path and extra.text.startswith("<") and not extra.text.startswith("<?"):
+            yield from _nodes(extra.text)
+
+
+def _nodes(text: str) -> list[Node]:
+    return [child for child in parse_text(f"<x>{text}</x>").children if child.is_element]
+
+
+def _text(node: Node) -> str:
+    return " ".join((node.text or "").split())
+
+
+def _leaf(name: str, text: str) -> Tag:
+    return Tag(name, {}, [escaped(text)])

@@ -1,0 +1,27 @@
+"""<gazebo> elements: what another format represents and URDF hands on to the programs that read them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from msgspec.structs import replace
+
+from hymeko_x import formats
+from hymeko_x.formats import urdf as words
+from hymeko_x.ir.mechanism import ROOT, Extra
+
+if TYPE_CHECKING:
+    from hymeko_x.ir.mechanism import Mechanism
+    from hymeko_x.rewrite.context import Context
+
+
+def write_gazebo_fragments(mechanism: Mechanism, _context: Context) -> Mechanism:
+    """What formats with fragments of their own represent of the robot is in <gazebo> elements behind it."""
+    own = mechanism.extras.get(ROOT, ())
+    known = {extra.text for extra in own}
+    noted = {name.partition(".")[0] for name in mechanism.notations.get(ROOT, ())}
+    rows = [row for row in formats.FORMATS if row.fragments is not None and row.name in noted]
+    texts = [text for row in rows for text in formats.loaded(row.fragments or "")(mechanism) if text not in known]
+    last = 1 + max((extra.index for extra in own), default=0) + len(mechanism.graph.vertices) + len(mechanism.graph.edges)
+    extras = tuple(Extra(words.FORMAT, "", text, number) for number, text in enumerate(texts, last))
+    return replace(mechanism, extras={**mechanism.extras, ROOT: (*own, *extras)}) if extras else mechanism

@@ -1,0 +1,47 @@
+"""The words of <gazebo> fragments, by which files of other formats hold what SDF represents; for both directions.
+
+Source: libsdformat's reader of such files. An element that has no word of its own there is copied into the link or the joint.
+"""
+
+from __future__ import annotations
+
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+TAG = "gazebo"
+
+OF_LINK: Mapping[str, str] = MappingProxyType({"selfCollide": "self_collide", "gravity": "gravity"})
+IN_LINK = frozenset(
+    {
+        *("sensor", "projector", "battery", "audio_sink", "audio_source", "particle_emitter", "light"),
+        *("enable_wind", "kinematic", "must_be_base_link", "velocity_decay"),
+    }
+)
+"""The children of <link> that a fragment holds as they are."""
+OF_COLLISION: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "mu2": ("surface/friction/ode", "mu2"),
+        "fdir1": ("surface/friction/ode", "fdir1"),
+        "kp": ("surface/contact/ode", "kp"),
+        "kd": ("surface/contact/ode", "kd"),
+        "minDepth": ("surface/contact/ode", "min_depth"),
+        "maxVel": ("surface/contact/ode", "max_vel"),
+        "maxContacts": ("", "max_contacts"),
+    }
+)
+OF_JOINT: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "provideFeedback": ("physics", "provide_feedback"),
+        "implicitSpringDamper": ("physics/ode", "implicit_spring_damper"),
+        "cfmDamping": ("physics/ode", "cfm_damping"),
+        "fudgeFactor": ("physics/ode", "fudge_factor"),
+    }
+)
+"""The path and the name in SDF of what a fragment calls otherwise."""
+OF_MODEL = frozenset(("static", "self_collide", "allow_auto_disable", "enable_wind", "plugin", "gripper", "frame", "link", "joint"))
+"""The children of <model>; other elements of a fragment without a link are those of older programs, and SDF has none of them."""
+OBEYED = ("preserveFixedJoint", "disableFixedJointLumping")
+"""They keep fixed joints, which always stay here."""
