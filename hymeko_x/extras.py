@@ -28,6 +28,7 @@ OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
         "hypothesis": "testing",
         "imageio_ffmpeg": "draw",
         "ray": "ray",
+        "viser": "view",
         **dict.fromkeys(("lsprotocol", "pygls"), "lsp"),
         **dict.fromkeys(("anyio", "mcp"), "mcp"),
     }

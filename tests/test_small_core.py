@@ -90,6 +90,7 @@ ADVICE = {
     "simulate": ("arm.urdf", "dynamics"),
     "update": ("arm.urdf arm.urdf", None),
     "verify": ("arm.urdf arm.urdf", "verify"),
+    "view": ("arm.urdf", "view"),
 }
 """For each verb words that it works with on the core alone, or else the extra whose installation it advises."""
 

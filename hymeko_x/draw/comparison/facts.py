@@ -18,6 +18,8 @@ from hymeko_x.residue.originals import fetcher
 from hymeko_x.robot import Robot
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from hymeko_x.compare.ledger import Loss
     from hymeko_x.draw.pair import Pair
     from hymeko_x.formats import Format
@@ -58,13 +60,23 @@ class Comparison(Struct, frozen=True, eq=False):
     @property
     def lost(self) -> list[str]:
         """What the second robot does not have as the first one has it: a line for each kind."""
-        return [line for line in (*summary_lines(self.losses), kept_line(self.losses), minor_line(self.losses)) if line]
+        return lines_of(self.losses)
 
 
 def comparison(a: Side, b: Side, verdict: Verdict, drawn: Drawn) -> Comparison:
     """Everything about two robots."""
+    return Comparison(a, b, verdict, losses_of(a, b), drawn, (picture(a.mechanism), picture(b.mechanism)))
+
+
+def losses_of(a: Side, b: Side) -> tuple[Loss, ...]:
+    """What the second robot does not have as the first one has it."""
     source, image = (Contents(side.mechanism, fetcher(side.mechanism, side.source.files)) for side in (a, b))
-    return Comparison(a, b, verdict, losses_between_files(source, image, b.format), drawn, (picture(a.mechanism), picture(b.mechanism)))
+    return losses_between_files(source, image, b.format)
+
+
+def lines_of(losses: Sequence[Loss]) -> list[str]:
+    """A line for each kind of loss."""
+    return [line for line in (*summary_lines(losses), kept_line(losses), minor_line(losses)) if line]
 
 
 def draw(a: Side, b: Side, size: tuple[int, int]) -> Drawn:

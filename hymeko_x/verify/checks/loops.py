@@ -57,7 +57,9 @@ def _without_open_ones(pair: Pair, loops: list[LoopPair]) -> list[LoopPair]:
     if Feature.OPEN_LOOPS in pair.b.features:
         return loops
     opened = [
-        found for found in loops if float(np.linalg.norm(_gap(*_ends(pair.zero_a[None], found[0], swapped=False), found[0].kind))) > _OPEN
+        found
+        for found in loops
+        if float(np.linalg.norm(gap_between(*ends(pair.zero_a[None], found[0], swapped=False), found[0].kind))) > _OPEN
     ]
     pair.add_gap(pair.b, Feature.OPEN_LOOPS, [_loop_label(pair.a, loop) for loop, _, _ in opened])
     return [found for found in loops if found not in opened]
@@ -141,11 +143,11 @@ def _ends_of(model: KinematicModel, loop: Loop) -> str:
 
 def _compare_loop(poses_a: Array, poses_b: Array, loop_a: Loop, loop_b: Loop, *, swapped: bool) -> tuple[Array, Array]:
     """By how much the residuals of two closures differ: in m for what must coincide, in rad for what must align, (n,) each."""
-    first_a, second_a = _ends(poses_a, loop_a, swapped=False)
-    first_b, second_b = _ends(poses_b, loop_b, swapped=swapped)
+    first_a, second_a = ends(poses_a, loop_a, swapped=False)
+    first_b, second_b = ends(poses_b, loop_b, swapped=swapped)
     if loop_a.kind == "weld":  # the same wherever on the two bodies its frames are
         first_b, second_b = first_a, second_b @ inverse(first_b) @ first_a
-    gap = _gap(first_a, second_a, loop_a.kind) - _gap(first_b, second_b, loop_a.kind)
+    gap = gap_between(first_a, second_a, loop_a.kind) - gap_between(first_b, second_b, loop_a.kind)
     distance: Array = np.linalg.norm(gap, axis=-1)
     match loop_a.kind:
         case "connect":
@@ -159,13 +161,13 @@ def _compare_loop(poses_a: Array, poses_b: Array, loop_a: Loop, loop_b: Loop, *,
             return distance, _relative_angle(first_a, second_a, first_b, second_b)
 
 
-def _ends(poses: Array, loop: Loop, *, swapped: bool) -> tuple[Array, Array]:
+def ends(poses: Array, loop: Loop, *, swapped: bool) -> tuple[Array, Array]:
     """The closure's frame on both bodies in the world, (n, 4, 4) each."""
     ends = poses[:, loop.body_a] @ loop.pose_a, poses[:, loop.body_b] @ loop.pose_b
     return (ends[1], ends[0]) if swapped else ends
 
 
-def _gap(first: Array, second: Array, kind: str) -> Array:
+def gap_between(first: Array, second: Array, kind: str) -> Array:
     """The vector between the two origins; without its part along the free axis where one is free to slide."""
     gap = first[:, :3, 3] - second[:, :3, 3]
     if kind not in ("slide", "cylinder"):

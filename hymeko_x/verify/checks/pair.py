@@ -123,12 +123,8 @@ def pair_up(a: KinematicModel, b: KinematicModel, matched: Match, samples: int, 
     """Configurations drawn in the first robot's limits, in the coordinates of both."""
     rng = np.random.default_rng(seed)
     q_a = draw(a, samples, rng)
-    shifts = _shifts(a, b, matched)
-    q_b = _at_rest(b, len(q_a))
-    for (d, e), shift in zip(matched.dofs, shifts, strict=True):
-        width = a.dofs[d].kind.width
-        q_b[:, b.columns[e] : b.columns[e] + width] = q_a[:, a.columns[d] : a.columns[d] + width] + shift
-    follow(b, q_b)
+    shifts = shifts_between(a, b, matched)
+    q_b = carried_over(a, b, matched, shifts, q_a)
     _align_balls(a, b, matched.balls, q_a, q_b, rng)
     return Pair(a, b, matched, q_a, q_b, shifts, Meshes() if meshes is None else meshes, list(matched.notes))
 
@@ -194,7 +190,17 @@ def _at_rest(model: KinematicModel, count: int) -> Array:
     return q
 
 
-def _shifts(a: KinematicModel, b: KinematicModel, matched: Match) -> tuple[float, ...]:
+def carried_over(a: KinematicModel, b: KinematicModel, matched: Match, shifts: Sequence[float], q_a: Array) -> Array:
+    """The first robot's configurations (n, width) in the coordinates of the second; what has no partner there is at rest."""
+    q_b = _at_rest(b, len(q_a))
+    for (d, e), shift in zip(matched.dofs, shifts, strict=True):
+        width = a.dofs[d].kind.width
+        q_b[:, b.columns[e] : b.columns[e] + width] = q_a[:, a.columns[d] : a.columns[d] + width] + shift
+    follow(b, q_b)
+    return q_b
+
+
+def shifts_between(a: KinematicModel, b: KinematicModel, matched: Match) -> tuple[float, ...]:
     """By how much coordinates differ for one pose, where one robot counts from another reference than the other.
 
     A format without references either turns the zero pose (coordinates stay, shift 0) or shifts the coordinates: it did

@@ -1,0 +1,153 @@
+"""A viewer at work: files read, robots moved, files read again when they change, findings when the verifier has them."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hymeko_x.diagnostics import Refusal
+from hymeko_x.draw.comparison.facts import lines_of, losses_of
+from hymeko_x.draw.comparison.rows import answer
+from hymeko_x.draw.view.findings import spots_of
+from hymeko_x.draw.view.motion import Motion, Partner
+from hymeko_x.draw.view.page import Page
+from hymeko_x.draw.view.scene import scene_of
+from hymeko_x.draw.view.watch import Watch
+from hymeko_x.robot import Robot
+from hymeko_x.verify.model import KinematicModel, world_body
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    import viser
+
+    from hymeko_x.draw.comparison.facts import Side
+    from hymeko_x.draw.view.scene import Scene
+    from hymeko_x.verify.model import Array
+    from hymeko_x.verify.verdict import Verdict
+
+PERIOD = 0.5
+"""Seconds between two looks at the files."""
+_APART = 1.6
+"""The distance of two robots by the reach of the larger one."""
+
+
+class Session:
+    """One or two robots on a page.
+
+    ``read`` gives them anew from their files, ``judge`` the verdict about two. Raises: Refusal when a file cannot be read at first; later
+    the page shows why.
+    """
+
+    def __init__(self, server: viser.ViserServer, read: Callable[[], Sequence[Side]], judge: Callable[[], Verdict] | None) -> None:
+        self._read, self._judge = read, judge
+        self._lock = threading.RLock()
+        self._stopped = threading.Event()
+        self._round = 0
+        self.page = Page(server, self._move, self._place)
+        self.sides: Sequence[Side] = ()
+        self.scenes: Sequence[Scene] = ()
+        self.motion = Motion(KinematicModel("", "", "", (world_body(),)))
+        self.partner: Partner | None = None
+        self._show(read())
+
+    # ---- reading ---------------------------------------------------------------------------------------------------------
+
+    def _show(self, sides: Sequence[Side]) -> None:
+        """Robots that were read, where the joints of the last ones were as far as these have them."""
+        self._take(sides, [scene_of(Robot(side.mechanism, side.source.files)) for side in sides])
+
+    def _take(self, sides: Sequence[Side], scenes: Sequence[Scene]) -> None:
+        with self._lock:
+            before = {slider.label: self._value(slider.dof) for slider in self.motion.sliders}
+            self.sides, self.scenes = sides, scenes
+            self._watch = Watch(_files(sides))
+            self.motion = Motion(scenes[0].model)
+            self.partner = Partner(self.motion, scenes[1].model) if len(scenes) > 1 else None
+            for slider in self.motion.sliders:
+                if slider.lower <= before.get(slider.label, np.nan) <= slider.upper:
+                    self.motion.move(slider.dof, before[slider.label])
+            self.page.show(scenes, self.motion.sliders)
+            self._place()
+            self.page.show_problem("")
+            self._round += 1
+        self._finder = threading.Thread(target=self._find, args=(self._round,), daemon=True)
+        self._finder.start()
+
+    def _find(self, number: int) -> None:
+        """What got lost, and what the verifier says, as soon as it does."""
+        missing = [line for scene in self.scenes for line in scene.missing]
+        lists: list[tuple[str, Sequence[str]]] = [("not drawn", missing)]
+        spots, words = [], ""
+        if self.partner is not None and self._judge is not None:
+            lost = lines_of(losses_of(*self.sides))
+            try:
+                verdict = self._judge()
+            except Refusal as refusal:
+                words = f"not verified: {refusal.diagnostic.message}"
+            else:
+                words = answer(verdict)
+                spots = spots_of(verdict, *(scene.model for scene in self.scenes))
+                cannot = [f"{gap.format} cannot represent {gap}" for gap in verdict.gaps]
+                lists += [("not compared", [*cannot, *verdict.not_compared])]
+            lists.insert(0, ("what B does not have as A has it", lost))
+        with self._lock:
+            if number == self._round and (words or missing):
+                self.page.show_findings(words or "notes", spots, lists)
+
+    def watch(self) -> None:
+        """Look at the files until the session is stopped."""
+        while not self._stopped.wait(PERIOD):
+            self.look()
+
+    def look(self) -> bool:
+        """Read the robots again if a file has changed; an error is shown in the page, and the robots stay."""
+        if not self._watch.has_changed():
+            return False
+        try:
+            self._show(self._read())
+        except Refusal as refusal:
+            self.page.show_problem(str(refusal.diagnostic))
+        return True
+
+    def stop(self) -> None:
+        """End :meth:`watch`, and wait for the verifier."""
+        self._stopped.set()
+        with self._lock:
+            self._round += 1
+        self._finder.join()
+
+    # ---- moving ----------------------------------------------------------------------------------------------------------
+
+    def _move(self, number: int, value: float) -> None:
+        """A user has moved a slider."""
+        with self._lock:
+            if number < len(self.motion.sliders):
+                self.motion.move(self.motion.sliders[number].dof, value)
+                self._place()
+
+    def _place(self) -> None:
+        """Put both robots where they are now, and the sliders as well."""
+        with self._lock:
+            self.page.set_sliders([self._value(slider.dof) for slider in self.motion.sliders])
+            self.page.place(0, self.motion.poses(), np.zeros(3))
+            if self.partner is not None:
+                self.partner.follow()
+                self.page.place(1, self.partner.motion.poses(), self._offset())
+
+    def _offset(self) -> Array:
+        """Where the second robot stands: beside the first one, or in the same place."""
+        is_apart = self.page.layout.value == "side by side"
+        self.page.overlay(is_overlaid=not is_apart)
+        return np.array([0.0, -_APART * max(scene.reach for scene in self.scenes) * is_apart, 0.0])
+
+    def _value(self, dof: int) -> float:
+        return float(self.motion.q[self.motion.model.columns[dof]])
+
+
+def _files(sides: Sequence[Side]) -> list[str]:
+    """The files of the robots, and those that they include."""
+    included = {origin.file for side in sides for origin in side.mechanism.origins.values()}
+    return sorted({side.source.name for side in sides} | {name for name in included if not name.startswith("<")})
