@@ -22,7 +22,7 @@ VIEWS: Mapping[str, tuple[float, float]] = {
     "iso": (145.0, -22.0),
 }
 """Azimuth and elevation of the camera in degrees, by the name of the view. Robots look along +x."""
-_FILLED = 0.86
+_FILLED = 0.78
 """The part of the picture's width or height, whichever is scarcer, between the outermost points of the robot."""
 _STEPS = 6
 

@@ -83,6 +83,15 @@ class Studio:
 
         return next(self._drawn([self.data.qpos.copy()], self.corners, mujoco))
 
+    def covered(self) -> NDArray[np.bool_]:
+        """The pixels of the picture that show the robot, not ground or sky."""
+        import mujoco
+        import numpy as np
+
+        found = next(self._drawn([self.data.qpos.copy()], self.corners, mujoco, segmented=True))
+        is_geom = found[..., 1] == mujoco.mjtObj.mjOBJ_GEOM
+        return np.asarray(is_geom & (self.model.geom_type[np.where(is_geom, found[..., 0], 0)] != mujoco.mjtGeom.mjGEOM_PLANE))
+
     def sweep(self) -> Iterator[Picture]:
         """Pictures in which each joint in turn goes through its limits and back; joints without limits go half a turn or 0.1 m."""
         import mujoco
@@ -99,12 +108,17 @@ class Studio:
 
         yield from self._drawn(positions or [rest], corners_of(self.model, datas, self._groups), mujoco)
 
-    def _drawn(self, positions: list[NDArray[np.float64]], corners: Corners, mujoco: Any) -> Iterator[Picture]:
+    def _drawn(
+        self, positions: list[NDArray[np.float64]], corners: Corners, mujoco: Any, *, segmented: bool = False
+    ) -> Iterator[NDArray[Any]]:
+        """Pictures in these configurations, or which object each pixel shows: its number and its type."""
         from hymeko_x.draw.camera import fitted_camera
 
         width, height = self._look.size
         camera = fitted_camera(corners, self._look.view, width / height, _FIELD_OF_VIEW)
         renderer = _renderer(self.model, width, height)
+        if segmented:
+            renderer.enable_segmentation_rendering()
         try:
             for qpos in positions:
                 self.data.qpos[:] = qpos

@@ -1,0 +1,157 @@
+"""The bar of pictures: a robot fills its picture, and its conversion into every other format has the same one.
+
+    python benchmarks/renders.py                      # every tenth development robot of the catalogue
+    python benchmarks/renders.py --every 1 -o renders.json --pictures DIR
+    python benchmarks/renders.py robot.urdf ...
+
+One line for each robot: how much of the picture it fills, and by target the part of the pixels that differ. Each robot has a process of
+its own.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from hymeko_x import api, formats
+from hymeko_x.corpus import cache, catalog
+from hymeko_x.diagnostics import Refusal
+from hymeko_x.draw.files import grid, png
+from hymeko_x.draw.pair import compared
+from hymeko_x.draw.render import Look, Studio, choose_backend, is_drawn, open_studio
+from hymeko_x.robot import Robot
+from hymeko_x.source import ManyFiles
+
+SIZE = (480, 360)
+FILLED = (0.3, 0.8)
+"""The part of the width or height of the picture, whichever is larger, that a robot takes."""
+CHANGED = 0.005
+"""The part of the pixels that may differ after a conversion."""
+_DARK = 40
+"""A picture whose robot is nowhere brighter than this is black."""
+_SECONDS = 300.0
+
+
+class Drawn(msgspec.Struct):
+    """One robot: the part of the picture that it fills, its brightest pixel, and by target the part that differs, or why there is none."""
+
+    path: str
+    filled: float = 0.0
+    brightest: int = 0
+    reason: str = ""
+    changed: dict[str, float] = {}
+    failed: dict[str, str] = {}
+
+    @property
+    def faults(self) -> list[str]:
+        """In what the robot misses the bar."""
+        if self.reason:
+            return []
+        found = [f"fills {self.filled:.2f}"] if not FILLED[0] <= self.filled <= FILLED[1] else []
+        found += ["is black"] if self.brightest < _DARK else []
+        return found + [f"{target} differs by {100.0 * part:.2f} %" for target, part in self.changed.items() if part >= CHANGED]
+
+
+def drawn(path: str, pictures: Path | None = None) -> Drawn:
+    """The robot in a file, and its conversions into every other format, by one camera."""
+    row = formats.of_input(path, Path(path).read_bytes())
+    look = Look(SIZE, is_authored=True)
+    try:
+        robot = api.open(path, lenient=True)
+        studio = open_studio(robot, path if is_drawn(row) else None, look)
+        before, covered = studio.still(), studio.covered()
+    except Refusal as refusal:
+        return Drawn(path, reason=f"{refusal.diagnostic.code.id}: {refusal.diagnostic.message}"[:200])
+    rows, columns = np.flatnonzero(covered.any(axis=1)), np.flatnonzero(covered.any(axis=0))
+    filled = max(np.ptp(rows) / SIZE[1], np.ptp(columns) / SIZE[0]) if covered.any() else 0.0
+    found = Drawn(path, float(filled), int(before[covered].max(initial=0)), changed={}, failed={})
+    for target in formats.FORMATS:
+        if target.backend is None or target.frontend is None or (target is row and not is_drawn(row)):
+            continue
+        try:
+            pair = compared(before, _converted(robot, target, look, studio).still())
+        except Refusal as refusal:
+            found.failed[target.name] = f"{refusal.diagnostic.code.id}: {refusal.diagnostic.message}"[:200]
+            continue
+        found.changed[target.name] = pair.changed
+        if pictures is not None and pair.changed >= CHANGED:
+            name = f"{Path(path).parent.name}-{Path(path).stem}-{target.name}.png"
+            (pictures / name).write_bytes(png(grid([pair.before, pair.after, pair.difference])))
+    return found
+
+
+def _converted(robot: Robot, target: formats.Format, look: Look, studio: Studio) -> Studio:
+    """A robot as its conversion into a format has it, read from that file alone."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / f"robot{target.suffixes[0]}"
+        api.dump(robot, file, target.name, assets="copy", lenient=True)
+        again = api.open(file, target.name, lenient=True)
+        again = Robot(again.mechanism, ManyFiles((again.files, robot.files)))  # files of packages stay where they are
+        return open_studio(again, str(file) if is_drawn(target) else None, look, studio.corners)
+
+
+def apart(path: str, pictures: Path | None) -> Drawn:
+    """As :func:`drawn`, in a process of its own, which may crash."""
+    words = [sys.executable, __file__, "--one", path, *(["--pictures", str(pictures)] if pictures else [])]
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, timeout=_SECONDS, check=False)
+    except subprocess.TimeoutExpired:
+        return Drawn(path, reason=f"took more than {_SECONDS:.0f} s")
+    if done.returncode:
+        return Drawn(path, reason=f"exit {done.returncode}: {done.stderr.strip()[-200:]}")
+    return msgspec.json.decode(done.stdout.splitlines()[-1], type=Drawn)
+
+
+def development_robots(every: int) -> list[str]:
+    """The development files of the catalogue that are here, each n-th."""
+    root = cache.cache_root(os.environ)
+    files = [file for row in formats.FORMATS for file in catalog.development_files(row.name)]
+    return [str(cache.package_path(file.package, root) / file.path) for file in files if cache.is_fetched(file.package, root)][::every]
+
+
+def line(found: Drawn) -> str:
+    """A robot in one line."""
+    if found.reason:
+        return f"  --   {found.path}: {found.reason}"
+    parts = " ".join(f"{target} {100.0 * part:.2f}" for target, part in found.changed.items())
+    failed = "".join(f"; {target}: {reason}" for target, reason in found.failed.items())
+    return f"  {'FAIL' if found.faults else 'ok  '} {found.path}: fills {found.filled:.2f}, differs by % {parts}{failed}"
+
+
+def main() -> int:
+    """Draw them all; exit 1 when one misses the bar."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", nargs="*", help="robots (default: development robots of the catalogue)")
+    parser.add_argument("--every", type=int, default=10, metavar="N", help="each n-th of them (default 10)")
+    parser.add_argument("--pictures", type=Path, metavar="DIR", help="put the pictures of what differs here")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE.json", help="the numbers as JSON")
+    parser.add_argument("--one", help=argparse.SUPPRESS)
+    chosen = parser.parse_args()
+    choose_backend()
+    if chosen.pictures:
+        chosen.pictures.mkdir(parents=True, exist_ok=True)
+    if chosen.one:
+        print(msgspec.json.encode(drawn(chosen.one, chosen.pictures)).decode())
+        return 0
+    results = []
+    for path in chosen.files or development_robots(chosen.every):
+        results.append(apart(path, chosen.pictures))
+        print(line(results[-1]), flush=True)
+    made = [found for found in results if not found.reason]
+    good = [found for found in made if not found.faults]
+    print(f"{len(results)} robots, {len(made)} drawn, {len(good)} without a fault; {len(results) - len(made)} cannot be drawn")
+    if chosen.output:
+        chosen.output.write_text(json.dumps([msgspec.to_builtins(found) for found in results], indent=1) + "\n")
+    return 0 if len(good) == len(made) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
