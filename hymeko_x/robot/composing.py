@@ -166,6 +166,18 @@ def subtree(robot: R, body: str) -> R:
     return robot.changed(_only(robot, part_of(robot.mechanism, below(robot.mechanism, key))).finished(body))
 
 
+def split(robot: R) -> tuple[R, ...]:
+    """A robot for each body that stands or floats in the world, with all below it. Relations between them are in none."""
+    mechanism = robot.mechanism
+    parts = []
+    for root, _ in mechanism.vertices(Body):
+        above = mechanism.parent_joint.get(root)
+        if above is None or above.parent == WORLD:
+            inside = part_of(mechanism, below(mechanism, root))
+            parts.append(robot.changed(_only(robot, inside if above is None else {*inside, above.id, WORLD}).finished(root.name)))
+    return tuple(parts)
+
+
 def _only(robot: RobotData, inside: set[Id]) -> Draft:
     """The robot without everything else."""
     draft = Draft(robot.mechanism, lambda: robot.completed, is_locked=False)

@@ -8,7 +8,7 @@ from hymeko_x.ir.parts import Body
 from hymeko_x.ir.values import IDENTITY
 from hymeko_x.joining import with_names
 from hymeko_x.robot import memory, text
-from hymeko_x.robot.composing import attach, detach, subtree
+from hymeko_x.robot.composing import attach, detach, split, subtree
 from hymeko_x.robot.data import RobotData
 from hymeko_x.robot.editing import Editing
 from hymeko_x.robot.kinematics import all_poses
@@ -103,6 +103,13 @@ class Robot(RobotData):
     def subtree(self, body: str) -> Robot:
         """A body with all below it as a robot of its own; the body is its open root. Raises: KeyError when there is no such body."""
         return subtree(self, body)
+
+    def split(self) -> tuple[Robot, ...]:
+        """A scene as its robots: one for each body that stands or floats in the world, with all below it, called like that body.
+
+        Names stay; what is on the world itself, and relations between the robots, are in none.
+        """
+        return split(self)
 
     def merge_fixed_joints(self, *, keep: Iterable[str] = ()) -> Robot:
         """Every body that a fixed joint attaches to another body becomes a part of that one; inertials are added. What is fixed to the

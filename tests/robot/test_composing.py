@@ -107,6 +107,18 @@ def test_a_subtree_and_the_rest_are_the_whole() -> None:
         robot.detach("foree")
 
 
+def test_a_scene_comes_apart_into_its_robots() -> None:
+    scene = hx.compose((arm(), claw()), ((0, 0, 0), (0.5, 0, 1)), name="table")
+    parts = scene.split()
+    assert [[*part.bodies] for part in parts] == [["arm/base", "arm/upper", "arm/fore"], ["claw/palm", "claw/finger"]]
+    assert sum(part.mass for part in parts) == pytest.approx(scene.mass)
+    whole = scene.fk()
+    for part in parts:
+        assert {name: pose.xyz for name, pose in part.fk().items()} == {name: whole[name].xyz for name in part.bodies}
+        assert [*part.split()[0].bodies] == [*part.bodies]
+    assert parts[0].to_mujoco().nq == arm().to_mujoco().nq
+
+
 def test_a_scene_has_all_robots_at_their_poses() -> None:
     scene = hx.compose((arm(), arm(), claw()), ((0, 0, 0), hx.Pose.from_rpy((0, 0, 180 * hx.deg), (1, 0, 0)), (0.5, 0, 1)), name="table")
     assert [*scene.bodies] == [
