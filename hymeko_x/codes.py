@@ -230,6 +230,11 @@ EDIT_REWRITTEN = Code(
     "an edit could not be placed in the text",
     "The author's text does not have the value as it is printed, so that the element was printed anew, or the whole file where that is not enough.",
 )
+EDIT_DROPPED = Code(
+    "HX118",
+    "an edit has no place in the format of the original",
+    "The format of the original has no word for what was edited, so that its text cannot get the edit. It stays in the edited file alone.",
+)
 OPTIONS_FOUND = Code(
     "HX109",
     "the options of an earlier conversion were found out",

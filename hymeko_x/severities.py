@@ -138,6 +138,8 @@ WARNINGS: Mapping[Code, str] = {
     codes.COM_OUTSIDE: "such a centre is possible, and mostly a mistake of frames or units",
     codes.NOT_UNIT: "the direction is what counts, and it is the same",
     codes.UNSTABLE_INPUT: "an unstable system is one, and its response is what it is",
+    codes.EDIT_DROPPED: "all other edits are there",
+    codes.RESIDUE_SUPERSEDED: "the edited file counts, and the original that is kept for it is not used",
     codes.EDIT_REWRITTEN: "the edit is there, and more lines of the text are new than it needed",
 }
 """Why it does not, although something is odd."""

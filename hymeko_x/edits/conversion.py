@@ -11,7 +11,7 @@ from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.mechanism import WORLD
+from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from hymeko_x.formats import Format
-    from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.mechanism import JointView, Mechanism
     from hymeko_x.rewrite import Options
     from hymeko_x.source import Source
 
@@ -45,8 +45,11 @@ class Guess(NamedTuple):
 class Conversion:
     """The conversion of ORIGINAL into the format of EDITED, made again."""
 
-    def __init__(self, mechanism: Mechanism, source: Source, edited: Source, format: Format, home: Format, report: Report) -> None:
-        self.mechanism, self.source, self.format, self.report = mechanism, source, format, report
+    def __init__(
+        self, mechanism: Mechanism, source: Source, edited: Source, format: Format, home: Format, report: Report, notes: Report
+    ) -> None:
+        """``notes`` gets what restoring reports, which matters where there are edits."""
+        self.mechanism, self.source, self.format, self.report, self.notes = mechanism, source, format, report, notes
         since = len(report)
         self.edited = pipeline.reader(format)(edited, report).mechanism
         pipeline.stop_on_errors(report, since, lenient=False)
@@ -62,7 +65,7 @@ class Conversion:
         self._report_found(options, guess)
         residue = residue_of(self.mechanism, guess.image)
         names = renames(self.edited, guess.image)
-        restored = restore(with_old_names(self._with_inertials(guess.image), names), residue, self.report).mechanism
+        restored = restore(with_old_names(self._with_inertials(guess.image), names), residue, self.notes).mechanism
         ours = dict(residue.alignment.names)
         return with_new_names(restored, {new: ours.get(old, old) for new, old in names.items()})
 
@@ -102,10 +105,9 @@ class Conversion:
         yield replace(guess.options, within=f"{first}/"), replace(guess.place, assets="copy")
 
     def _other_bases(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
-        """Where a body is joined to the world in one of the two only."""
-        mine, theirs = ({view.child for view in robot.children.get(WORLD, ())} for robot in (guess.image, self.edited))
-        kinds = [[view.joint.dofs for view in robot.children.get(WORLD, ())] for robot in (guess.image, self.edited)]
-        if guess.options.base is None and (mine != theirs or kinds[0] != kinds[1]):
+        """Where a body is joined to the world in one of the two only, which may be a body by that name."""
+        mine, theirs = ([(view.child, view.joint.dofs) for view in _on_world(robot)] for robot in (guess.image, self.edited))
+        if guess.options.base is None and mine != theirs:
             yield from ((replace(guess.options, base=base), guess.place) for base in _BASES)
 
     def _other_actuators(self, guess: Guess) -> Iterator[tuple[Options, pipeline.Place]]:
@@ -131,6 +133,12 @@ class Conversion:
         found = [f"--{name} {value}" for name, value in names.items() if value != given[name]]
         if found:
             self.report.note(codes.OPTIONS_FOUND, f"the file was converted with {' '.join(found)}, as far as can be seen")
+
+
+def _on_world(robot: Mechanism) -> Iterator[JointView]:
+    """The joints that join bodies to the world, or to a body that a format without a world has in its place."""
+    for world in (WORLD, Id("body", WORLD.name)):
+        yield from robot.children.get(world, ())
 
 
 def renames(edited: Mechanism, image: Mechanism) -> dict[Id, Id]:

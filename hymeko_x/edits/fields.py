@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from hymeko_x.edits.matching import value_of
+
 if TYPE_CHECKING:
     from hymeko_x.edits.splicing import Splices
     from hymeko_x.outline import Block, Field
@@ -41,7 +43,7 @@ def _change(splices: Splices, mine: Field, earlier: Field | None, field: Field, 
         splices.put(mine.value_start, mine.value_end, new)
         return
     for (start, end), word, old in zip(words, wanted, had, strict=True):
-        if word != old:
+        if value_of(word.decode()) != value_of(old.decode()):
             splices.put(start, end, word)
 
 

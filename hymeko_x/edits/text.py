@@ -109,6 +109,9 @@ class _Attempt:
         self.source, self.format = source, format
         printing = formats.by_name(format.expands_to) if format.expands_to else format
         outline = formats.loaded(printing.outline or "")
+        own = Report()
+        pipeline.reader(format)(source, own)
+        self.errors = len(own.errors(0))
         self.own: Outline = formats.loaded(format.outline or "")(source, Report())
         package = printed(after, format, report)
         self.whole, self.beside = package.main, package.files
@@ -126,9 +129,12 @@ class _Attempt:
         """The elements that are not what they should be; None when all are, and ``_UNREADABLE`` where the text cannot be read."""
         main = files.get(self.source.name, self.source.data)
         edited = replace(self.source, data=main, files=EditedFiles(self.source.files, files))
+        report = Report()
         try:
-            found = pipeline.reader(self.format)(edited, Report()).mechanism
+            found = pipeline.reader(self.format)(edited, report).mechanism
         except Refusal:
+            return _UNREADABLE
+        if len(report.errors(0)) > self.errors:
             return _UNREADABLE
         return frozenset(difference.element for difference in diff(self.goal, found, TOLERANCE) if self._counts(difference)) or None
 

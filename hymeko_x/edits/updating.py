@@ -11,13 +11,14 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 from msgspec.structs import replace
 
-from hymeko_x import codes, pipeline
+from hymeko_x import codes, formats, pipeline
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Origin, Report, refuse
 from hymeko_x.edits.conversion import Conversion, new_assets
-from hymeko_x.edits.text import text_with_edits
+from hymeko_x.edits.text import Texts, text_with_edits
 from hymeko_x.ir.parts import Mesh, Texture
+from hymeko_x.rewrite import Options
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import Id, Mechanism
     from hymeko_x.ir.parts import VertexPart
-    from hymeko_x.rewrite import Options
     from hymeko_x.source import Source
 
 _ASSETS = "meshes"
@@ -78,14 +78,36 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
     if format.outline is None:
         raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} is no text in which edits could be placed", Origin(original.name))
     before = pipeline.read(original, format, Report())
-    conversion = Conversion(before, original, edited, edited_format, format, report)
+    notes = Report()
+    conversion = Conversion(before, original, edited, edited_format, format, report, notes)
     after, beside = _with_new_assets(before, conversion.edited_mechanism(options), edited)
-    edits = diff(before, after, TOLERANCE)
-    if not edits:
+    every = diff(before, after, TOLERANCE)
+    lost = _dropped(every, after, original, format)
+    for edit in lost:
+        message = f"the edit has no place in {format.name}: {edit}"
+        report.warn(codes.EDIT_DROPPED, message, before.origin(edit.element), element=str(edit.element))
+    edits = tuple([edit for edit in every if edit not in lost])
+    texts = text_with_edits(original, format, before, after, report) if edits else Texts({}, {})
+    if not texts.changed:  # the original is the same already, in the words of its own format
         return Updated(before, (), original.data, {}, {}, {}, report)
-    texts = text_with_edits(original, format, before, after, report)
+    report.extend(notes)
     old = {path: original.data if path == original.name else original.files.read(path) for path in texts.changed}
     return Updated(replace(after, origins=before.origins), edits, original.data, texts.changed, old, {**beside, **texts.beside}, report)
+
+
+def _dropped(edits: tuple[Difference, ...], after: Mechanism, original: Source, format: Format) -> list[Difference]:
+    """The edits for which the format of the original has no word."""
+    if not edits or format.is_exact:
+        return []
+    losses = pipeline.convert(after, format, Options(lenient=True), original.files, Report()).losses or ()
+    gone = {(loss.element, loss.field) for loss in losses if loss.fate == "dropped"}
+    return [edit for edit in edits if (str(edit.element), edit.field) in gone and not _is_inherited(edit)]
+
+
+def _is_inherited(edit: Difference) -> bool:
+    """Whether an edit is one of classes alone, which the elements have in fields of their own."""
+    rows = [formats.loaded(row.inherited) for row in formats.FORMATS if row.inherited is not None and edit.field.startswith(f"{row.name} ")]
+    return any(function(text or "") == function("") for function in rows for text in (edit.after or edit.before,))
 
 
 def _with_new_assets(before: Mechanism, after: Mechanism, edited: Source) -> tuple[Mechanism, dict[str, bytes]]:

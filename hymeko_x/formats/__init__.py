@@ -183,6 +183,7 @@ SDF = Format(
     "hymeko_x.backends.sdf.rules",
     roots=("sdf",),
     fragments="hymeko_x.backends.sdf.fragments:fragments_of",
+    outline="hymeko_x.xml.outline:outline",
     keeps_package_uris=True,
     joints_share_names=True,
     has_single_dof_joints=True,

@@ -11,6 +11,7 @@ from hymeko_x.compare.diff import Difference
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import WORLD, Id, joint_edge, pose_weight
 from hymeko_x.ir.names import rename
+from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate, rotate_tensor
 
@@ -213,9 +214,15 @@ def with_old_names(image: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
 
 
 def with_new_names(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
-    """The restored mechanism with the new names, those of the dofs of joints included."""
+    """The restored mechanism with the new names, those of the dofs of joints included; what had no name has one now."""
     if not names:
         return mechanism
+    olds = set(names.values())
+    notations = {
+        key: {name: text for name, text in own.items() if name != UNNAMED.name} if key in olds else own
+        for key, own in mechanism.notations.items()
+    }
+    mechanism = replace(mechanism, notations=notations)
     back = {old: new for new, old in names.items()}
     dofs = {old.name: new.name for old, new in back.items() if old.kind == "joint"}
     edges = {key: _with_dof_names(edge, dofs) for key, edge in mechanism.graph.edges.items() if isinstance(edge.data, Joint)}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
@@ -38,7 +39,7 @@ ARM = """<?xml version="1.0"?>
   </joint>
 </robot>
 """
-SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "usd": ".usda", "hymeko": ".hymeko", "xacro": ".xacro"}
+SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "usd": ".usda", "hymeko": ".hymeko", "xacro": ".xacro", "sdf": ".sdf"}
 
 
 def edited(text: str, target: str, edit: tuple[str, str], folder: Path, source: str = "urdf", **options: object) -> str:
@@ -275,3 +276,121 @@ def test_a_literal_of_xacro_is_edited_in_the_file_where_it_stands(tmp_path: Path
     assert edited(XACRO, "mjcf", ('mass="5"', 'mass="6"'), tmp_path, "xacro") == XACRO.replace('"5.0"', '"6"')
     assert edited(XACRO, "mjcf", ('(name="axle" pos=)"0 0 0.2"', r'\1"0 0 0.3"'), tmp_path, "xacro") == XACRO
     assert wheel.read_text() == WHEEL.replace("0 0 0.20", "0 0 0.3")
+
+
+SDF = """<?xml version="1.0"?>
+<sdf version="1.9">
+  <model name="arm">
+    <link name="base"/>
+    <link name="upper">   <!-- the upper arm -->
+      <pose relative_to="shoulder">0 0 0.10 0 0 0</pose>
+      <inertial>
+        <mass>1.50</mass> <!-- weighed -->
+        <pose>0 0 0.150 0 0.1 0</pose>
+        <inertia><ixx>0.010</ixx><iyy>0.011</iyy><izz>0.002</izz><ixy>0</ixy><ixz>0</ixz><iyz>0</iyz></inertia>
+      </inertial>
+      <visual name="v"><geometry><cylinder><radius>0.04</radius><length>0.30</length></cylinder></geometry></visual>
+    </link>
+    <joint name="shoulder" type="revolute">
+      <pose relative_to="base">0 0 0.050 0 0 1.570</pose>
+      <parent>base</parent>
+      <child>upper</child>
+      <axis><xyz>0 0 2</xyz>
+        <limit><lower>-1.5</lower><upper>1.50</upper><effort>20</effort><velocity>3.14</velocity></limit>
+      </axis>
+    </joint>
+  </model>
+</sdf>
+"""
+
+
+@pytest.mark.parametrize(
+    ("target", "edit", "old", "new"),
+    [
+        ("urdf", ('mass value="1.5"', 'mass value="2.25"'), "<mass>1.50</mass>", "<mass>2.25</mass>"),
+        ("mjcf", ('mass="1.5"', 'mass="2.25"'), "<mass>1.50</mass>", "<mass>2.25</mass>"),
+        ("usd", (r"physics:mass = 1\.5", "physics:mass = 2.25"), "<mass>1.50</mass>", "<mass>2.25</mass>"),
+        ("urdf", ('upper="1.5"', 'upper="1.2"'), "<upper>1.50</upper>", "<upper>1.2</upper>"),
+        ("urdf", ('origin xyz="0 0 0.05"', 'origin xyz="0 0.1 0.05"'), '"base">0 0 0.050', '"base">0 0.1 0.050'),
+        ("urdf", ('rpy="0 0.1 0"', 'rpy="0 0.2 0"'), "0 0 0.150 0 0.1 0", "0 0 0.150 0 0.2 0"),
+    ],
+)
+def test_sdf_keeps_its_author_s_text(target: str, edit: tuple[str, str], old: str, new: str, tmp_path: Path) -> None:
+    """A pose stays in the frame in which its author gives it."""
+    assert edited(SDF, target, edit, tmp_path, "sdf") == SDF.replace(old, new)
+
+
+ADDED = {
+    "mjcf": (
+        r'(<body name="upper".*?>)',
+        r'\1<body name="pen" pos="0 0 0.3"><geom name="tip" type="sphere" size="0.01" mass="0.1"/></body>',
+    ),
+    "sdf": (
+        "</model>",
+        '<link name="pen"><pose relative_to="upper">0 0 0.3 0 0 0</pose><inertial><mass>0.1</mass></inertial>'
+        '</link><joint name="pen_joint" type="fixed"><parent>upper</parent><child>pen</child></joint></model>',
+    ),
+    "xacro": ("</robot>", '<link name="pen"/><joint name="p" type="fixed"><parent link="upper"/><child link="pen"/></joint></robot>'),
+    "hymeko": (r"\n}\s*$", "\n  pen { mass 0.1 inertia [1e-6 1e-6 1e-6] }\n  @p : fixed { [0 0 0.3] + upper - pen }\n}\n"),
+}
+
+
+HYMEKO_OF_UPPER = HYMEKO.replace("  link :", "  upper :").replace("- link", "- upper")
+
+
+@pytest.mark.parametrize("target", ADDED)
+@pytest.mark.parametrize(("source", "text"), [("urdf", ARM), ("sdf", SDF), ("hymeko", HYMEKO_OF_UPPER)])
+def test_after_an_update_with_an_addition_there_is_nothing_to_update(source: str, text: str, target: str, tmp_path: Path) -> None:
+    if source == target:
+        pytest.skip("the same format")
+    after = edited(text, target, ADDED[target], tmp_path, source)
+    assert "pen" in after
+    found = hx.update(tmp_path / f"arm{SUFFIXES[source]}", tmp_path / f"there{SUFFIXES[target]}")
+    notes = [str(diagnostic) for diagnostic in found.report if diagnostic.code.id != "HX025"]  # the axis of two metres
+    assert (list(map(str, found.edits)), notes, found.changed) == ([], [], {})
+
+
+def test_an_edit_that_the_original_s_format_cannot_represent_is_reported(tmp_path: Path) -> None:
+    original, there = tmp_path / "arm.urdf", tmp_path / "there.xml"
+    original.write_text(ARM)
+    hx.convert(original, there)
+    there.write_text(there.read_text().replace('joint name="shoulder"', 'joint name="shoulder" armature="0.3"'))
+    found = hx.update(original, there)
+    assert [str(said) for said in found.report] == [
+        f"{original}:15: warning[HX118]: the edit has no place in urdf: joint 'shoulder' dofs[0].armature: 0 -> 0.3"
+    ]
+    assert (found.edits, original.read_text()) == ((), ARM)
+
+
+def test_a_body_of_mjcf_that_had_no_name_gets_one(tmp_path: Path) -> None:
+    text = """<mujoco>
+  <worldbody>
+    <body>
+      <geom type="sphere" size="0.050"/>
+      <joint type="slide" axis="1 0 0"/>
+      <body pos="1.0 0 0">
+        <geom type="sphere" size="0.05"/>
+      </body>
+    </body>
+  </worldbody>
+</mujoco>
+"""
+    (tmp_path / "kept").mkdir()
+    edit = r'(link name=)"world_body#2"(.*child link=)"world_body#2"', r'\1"fore"\2"fore"'
+    after = edited(text, "urdf", edit, tmp_path, "mjcf")
+    assert after == text.replace('<body pos="1.0', '<body name="fore" pos="1.0')
+    there = tmp_path / "kept" / "there.urdf"
+    hx.convert(tmp_path / "arm.xml", there, keep="beside")
+    there.write_text(there.read_text().replace('"fore"', '"hand"'))
+    hx.convert(there, tmp_path / "kept" / "home.xml")
+    assert '<body name="hand" pos="1 0 0">' in (tmp_path / "kept" / "home.xml").read_text()
+
+
+@pytest.mark.parametrize("target", ["there.urdf", "there.sdf", "there.xml", "there.usda"])
+@pytest.mark.parametrize("base", ["fixed", "free"])
+def test_a_base_that_was_asked_for_is_no_edit(target: str, base: Literal["fixed", "free"], tmp_path: Path) -> None:
+    original = tmp_path / "arm.urdf"
+    original.write_text(ARM)
+    hx.convert(original, tmp_path / target, base=base)
+    found = hx.update(original, tmp_path / target)
+    assert (list(map(str, found.edits)), original.read_text()) == ([], ARM)

@@ -230,21 +230,35 @@ class SdfSheet:
             tag.add("pose").children.append(numbers_text((*value.xyz, *rpy_of(value))))
 
     def _add_own_pose(self, tag: Tag, own: notations.WrittenPose, scope: str, key: Id, default: Id, pose: Pose | None) -> bool:
-        base = (self.places.find(scope, own.relative_to) if own.relative_to else None) or default
+        """Add <pose> in the frame and the notation of its author, with the author's text where that still is the place.
+
+        False where that frame is not there any more, or where none was named and the place is another one.
+        """
+        named = self.places.find(scope, own.relative_to) if own.relative_to else None
+        base = named or default
         value = pose if pose is not None else self.places.relative(key, base)
         if pose is not None and base != default:
             value = self.places.seen_from(base, default, pose)
-        try:
-            if not is_near(read_pose(own), value):
-                return False
-        except BadText:
+        text = self._own_text(own, value)
+        if text is None and named is None:
             return False
         old = words.minor(self.version) < words.VERSION_OF_RELATIVE_TO
         marks = {"frame" if old else "relative_to": own.relative_to, "rotation_format": own.rotation_format, "degrees": own.degrees}
-        child = tag.add("pose", **{name: value for name, value in marks.items() if value is not None})
-        if own.text:
-            child.children.append(own.text)
+        if text is None:
+            marks = {name: mark for name, mark in marks.items() if mark == own.relative_to}
+            text = numbers_text((*value.xyz, *rpy_of(value)))
+        child = tag.add("pose", **{name: mark for name, mark in marks.items() if mark is not None})
+        if text:
+            child.children.append(text)
         return True
+
+    @staticmethod
+    def _own_text(own: notations.WrittenPose, value: Pose) -> str | None:
+        """The author's text of a pose, if that still is what it means."""
+        try:
+            return own.text if is_near(read_pose(own), value) else None
+        except BadText:
+            return None
 
     # ---- extras ----------------------------------------------------------------------------------------------------------
 
