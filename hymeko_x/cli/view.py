@@ -14,9 +14,9 @@ from hymeko_x import codes
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
-from hymeko_x.cli.names import located
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.cli.verdicts import engine_arguments, verdict_of
+from hymeko_x.corpus.names import located
 from hymeko_x.diagnostics import Report, refuse
 
 if TYPE_CHECKING:
