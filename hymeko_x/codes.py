@@ -187,6 +187,9 @@ BAD_DOCUMENT = Code(
     "a document is not in the JSON form",
     "The text is JSON, but not the form of a robot that `hymeko-x schema` prints: a key is missing or unknown, or a value is of another type. The message begins with the path of the value, as `$.edges[2].dofs[0].axis`.",
 )
+CIRCULAR_VALUE = Code(
+    "HX067", "a value leads back to itself", "Values refer to each other in a circle, so that none of them has a value."
+)
 
 # ---- HX1xx: loss and rewriting ---------------------------------------------------------------------------------------
 REWRITTEN = Code(

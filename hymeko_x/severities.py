@@ -60,6 +60,7 @@ ERRORS: Mapping[Code, str] = {
     codes.BAD_VALUE: f"{_NOT_MEANT}, or there is no default at all",
     codes.BAD_TEMPLATE: "what the template stands for would be missing",
     codes.BAD_EXPRESSION: "the value would be missing",
+    codes.CIRCULAR_VALUE: "none of the values is known",
     codes.NOT_A_ROBOT: "the target is for robots, and there is none in the text",
     codes.ASSET_NOT_FOUND: "a layer of a stage is a part of the robot, with its bodies and joints",
     codes.ASSET_UNREADABLE: "the damaged mesh stands in the file itself, so that the file is damaged",

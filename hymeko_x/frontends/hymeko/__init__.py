@@ -26,6 +26,7 @@ from hymeko_x.frontends.hymeko.kinds import infer_kinds
 from hymeko_x.frontends.hymeko.lumped import remove_folded
 from hymeko_x.frontends.hymeko.nesting import declare_inside
 from hymeko_x.frontends.hymeko.parts import has_attached, read_part
+from hymeko_x.frontends.hymeko.references import resolve_values
 from hymeko_x.frontends.hymeko.values import ValueReader, read_units
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Provenance
@@ -55,8 +56,8 @@ _FIRST = _WITH_SHAPES | {"spring", "damper"}  # shapes have no declaration of th
 def read(source: Source, report: Report) -> Reading:
     """The mechanism that a HyMeKo text describes.
 
-    Raises: Refusal with the place in the text: HX060 syntax, HX061 types, HX062 values, HX063 templates, HX064 expressions,
-    HX023 duplicate names, HX040 references, HX045 joints without ends; HX007 for a text that is too large.
+    Raises: Refusal with the place in the text: HX060 syntax, HX061 types, HX062 values, HX063 templates, HX064 expressions, HX067 values
+    in a circle, HX023 duplicate names, HX040 references, HX045 joints without ends; HX007 for a text that is too large.
     """
     if len(source.data) > MAX_BYTES:
         raise refuse(codes.TOO_LARGE, f"the text has {len(source.data)} bytes, at most {MAX_BYTES} are read", Origin(source.name))
@@ -86,7 +87,7 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
     kinds = infer_kinds(expanded, elements)
     _read_root(builder, expanded, kinds, instances)
     builder.source = take_provenance(builder.notations, FOREIGN, Provenance("hymeko", file=builder.reader.file))
-    declared = _declare(builder, expanded, kinds, instances)
+    declared = resolve_values(builder, _declare(builder, expanded, kinds, instances), expanded.items)
     for key, element in sorted(declared, key=lambda pair: pair[0].kind not in _FIRST):
         _read_element(builder, key, element)
     remove_folded(builder)
