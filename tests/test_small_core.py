@@ -78,6 +78,7 @@ ADVICE = {
     "export": ("arm.hymeko --to xacro", "xacro"),
     "fmt": ("arm.hymeko", None),
     "formats": ("", None),
+    "grammar": ("--to gbnf", None),
     "graph": ("arm.urdf -o tree.svg", None),
     "import": ("arm.urdf", None),
     "info": ("arm.urdf", None),

@@ -1,0 +1,66 @@
+"""The terminals in plain regular expressions: without priorities, look-around and classes of Unicode, which those programs do not have.
+
+A terminal that hymeko.lark defines plainly is taken from there; the others are written here, each as a part of the original.
+"""
+
+from __future__ import annotations
+
+import re
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+_FIRST = "A-Za-z_"
+_NEXT = "A-Za-z0-9_"
+_OTHER_LETTERS = "À-ÖØ-öø-ʯΑ-ΡΣ-ώА-ҁぁ-ゖァ-ヺ一-鿯가-힣"
+"""Letters beyond ASCII that names may have without quotes: Latin, Greek, Cyrillic, kana, CJK, Hangul. In backticks any letter may stand."""
+
+
+def words_except(words: Iterable[str]) -> str:
+    """The pattern of names that are none of these words of small ASCII letters."""
+    return _except(frozenset(words), _FIRST)
+
+
+def _except(words: frozenset[str], letters: str) -> str:
+    """The pattern of what is none of the words, whose first letter is one of these. No deeper than the words are long."""
+    heads = sorted({word[0] for word in words if word})
+    tail = f"[{_NEXT}{_OTHER_LETTERS}]*"
+    found = [f"[{_without(letters, heads)}{_OTHER_LETTERS}]{tail}"]
+    for head in heads:
+        rests = frozenset(word[1:] for word in words if word.startswith(head))
+        inner = _except(rests - {""}, _NEXT) if rests - {""} else f"[{_NEXT}{_OTHER_LETTERS}]{tail}"
+        found.append(f"{head}(?:{inner})" + ("" if "" in rests else "?"))
+    return "|".join(found)
+
+
+def _without(letters: str, left_out: list[str]) -> str:
+    """A class of ASCII letters without some."""
+    kept = [chr(code) for code in range(128) if re.match(f"[{letters}]", chr(code)) and chr(code) not in left_out]
+    return "".join(kept)
+
+
+KEYWORDS = ("inf", "nan", "rel", "seq", "concurrent", "import", "as", "use")
+"""Words that are no names, or not everywhere: a model has to quote them."""
+
+PLAIN: Mapping[str, str] = MappingProxyType(
+    {
+        "NAME": rf"{words_except(KEYWORDS)}|`(?:[^`\\\n]|\\[^\n])+`",
+        "NUMBER": r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?|[+-]?inf|nan",
+        "QUANTITY": r"[+-]?[0-9]+(?:\.[0-9]+)?[A-DF-Za-df-z%°µ][A-Za-z0-9/^*%·]*",
+        "STRING": r'"(?:[^"\\]|\\[^\n])*"|' + r"'(?:[^'\\]|\\[^\n])*'|" + r'"""(?:"?"?[^"])*"""',
+        "EXPRESSION": r"\$\{[^{}]*\}",
+        "EDGE_WORD": "@",
+    }
+)
+"""Instead of the terminals of these names."""
+DROPPED = frozenset({"NUMBERS", "MATRIX", "QUOTED_REF", "LEGACY_HEADER"})
+"""Lists are the rule `vector`; the others are forms that no text is printed in."""
+
+_COMMENT = r"//[^\n]*\n|/\*(?:[^*]|\*+[^*/])*\*+/"
+_BLANK = r"[ \t\r\n]"
+BLANKS = rf"{_BLANK}+(?:(?:{_COMMENT}){_BLANK}*)*"
+"""What stands between two words: a blank, and comments behind it. The legacy comments with # are left out."""
+BEGINNING = rf"(?:{_COMMENT}|{_BLANK})+"
+"""What may stand before the first word."""
