@@ -26,7 +26,7 @@ OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
         **dict.fromkeys(("casadi", "sympy"), "dynamics"),
         "argcomplete": "completion",
         "hypothesis": "testing",
-        "imageio_ffmpeg": "draw",
+        **dict.fromkeys(("imageio_ffmpeg", "resvg_py"), "draw"),
         "ray": "ray",
         "viser": "view",
         **dict.fromkeys(("lsprotocol", "pygls"), "lsp"),

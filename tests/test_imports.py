@@ -68,6 +68,7 @@ HOMES = {
     "pygls": ("server/",),
     "mcp": ("mcp/",),
     "anyio": ("mcp/",),
+    "resvg_py": ("draw/graph/raster.py",),
     "viser": ("draw/view/", "cli/view.py"),
 }
 """Heavy libraries and the only places that may import them."""

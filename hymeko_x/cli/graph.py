@@ -22,14 +22,15 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import Mechanism
 
-_SUFFIXES = (".svg", *WRITERS)
+_PICTURES = (".svg", ".png")
+_SUFFIXES = (*_PICTURES, *WRITERS)
 
 
 def graph_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `graph`."""
     parser.add_argument("input", metavar="FILE", help="what to draw; - is standard input")
     parser.add_argument(
-        "-o", "--output", required=True, metavar="OUT", help="the picture (.svg), or Graphviz (.dot), Mermaid (.mmd), D2 (.d2)"
+        "-o", "--output", required=True, metavar="OUT", help="the picture (.svg, .png), or Graphviz (.dot), Mermaid (.mmd), D2 (.d2)"
     )
     parser.add_argument("--view", choices=("tree", "incidence"), help="a robot's kinematic tree, or vertices and edges with all arcs")
     parser.add_argument("--depth", type=_count, metavar="N", help="no bodies more than N joints below a base")
@@ -49,19 +50,26 @@ def run_graph(chosen: argparse.Namespace) -> int:
     robot = read_input(chosen.input, chosen, report).mechanism
     show_diagnostics(report, chosen)
     wanted = Wanted(chosen.depth, tuple(chosen.only), chosen.fold)
-    disk.write_files({chosen.output: _drawn(robot, wanted, suffix, chosen.view).encode()})
+    text = _drawn(robot, wanted, suffix, chosen.view)
+    disk.write_files({chosen.output: _pixels(text) if suffix == ".png" else text.encode()})
     return exits.DONE
 
 
 def _drawn(robot: Mechanism, wanted: Wanted, suffix: str, view: Literal["tree", "incidence"] | None) -> str:
-    """The text of the output."""
-    if suffix != ".svg":
+    """The text of the output; of pixels the SVG."""
+    if suffix not in _PICTURES:
         if view == "tree":
-            raise UsageError("--view tree is for .svg: other programs make their own layout of the incidence graph")
+            raise UsageError("--view tree is for .svg and .png: other programs make their own layout of the incidence graph")
         return WRITERS[suffix](diagram(robot, wanted))
     if view == "tree" and not has_tree(robot):
         raise UsageError("the input has no bodies, and so no tree; --view incidence draws what it has")
     return picture(robot, wanted, view)
+
+
+def _pixels(svg: str) -> bytes:
+    from hymeko_x.draw.graph.raster import png
+
+    return png(svg)
 
 
 def _count(text: str) -> int:

@@ -239,6 +239,7 @@ def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, size: tuple[
     for light in spec.lights:
         spec.delete(light)  # so that a robot has the same picture in every format
     centre = (corners.points.min(axis=0) + corners.points.max(axis=0)) / 2.0
+    spec.stat.center, spec.stat.extent = centre, corners.size  # else they are those of the collision shapes, and shadows end elsewhere
     beam = (0.35, 0.3, -1.0)
     light = spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_SPOT, castshadow=True, cutoff=75.0, exponent=0.0)
     light.pos, light.dir = [at - 2.0 * corners.size * along for at, along in zip(centre, beam, strict=True)], beam

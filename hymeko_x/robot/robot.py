@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from hymeko_x import formats
 from hymeko_x.ir.parts import Body
 from hymeko_x.ir.values import IDENTITY
 from hymeko_x.joining import with_names
@@ -18,7 +19,7 @@ from hymeko_x.robot.scaling import scale
 from hymeko_x.robot.varying import vary
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from hymeko_x.ir.parts import Joint
     from hymeko_x.ir.values import Pose, Vec3
@@ -43,6 +44,11 @@ class Robot(RobotData):
 
     def __str__(self) -> str:
         return text.tree(self.mechanism)
+
+    def _repr_html_(self) -> str:
+        """A picture and the tree, for notebooks; the tree alone where nothing can be drawn."""
+        draw: Callable[[Robot], str] = formats.loaded("hymeko_x.draw.notebook:html")  # drawing is a layer that uses this one
+        return draw(self)
 
     # ---- numbers ---------------------------------------------------------------------------------------------------------
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import time
 from collections import Counter
 from itertools import pairwise
@@ -10,6 +11,7 @@ from xml.etree import ElementTree
 
 import pytest
 from hypothesis import given, settings
+from PIL import Image
 
 import hymeko_x as hx
 from hymeko_x.cli import main
@@ -19,6 +21,7 @@ from hymeko_x.draw.graph.incidence import incidence_picture
 from hymeko_x.draw.graph.layers import Size, columns, layered
 from hymeko_x.draw.graph.letters import shown, width
 from hymeko_x.draw.graph.listings import WRITERS
+from hymeko_x.draw.graph.raster import png
 from hymeko_x.draw.graph.selection import EDGE_KINDS, Wanted
 from hymeko_x.draw.graph.svg import SIZE, SMALL
 from hymeko_x.draw.graph.tree import tree
@@ -206,9 +209,26 @@ def _seconds(work: object) -> float:
 
 def test_a_wrong_suffix_and_a_tree_for_other_programs_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = str(ROOT / "corpus/listings/scara_robot.hymeko")
-    assert main(["graph", path, "-o", str(tmp_path / "a.png")]) == 2
-    assert "the suffix of the output is one of .svg, .dot, .mmd, .d2, not '.png'" in capsys.readouterr().err
+    assert main(["graph", path, "-o", str(tmp_path / "a.jpg")]) == 2
+    assert "the suffix of the output is one of .svg, .png, .dot, .mmd, .d2, not '.jpg'" in capsys.readouterr().err
     assert main(["graph", path, "-o", str(tmp_path / "a.dot"), "--view", "tree"]) == 2
     assert main(["graph", str(ROOT / "corpus/listings/simple.hymeko"), "-o", str(tmp_path / "a.svg"), "--view", "tree"]) == 2
     assert "the input has no bodies, and so no tree" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+def test_pixels_show_what_the_svg_does(tmp_path: Path) -> None:
+    robot = str(ROOT / "corpus/listings/scara_robot.hymeko")
+    for suffix in ("svg", "png"):
+        assert main(["graph", robot, "-o", str(tmp_path / f"a.{suffix}"), "--view", "incidence"]) == 0
+    root = ElementTree.parse(tmp_path / "a.svg").getroot()
+    with Image.open(tmp_path / "a.png") as picture:
+        assert picture.size == pytest.approx((2 * float(root.attrib["width"]), 2 * float(root.attrib["height"])), abs=1)
+        colours = {colour for _, colour in picture.convert("RGB").getcolors(1 << 24)}
+    assert {(255, 255, 255), (0xE3, 0xF0, 0xFA), (0x00, 0x72, 0xB2), (0x1A, 0x1A, 0x1A)} <= colours, "page, circles, their edge, and text"
+
+
+def test_a_very_large_picture_has_fewer_pixels() -> None:
+    found = png('<svg xmlns="http://www.w3.org/2000/svg" width="2000" height="90000"><rect width="9" height="9"/></svg>')
+    with Image.open(io.BytesIO(found)) as picture:
+        assert picture.width * picture.height == pytest.approx(40_000_000, rel=0.01)

@@ -69,6 +69,12 @@ def test_a_robot_has_the_same_picture_in_every_format(format: str) -> None:
     assert np.mean(np.any(picture(ARM) != picture(other, format), axis=2)) < 0.005
 
 
+def test_what_is_not_drawn_changes_nothing_in_the_picture() -> None:
+    far = ARM.replace('<box size="0.3 0.3 0.2"/></geometry>', '<box size="3 3 0.2"/></geometry>')
+    assert far != ARM
+    assert (picture(ARM) == picture(far)).all()
+
+
 @pytest.mark.parametrize(
     "fault", [("0.8 0.2 0.1", "0.1 0.2 0.8"), ('xyz="0.3 0 0"', 'xyz="-0.3 0 0"'), ("0.6 0.08 0.08", "0.6 0.08 0.2"), ("0.14", "0.24")]
 )

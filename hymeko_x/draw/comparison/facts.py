@@ -6,12 +6,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct
 
-from hymeko_x import codes
 from hymeko_x.compare.contents import Contents
-from hymeko_x.diagnostics import Refusal
+from hymeko_x.draw.attempt import attempt
 from hymeko_x.draw.graph.picture import picture
 from hymeko_x.draw.render import Look, choose_backend, is_drawn
-from hymeko_x.extras import missing_library
 from hymeko_x.reporting.summary import kept_line, minor_line, summary_lines
 from hymeko_x.residue.measuring import losses_between_files
 from hymeko_x.residue.originals import fetcher
@@ -26,9 +24,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Source
     from hymeko_x.verify.verdict import Verdict
-
-_NOT_DRAWN = frozenset({codes.CANNOT_DRAW, codes.NOTHING_TO_DRAW, codes.ENGINE_REFUSED})
-"""Refusals that leave the page without pictures: this machine cannot draw, or the robot cannot be drawn."""
 
 
 class Side(NamedTuple):
@@ -81,18 +76,7 @@ def lines_of(losses: Sequence[Loss]) -> list[str]:
 
 def draw(a: Side, b: Side, size: tuple[int, int]) -> Drawn:
     """The pictures of both robots, each of this size in pixels. It goes before the verifier, which loads MuJoCo without what draws."""
-    try:
-        return Drawn(_pair(a, b, size))
-    except ModuleNotFoundError as error:
-        refusal = missing_library(error)
-        if refusal is None:
-            raise
-    except Refusal as refused:
-        if refused.diagnostic.code not in _NOT_DRAWN:
-            raise
-        refusal = refused
-    found = refusal.diagnostic
-    return Drawn(None, f"{found.code.id}: {found.message}{f' ({found.hint})' if found.hint else ''}")
+    return Drawn(*attempt(lambda: _pair(a, b, size)))
 
 
 def _pair(a: Side, b: Side, size: tuple[int, int]) -> Pair:
