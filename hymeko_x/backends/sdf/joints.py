@@ -129,7 +129,8 @@ def _add_axis(axis: Tag, dof: Dof, name: str, key: Id, scope: str, texts: Mappin
         return
     own = dof.written.numbers if dof.written is not None and dof.written.kind == "axis" else None
     same = own is not None and len(own) == 3 and _rounded(unit((own[0], own[1], own[2]))) == _rounded(dof.axis)
-    axis.add("xyz").children.append(numbers_text(own if same and own is not None else dof.axis))
+    attributes = {"expressed_in": ""} if expressed == "" else {}
+    axis.add("xyz", **attributes).children.append(numbers_text(own if same and own is not None else dof.axis))
     if text is None and flag is not None:
         axis.add("use_parent_model_frame").children.append(escaped(flag))
     elif words.minor(sheet.version) < words.VERSION_OF_JOINT_AXES:
@@ -157,9 +158,9 @@ def _add_mimic(axis: Tag, key: Id, name: str, sheet: SdfSheet) -> None:
     constant, multiplier = (*numbers_weight(leader), 0.0, 0.0)[:2]
     scope = words.split_scope(key.name)[0]
     tag = axis.add("mimic", joint=leader.target.name.removeprefix(scope))
-    if leader.role:
-        tag.attributes["axis"] = sheet.axis_name(leader)
     texts = sheet.written(coupling)
+    if leader.role or "@axis" in texts:
+        tag.attributes["axis"] = sheet.axis_name(leader)
     try:
         reference = NUMBER.read(texts.get("reference", "0"))
         offset = NUMBER.read(texts.get("offset", "0"))
@@ -167,7 +168,8 @@ def _add_mimic(axis: Tag, key: Id, name: str, sheet: SdfSheet) -> None:
         reference = offset = 0.0
     if not reference or abs(offset - multiplier * reference - constant) > 1e-12 * max(1.0, abs(constant)):
         reference, offset = 0.0, constant
-    tag.add("multiplier").children.append(sheet.text(NUMBER, multiplier, None, texts.get("multiplier")) or "1")
+    if multiplier != 1.0 or texts.get("multiplier") != "":
+        tag.add("multiplier").children.append(sheet.text(NUMBER, multiplier, None, texts.get("multiplier")) or "1")
     for word, value in (("offset", offset), ("reference", reference)):
         text = sheet.text(NUMBER, value, 0.0, texts.get(word))
         if text is not None:

@@ -56,7 +56,7 @@ def _add_camera(tag: Tag, camera: Camera, key: Id, sheet: SdfSheet) -> None:
         across = 2.0 * math.atan(math.tan(camera.fovy / 2.0) * width / height)
         if own is not None and abs(NUMBER.read(own) - across) < 1e-12:
             tag.add("horizontal_fov").children.append(own)
-        else:
+        elif own is not None or not sheet.from_sdf or abs(across - HFOV.default) > 1e-12:
             sheet.put(tag, Field(HFOV.path, HFOV.name, NUMBER), across, {})
     for field, value in zip(IMAGE, (width, height), strict=True):
         if camera.resolution is not None:

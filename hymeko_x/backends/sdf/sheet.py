@@ -117,14 +117,17 @@ class SdfSheet:
 
     @cached_property
     def _bodies_stand(self) -> Mapping[str, bool]:
-        """For each model with links whether nothing in it moves, and nameless joints hold it in the world."""
+        """For each model with links whether nameless joints hold all of it in the world and nothing moves.
+
+        In a static model of SDF no joint moves.
+        """
         mechanism = self.mechanism
         standing: set[Id] = set()
         found: dict[str, bool] = {}
         for key in mechanism.depth_first():
             above = mechanism.parent_joint.get(key)
-            if above is not None and not above.joint.dofs:
-                nameless = above.parent == WORLD and mechanism.notation(above.id, UNNAMED) is not None
+            if above is not None and (self.from_sdf or not above.joint.dofs):
+                nameless = above.parent == WORLD and not above.joint.dofs and mechanism.notation(above.id, UNNAMED) is not None
                 if nameless or above.parent in standing:
                     standing.add(key)
             scope = words.split_scope(key.name)[0]

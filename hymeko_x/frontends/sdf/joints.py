@@ -171,6 +171,8 @@ def _frame_of_axis(xyz: Node, axis: Node, tag: str, key: Id, model: Model, build
             return None
         builder.written.setdefault(key, {})[f"{tag}/xyz/@expressed_in"] = name
         return found
+    if name is not None:
+        builder.written.setdefault(key, {})[f"{tag}/xyz/@expressed_in"] = name
     if builder.version_of(axis) >= _OLD_DEFAULT:
         return None
     flag = axis.take_child("use_parent_model_frame")
@@ -196,21 +198,41 @@ def _read_couplings(node: Node, key: Id, model: Model, builder: SdfBuilder) -> N
             builder.error(codes.UNDEFINED_REFERENCE, mimic, message)
             axis.leave(mimic)
             continue
+        if mimic.attributes.get("axis") == words.AXES[1] and not _has_two_axes(leader, model):
+            builder.error(
+                codes.UNDEFINED_REFERENCE,
+                mimic,
+                f"{node.subject} mimics the second axis of {leader}, which has one; this is kept as written",
+            )
+            axis.leave(mimic)
+            continue
         _read_mimic(mimic, key, leader, number, builder)
+
+
+def _has_two_axes(joint: Id, model: Model) -> bool:
+    kinds = [child.attributes.get("type", "") for child in model.node.children if child.owner == joint]
+    return not kinds or len(words.JOINT_TYPES.get(kinds[0], words.JOINT_TYPES["fixed"]).dofs) > 1
 
 
 def _read_mimic(mimic: Node, follower: Id, leader: Id, number: int, builder: SdfBuilder) -> None:
     """follower = multiplier * (leader - reference) + offset."""
     mimic.take("joint")
-    role = {"axis": "", "axis2": "1"}.get(mimic.take("axis") or "axis", "")
+    axis = mimic.take("axis")
+    role = "1" if axis == "axis2" else ""
     key = builder.names.take("coupling", follower.name)
+    if axis is not None and not role:
+        builder.written.setdefault(key, {})["@axis"] = axis
+    present = {child.tag for child in mimic.children}
     values = {
         tag: builder.child_value(mimic, tag, NUMBER, default, key, tag)
         for tag, default in (("multiplier", 1.0), ("offset", 0.0), ("reference", 0.0))
     }
     constant = values["offset"] - values["multiplier"] * values["reference"]
-    if values["reference"]:
-        builder.written.setdefault(key, {}).update({tag: NUMBER.write(value) for tag, value in values.items()})
+    texts = builder.written.setdefault(key, {})
+    for tag in (tag for tag in values if values["reference"] and tag in present):
+        texts.setdefault(tag, NUMBER.write(values[tag]))
+    if "multiplier" not in present:
+        texts["multiplier"] = ""
     leads: RobotArc = Arc(leader, -1, (constant + 0.0, values["multiplier"]), role)
     builder.edges[key] = Edge(Coupling(), (Arc(follower, 1, (1.0,), "1" if number else ""), leads))
     builder.origins[key] = mimic.origin

@@ -34,9 +34,10 @@ def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | No
     builder.vertices[material] = Material(None, rgba, **values)
     builder.origins[material] = node.origin
     for tag, use in words.MAPS.items():
-        child = metal.take_child(tag)
-        uri = "" if child is None else child.take_text()
-        if uri:
+        child = next((child for child in metal.children if child.tag == tag and (child.text or "").strip()), None)
+        if child is not None:
+            child.taken = True
+            uri = child.take_text()
             texture = builder.names.take("texture", posixpath.splitext(posixpath.basename(uri))[0] or "texture")
             builder.vertices[texture] = Texture(uri)
             builder.edges[builder.names.take("layer", texture.name)] = layer_edge(texture, material, use)

@@ -65,11 +65,13 @@ def _read_sensor(node: Node, key: Id, builder: SdfBuilder) -> Sensor:
 
 def _read_camera(node: Node, key: Id, builder: SdfBuilder) -> Camera:
     """A camera with its vertical field of view, from the horizontal one and the shape of the image."""
+    has_field = node.has(HFOV.path)
     across = builder.value(node, HFOV, key, "camera/")
     width, height = (builder.value(node, field, key, "camera/") for field in IMAGE)
     if not (0.0 < across < math.pi and width > 0 and height > 0):
         return Camera(None, (int(width), int(height)) if width > 0 and height > 0 else None)
-    builder.written.setdefault(key, {}).setdefault("camera/horizontal_fov", NUMBER.write(across))
+    if has_field:
+        builder.written.setdefault(key, {}).setdefault("camera/horizontal_fov", NUMBER.write(across))
     return Camera(2.0 * math.atan(math.tan(across / 2.0) * height / width), (int(width), int(height)))
 
 
