@@ -285,11 +285,12 @@ def close_cycles(models: list[Model], builder: SdfBuilder) -> None:
             closing.append(above[next(key for key in builder.vertices if key in cycle)][0])
         done.update(path)
     owners = {node.owner: node for model in models for node in model.node.children if node.tag == "joint"} if closing else {}
-    for joint in closing:
-        _make_loop(joint, owners[joint], builder)
+    loops = {joint: _make_loop(joint, owners[joint], builder) for joint in closing}
+    builder.layout = [loops.get(key, key) for key in builder.layout] if loops else builder.layout
 
 
-def _make_loop(joint: Id, node: Node, builder: SdfBuilder) -> None:
+def _make_loop(joint: Id, node: Node, builder: SdfBuilder) -> Id:
+    """The loop that the joint is instead."""
     edge = builder.edges.pop(joint)
     assert isinstance(edge.data, Joint)
     dofs = edge.data.dofs
@@ -302,7 +303,7 @@ def _make_loop(joint: Id, node: Node, builder: SdfBuilder) -> None:
     for table in (builder.notations, builder.written):
         if joint in table:
             table[key] = table.pop(joint)
-    builder.layout = [key if other == joint else other for other in builder.layout]
+    return key
 
 
 # ---- the world -----------------------------------------------------------------------------------------------------------------
