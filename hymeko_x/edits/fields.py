@@ -23,7 +23,7 @@ def edit_fields(splices: Splices, own: Block, before: Block, after: Block, print
             continue
         if mine is not None:
             _change(splices, mine, earlier, field, print)
-        else:
+        elif name not in splices.style.derived or earlier is None:
             _add(splices, own, after, name, print)
     for name in before.fields:
         if name not in after.fields and name in own.fields:
@@ -53,6 +53,9 @@ def _add(splices: Splices, own: Block, after: Block, name: str, print: bytes) ->
     before = (own.fields[other] for other in reversed(names[: names.index(name)]) if other in own.fields)
     behind = next((field for field in before if field.start >= own.first), None)
     text = print[after.fields[name].start : after.fields[name].end]
+    if splices.style.has_lines:
+        _add_line(splices, own.first if behind is None else behind.end, text)
+        return
     if behind is None:
         following = splices.data[own.first : own.first + 1]
         splices.put(own.first, own.first, b" " + text.strip() + (b"" if following in _AFTER_FIELD else b" "))
@@ -60,3 +63,9 @@ def _add(splices: Splices, own: Block, after: Block, name: str, print: bytes) ->
     blanks = splices.data[behind.start : behind.end]
     blanks = blanks[: len(blanks) - len(blanks.lstrip())]
     splices.put(behind.end, behind.end, (blanks or b" ") + text.lstrip())
+
+
+def _add_line(splices: Splices, place: int, text: bytes) -> None:
+    """Write a field into a line of its own, behind a place and the comment that follows there."""
+    end = splices.end_of_line(place)
+    splices.put(place if end is None else end, place if end is None else end, text + (b"\n" if end is None else b""))

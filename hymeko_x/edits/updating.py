@@ -96,12 +96,16 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
 
 
 def _dropped(edits: tuple[Difference, ...], after: Mechanism, original: Source, format: Format) -> list[Difference]:
-    """The edits for which the format of the original has no word."""
+    """The edits for which the format of the original has no word. What a shape weighs is part of its body's inertial."""
     if not edits or format.is_exact:
         return []
     losses = pipeline.convert(after, format, Options(lenient=True), original.files, Report()).losses or ()
     gone = {(loss.element, loss.field) for loss in losses if loss.fate == "dropped"}
-    return [edit for edit in edits if (str(edit.element), edit.field) in gone and not _is_inherited(edit)]
+    return [edit for edit in edits if (str(edit.element), edit.field) in gone and not _is_inherited(edit) and not _is_weight(edit)]
+
+
+def _is_weight(edit: Difference) -> bool:
+    return edit.element.kind == "shape" and edit.field in ("mass", "density")
 
 
 def _is_inherited(edit: Difference) -> bool:

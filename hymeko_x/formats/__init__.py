@@ -138,6 +138,7 @@ USD = Format(
     "hymeko_x.backends.usd",
     "hymeko_x.backends.usd.rules",
     magic=(b"#usda", b"PXR-USDC"),
+    outline="hymeko_x.frontends.usd.outline:outline",
     has_variants=True,
     layout_options=frozenset({"layout", "nested"}),
     pack="hymeko_x.backends.usd.files:pack_for_usd",

@@ -10,6 +10,8 @@ import pytest
 
 import hymeko_x as hx
 from hymeko_x.cli import main
+from hymeko_x.diagnostics import Report
+from hymeko_x.source import Source
 from tests.residue.samples import MJCF
 
 ARM = """<?xml version="1.0"?>
@@ -339,10 +341,11 @@ HYMEKO_OF_UPPER = HYMEKO.replace("  link :", "  upper :").replace("- link", "- u
 
 
 @pytest.mark.parametrize("target", ADDED)
-@pytest.mark.parametrize(("source", "text"), [("urdf", ARM), ("sdf", SDF), ("hymeko", HYMEKO_OF_UPPER)])
+@pytest.mark.parametrize(("source", "text"), [("urdf", ARM), ("sdf", SDF), ("hymeko", HYMEKO_OF_UPPER), ("usd", "")])
 def test_after_an_update_with_an_addition_there_is_nothing_to_update(source: str, text: str, target: str, tmp_path: Path) -> None:
     if source == target:
         pytest.skip("the same format")
+    text = text or USD
     after = edited(text, target, ADDED[target], tmp_path, source)
     assert "pen" in after
     found = hx.update(tmp_path / f"arm{SUFFIXES[source]}", tmp_path / f"there{SUFFIXES[target]}")
@@ -394,3 +397,125 @@ def test_a_base_that_was_asked_for_is_no_edit(target: str, base: Literal["fixed"
     hx.convert(original, tmp_path / target, base=base)
     found = hx.update(original, tmp_path / target)
     assert (list(map(str, found.edits)), original.read_text()) == ([], ARM)
+
+
+USD = '''#usda 1.0
+(
+    defaultPrim = "arm"
+    doc = """A leg, "weighed"
+on a bench"""
+    metersPerUnit = 1.0
+    upAxis = "Z"
+)
+
+# made by hand
+def Xform "arm" (prepend apiSchemas = ["PhysicsArticulationRootAPI"])
+{
+    def Xform "base" (
+        prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]
+    )
+    {
+        float physics:mass = 2.0
+        float3 physics:diagonalInertia = (0.010, 0.01, 0.01)
+    }
+
+    def Xform "upper" (
+        prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"]
+    )
+    {
+        float physics:mass = 1.50   # weighed
+        point3f physics:centerOfMass = (0, 0, 0.150)
+        float3 physics:diagonalInertia = (0.010, 0.011, 0.002)
+        double3 xformOp:translate = (0, 0, 0.050)
+        uniform token[] xformOpOrder = ["xformOp:translate"]
+
+        def Cylinder "visual" { uniform token axis = "Z"
+            double height = 0.30; double radius = 0.04
+        }
+    }
+
+    def PhysicsRevoluteJoint "shoulder"
+    {
+        uniform token physics:axis = "Z"
+        rel physics:body0 = </arm/base>
+        rel physics:body1 = </arm/upper>
+        point3f physics:localPos0 = (0, 0, 0.050)
+        point3f physics:localPos1 = (0, 0, 0)
+        quatf physics:localRot0 = (1, 0, 0, 0)
+        quatf physics:localRot1 = (1, 0, 0, 0)
+        float physics:lowerLimit = -85.0
+        float physics:upperLimit = 85.0  # degrees
+    }
+}
+'''
+
+
+@pytest.mark.parametrize(
+    ("target", "edit", "old", "new"),
+    [
+        ("urdf", ('mass value="1.5"', 'mass value="2.25"'), "mass = 1.50 ", "mass = 2.25 "),
+        ("mjcf", ('mass="1.5"', 'mass="2.25"'), "mass = 1.50 ", "mass = 2.25 "),
+        ("sdf", ("<mass>1.5<", "<mass>2.25<"), "mass = 1.50 ", "mass = 2.25 "),
+        ("hymeko", (r"mass 1\.5", "mass 2.25"), "mass = 1.50 ", "mass = 2.25 "),
+        ("urdf", ('radius="0.04"', 'radius="0.05"'), "radius = 0.04", "radius = 0.05"),
+        ("urdf", ('upper="[^"]*"', 'upper="1.2"'), "Limit = 85.0 ", "Limit = 68.75494 "),
+        ("urdf", ('xyz="0 0 0.15"', 'xyz="0 0.1 0.15"'), "Mass = (0, 0, 0.150)", "Mass = (0, 0.1, 0.150)"),
+    ],
+)
+def test_usd_keeps_its_author_s_text(target: str, edit: tuple[str, str], old: str, new: str, tmp_path: Path) -> None:
+    assert edited(USD, target, edit, tmp_path, "usd") == USD.replace(old, new)
+
+
+def test_usd_gets_and_loses_prims_among_those_of_its_author(tmp_path: Path) -> None:
+    more = edited(USD, "mjcf", ADDED["mjcf"], tmp_path, "usd")
+    assert [line for line in USD.splitlines() if line not in more.splitlines()] == []
+    assert '    def Xform "pen" (\n' in more
+    (tmp_path / "again").mkdir()
+    less = edited(more, "urdf", (r'  <joint name="pen".*?</joint>\n  <link name="pen">.*?</link>\n', ""), tmp_path / "again", "usd")
+    assert [line for line in less.splitlines() if '"pen"' in line] == []
+
+
+@pytest.mark.parametrize("text", ['#usda 1.0\ndef Xform "a"\n', "#usda 1.0\n)\n", '#usda 1.0\ndef "a" {\n float x = (1, 2\n}', "PXR-USDC"])
+def test_a_layer_that_cannot_be_outlined_is_refused(text: str) -> None:
+    from hymeko_x.frontends.usd.outline import outline
+
+    with pytest.raises(hx.Refusal):
+        outline(Source("a.usda", text.encode()), Report())
+
+
+def test_variants_and_values_of_every_kind_have_their_places_in_the_outline() -> None:
+    from hymeko_x.frontends.usd.outline import METADATA, NAME, outline
+
+    text = """#usda 1.0
+def Xform "a" (
+    customData = { string note = "}" }
+    variants = { string size = "big" }
+    prepend variantSets = "size"
+)
+{
+    asset file = @a(1).usda@</b> ( doc = "x" )
+    double x.timeSamples = { 0: 1.5, 1: (2) }
+    prepend rel to = [</a>, </b>]
+    custom float bare
+    variantSet "size" = {
+        "big" ( doc = "b" ) {
+            float x = 1
+        }
+        "small" { }
+    }
+}
+over "b" { }
+"""
+    found = outline(Source("a.usda", text.encode()), Report()).root
+    (a, b) = found.children
+    metadata, variants = a.children
+    assert (a.tag, a.name, b.tag, b.name, metadata.tag) == ("Xform", "a", "over", "b", METADATA)
+    assert {name: field.text for name, field in a.fields.items()} == {
+        NAME: "a", "file": "@a(1).usda@</b>", "x.timeSamples": "{ 0: 1.5, 1: (2) }", "to": "[</a>, </b>]", "bare": "",
+    }  # fmt: skip
+    assert {name: field.text for name, field in metadata.fields.items()} == {
+        "customData": '{ string note = "}" }', "variants": '{ string size = "big" }', "variantSets": '"size"',
+    }  # fmt: skip
+    assert [(block.tag, block.name, block.fields.keys()) for block in variants.children] == [
+        ("variant", "big", {"x": 0}.keys()), ("variant", "small", {}.keys()),
+    ]  # fmt: skip
