@@ -20,6 +20,7 @@ from hymeko_x.residue.kept import restored
 from hymeko_x.residue.measuring import compared
 from hymeko_x.residue.originals import fetch_from, files_of, originals_of, with_originals
 from hymeko_x.rewrite import Options, actuate, choose, legalize
+from hymeko_x.rewrite.decimals import shorten_computed
 from hymeko_x.rewrite.networks import robot_of_network
 from hymeko_x.source import NO_FILES, Kept, PackageFiles, Source
 
@@ -159,8 +160,8 @@ def write(mechanism: Mechanism, format: Format, options: Options, files: Files, 
 
     Raises: Refusal when the format cannot be written; Stopped when that made errors, unless the options are lenient.
     """
-    mechanism, options = _chosen(mechanism, format, options, files, report)
-    return _printed(mechanism, format, options, files, report, place).package
+    chosen, options = _chosen(mechanism, format, options, files, report)
+    return _printed(chosen, mechanism, format, options, files, report, place).package
 
 
 @uncollected()
@@ -184,7 +185,7 @@ def convert(
     """
     given = mechanism
     mechanism, options = _chosen(given, format, options, files, report)
-    package, printed, is_moved = _printed(mechanism, format, options, files, report, place)
+    package, printed, is_moved = _printed(mechanism, given, format, options, files, report, place)
     if format.frontend is None or not measured:
         return Result(mechanism, package, report, None)
     image = read_back(package, format, files)
@@ -212,7 +213,7 @@ def _chosen(mechanism: Mechanism, format: Format, options: Options, files: Files
     files = files_of(mechanism, files)
 
     def printed(robot: Mechanism) -> Package:
-        return _printed(robot, format, replace(options, beside="", lenient=True), files, Report(), HERE).package
+        return _printed(robot, robot, format, replace(options, beside="", lenient=True), files, Report(), HERE).package
 
     return targets.aimed(mechanism, target, files, report, printed), options
 
@@ -232,12 +233,14 @@ def with_kept(package: Package, kept: Kept, options: Options, report: Report) ->
     return replace(package, main=package.carry(kept.text))
 
 
-def _printed(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place) -> _Printed:
-    """Rewritten, with its files placed, and printed."""
+def _printed(
+    mechanism: Mechanism, given: Mechanism, format: Format, options: Options, files: Files, report: Report, place: Place
+) -> _Printed:
+    """Rewritten, with numbers that ``given`` has not as short as a person would write them, with its files placed, and printed."""
     since = len(report)
     files = files_of(mechanism, files)
     complete = completed(with_stand_ins(mechanism, format, files, report), format, files, report)
-    legal = legalize(complete, format.name, report)
+    legal = shorten_computed(legalize(complete, format.name, report), given)
     printed = _placed_and_printed(legal, format, options, files, report, place)
     stop_on_errors(report, since, lenient=options.lenient)
     folder = f"{safe_name(options.beside)}/"

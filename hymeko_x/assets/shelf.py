@@ -1,4 +1,4 @@
-"""The files of one output under construction: safe and unique relative names, equal content stored once."""
+"""The files of one output under construction: safe and unique relative names, equal content of one name stored once."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ class Shelf:
         """The path for this content, and whether the content is new."""
         from hashlib import sha256
 
-        key = (suffix, sha256(data).hexdigest())
+        key = (safe_name(stem) + suffix, sha256(data).hexdigest())
         if key in self._by_content:
             return self._by_content[key], False
         start = f"{self.within}{folder}/"

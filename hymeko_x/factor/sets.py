@@ -6,7 +6,6 @@ exact and deterministic, as :mod:`hymeko_x.factor` is for forms with an order an
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from heapq import nsmallest
 from itertools import combinations
@@ -132,11 +131,3 @@ def _worth(members: Members, shared: Iterable[Pair]) -> int:
     """About how many letters a set saves."""
     cost = sum([len(text) for _, text in shared])
     return (len(members) - 1) * cost - 10
-
-
-def common_words(names: Sequence[str]) -> str:
-    """The words that all names share, in the order of the first: ``hip_joint`` of ``left_hip_joint`` and ``right_hip_joint``."""
-    split = [[word for word in re.split(r"[\W_\d]+", name) if word] for name in names]
-    shared = set(split[0]).intersection(*split[1:])
-    kept = [word for word in dict.fromkeys(split[0]) if word in shared]
-    return "_".join(kept) if any(len(word) > 2 for word in kept) else ""

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec.json import encode
 
+from hymeko_x.ir.decimals import clean_angles, clean_quat, shortest_of
 from hymeko_x.ir.fields import Noted
 
 if TYPE_CHECKING:
@@ -142,11 +143,13 @@ def quat_from_rpy(rpy: Vec3) -> Quat:
     roll, pitch, yaw = rpy[0] / 2.0, rpy[1] / 2.0, rpy[2] / 2.0
     cr, sr, cp, sp, cy, sy = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch), math.cos(yaw), math.sin(yaw)
     return unit_quat(
-        (
-            cr * cp * cy + sr * sp * sy,
-            sr * cp * cy - cr * sp * sy,
-            cr * sp * cy + sr * cp * sy,
-            cr * cp * sy - sr * sp * cy,
+        clean_quat(
+            (
+                cr * cp * cy + sr * sp * sy,
+                sr * cp * cy - cr * sp * sy,
+                cr * sp * cy + sr * cp * sy,
+                cr * cp * sy - sr * sp * cy,
+            )
         )
     )
 
@@ -195,11 +198,11 @@ def quat_from_matrix(rows: Matrix3) -> Quat:
 
 
 def rpy_of(value: Pose) -> Vec3:
-    """Fixed-axis roll, pitch, yaw in rad of the pose's rotation: as written if it was written so, else computed.
+    """Fixed-axis roll, pitch, yaw in rad of the pose's rotation: as written if it was written so (also in MJCF), else computed.
 
     At pitch = +-pi/2, where roll and yaw are not unique, yaw is 0. Exact to rounding everywhere.
     """
-    if value.written is not None and value.written.kind == "rpy":
+    if value.written is not None and value.written.kind in ("rpy", "euler:XYZ"):
         roll, pitch, yaw = value.written.numbers
         return (roll, pitch, yaw)
     return rpy_from_quat(value.quat)
@@ -227,7 +230,7 @@ def _rpy_from_quat(quat: Quat) -> Vec3:
         roll -= 2.0 * math.pi
     elif roll <= -math.pi:
         roll += 2.0 * math.pi
-    return (roll + 0.0, pitch + 0.0, yaw + 0.0)
+    return clean_angles((roll, pitch, yaw))  # type: ignore[return-value]
 
 
 def matrix_from_quat(quat: Quat) -> Matrix3:
@@ -323,7 +326,8 @@ def rotate_tensor(quat: Quat, tensor: Tensor) -> Tensor:
     (a, b, c), (d, e, f), (g, h, i) = [[_dot(row, column) for column in columns] for row in r]
     first, second, third = r
     x, y = (a, b, c), (d, e, f)
-    return (_dot(x, first), _dot(y, second), _dot((g, h, i), third), _dot(x, second), _dot(x, third), _dot(y, third))
+    turned = (_dot(x, first), _dot(y, second), _dot((g, h, i), third), _dot(x, second), _dot(x, third), _dot(y, third))
+    return shortest_of(turned)  # type: ignore[return-value]
 
 
 def _dot(a: Vec3, b: Vec3) -> float:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from hymeko_x.ir.decimals import clean_quat, shortest, shortest_of
 from hymeko_x.ir.values import (
     NO_ROTATION,
     Pose,
@@ -50,8 +51,8 @@ def pose_as_written(xyz: Vec3, written: Written) -> Pose:
     """
     if written.kind == "fromto":
         first, second = ends_of(written)
-        middle = scaled(add(first, second), 0.5)
-        return Pose(middle, quat_from_direction(add(first, scaled(second, -1.0))), written)
+        x, y, z = shortest_of(scaled(add(first, second), 0.5), max(map(abs, written.numbers)))
+        return Pose((x, y, z), quat_from_direction(add(first, scaled(second, -1.0))), written)
     return Pose(xyz, quat_as_written(written), written)
 
 
@@ -64,7 +65,7 @@ def ends_of(written: Written) -> tuple[Vec3, Vec3]:
 def length_of(written: Written) -> float:
     """The distance in m of the two points of ``fromto``."""
     first, second = ends_of(written)
-    return math.dist(first, second)
+    return shortest(math.dist(first, second))
 
 
 def quat_as_written(written: Written) -> Quat:
@@ -73,7 +74,7 @@ def quat_as_written(written: Written) -> Quat:
     if _is_euler(kind):
         return _from_euler(kind[6:], numbers)
     if kind == "axisangle":
-        return quat_about(unit(numbers[:3]), numbers[3])  # type: ignore[arg-type]
+        return unit_quat(clean_quat(quat_about(unit(numbers[:3]), numbers[3])))  # type: ignore[arg-type]
     if kind == "xyaxes":
         return _from_xyaxes(numbers[:3], numbers[3:])  # type: ignore[arg-type]
     if kind == "zaxis":
@@ -92,7 +93,7 @@ def quat_from_direction(direction: Vec3) -> Quat:
     sine = math.hypot(*axis)
     if sine < 1e-14:
         return NO_ROTATION if z > 0.0 else (0.0, 1.0, 0.0, 0.0)
-    return quat_about(scaled(axis, 1.0 / sine), math.atan2(sine, z))
+    return unit_quat(clean_quat(quat_about(scaled(axis, 1.0 / sine), math.atan2(sine, z))))
 
 
 def _is_euler(kind: str) -> bool:
@@ -106,7 +107,7 @@ def _from_euler(sequence: str, angles: tuple[float, ...]) -> Quat:
     for letter, angle in zip(sequence, angles, strict=True):
         turn = quat_about(_AXES[letter.lower()], angle)
         quat = quat_product(quat, turn) if letter.islower() else quat_product(turn, quat)
-    return unit_quat(quat)
+    return unit_quat(clean_quat(quat))
 
 
 def _from_xyaxes(x: Vec3, y: Vec3) -> Quat:
@@ -133,4 +134,4 @@ def _from_columns(x: Vec3, y: Vec3, z: Vec3) -> Quat:
         (z[0] - x[2], x[1] + y[0], squares[2], y[2] + z[1]),
         (x[1] - y[0], z[0] + x[2], y[2] + z[1], squares[3]),
     )
-    return unit_quat(rows[best])
+    return unit_quat(clean_quat(rows[best]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hymeko_x.factor.sets import Costs, Shared, common_words, share
+from hymeko_x.factor.sets import Costs, Shared, share
 
 COSTS = Costs(definition=20, field=3, use=8, least=1)
 ROWS = st.lists(st.dictionaries(st.sampled_from("abcdef"), st.sampled_from(["1", "22", "0.125 0.25", "1.0625"]), max_size=6), max_size=20)
@@ -47,8 +47,3 @@ def test_roles_are_found_among_rows_that_also_share_something_else() -> None:
         (sorted(knee), (1, 3, 5, 7), None),
         (sorted(hip), (0, 2, 4, 6), None),
     ]
-
-
-def test_a_set_is_called_after_the_words_that_names_share() -> None:
-    assert common_words(["left_hip_joint", "right_hip_joint"]) == "hip_joint"
-    assert common_words(["a1", "a2"]) == ""

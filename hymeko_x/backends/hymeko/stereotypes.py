@@ -14,7 +14,8 @@ from msgspec import Struct, field
 
 from hymeko_x.backends.hymeko.assemblies import take_name
 from hymeko_x.backends.hymeko.values import value_of
-from hymeko_x.factor.sets import candidates, common_words
+from hymeko_x.factor.sets import candidates
+from hymeko_x.factor.words import common_words
 from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, Stereotype

@@ -1,8 +1,10 @@
 """Default classes of robots from elsewhere: attributes that geoms, joints or actuators share are written once.
 
-Works on the finished sections. What most joints share goes into the nameless default, what most visual shapes share into
-``visual``; sets that only some share become classes of their own, called after their elements, as the factoring of
-:mod:`hymeko_x.factor.sets` finds them. No element inherits an attribute that it did not have, so that MuJoCo compiles the same model.
+Works on the finished sections. What most joints share goes into the nameless default; sets that at least three elements share become
+classes of their own, as the factoring of :mod:`hymeko_x.factor.sets` finds them, where the names of the elements tell what they are:
+``hip``, ``calf``, ``collision_foot``. A class that elements have anyway - the nameless one, ``visual``, ``collision`` - gives no type,
+material, size or range, which an element that a person adds would inherit by surprise. No element inherits an attribute that
+it did not have, so that MuJoCo compiles the same model.
 """
 
 from __future__ import annotations
@@ -14,7 +16,8 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
-from hymeko_x.factor.sets import Costs, common_words, share
+from hymeko_x.factor.sets import Costs, share
+from hymeko_x.factor.words import by_meaning, words_of_all
 from hymeko_x.formats.mjcf import CLASSES, MAIN
 from hymeko_x.formats.mjcf.classes import PARTIAL, Classes
 from hymeko_x.formats.mjcf.tree import parse_text
@@ -56,6 +59,12 @@ _SHARED: Mapping[str, frozenset[str]] = MappingProxyType(
 """The attributes that a class may have: neither names nor poses."""
 _ASIDE = frozenset(("type", "material", "rgba"))
 """Attributes that alone make no class of shapes: they are as short to read where they stand."""
+_OWN = frozenset(("type", "size", "material", "rgba", "range", "ref", "springref"))
+"""Attributes that an element has itself, or from a class that was made for such elements."""
+_USUAL_AXIS = ("axis", "0 0 1")
+"""MuJoCo's own default, which no class needs to give."""
+_FEWEST = 3
+"""Elements that make a class of their own worth its name."""
 
 _AROUND = len('=""')
 _DEFINITION = len('<default class="collision_black"></default></>')
@@ -76,12 +85,12 @@ class Defaults(Struct):
     """The classes found, those that refine another one behind it, and the names that are taken."""
 
     classes: list[Class] = field(default_factory=list)
-    taken: set[str] = field(default_factory=lambda: {MAIN, *CLASSES.values()})
+    taken: dict[str, set[str]] = field(default_factory=lambda: {name: {"geom"} for name in (MAIN, *CLASSES.values())})
 
-    def free(self, wanted: str) -> str:
-        """The name as a class may have it, with a number behind it when it is taken."""
-        name = free_name(re.sub(r"\W+", "_", wanted), self.taken.__contains__, "_")
-        self.taken.add(name)
+    def free(self, wanted: str, tag: str) -> str:
+        """The name of a class for elements of this tag, with a number behind it when it is taken; joints and their motors may share it."""
+        name = free_name(re.sub(r"\W+", "_", wanted), lambda name: bool({tag, "geom"} & self.taken.get(name, set())), "_")
+        self.taken.setdefault(name, set()).add(tag)
         return name
 
 
@@ -113,6 +122,8 @@ def _share_among_most(tag: str, around: str, group: list[Tag], defaults: Default
     texts: dict[str, dict[str, int]] = {}
     for element in group:
         for name, text in _row(element):
+            if name in _OWN or (name, text) == _USUAL_AXIS:
+                continue
             counts = texts.setdefault(name, {})
             counts[text] = counts.get(text, 0) + 1
     own = {}
@@ -132,24 +143,35 @@ def _leave_to_class(element: Tag, own: Mapping[str, str]) -> None:
 
 def _share_among_some(tag: str, own_class: str | None, group: list[Tag], defaults: Defaults) -> None:
     """Classes for sets of attributes that several elements share, with everything else that those have in common."""
-    names: dict[int, str] = {}
-    found = share([_reasons(element) for element in group], _COSTS if own_class is None else _REFINING)
-    for number, shared in sorted(enumerate(found), key=lambda item: (item[1].members[0], item[0])):
+    plain = words_of_all(_names(group)) if len(group) > _FEWEST else frozenset[str]()
+    start = len(defaults.classes)
+    for shared in share([_reasons(element) for element in group], _COSTS if own_class is None else _REFINING):
         members = [group[member] for member in shared.members]
-        around = own_class or MAIN if shared.refines is None else names[shared.refines]
-        common = frozenset(_row(members[0])).intersection(*map(_row, members[1:]))
-        own = {name: text for name, text in _row(members[0]) if (name, text) in common}
-        if not own:  # the class around has them already
-            names[number] = around
-            continue
-        name = names[number] = defaults.free(_name(tag, own_class, own, members))
-        defaults.classes.append(Class(name, tag, own, around))
-        for element in members:
-            _leave_to_class(element, own)
-            element.attributes["class"] = name
+        for words, places in by_meaning(_names(members), _FEWEST, plain):
+            _make_class(tag, own_class, words, [members[place] for place in places], defaults)
+    order = {name: place for place, element in reversed([*enumerate(group)]) if (name := element.attributes.get("class"))}
+    defaults.classes[start:] = sorted(defaults.classes[start:], key=lambda found: order.get(found.name, -1))
     for element in group:
         first: dict[str, str] = {name: element.attributes[name] for name in ("name", "class") if name in element.attributes}
         element.attributes = {**first, **element.attributes}
+
+
+def _names(elements: list[Tag]) -> list[str]:
+    return [element.owner.name if element.owner else "" for element in elements]
+
+
+def _make_class(tag: str, own_class: str | None, words: str, members: list[Tag], defaults: Defaults) -> None:
+    """A class for what these elements share, in the class that they have, which is the same for all."""
+    around = members[0].attributes.get("class")
+    common = frozenset(_row(members[0])).intersection(*map(_row, members[1:]))
+    own = {name: text for name, text in _row(members[0]) if (name, text) in common}
+    if not own or any(element.attributes.get("class") != around for element in members):
+        return  # the class around has them already
+    name = defaults.free("_".join(filter(None, (own_class, words))), tag)
+    defaults.classes.append(Class(name, tag, own, around or MAIN))
+    for element in members:
+        _leave_to_class(element, own)
+        element.attributes["class"] = name
 
 
 def _reasons(element: Tag) -> Row:
@@ -158,15 +180,6 @@ def _reasons(element: Tag) -> Row:
         return _row(element)
     row = [(name, text) for name, text in _row(element) if name not in _ASIDE]
     return [(name, f"{element.attributes.get('type')} {text}" if name == "size" else text) for name, text in row]
-
-
-def _name(tag: str, own_class: str | None, own: Mapping[str, str], members: list[Tag]) -> str:
-    """The name of a class: the words that its elements' names share, or else their type."""
-    words = common_words([element.owner.name for element in members if element.owner])
-    if tag != "geom":
-        return words or f"{own.get('type', tag)}_kind"
-    kind = words if words != "link" else own.get("type", "")
-    return "_".join(filter(None, (own_class, kind or "shape")))
 
 
 # ---- the section -----------------------------------------------------------------------------------------------------------
@@ -181,10 +194,17 @@ def write_defaults(sheet: MjcfSheet, place: int) -> None:
     inside: dict[str, list[str]] = {MAIN: [role for role in _ROLES if role in roles]}
     for found in shared_attributes(tags).classes:
         shared.setdefault((found.name, found.tag), {}).update(found.attributes)
-        if found.around:
-            inside.setdefault(found.around, []).append(found.name)
+        if found.around and found.name not in inside.setdefault(found.around, []):
+            inside[found.around].append(found.name)
     if shared:
         sheet.root.children[place:place] = ["", _class_tag(MAIN, {}, shared, inside)]
+
+
+def settle_angles(sheet: MjcfSheet) -> None:
+    """<compiler> says how angles are meant, where there are any."""
+    if any("euler" in tag.attributes for tag in _walk(sheet.root)):
+        compiler = next(child for child in sheet.root.children if isinstance(child, Tag) and child.name == "compiler")
+        compiler.attributes["eulerseq"] = sheet.settings.eulerseq
 
 
 def _walk(root: Tag) -> Iterable[Tag]:

@@ -12,6 +12,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.assets.pack import package_hint
 from hymeko_x.assets.shelf import Shelf, read_file
+from hymeko_x.backends.mjcf.mesh_names import name_meshes
 from hymeko_x.formats.mjcf import MOST_STL_FACES, NAME
 from hymeko_x.formats.mjcf.files import refused
 from hymeko_x.formats.mjcf.words import from_mjcf
@@ -76,7 +77,7 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
     _pack_textures(run)
     _pack_meshes(run)
     extras = {**mechanism.extras, **{key: (*mechanism.extras.get(key, ()), _SHELL) for key in run.surfaces}}
-    return replace(run.added_to(mechanism, run.gone), extras=extras)
+    return name_meshes(replace(run.added_to(mechanism, run.gone), extras=extras), mechanism)
 
 
 # ---- textures ----------------------------------------------------------------------------------------------------------------

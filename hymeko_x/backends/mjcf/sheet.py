@@ -237,8 +237,12 @@ def _chosen(attributes: Mapping[str, str], names: Iterable[str]) -> dict[str, st
 def open_sheet(mechanism: Mechanism, others: Classes) -> MjcfSheet:
     """An empty document with the mechanism's own settings and classes; with ``others`` where it did not come from MJCF."""
     if not words.from_mjcf(mechanism):
-        root = Tag("mujoco", {"model": mechanism.name} if mechanism.name else {}, ['<compiler angle="radian" autolimits="true"/>'])
-        return MjcfSheet(mechanism, root, False, Settings(degree=False), others, [*_sections_for_all(mechanism)])
+        root = Tag(
+            "mujoco", {"model": mechanism.name} if mechanism.name else {}, [Tag("compiler", {"angle": "radian", "autolimits": "true"})]
+        )
+        return MjcfSheet(
+            mechanism, root, False, Settings(degree=False, eulerseq="XYZ", plain_turns=True), others, [*_sections_for_all(mechanism)]
+        )
     own = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format in (words.NAME, "comment")]
     kept = {extra.path[1:]: extra.text for extra in own if extra.format == words.NAME and extra.path[:1] == "@"}
     name = {} if mechanism.notation(ROOT, UNNAMED) else {"model": mechanism.name}

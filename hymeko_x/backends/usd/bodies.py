@@ -10,6 +10,7 @@ from pxr import Gf, Vt
 from hymeko_x.backends.usd.shapes import gprim_of, gprim_pose
 from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
 from hymeko_x.formats import usd as words
+from hymeko_x.ir.decimals import clean_pose
 from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Mesh
@@ -39,11 +40,11 @@ def write_bodies(sheet: UsdSheet) -> None:
     for key, _ in sheet.mechanism.vertices(Body):
         path = sheet.paths[key]
         spec = sheet.prims[path]
-        pose = _noted_pose(sheet.mechanism, key) or poses.get(key, IDENTITY)
+        pose = _noted_pose(sheet.mechanism, key) or clean_pose(poses.get(key, IDENTITY))
         above = _parent_body(sheet.mechanism, key) if sheet.is_nested else None
         if above is not None:
             seen = compose(inverse(_noted_pose(sheet.mechanism, above) or poses.get(above, IDENTITY)), pose)
-            transform(spec, seen, sheet.body_scales.get(key), within=sheet.body_scales.get(above))
+            transform(spec, clean_pose(seen), sheet.body_scales.get(key), within=sheet.body_scales.get(above))
             continue
         is_inside = any(prefix in placed for prefix in path.GetParentPath().GetPrefixes())
         transform(spec, pose, sheet.body_scales.get(key), reset=is_inside)

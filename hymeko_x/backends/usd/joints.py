@@ -11,6 +11,7 @@ from pxr import Gf, Sdf
 from hymeko_x.backends.usd.sheet import T, apply, point, put, quatf
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import joints as table
+from hymeko_x.ir.decimals import clean_pose, shortest
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, unit_quat
@@ -121,7 +122,7 @@ def write_frames(sheet: UsdSheet, spec: Any, key: Id, ends: tuple[End, End], dof
     anchor = dofs[0].anchor if len(dofs) == 1 else (0.0, 0.0, 0.0)
     for side, (body, pose) in enumerate(ends):
         _write_end(sheet, spec, side, body, key)
-        frame = compose(pose, Pose(anchor, turn)) if any(anchor) or turn != IDENTITY.quat else pose
+        frame = clean_pose(compose(pose, Pose(anchor, turn))) if any(anchor) or turn != IDENTITY.quat else pose
         put(spec, f"physics:localPos{side}", T.Point3f, Gf.Vec3f(*sheet.in_prim_space(body, frame.xyz)))
         put(spec, f"physics:localRot{side}", T.Quatf, quatf(frame.quat))
     if spec.kind == table.GENERIC:
@@ -162,7 +163,7 @@ def _write_limits(spec: Any, dof: Dof) -> None:
 
 def _coordinate(dof: Dof, value: float) -> float:
     """Degrees of a hinge, metres of a slide."""
-    return math.degrees(value) if dof.kind is DofKind.HINGE else value
+    return shortest(math.degrees(value)) if dof.kind is DofKind.HINGE else value
 
 
 def _write_generic(spec: Any, dofs: tuple[Dof, ...]) -> None:
@@ -192,10 +193,10 @@ def write_behaviour(spec: Any, dof: Dof) -> None:
         "damping": dof.damping,
         "frictionloss": dof.friction,
         "stiffness": dof.stiffness,
-        "ref": dof.ref / degree,
-        "springref": dof.spring_ref / degree,
+        "ref": shortest(dof.ref / degree),
+        "springref": shortest(dof.spring_ref / degree),
     }
-    newton = {"armature": dof.armature, "damping": dof.damping * degree, "friction": dof.friction}
+    newton = {"armature": dof.armature, "damping": shortest(dof.damping * degree), "friction": dof.friction}
     _write_schema(spec, "MjcJointAPI", "mjc", T.Double, mjc)
     _write_schema(spec, "NewtonJointAPI", "newton", T.Float, newton)
     if dof.limits.velocity is not None:

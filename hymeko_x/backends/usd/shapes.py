@@ -11,6 +11,7 @@ from hymeko_x.backends.usd.meshes import write_mesh_shape, write_subsets, write_
 from hymeko_x.backends.usd.sheet import T, apply, put
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import shapes as gprims
+from hymeko_x.ir.decimals import clean_pose
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import MeshShape, Role
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_inverse
@@ -32,7 +33,7 @@ def write_shapes(sheet: UsdSheet) -> None:
 def gprim_pose(view: ShapeView, prim: gprims.Gprim | None) -> Pose:
     """Where the prim of a shape is in its body: a primitive along another axis than z is turned back."""
     turn = NO_ROTATION if prim is None else gprims.geometry_of(prim).turn
-    return view.pose if turn == NO_ROTATION else compose(view.pose, Pose(quat=quat_inverse(turn)))
+    return view.pose if turn == NO_ROTATION else clean_pose(compose(view.pose, Pose(quat=quat_inverse(turn))))
 
 
 def _unless_one(scale: Vec3) -> Vec3 | None:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 
 from hymeko_x.formats.mjcf.classes import ANY_TURN, TURNS
+from hymeko_x.ir.decimals import shortest
 from hymeko_x.ir.values import (
     NO_ROTATION,
     ZERO,
@@ -45,7 +46,11 @@ class BadAttribute(Exception):
 
 
 class Settings(Struct, frozen=True):
-    """What <compiler> settles about the meaning of numbers and file names."""
+    """What <compiler> settles about the meaning of numbers and file names.
+
+    ``plain_turns``: rotations that no author wrote in MJCF are written in the shortest way that means the same: quarter turns with
+    quaternions of ones, which MuJoCo normalises, and roll, pitch and yaw as they are.
+    """
 
     degree: bool = True
     eulerseq: str = "xyz"
@@ -54,6 +59,7 @@ class Settings(Struct, frozen=True):
     mesh_folder: str = ""
     texture_folder: str = ""
     strip_path: bool = False
+    plain_turns: bool = False
 
 
 class Group(Struct, frozen=True, eq=False):
@@ -122,10 +128,17 @@ def radians(degrees: float) -> float:
     return degrees * DEGREE
 
 
+_USUAL_DIGITS = 12
+"""Numbers of fewer characters are what an author meant; of longer ones the bits count."""
+
+
 @lru_cache(65536)
 def degrees_text(angle: float) -> str:
-    """The shortest number of degrees that MuJoCo turns into this angle in rad, bit for bit where there is one."""
+    """The shortest number of degrees that MuJoCo turns into this angle in rad, to rounding; bit for bit where that is as short."""
     guess = angle / DEGREE
+    short = shortest(guess)
+    if len(number_text(short)) < _USUAL_DIGITS:
+        return number_text(short)
     for digits in range(1, 18):
         near = float(f"{guess:.{digits}g}")
         if near * DEGREE == angle:
@@ -190,8 +203,8 @@ def read_pose(attributes: Mapping[str, str], settings: Settings) -> Pose:
 
 def write_turn(quat: tuple[float, ...], written: Written | None, settings: Settings) -> dict[str, str]:
     """The orientation as its author wrote it, else as a quaternion; nothing for no rotation."""
-    if written is None:
-        return {} if quat == NO_ROTATION else {"quat": numbers_text(quat)}
+    if written is None or written.kind == "rpy":
+        return {} if quat == NO_ROTATION else _plain_turn(quat, written) if settings.plain_turns else {"quat": numbers_text(quat)}
     kind, numbers = written
     if kind == f"euler:{settings.eulerseq}":
         return {"euler": " ".join([angle_text(angle, settings.degree) for angle in numbers])}
@@ -200,6 +213,22 @@ def write_turn(quat: tuple[float, ...], written: Written | None, settings: Setti
     if kind in ("quat", "xyaxes", "zaxis"):
         return {kind: numbers_text(numbers)}
     return {"quat": numbers_text(quat)}
+
+
+def _plain_turn(quat: tuple[float, ...], rpy: Written | None) -> dict[str, str]:
+    """A quaternion, or the angles about fixed axes that the author wrote (``eulerseq="XYZ"``), whichever is shorter."""
+    text = numbers_text(_with_ones(quat))
+    angles = text if rpy is None else numbers_text(rpy.numbers)
+    return {"euler": angles} if len(angles) < len(text) else {"quat": text}
+
+
+def _with_ones(quat: tuple[float, ...]) -> tuple[float, ...]:
+    """A quarter turn as ``1 0 0 1``, which is the same rotation; every other one as it is."""
+    sizes = {abs(value) for value in quat if value}
+    return tuple([math.copysign(1.0, value) if value else 0.0 for value in quat]) if sizes == {_HALF_ROOT} else quat
+
+
+_HALF_ROOT = math.sqrt(0.5)
 
 
 def write_pose(value: Pose, settings: Settings) -> dict[str, str]:

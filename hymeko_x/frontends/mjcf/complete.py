@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from hymeko_x.formats.mjcf.codec import Settings
     from hymeko_x.ir.mechanism import RobotEdge, ShapeView
     from hymeko_x.ir.parts import Dof, Geometry
+    from hymeko_x.ir.values import Tensor
     from hymeko_x.source import Files
 
 Printed = Callable[[], tuple[Mechanism, bytes]]
@@ -36,6 +37,8 @@ _SCALES = ("settotalmass", "boundmass", "boundinertia", "balanceinertia")
 """Attributes of <compiler> that change inertias which are given."""
 _LEAST = 1e-14
 """Moving bodies with a mass in kg or a moment in kg m^2 of up to 1e-15 are refused by MuJoCo."""
+_NOISE = 1e-13
+"""The largest product of inertia, relative to the largest moment, that is rounding of the principal axes."""
 _FOVY = math.radians(45.0)
 """The vertical field of view of a camera without one."""
 
@@ -160,9 +163,17 @@ def _with_inertials(mechanism: Mechanism, model: Any, numbers: dict[Id, int]) ->
         a, b, c = moments[number]
         px, py, pz = places[number]
         w, x, y, z = turns[number]
-        tensor = rotate_tensor(unit_quat((w, x, y, z)), (a, b, c, 0.0, 0.0, 0.0))
+        tensor = _without_noise(rotate_tensor(unit_quat((w, x, y, z)), (a, b, c, 0.0, 0.0, 0.0)))
         found[key] = replace(body, inertial=Inertial(masses[number], (px, py, pz), tensor))
     return found
+
+
+def _without_noise(tensor: Tensor) -> Tensor:
+    """The tensor whose products of inertia are zero where MuJoCo's principal axes leave nothing but rounding."""
+    most = _NOISE * max(tensor[:3])
+    xx, yy, zz, *products = tensor
+    xy, xz, yz = (0.0 if abs(value) <= most else value for value in products)
+    return xx, yy, zz, xy, xz, yz
 
 
 def _with_springs(mechanism: Mechanism, model: Any, order: dict[Id, int]) -> dict[Id, RobotEdge]:

@@ -1,0 +1,65 @@
+"""Names for what several elements share, from the words of their own names: ``hip`` of ``left_hip_pitch`` and ``right_hip_roll``."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Sequence
+
+_SIDES = "left right l r front rear hind back middle mid fl fr rl rr hl hr bl br ml mr lf rf lr lh rh lb rb lm rm"
+_KINDS = "joint link body geom shape mesh part visual collision frame robot motor actuator act jnt"
+_PLAIN: frozenset[str] = frozenset(f"{_SIDES} {_KINDS}".split())
+"""Words that say on which side an element is, or of which kind; they tell nothing of what it is."""
+
+
+def words_of(name: str) -> list[str]:
+    """The words of a name in order, each once: those between signs and digits, as they are written."""
+    return list(dict.fromkeys(word for word in re.split(r"[\W_\d]+", name) if word))
+
+
+def telling_words(name: str, plain: Collection[str] = ()) -> list[str]:
+    """The words of a name that tell what it is, without ``plain`` ones."""
+    return [word for word in words_of(name) if len(word) > 2 and word.lower() not in _PLAIN and word not in plain]
+
+
+def common_words(names: Sequence[str]) -> str:
+    """The words that all names share, in the order of the first: ``hip_joint`` of ``left_hip_joint`` and ``right_hip_joint``."""
+    split = [words_of(name) for name in names]
+    shared = set(split[0]).intersection(*split[1:])
+    kept = [word for word in split[0] if word in shared]
+    return "_".join(kept) if any(len(word) > 2 for word in kept) else ""
+
+
+def words_of_all(names: Iterable[str]) -> frozenset[str]:
+    """The words that every one of these names has: they tell none of them from the others."""
+    split = [frozenset(words_of(name)) for name in names]
+    return frozenset.intersection(*split) if split else frozenset()
+
+
+def meaning(names: Sequence[str], plain: Collection[str] = ()) -> str:
+    """What all of these are, by the telling words that their names share; empty for none."""
+    split = [telling_words(name, plain) for name in names]
+    shared = set(split[0]).intersection(*split[1:])
+    return "_".join([word for word in split[0] if word in shared])
+
+
+def by_meaning(names: Sequence[str], least: int, plain: Collection[str] = ()) -> list[tuple[str, list[int]]]:
+    """Groups of at least so many names with a meaning, by their places: all of them, or those that share a telling word.
+
+    A name is in one group at most; the largest groups come first.
+    """
+    if len(names) >= least and (found := meaning(names, plain)):
+        return [(found, list(range(len(names))))]
+    left = {place: telling_words(name, plain) for place, name in enumerate(names)}
+    groups: list[tuple[str, list[int]]] = []
+    while True:
+        counts = Counter(word for words in left.values() for word in words)
+        word = max(counts, key=lambda word: (counts[word], word), default="")
+        if counts[word] < least:
+            return groups
+        places = [place for place, words in left.items() if word in words]
+        groups.append((meaning([names[place] for place in places], plain), places))
+        left = {place: words for place, words in left.items() if word not in words}

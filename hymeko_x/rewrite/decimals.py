@@ -1,0 +1,112 @@
+"""Numbers that rewriting computed, as a person would write them: each the shortest decimal of the same quantity.
+
+What the source has keeps its digits. A number is computed where it is in an element that rewriting made or changed, and nowhere in the
+source.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+from msgspec import Struct
+from msgspec.structs import replace
+
+from hymeko_x.ir.decimals import clean_quat, shortest, shortest_of
+from hymeko_x.ir.fields import layout_of
+from hymeko_x.ir.parts import Inertial, Mesh, Subset
+from hymeko_x.ir.values import Pose, unit_quat
+from hymeko_x.rewrite.inertia import physical
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Mapping
+
+    from hymeko_x.ir.mechanism import Id, Mechanism
+
+_LONG = re.compile(r"(?<![\w.])-?(?:\d[\d.]{15,}(?:e-?\d+)?|\d[\d.]*e-\d\d+)")
+"""Numbers with so many digits, or so close to zero, that they may be computed."""
+_AS_THEY_ARE = Mesh | Subset
+"""Parts whose numbers are data of files."""
+
+
+def shorten_computed(mechanism: Mechanism, source: Mechanism) -> Mechanism:
+    """The mechanism, made from ``source``, with every computed number as the shortest decimal that is equal to rounding."""
+    if mechanism.graph is source.graph:
+        return mechanism
+    vertices = _changed(mechanism.graph.vertices, source.graph.vertices)
+    edges = _changed(mechanism.graph.edges, source.graph.edges)
+    if not vertices and not edges:
+        return mechanism
+    found = {text for part in (*vertices.values(), *edges.values()) for text in _LONG.findall(_text(part))}
+    given = "".join(map(_text, (*source.graph.vertices.values(), *source.graph.edges.values())))
+    known = frozenset(float(text) for text in found if text in given)
+    return mechanism.with_graph(
+        mechanism.graph.replace(
+            vertices={key: _shortened(part, known) for key, part in vertices.items()},
+            edges={key: _shortened(edge, known) for key, edge in edges.items()},
+        )
+    )
+
+
+def _changed(parts: Mapping[Id, Any], before: Mapping[Id, Any]) -> dict[Id, Any]:
+    """The parts that the source does not have like this, as far as they have long numbers."""
+    changed = {key: part for key, part in parts.items() if part is not before.get(key)}
+    return {key: part for key, part in changed.items() if _LONG.search(_text(part))}
+
+
+def _text(part: Any) -> str:
+    """The numbers of a part as text; empty for data of files."""
+    return "" if isinstance(part, _AS_THEY_ARE) else msgspec.json.encode(part).decode()
+
+
+def _shortened(value: Any, known: Collection[float]) -> Any:
+    """The value with short numbers, but for those known. Depth is that of the parts, which is small."""
+    kind = type(value)
+    if kind is float:
+        return value if value in known else shortest(value)
+    if kind is tuple:
+        return _tuple(value, known)
+    if kind is Pose:
+        return _pose(value, known)
+    layout = layout_of(kind) if isinstance(value, Struct) else None
+    if layout is None or (isinstance(value, Inertial) and value.written is not None):
+        return value
+    fields = {item.name: getattr(value, item.name) for item in layout.counting}
+    short: dict[str, Any] = {name: _point(field, known) if name in _POINTS else _shortened(field, known) for name, field in fields.items()}
+    changed: dict[str, Any] = {name: field for name, field in short.items() if field is not fields[name]}
+    if "tensor" in changed and physical(changed["tensor"]) != changed["tensor"]:
+        del changed["tensor"]  # that of a thin rod or plate, which rounding would make one of no body
+    return replace(value, **changed) if changed else value
+
+
+_POINTS = frozenset(("com", "anchor"))
+"""Fields that are places in a body, in m."""
+
+
+def _tuple(value: tuple[Any, ...], known: Collection[float]) -> tuple[Any, ...]:
+    if {*map(type, value)} == {float}:
+        return _point(value, known, 0.0)
+    short = tuple([_shortened(item, known) for item in value])
+    return value if all(a is b for a, b in zip(short, value, strict=True)) else short
+
+
+def _point(value: tuple[float, ...], known: Collection[float], least: float = 1.0) -> tuple[float, ...]:
+    """The components of a quantity, relative to the largest of them; places relative to 1 m at least."""
+    short = tuple([a if a in known else b for a, b in zip(value, shortest_of(value, least), strict=True)])
+    return value if short == value else short
+
+
+def _pose(value: Pose, known: Collection[float]) -> Pose:
+    xyz = _point(value.xyz, known)
+    quat = value.quat
+    if value.written is None and not all(number in known for number in quat):
+        quat = unit_quat(clean_quat(quat))
+    if xyz == value.xyz and quat == value.quat:
+        return value
+    return replace(value, xyz=xyz, quat=quat, written=value.written if xyz == value.xyz else _turn_only(value))
+
+
+def _turn_only(value: Pose) -> Any:
+    """The notation of the rotation; one that also tells the place does not fit any more."""
+    return None if value.written is not None and value.written.kind == "fromto" else value.written

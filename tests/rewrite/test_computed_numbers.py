@@ -1,0 +1,53 @@
+"""Numbers that rewriting computed are short; numbers of the source keep their digits."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import hymeko_x as hx
+from hymeko_x.ir.mechanism import Id, shape_edge
+from hymeko_x.ir.parts import Body, Box, Inertial, Role, Shape
+from hymeko_x.ir.values import Pose
+from hymeko_x.rewrite.decimals import shorten_computed
+from tests.robots import body, chain, hinge
+
+AUTHORED = 0.12345678901234567
+
+
+def test_numbers_of_changed_elements_are_short_and_those_of_the_source_stay() -> None:
+    source = chain(hinge())
+    given = source.with_graph(source.graph.replace(vertices={body("b0"): Body(Inertial(AUTHORED, (0.0, 0.0, 0.1)))}))
+    computed = Inertial(AUTHORED, (2.2e-17, 0.1 + 0.2, AUTHORED), (0.02, 0.03, 0.04, -4.9e-20, 0.0, 0.0))
+    rewritten = given.with_graph(given.graph.replace(vertices={body("b0"): Body(computed)}))
+    assert shorten_computed(rewritten, given).vertex(body("b0"), Body) == Body(
+        Inertial(AUTHORED, (0.0, 0.3, AUTHORED), (0.02, 0.03, 0.04, 0.0, 0.0, 0.0))
+    )
+
+
+def test_a_mechanism_without_computed_numbers_is_the_same_object() -> None:
+    source = chain(hinge())
+    other = source.with_graph(source.graph.replace(vertices={body("b0"): Body()}))
+    assert shorten_computed(source, source) is source
+    assert shorten_computed(other, source) is other
+
+
+def test_poses_of_new_elements_are_clean() -> None:
+    source = chain(hinge())
+    pose = Pose((0.30000000000000004, 1e-17, 0.0), (math.sqrt(0.5), 0.0, 4.3e-17, math.sqrt(0.5)))
+    new = source.with_graph(
+        source.graph.replace(edges={Id("shape", "new"): shape_edge(Shape(Box((0.1, 0.1, 0.1)), Role.VISUAL), body("b0"), pose)})
+    )
+    view = shorten_computed(new, source).shapes[body("b0")][0]
+    assert view.pose == Pose((0.3, 0.0, 0.0), (math.sqrt(0.5), 0.0, 0.0, math.sqrt(0.5)))
+
+
+def test_a_file_from_mjcf_has_no_noise_in_urdf() -> None:
+    text = """<mujoco model="arm"><compiler angle="radian"/><worldbody><body name="a" pos="0 0 0.1"><freejoint/>
+      <geom type="capsule" fromto="0.1 0 0.2 0.3 0 0.2" size="0.02"/>
+      <body name="b" pos="0.3 0 0" quat="0.7071067811865476 0 0.7071067811865475 0"><joint axis="0 0 1" pos="0.1 0.2 0"/>
+      <inertial pos="0 0 0" mass="1" quat="0.5 0.5 -0.5 0.5" diaginertia="0.3 0.2 0.1"/></body></body></worldbody></mujoco>"""
+    urdf = hx.dumps(hx.loads(text.encode(), "mjcf"), "urdf")
+    assert 'length="0.2"' in urdf
+    assert '<origin xyz="0 0 0" rpy="1.5707963267948966 -1.5707963267948966 0"/>' in urdf
+    assert not re.search(r"e-1\d|\d00000000\d|99999999", urdf)
