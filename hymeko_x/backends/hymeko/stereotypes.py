@@ -1,12 +1,14 @@
 """Stereotypes: fields that many elements share are written once, ``drive() { effort 87 velocity 2.2 }``.
 
 Works on the finished syntax tree. Elements of one kind are compared field by field; the set of fields that saves most
-letters becomes a stereotype of its own, named after the default class or after the words that the names of its elements share, and
-so on with the elements that are left. Reading merges the fields again, in the same order.
+letters becomes a stereotype of its own, and so on with the elements that are left. It is named after the default class, after what its
+elements are (``hip``, of shapes what their bodies are), or after the material or the mesh that it gives, and never like a body or a
+joint. Reading merges the fields again, in the same order.
 """
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,14 +17,14 @@ from msgspec import Struct, field
 from hymeko_x.backends.hymeko.assemblies import take_name
 from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.factor.sets import candidates
-from hymeko_x.factor.words import common_words
+from hymeko_x.factor.words import common_words, meaning
 from hymeko_x.formats.hymeko import FOREIGN, PARTS, RESERVED
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Field, Item, Node, QuotedName, Ref, Stereotype
 from hymeko_x.language.templates import standard_templates
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from hymeko_x.factor.sets import Pair, Row
 
@@ -41,9 +43,9 @@ _NAMES = {
     "shape": "solid",
     "@": "axle",
     "": "part",
-    "motor": "drive",
-    "servo": "drive",
-    "actuator": "drive",
+    "motor": "act",
+    "servo": "act",
+    "actuator": "act",
     "drive": "gear",
     "material": "paint",
     "frame": "mark",
@@ -75,9 +77,13 @@ class _Unit(NamedTuple):
 
 
 class _Element(Struct):
-    """An element that may get a stereotype: where it stands, its units in order, and the units of its stereotypes."""
+    """An element that may get a stereotype: where it stands, its units in order, and the units of its stereotypes.
+
+    ``owner`` is the name of the element, of a shape that of its body.
+    """
 
     path: tuple[int, ...]
+    owner: str
     node: Node
     units: dict[str, _Unit]
     stereotype: str = ""
@@ -119,7 +125,7 @@ def with_stereotypes(items: Sequence[Item], taken: Iterable[str] = ()) -> list[I
     groups: dict[tuple[str, str], list[_Element]] = {}
     for element in _elements(items):
         groups.setdefault(_group(element), []).append(element)
-    names = {*standard_templates(), *RESERVED, *taken}
+    names = {*standard_templates(), *RESERVED, *taken, *_names_of_elements(items)}
     definitions: list[_Definition] = []
     for (kind, _), elements in groups.items():
         definitions.extend(_stereotypes(kind, elements, names))
@@ -127,6 +133,13 @@ def with_stereotypes(items: Sequence[Item], taken: Iterable[str] = ()) -> list[I
         return list(items)
     changed = {element.path: _applied(element) for group in groups.values() for element in group if element.stereotype}
     return [*map(_definition, definitions), *(_rebuilt(number, item, changed) for number, item in enumerate(items))]
+
+
+def _names_of_elements(items: Iterable[Item]) -> Iterable[str]:
+    """The names of bodies, joints and the like: one of a stereotype would be taken for them. A material is another kind of name."""
+    for item in items:
+        if isinstance(item, Node) and not (item.stereotypes and item.stereotypes[0].ref.path == ("material",)):
+            yield str(item.name)
 
 
 # ---- what elements are made of -------------------------------------------------------------------------------------------
@@ -139,12 +152,12 @@ def _elements(items: Sequence[Item]) -> Iterable[_Element]:
             continue
         if item.name in ("units", "written", "world") and not isinstance(item.name, QuotedName) and not item.edge:
             continue
-        outer = _Element((number,), item, _units(item))
+        outer = _Element((number,), item.name, item, _units(item))
         if not (_is_open(_group(outer)[0]) and any(isinstance(inner, Field) and not _can_be_shared(inner) for inner in item.items)):
             yield outer  # parameters are in order, also those that no stereotype may hold
         for place, inner in enumerate(item.items):
             if isinstance(inner, Node) and (inner.name in _SHAPES or (item.edge and inner.stereotypes)):
-                yield _Element((number, place), inner, _units(inner))
+                yield _Element((number, place), item.name, inner, _units(inner))
 
 
 def _group(element: _Element) -> tuple[str, str]:
@@ -207,7 +220,7 @@ def _stereotypes(kind: str, elements: list[_Element], names: set[str]) -> list[_
             if best is None:
                 break
             units, members = best
-            definition = _Definition(take_name(_name(kind, units, members), names), units, base)
+            definition = _Definition(_free_name(kind, units, members, names), units, base)
             for member in members:
                 member.refine(definition)
             found.append(definition)
@@ -286,7 +299,7 @@ def _splits_repeated(element: _Element, given: Mapping[str, _Unit], differing: l
 
 def _saving(kind: str, units: list[_Unit], members: list[_Element]) -> int:
     """Letters that a stereotype saves, its definition and its name counted."""
-    name = len(_name(kind, units, members)) + 1
+    name = len(next(_names(kind, units, members))) + 1
     texts = {unit.slot: unit.text for unit in units}
     saved = 0
     for member in members:
@@ -300,19 +313,35 @@ def _saving(kind: str, units: list[_Unit], members: list[_Element]) -> int:
 # ---- naming --------------------------------------------------------------------------------------------------------------
 
 
-def _name(kind: str, units: list[_Unit], members: list[_Element]) -> str:
-    """The name of the default class, or the words that the elements' names have in common, or a word for their type."""
-    for unit in units:
-        if unit.slot == "class" and isinstance(unit.item, Field):
-            value = unit.item.value
-            name = value.path[0] if isinstance(value, Ref) else value
-            if isinstance(name, str) and name:
-                return name
-    if len(members[0].path) == 1:
-        common = common_words([member.node.name for member in members])
-        if common and kind:
-            return common
-    return _NAMES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
+def _free_name(kind: str, units: list[_Unit], members: list[_Element], taken: set[str]) -> str:
+    """The first of the names that is free, which is taken then; the last of them with a number where none is."""
+    wanted = [*_names(kind, units, members)]
+    return take_name(next((name for name in wanted if name not in taken), wanted[-1]), taken)
+
+
+def _names(kind: str, units: list[_Unit], members: list[_Element]) -> Iterator[str]:
+    """The default class, what the elements are by their names, the material or the mesh that they have, or a word for their type."""
+    given = {unit.slot: name for unit in units if isinstance(unit.item, Field) and (name := _word(unit.item.value))}
+    if "class" in given:
+        yield given["class"]
+    owners = [member.owner for member in members]
+    plain = _NAMES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
+    own = meaning(owners)
+    is_inside = len(members[0].path) > 1
+    yield from filter(_WORD.fullmatch, (own, f"{own}_{plain}") if is_inside else (common_words(owners), own))
+    yield from (given[slot] for slot in ("material", "mesh") if _WORD.fullmatch(given.get(slot, "")))
+    yield plain
+
+
+def _word(value: object) -> str:
+    """The name that a field gives: a word or a text; empty for another value."""
+    if isinstance(value, Ref):
+        return value.path[-1]
+    return value if isinstance(value, str) else ""
+
+
+_WORD = re.compile(r"[A-Za-z]\w{1,23}")
+"""Words that make a good name."""
 
 
 # ---- applying ------------------------------------------------------------------------------------------------------------

@@ -1,0 +1,52 @@
+"""Stereotypes are called after what their elements are, and never like one of them."""
+
+from __future__ import annotations
+
+import re
+
+import hymeko_x as hx
+
+MASS = '<inertial><mass value="0.125"/><inertia ixx="0.0625" iyy="0.03125" izz="0.015625" ixy="0" ixz="0" iyz="0"/></inertial>'
+LIMIT = '<limit lower="-1.0625" upper="1.0625" effort="40" velocity="10"/><dynamics damping="0.125" friction="0.0625"/>'
+WHITE = '<material name="white"><color rgba="1 1 1 1"/></material>'
+
+
+def _printed(*links: str) -> str:
+    """The HyMeKo text of links below a base, each with a joint of its name."""
+    text = '<link name="base"/>'
+    for name, content in (link.split("|") for link in links):
+        text += f'<link name="{name}">{MASS}{content}</link><joint name="{name}_joint" type="revolute">'
+        text += f'<parent link="base"/><child link="{name}"/><axis xyz="0 1 0"/>{LIMIT}</joint>'
+    return hx.dumps(hx.loads(f'<robot name="r">{text}</robot>'.encode(), "urdf"), "hymeko")
+
+
+def _stereotypes(text: str) -> list[str]:
+    return re.findall(r"^  (\w+)\(\)", text, re.MULTILINE)
+
+
+def test_joints_and_bodies_are_called_after_the_words_of_their_names() -> None:
+    found = _stereotypes(_printed(*(f"{size}_thigh|" for size in ("big", "small", "thin", "fat"))))
+    assert found == ["thigh", "thigh_joint"]
+
+
+def test_a_stereotype_is_not_called_like_an_element() -> None:
+    text = _printed("joint1|", "joint2|", "joint3|", "joint4|")
+    names = re.findall(r"^  @?(\w+)(?: :| \{)", text, re.MULTILINE)
+    assert _stereotypes(text) == ["part", "axle"]
+    assert not {*_stereotypes(text)} & {*names}
+
+
+def test_shapes_are_called_after_their_material_where_their_bodies_have_nothing_in_common() -> None:
+    shape = f'<visual><geometry><box size="{{0}} 1 1"/></geometry>{WHITE}</visual>'
+    text = _printed(
+        *(f"{name}|{shape.format(size)}" for size, name in enumerate(("arm", "hand", "leg", "head", "neck", "toe", "eye", "ear", "jaw"), 1))
+    )
+    assert "white() { material=white }" in text
+    assert text.count("visual : white {") == 9
+
+
+def test_shapes_are_called_after_what_their_bodies_are() -> None:
+    shape = '<collision><geometry><cylinder radius="0.0625" length="0.125"/></geometry></collision>'
+    text = _printed(*(f"{size}_wheel|{shape}" for size in ("big", "small", "thin", "fat")))
+    assert _stereotypes(text) == ["wheel", "wheel_hull", "wheel_joint"]
+    assert hx.loads(text.encode(), "hymeko") == hx.loads(hx.dumps(hx.loads(text.encode(), "hymeko"), "hymeko").encode(), "hymeko")
