@@ -144,3 +144,17 @@ REAL = [file for file in catalog.development_files("mjcf") if Path(file.path).na
 @pytest.mark.parametrize("robot", REAL, ids=lambda file: file.id, indirect=True)
 def test_actuators_of_a_real_robot_drive_alike_in_a_stage_without_residue(robot: Path, tmp_path: Path) -> None:
     assert other_laws(robot, tmp_path) == []
+
+
+@pytest.mark.parametrize("law", ['kp="20" kv="3"', 'kp="20" timeconst="0.1" dampratio="0.7"', 'kp="1"'])
+def test_a_servo_that_inherits_its_range_comes_back_as_itself(law: str, tmp_path: Path) -> None:
+    servo = f'<position name="p" tendon="t" {law} inheritrange="1"/>'
+    text = f"""<mujoco><worldbody><body><joint name="j" range="-30 30"/><geom size="0.05"/></body></worldbody>
+<tendon><fixed name="t" range="-1 1"><joint joint="j" coef="1"/></fixed></tendon><actuator>{servo}</actuator></mujoco>"""
+    (tmp_path / "a.xml").write_text(text)
+    hx.convert(tmp_path / "a.xml", tmp_path / "b.usda")
+    hx.convert(tmp_path / "b.usda", tmp_path / "c.xml")
+    ours, theirs = (hx.load(tmp_path / name).vertex(Id("actuator", "p"), Actuator) for name in ("c.xml", "a.xml"))
+    assert (ours.kind, dict(ours.parameters)) == (theirs.kind, dict(theirs.parameters))
+    ranges = [mujoco.MjModel.from_xml_path(str(tmp_path / name)).actuator_ctrlrange.tolist() for name in ("a.xml", "c.xml")]
+    assert ranges == [[[-1.0, 1.0]], [[-1.0, 1.0]]]

@@ -5,10 +5,12 @@ from __future__ import annotations
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from msgspec.structs import replace
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
-    from hymeko_x.ir.parts import Parameters
+    from hymeko_x.ir.parts import Actuator, Parameters
 
     Numbers = tuple[float, ...]
 
@@ -55,6 +57,7 @@ _MUSCLE = MappingProxyType(
         "fvmax": (1.2,),
     }
 )
+_LAW = ("gaintype", "gainprm", "biastype", "biasprm", "dyntype", "dynprm")
 _DETAILS = frozenset(("kp", "kv", "dampratio", "timeconst", "tausmooth", "range", *_MUSCLE))
 
 
@@ -78,6 +81,30 @@ def _servo(authored: Mapping[str, Numbers]) -> Parameters:
     damping = -authored.get("kv", (0.0,))[0] or authored.get("dampratio", (0.0,))[0]
     filtered: Parameters = (("dyntype", "filterexact"), ("dynprm", (lag,))) if lag else ()
     return (*filtered, ("gainprm", (kp,)), ("biastype", "affine"), ("biasprm", (0.0, -kp, damping)))
+
+
+def with_inherited_range(actuator: Actuator) -> Actuator:
+    """A general actuator that takes its range from its target as the position servo that it is, which only such a servo does."""
+    law = {name: value if isinstance(value, str | tuple) else (value,) for name, value in actuator.parameters}
+    gain, bias = law.get("gainprm"), law.get("biasprm")
+    if law.get("biastype") != "affine" or not law.get("inheritrange") or law.get("dyntype") not in (None, "filterexact"):
+        return actuator
+    if not isinstance(gain, tuple) or not isinstance(bias, tuple):
+        return actuator
+    damping = bias[2] if len(bias) > 2 else 0.0
+    found: Parameters = (("kp", gain[0]), *([("kv", -damping)] if damping < 0.0 else [("dampratio", damping)] if damping else []))
+    lag = law.get("dynprm")
+    found += (("timeconst", lag[0]),) if isinstance(lag, tuple) and "dyntype" in law else ()
+    servo = replace(actuator, kind="position", parameters=(*found, *(item for item in actuator.parameters if item[0] not in _LAW)))
+    again = dict(in_general("position", found) or ())
+    return servo if all(_trimmed(again.get(name)) == _trimmed(law.get(name)) for name in _LAW) else actuator
+
+
+def _trimmed(value: object) -> object:
+    """A value; of numbers without the zeros at the end."""
+    while isinstance(value, tuple) and value and value[-1] == 0.0:
+        value = value[:-1]
+    return value
 
 
 def _speed(authored: Mapping[str, Numbers]) -> Parameters:

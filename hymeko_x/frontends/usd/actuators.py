@@ -97,7 +97,7 @@ def read_actuator(prim: Prim, ends: dict[str, DofRef], builder: UsdBuilder) -> N
     is_plain = arcs[0].target.kind != "body" and not any(name in _GENERAL for name, _ in parameters)
     kind = "motor" if is_plain else "general"  # MJCF has no motor on a body
     key = builder.new_id(prim, "actuator")
-    builder.vertices[key] = Actuator(kind, tuple(parameters))
+    builder.vertices[key] = table.with_inherited_range(Actuator(kind, tuple(parameters)))
     builder.note(key, words.TYPE, table.PRIM)
     gear = builder.get(prim, "mjc:gear")
     weight = _trimmed(tuple(map(float, gear))) if gear is not None else None
