@@ -71,7 +71,9 @@ class Studio:
         self._place(look.pose)
         self._groups = _groups(self.model, collision=look.collision)
         self.corners = corners or self._own_corners()
-        self.model = _compiled(_with_scene(spec, self.model, self.corners, look.size), name)
+        if look.is_authored:
+            _remove_surroundings(spec)
+        self.model = _compiled(_with_scene(spec, self.model, self.corners, look), name)
         placed, self.data = self.data, mujoco.MjData(self.model)
         self.data.qpos[:] = placed.qpos
         mujoco.mj_forward(self.model, self.data)
@@ -222,11 +224,25 @@ def _groups(model: mujoco.MjModel, *, collision: bool) -> frozenset[int]:
     return _VISUAL if any(group in _VISUAL for group in (moving or model.geom_group)) else _VISUAL | _COLLISION
 
 
-def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, size: tuple[int, int]) -> Any:
+def _remove_surroundings(spec: Any) -> None:
+    """Take away sky, floors and settings of the view, which other formats cannot represent, so that the robot alone is compared."""
+    import mujoco
+
+    plain = mujoco.MjSpec().visual
+    for part in ("headlight", "map", "rgba", "quality"):
+        setattr(spec.visual, part, getattr(plain, part))
+    for texture in [texture for texture in spec.textures if texture.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
+        spec.delete(texture)
+    for geom in spec.worldbody.geoms:
+        if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
+            geom.material, geom.rgba = "", [0.0] * 4
+
+
+def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, look: Look) -> Any:
     """The robot with a sky, with one light, and with ground under it if it has none."""
     import mujoco
 
-    spec.visual.global_.offwidth, spec.visual.global_.offheight = size
+    spec.visual.global_.offwidth, spec.visual.global_.offheight = look.size
     spec.visual.global_.fovy = _FIELD_OF_VIEW
     spec.visual.headlight.ambient = [0.35] * 3
     spec.visual.headlight.diffuse = [0.45] * 3
@@ -244,7 +260,7 @@ def _with_scene(spec: Any, model: mujoco.MjModel, corners: Corners, size: tuple[
     light = spec.worldbody.add_light(type=mujoco.mjtLightType.mjLIGHT_SPOT, castshadow=True, cutoff=75.0, exponent=0.0)
     light.pos, light.dir = [at - 2.0 * corners.size * along for at, along in zip(centre, beam, strict=True)], beam
     light.diffuse, light.specular = [0.6] * 3, [0.2] * 3
-    if not any(kind == mujoco.mjtGeom.mjGEOM_PLANE for kind in model.geom_type):
+    if look.is_authored or not any(kind == mujoco.mjtGeom.mjGEOM_PLANE for kind in model.geom_type):
         _add_ground(spec, corners)
     return spec
 
@@ -263,7 +279,8 @@ def _add_ground(spec: Any, corners: Corners) -> None:
         rgb1=[0.86, 0.88, 0.9],
         rgb2=[0.8, 0.83, 0.86],
     )
-    material = spec.add_material(name="hymeko-x ground", texuniform=True, texrepeat=[1.0 / (2.0 * square)] * 2, reflectance=0.0)
+    plain = {"rgba": [1.0] * 4, "emission": 0.0, "specular": 0.5, "shininess": 0.5, "reflectance": 0.0}  # whatever the file's defaults are
+    material = spec.add_material(name="hymeko-x ground", texuniform=True, texrepeat=[1.0 / (2.0 * square)] * 2, **plain)
     material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "hymeko-x ground"
     centre = corners.points.mean(axis=0)
     spec.worldbody.add_geom(
@@ -272,6 +289,8 @@ def _add_ground(spec: Any, corners: Corners) -> None:
         size=[0.0, 0.0, square],
         pos=[centre[0], centre[1], corners.lowest - 1e-4 * corners.size],
         material="hymeko-x ground",
+        rgba=[0.5, 0.5, 0.5, 1.0],  # which leaves the colour to the material
+        group=0,
         contype=0,
         conaffinity=0,
     )

@@ -75,6 +75,13 @@ def test_what_is_not_drawn_changes_nothing_in_the_picture() -> None:
     assert (picture(ARM) == picture(far)).all()
 
 
+def test_the_ground_has_no_colour_of_the_robots_defaults() -> None:
+    body = '<worldbody><body><geom type="box" size="0.1 0.1 0.1" rgba="0.1 0.2 0.8 1"{}/></body></worldbody></mujoco>'
+    plain = "<mujoco>" + body.format("")
+    brown = '<mujoco><default><geom rgba="0.8 0.6 0.4 1" group="4"/></default>' + body.format(' group="0"')
+    assert (picture(plain, "mjcf") == picture(brown, "mjcf")).all()
+
+
 @pytest.mark.parametrize(
     "fault", [("0.8 0.2 0.1", "0.1 0.2 0.8"), ('xyz="0.3 0 0"', 'xyz="-0.3 0 0"'), ("0.6 0.08 0.08", "0.6 0.08 0.2"), ("0.14", "0.24")]
 )

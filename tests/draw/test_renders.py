@@ -1,0 +1,107 @@
+"""The bar of pictures (benchmarks/renders.py): it finds a mirrored mesh, a wrong colour and a lost texture, and real robots pass it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from benchmarks import renders
+from hymeko_x import codes
+from hymeko_x.diagnostics import Refusal
+from hymeko_x.draw.pair import Subject, pair
+from hymeko_x.draw.render import Look, choose_backend
+from hymeko_x.robot import Robot
+
+LOOK = Look((240, 180))
+FOOT = """v 0 0 0
+v 0.4 0 0
+v 0.4 0.1 0
+v 0 0.3 0
+v 0 0 0.2
+v 0.4 0 0.1
+v 0.4 0.1 0.1
+v 0 0.3 0.2
+vt 0 0
+vt 1 0
+vt 1 1
+vt 0 1
+f 4/4 3/3 2/2 1/1
+f 5/1 6/2 7/3 8/4
+f 1/1 2/2 6/3 5/4
+f 2/1 3/2 7/3 6/4
+f 3/1 4/2 8/3 7/4
+f 4/1 1/2 5/3 8/4
+"""
+LEG = """<mujoco model="leg"><asset>
+  <texture name="bark" type="2d" file="bark.png"/><material name="bark" texture="bark"/>
+  <mesh name="foot" file="foot.obj"/></asset>
+<worldbody><body name="leg"><geom type="box" size="0.05 0.05 0.2" pos="0.05 0.05 0.4" rgba="0.8 0.3 0.1 1" contype="0" conaffinity="0"/>
+  <geom type="mesh" mesh="foot" material="bark" contype="0" conaffinity="0"/></body></worldbody></mujoco>"""
+
+
+@pytest.fixture
+def leg(tmp_path: Path) -> Path:
+    """A leg whose foot has no symmetry and shows an image."""
+    choose_backend()
+    (tmp_path / "foot.obj").write_text(FOOT)
+    bark = np.zeros((16, 16, 3), np.uint8)
+    bark[:8, :8], bark[8:, 8:] = (60, 160, 60), (200, 200, 60)
+    Image.fromarray(bark).save(tmp_path / "bark.png")
+    (tmp_path / "leg.xml").write_text(LEG)
+    try:
+        changed(tmp_path / "leg.xml", tmp_path / "leg.xml")
+    except Refusal as refusal:
+        if refusal.diagnostic.code == codes.CANNOT_DRAW:
+            pytest.skip(refusal.diagnostic.message)
+        raise
+    return tmp_path / "leg.xml"
+
+
+def changed(a: Path, b: Path) -> float:
+    """The part of the pixels in which two robots differ that MuJoCo reads itself."""
+    first, second = (Subject(Robot.__new__(Robot), str(path)) for path in (a, b))
+    return pair(first, second, LOOK).changed
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        ('file="foot.obj"', 'file="foot.obj" scale="1 -1 1"'),
+        ("0.8 0.3 0.1", "0.1 0.3 0.8"),
+        ('name="bark" texture="bark"', 'name="bark"'),
+    ],
+    ids=["mirrored mesh", "wrong colour", "lost texture"],
+)
+def test_a_fault_in_the_appearance_is_found(fault: tuple[str, str], leg: Path) -> None:
+    assert fault[0] in LEG
+    other = leg.with_name("other.xml")
+    other.write_text(LEG.replace(*fault))
+    assert changed(leg, leg) == 0.0
+    assert changed(leg, other) > renders.CHANGED
+
+
+def test_a_robot_with_mesh_and_texture_has_its_picture_in_every_format(leg: Path) -> None:
+    found = renders.drawn(str(leg))
+    assert (found.reason, found.failed, found.faults) == ("", {}, [])
+    assert {*found.changed} >= {"urdf", "hymeko", "usd", "sdf"}
+
+
+def test_the_bar_names_what_is_wrong() -> None:
+    found = renders.Drawn("a.urdf", 0.2, 10, changed={"usd": 0.02, "sdf": 0.001})
+    assert found.faults == ["fills 0.20", "is black", "usd differs by 2.00 %"]
+    assert renders.line(found) == "  FAIL a.urdf: fills 0.20, differs by % usd 2.00 sdf 0.10"
+    assert renders.line(renders.Drawn("b.urdf", reason="HX501: no")) == "  --   b.urdf: HX501: no"
+
+
+@pytest.mark.full
+@pytest.mark.corpus
+def test_real_robots_have_their_pictures_in_every_format() -> None:
+    robots = renders.development_robots(16)
+    if not robots:
+        pytest.skip("no package of the catalogue is here; `hymeko-x corpus fetch` brings them")
+    found = [renders.apart(path, None) for path in robots]
+    assert [renders.line(one) for one in found if renders.unknown(one)] == []
+    assert any(one.changed for one in found)
