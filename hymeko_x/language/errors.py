@@ -23,8 +23,8 @@ _WORDS |= {"RSQB": "']'", "LPAR": "'('", "RPAR": "')'", "COMMA": "','", "DOT": "
 _WORDS |= {"EDGE_WORD": "'@'", "USE": "'use'", "IMPORT": "'import'", "AS": "'as'", "QUOTED_REF": "'@>\"name\"'"}
 _WORDS |= {"$END": "the end of the text"}
 """Terminals in the words of a user, in the order in which they are listed."""
-_IGNORED = {"MODIFIER", "LEGACY_HEADER", "COMMENT"}
-_KEYWORDS = {"USE", "IMPORT", "AS", "EDGE_WORD"}
+_IGNORED = {"MODIFIER", "LEGACY_HEADER", "COMMENT", "SEMICOLON", "USING", "CONSTANT"}
+_KEYWORDS = {"USE", "IMPORT", "USING", "AS", "EDGE_WORD"}
 _PAIRS = {"}": "{", "]": "[", ")": "("}
 _CLOSERS = {"RBRACE": "{", "RSQB": "[", "RPAR": "("}
 _DIGIT_NAME = re.compile(r"\d+[^\W\d]\w*")
@@ -38,7 +38,6 @@ _CHARACTER_HINTS = {
     '"': "the string that begins here is never closed",
     "'": "the string that begins here is never closed",
     "`": "the quoted name that begins here is not closed in the same line",
-    ";": "items are separated by white space or commas",
     "/": "a name with characters other than letters, digits and _ is written in backticks: `left/arm`",
     ".": "a name with characters other than letters, digits and _ is written in backticks: `arm.1`",
     "$": "an expression is written ${2 * length}",
@@ -145,6 +144,10 @@ def _expectation_hint(expected: set[str], token: str, before: str) -> str:
     """A hint from what was expected, the token that came, and the character before it."""
     if expected == {"STRING"}:
         return 'an import names a file: import "legs.hymeko"; as a name the word is written in backticks: `import`'
+    if token == ";" and not expected.isdisjoint({"RSQB", "RPAR"}):
+        return "values and parameters are separated by white space or commas"
+    if token in ("+", "-", "~") and expected >= {"RPAR", "COMMA"}:
+        return "arcs in parentheses are separated by commas: (+ a, - b)"
     if before == ":":
         return _BEHIND[before]
     if "RPAR" in expected and "NAME" in expected and "LBRACE" not in expected and token not in _PAIRS:
@@ -157,7 +160,7 @@ def _expectation_hint(expected: set[str], token: str, before: str) -> str:
         return "a block follows a name: name { ... }"
     if "LBRACE" in expected and "EQUAL" not in expected:
         return "a node or edge has a block, even if it is empty: name : type { }"
-    if expected <= {"NAME", "QUOTED_REF"}:
+    if expected <= {"NAME", "QUOTED_REF", "LESSTHAN"}:
         return "a direction is followed by the name of an element"
     return _BEHIND.get(before, "")
 
@@ -186,6 +189,10 @@ def _with_line(stack: list[tuple[str, int]], text: str) -> tuple[str, int] | Non
 def _possible(terminals: set[str], text: str, offset: int) -> set[str]:
     """The terminals without the brackets that would close another one than the innermost open one."""
     unclosed, _ = _brackets(text[:offset])
+    if "EDGE_WORD" in terminals and "COLON" not in terminals:
+        terminals = terminals - {"LPAR"}  # a group of arcs, as other tools write it
+    if terminals <= {"NAME", "QUOTED_REF", "LESSTHAN"}:
+        terminals = terminals - {"LESSTHAN"}  # a tag behind a direction
     return {name for name in terminals if name not in _CLOSERS or (unclosed is not None and _CLOSERS[name] == unclosed[0])}
 
 

@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct, field
 
+from hymeko_x.language.constants import with_constants
 from hymeko_x.language.expressions import INDEX, fill, fill_text, fill_value
-from hymeko_x.language.syntax import ArcItem, Comment, Document, Field, Import, Item, Node, QuotedName, Value, is_list
-from hymeko_x.language.templates import MAX_DEPTH, Templates, definitions, is_definition, merge
+from hymeko_x.language.prototypes import role_of
+from hymeko_x.language.syntax import ArcItem, Comment, Document, Field, Import, Item, Node, QuotedName, Using, Value, is_field, is_list
+from hymeko_x.language.templates import MAX_DEPTH, Templates, definitions, is_definition, merge, place_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
     from hymeko_x.language.expressions import Environment
+    from hymeko_x.language.prototypes import Prototypes
     from hymeko_x.language.templates import Fetch
 MAX_ITEMS = 500_000
 """Items that templates may add to a text: elements, fields, arcs and nested nodes."""
@@ -82,6 +85,7 @@ class Element(NamedTuple):
     node: Node
     types: tuple[str, ...]
     scope: Scope
+    has_prototype: bool = False
 
 
 class Instance(NamedTuple):
@@ -127,6 +131,7 @@ class Expanded(NamedTuple):
     items: tuple[Expansion, ...]
     root: str
     inside: Callable[[Sequence[Item], Scope], tuple[Expansion, ...]]
+    prototypes: Prototypes
     preceding: tuple[Comment, ...] = ()
     following: tuple[Comment, ...] = ()
 
@@ -137,16 +142,35 @@ def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
     Raises: Refusal (HX061, HX063, HX064, HX040) at the place in the text.
     """
     preceding, document, following = _without_outer_comments(document)
+    document = document._replace(items=with_constants(document.items, file))
     header, roots, loose = _split(document)
     defined = definitions(document.items, roots, file, fetch)
     templates = Templates(file, defined, MAX_ITEMS + EACH * sum(len(node.items) for node in roots))
     expansion = _Expansion(file, templates)
     if len(roots) != 1 or loose:
-        return Expanded(header, (), expansion.inside([*loose, *roots], Scope()), "", expansion.inside, preceding, following)
+        found = expansion.inside([*loose, *roots], Scope())
+        return Expanded(header, (), found, "", expansion.inside, templates.prototypes, preceding, following)
     root = roots[0]
+    if document.header:
+        root = root._replace(items=_without_node_words(root.items))
+    root = root._replace(stereotypes=tuple(kind for kind in root.stereotypes if templates.is_known(kind.ref)))
     preset = templates.preset(root, {})
     found = expansion.inside(merge(preset.items, root.items), Scope(name=root.name))
-    return Expanded(header or root.name, preset.types, found, root.name, expansion.inside, preceding, following)
+    return Expanded(header or root.name, preset.types, found, root.name, expansion.inside, templates.prototypes, preceding, following)
+
+
+def _without_node_words(items: tuple[Item, ...]) -> tuple[Item, ...]:
+    """The items without the word ``node`` before a vertex, which texts with a header in brackets have."""
+    pairs = zip(items, (*items[1:], None), strict=True)
+    return tuple(
+        item for item, following in pairs if not (is_field(item, ("node",)) and item.value is None and isinstance(following, Node))
+    )
+
+
+def _is_type(item: Expansion, applied: set[tuple[str, int, int]]) -> bool:
+    if not isinstance(item, Element) or not item.node.edge or place_of(item.node) not in applied:
+        return False
+    return not any(isinstance(inner, ArcItem) and not role_of(inner) for inner in item.node.items)
 
 
 def _changed(found: Iterator[Expansion]) -> tuple[Expansion, ...]:
@@ -192,11 +216,31 @@ def _split(document: Document) -> tuple[str, list[Node], list[Item]]:
             loose.append(item)
     settings = [node for node in roots if node.name == "units" and not isinstance(node.name, QuotedName)]
     bodies = [node for node in roots if node not in settings]
+    if len(bodies) > 1 and not loose:
+        header, bodies = _one_root(header, bodies)
     if len(bodies) == 1 and not loose:
         return header, [bodies[0]._replace(items=(*settings, *bodies[0].items))], []
     return header, roots, loose
 
 
+def _one_root(header: str, roots: list[Node]) -> tuple[str, list[Node]]:
+    """The root among several nodes: the others are a description before it, and roots whose elements are types in it."""
+    first, *others = roots
+    used = {ref.path[0] for node in others for ref in (*node.uses, *(kind.ref for kind in node.stereotypes))}
+    libraries = [node for node in roots if node.name in used]
+    rest = [node for node in roots if node not in libraries]
+    is_description = len(rest) > 1 and rest[0] is first and all(isinstance(item, _DESCRIBING) for item in first.items)
+    described = rest[1:] if is_description else rest
+    if len(described) != 1 or not any(isinstance(item, Node) for item in described[0].items):
+        return header, roots
+    root = described[0]
+    if is_description and any(isinstance(item, Field) for item in first.items):
+        data = first._replace(items=tuple(item for item in first.items if isinstance(item, Field | Comment)))
+        root = root._replace(items=(data, *root.items))
+    return header, [root]
+
+
+_DESCRIBING = (Field, Import, Using, Comment)
 Expansion = Element | Statement | Instance | Change
 
 
@@ -208,8 +252,10 @@ class _Expansion:
         self._templates = templates
 
     def inside(self, items: Sequence[Item], scope: Scope) -> tuple[Expansion, ...]:
-        """The elements of a block, with the changes that other items of it make."""
-        return _changed(self.elements(items, {}, scope))
+        """The elements of a block, with the changes that other items of it make; an edge without arcs that is a type is none."""
+        found = _changed(self.elements(items, {}, scope))
+        applied = self._templates.applied
+        return found if not applied else tuple(item for item in found if not _is_type(item, applied))
 
     def elements(
         self, items: Sequence[Item], environment: Environment, scope: Scope, depth: int = 0, *, made: bool = False
@@ -250,9 +296,12 @@ class _Expansion:
             return
         scope.elements.add(name)
         plain = tuple(
-            fill(self._templates.refine(item, environment), environment, self._file) for item in merged if not isinstance(item, Import)
+            fill(self._templates.refine(item, environment), environment, self._file)
+            for item in merged
+            if not isinstance(item, Import | Using)
         )
-        yield Element(scope.full(name), node._replace(name=name, items=plain, stereotypes=()), preset.types, scope)
+        found = node._replace(name=name, items=plain, stereotypes=())
+        yield Element(scope.full(name), found, preset.types, scope, preset.has_prototype)
 
     def _plain(self, node: Node, name: str, environment: Environment) -> Node:
         """The node with plain values."""

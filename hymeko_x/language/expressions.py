@@ -12,7 +12,21 @@ from types import MappingProxyType
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.language.syntax import ArcItem, Comment, Expression, Field, Import, Item, Node, Ref, Stereotype, Value, origin_of
+from hymeko_x.language.syntax import (
+    ArcItem,
+    Comment,
+    Constant,
+    Expression,
+    Field,
+    Import,
+    Item,
+    Node,
+    Ref,
+    Stereotype,
+    Using,
+    Value,
+    origin_of,
+)
 
 Environment = Mapping[str, float | str]
 """The parameters of a template with their values."""
@@ -115,7 +129,7 @@ def fill(item: Item, environment: Environment, file: str) -> Item:
     if not environment and not _calculates(item):
         return item
     match item:
-        case Field(value=None) | Import() | Comment():
+        case Field(value=None) | Import() | Using() | Constant() | Comment():
             return item
         case Field():
             assert item.value is not None
@@ -219,6 +233,6 @@ def _calculates(item: Item | Value | None) -> bool:
             return _calculates(item.weight) or any(map(_calculates, item.items))
         case Node():
             return any(map(_calculates, item.items)) or any(kind.arguments for kind in item.stereotypes)
-        case float() | str() | None | Import() | Comment() | Ref():
+        case float() | str() | None | Import() | Using() | Constant() | Comment() | Ref():
             return False
     return any(map(_calculates, item))

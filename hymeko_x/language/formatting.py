@@ -22,11 +22,27 @@ if TYPE_CHECKING:
 _COMMENT = re.compile(r"#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/")
 _PIECES = re.compile(r"[\[\],]|[^\s,\[\]]+")
 _ITEMS = (
-    *("bare", "field", "import_", "node", "edge", "typed_edge", "changed_node", "changed_edge", "array", "edge_array"),
+    *(
+        "bare",
+        "field",
+        "import_",
+        "short_import",
+        "using",
+        "constant",
+        "tagged_node",
+        "group",
+        "node",
+        "edge",
+        "typed_edge",
+        "changed_node",
+        "changed_edge",
+        "array",
+        "edge_array",
+    ),
     *("plain_arc", "role_arc", "weighted_arc", "quoted_arc", "legacy_edge"),
 )
 _SIGNATURE = ("signature", "stereotypes", "stereotype", "use", "parameters", "parameter", "arguments", "argument")
-_RULES = ("start", "block", "ref", "path", "relation", "vector", "type", *_SIGNATURE)
+_RULES = ("start", "block", "group_arc", "ref", "path", "relation", "vector", "type", *_SIGNATURE)
 _OPENING, _CLOSING = frozenset("{[("), frozenset("}])")
 _TIGHT_BEFORE = frozenset({",", ")", "]", ".", "="})
 _TIGHT_AFTER = frozenset({"(", "[", ".", "=", "@"})

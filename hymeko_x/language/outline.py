@@ -25,9 +25,9 @@ TYPES = "types of the node"
 
 _SIGNED = ("signature", "stereotypes", "stereotype", "use", "parameters", "parameter", "arguments")
 _VALUES = ("vector", "ref", "path", "relation", "type", *_SIGNED)
-_FIELDS = ("bare", "field", "import_")
-_ARCS = ("plain_arc", "role_arc", "weighted_arc", "quoted_arc", "legacy_edge")
-_NODES = ("node", "edge", "typed_edge", "changed_node", "changed_edge", "array", "edge_array")
+_FIELDS = ("bare", "field", "import_", "short_import", "using", "constant")
+_ARCS = ("group", "plain_arc", "role_arc", "weighted_arc", "quoted_arc", "legacy_edge")
+_NODES = ("node", "tagged_node", "edge", "typed_edge", "changed_node", "changed_edge", "array", "edge_array")
 _TYPES = ("signature", "stereotypes")
 _NAME = re.compile(r"`(?:[^`\\]|\\.)*`|[^\W\d]\w*")
 _ARC = re.compile(r"(?:\[.*\]\s*)?(.*)", re.DOTALL)

@@ -16,6 +16,7 @@ from hymeko_x.language.machine import GAP_DEPTH, MAX_DEPTH, Lines, Machine, Pars
 from hymeko_x.language.syntax import (
     ArcItem,
     Comment,
+    Constant,
     Document,
     Expression,
     Field,
@@ -28,6 +29,7 @@ from hymeko_x.language.syntax import (
     QuotedName,
     Ref,
     Stereotype,
+    Using,
     Value,
 )
 
@@ -89,6 +91,12 @@ def _unescape(text: str, offset: int) -> str:
 
 class _Block(tuple[Item, ...]):
     """The items between braces."""
+
+    __slots__ = ()
+
+
+class _Group(tuple[ArcItem, ...]):
+    """Arcs in parentheses."""
 
     __slots__ = ()
 
@@ -158,7 +166,7 @@ _TERMINALS: Mapping[str, Convert] = MappingProxyType(
         "NUMBER": lambda text, _: float(text),
         "QUANTITY": _quantity,
         "STRING": lambda text, offset: text[3:-3] if text.startswith('"""') else _unescape(text[1:-1], offset),
-        "EXPRESSION": lambda text, _: Expression(text[2:-1].strip()),
+        "EXPRESSION": lambda text, _: Expression(text[2 if text[0] == "$" else 1 : -1].strip()),
         "QUERY": lambda text, _: Query(),
         "NUMBERS": _numbers,
         "MATRIX": _matrix,
@@ -171,7 +179,15 @@ _TERMINALS: Mapping[str, Convert] = MappingProxyType(
 # ---- rules ---------------------------------------------------------------------------------------------------------------
 
 
+def _ungrouped(items: list[Any]) -> list[Any]:
+    """The items of a block with the arcs of groups in their place."""
+    if _Group not in map(type, items):
+        return items
+    return [inner for item in items for inner in (item if type(item) is _Group else (item,))]
+
+
 def _start(parts: list[Any], _: int) -> Document:
+    parts = _ungrouped(parts)
     if parts and type(parts[0]) is str:
         return Document(tuple(parts[1:]), parts[0][1:-1].strip())
     return Document(tuple(parts))
@@ -183,6 +199,17 @@ def _signature(parts: list[Any], _: int) -> _Signature:
     return _Signature(parameters, stereotypes, tuple(part for part in parts if type(part) is Ref))
 
 
+def _relation(parts: list[Any], _: int) -> Ref:
+    """A reference with its direction; the tag between them (``<isa>``) is that of every type, and adds nothing."""
+    words = [part for part in parts[:-1] if type(part) is str]
+    return Ref(parts[-1].path, words[-1], words[0] if len(words) > 1 else "")
+
+
+def _constant(text: str, place: tuple[int, int]) -> Constant:
+    name, _, value = text[len("const") : -1].partition("=")
+    return Constant(name.strip(), value.strip(), *place)
+
+
 def _quoted_ref(direction: str, target: str) -> Ref:
     return Ref((QuotedName(target[3:-1]),), direction)
 
@@ -190,12 +217,12 @@ def _quoted_ref(direction: str, target: str) -> Ref:
 _ACTIONS: Mapping[str, Reduce] = MappingProxyType(
     {
         "start": _start,
-        "block": lambda parts, _: _Block(parts),
+        "block": lambda parts, _: _Block(_ungrouped(parts)),
         "ref": lambda parts, _: Ref(tuple(parts)),
         "path": lambda parts, _: Ref(tuple(parts)),
-        "relation": lambda parts, _: Ref(parts[-1].path, parts[-2], parts[0] if len(parts) == 3 else ""),
+        "relation": _relation,
         "vector": lambda parts, _: tuple(parts),
-        "type": lambda parts, _: _TypeName(parts[0].dotted),
+        "type": lambda parts, _: _TypeName(", ".join(part.dotted for part in parts)),
         "signature": _signature,
         "stereotypes": lambda parts, _: _Stereotypes(parts),
         "stereotype": lambda parts, _: Stereotype(parts[0], parts[1] if len(parts) > 1 else None),
@@ -232,10 +259,21 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
     def weighted_arc(parts: list[Any], offset: int) -> ArcItem:
         return arc("", parts[0], parts[1:], offset) if type(parts[1]) is Ref else arc(parts[1], parts[0], parts[2:], offset)
 
+    def group_arc(parts: list[Any], offset: int) -> ArcItem:
+        role = parts[0] if type(parts[0]) is not Ref else ""
+        weight = parts[-1] if type(parts[-1]) is not Ref else None
+        return ArcItem(parts[1] if role else parts[0], role, weight, (), *place(offset))
+
     return {
         "bare": lambda parts, offset: Field(parts[0], None, parts[1] if len(parts) > 1 else "", *place(offset)),
         "field": lambda parts, offset: Field(parts[0], parts[-1], parts[1] if len(parts) == 3 else "", *place(offset)),
         "import_": lambda parts, offset: Import(parts[1], parts[3] if len(parts) > 2 else "", *place(offset)),
+        "short_import": lambda parts, offset: Import(parts[1], parts[3] if len(parts) > 2 else "", *place(offset)),
+        "using": lambda parts, offset: Using(parts[1], parts[3] if len(parts) > 2 else parts[1].path[-1], *place(offset)),
+        "constant": lambda parts, offset: _constant(parts[0], place(offset)),
+        "tagged_node": lambda parts, offset: node("", [parts[0], parts[-1]], offset),
+        "group": lambda parts, _: _Group(parts),
+        "group_arc": group_arc,
         "node": lambda parts, offset: node("", parts, offset),
         "edge": lambda parts, offset: node(parts[0], parts[1:], offset),
         "changed_node": lambda parts, offset: changed("", parts, offset),

@@ -10,6 +10,7 @@ from hymeko_x.ir.values import are_numbers, number_text, numbers_text
 from hymeko_x.language.syntax import (
     ArcItem,
     Comment,
+    Constant,
     Document,
     Expression,
     Field,
@@ -21,6 +22,7 @@ from hymeko_x.language.syntax import (
     Query,
     QuotedName,
     Ref,
+    Using,
     Value,
 )
 
@@ -42,7 +44,7 @@ _ON_LINES_OF_THEIR_OWN = (Node, TextBlock, Comment)
 WIDTH = 120
 INDENT = "  "
 _PLAIN_NAME = re.compile(r"[^\W\d]\w*")
-_WORDS = frozenset({"rel", "seq", "concurrent", "use", "import", "as", "inf", "nan"})
+_WORDS = frozenset({"rel", "seq", "concurrent", "use", "import", "using", "const", "as", "inf", "nan"})
 _FEW_ESCAPES = str.maketrans(
     {chr(code): f"\\u{code:04x}" for code in (*range(32), 0x7F, 0xFFFE, 0xFFFF) if chr(code) not in "\n\t"}
     | {"\\": "\\\\", "\r": "\\r", "\0": "\\0"}
@@ -78,6 +80,10 @@ def print_item(item: Item) -> str:
             return f"/* {item.text} */"
         case Import():
             return f"import {print_text(item.path)}" + (f" as {print_name(item.alias)}" if item.alias else "")
+        case Using():
+            return f"using {_ref(item.ref)} as {print_name(item.alias)}"
+        case Constant():
+            return f"const {print_name(item.name)} = {item.text};"
         case Node():
             return f"{_signature(item)} {{ {_joined(item.items)} }}" if item.items else f"{_signature(item)} {{}}"
 

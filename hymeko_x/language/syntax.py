@@ -113,6 +113,24 @@ class Import(NamedTuple):
     column: int = 0
 
 
+class Using(NamedTuple):
+    """``using a.b as c``: a name that stands for a path."""
+
+    ref: Ref
+    alias: str
+    line: int = 0
+    column: int = 0
+
+
+class Constant(NamedTuple):
+    """``const K = 2 * L;``: a name for a number, the text of an expression."""
+
+    name: str
+    text: str
+    line: int = 0
+    column: int = 0
+
+
 class Comment(NamedTuple):
     """A comment that stands between the items of the root or of the text itself; deeper ones are not kept."""
 
@@ -123,7 +141,7 @@ class Comment(NamedTuple):
 
 Value = float | str | Ref | Quantity | Expression | Query | tuple["Value", ...]
 """Numbers are float, strings str, lists plain tuples (never named ones)."""
-Item = Node | Field | ArcItem | Import | Comment
+Item = Node | Field | ArcItem | Import | Using | Constant | Comment
 
 
 class Document(NamedTuple):

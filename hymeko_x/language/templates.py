@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import posixpath
 from collections.abc import Callable, Mapping
 from functools import cache
 from importlib.resources import files
@@ -11,11 +12,13 @@ from hymeko_x import codes, formats
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.language.expressions import fill, fill_value
 from hymeko_x.language.parser import parse
-from hymeko_x.language.syntax import ArcItem, Field, Import, Item, Node, Quantity, QuotedName, Ref, Stereotype, Value, origin_of
+from hymeko_x.language.prototypes import Prototypes, meaning_of
+from hymeko_x.language.syntax import ArcItem, Field, Import, Item, Node, Quantity, QuotedName, Ref, Stereotype, Using, Value, origin_of
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Refusal
     from hymeko_x.language.expressions import Environment
+    from hymeko_x.language.prototypes import Prototype
 
 MAX_DEPTH = 64
 """Templates in templates, and assemblies in assemblies."""
@@ -34,14 +37,19 @@ def standard_templates() -> Mapping[str, Node]:
 
 def is_definition(item: Item) -> bool:
     """Whether an item defines a template, or imports some, and is no element itself."""
-    return isinstance(item, Import) or (isinstance(item, Node) and item.parameters is not None)
+    return isinstance(item, Import | Using) or (isinstance(item, Node) and item.parameters is not None)
 
 
 class Definitions(NamedTuple):
-    """What the types of a text may name: templates, and the imports of files whose robots are types, by alias."""
+    """What the types of a text may name: templates, the imports of files whose robots are types, by alias, and prototypes.
+
+    ``texts`` are the items of the text, named "", and of those that it imports; ``short`` are the names that stand for paths.
+    """
 
     templates: dict[str, Node]
     robots: dict[str, Import]
+    texts: list[tuple[str, tuple[Item, ...]]]
+    short: dict[str, tuple[str, ...]]
 
 
 def definitions(items: tuple[Item, ...], roots: list[Node], file: str, fetch: Fetch) -> Definitions:
@@ -49,9 +57,12 @@ def definitions(items: tuple[Item, ...], roots: list[Node], file: str, fetch: Fe
 
     Raises: Refusal (HX060, HX063, HX040, HX007) at the import.
     """
-    found = Definitions(dict(standard_templates()), {})
+    found = Definitions(dict(standard_templates()), {}, [("", items)], {})
+    for block in (items, *(node.items for node in items if isinstance(node, Node))):
+        found.short.update({item.alias: item.ref.path for item in block if isinstance(item, Using)})
     _import(items, file, fetch, found, {})
-    for node in roots:
+    headers = [item for item in items if isinstance(item, Node) and item not in roots]
+    for node in (*headers, *roots):
         _import(node.items, file, fetch, found, {})
         found.templates.update(_definitions(node.items))
     found.templates.update(_definitions(items))
@@ -96,11 +107,12 @@ def _imported(path: str, fetch: Fetch, found: Definitions, seen: _Imported, orig
     """The definitions of one imported file, after those of its own imports."""
     if len(seen) > MAX_IMPORTS:
         raise refuse(codes.TOO_LARGE, f"more than {MAX_IMPORTS} files are imported", origin)
-    data = fetch(path)
+    data = next((data for above in ("", "../", "../../") if (data := fetch(above + path)) is not None), None)
     if data is None:
         raise refuse(codes.UNDEFINED_REFERENCE, f"the imported file '{path}' was not found", origin)
     items = parse(decode(data, path), path).items
     _import(items, path, fetch, found, seen)
+    found.texts.append((posixpath.splitext(posixpath.basename(path))[0], items))
     return _definitions(items)
 
 
@@ -116,10 +128,16 @@ def decode(data: bytes, name: str) -> str:
 
 
 class Preset(NamedTuple):
-    """The types of a node, from the nearest to the base, and the items that they preset."""
+    """The types of a node, from the nearest to the base, the items that they preset, and whether one of them is a vertex or an edge."""
 
     types: tuple[str, ...] = ()
     items: tuple[Item, ...] = ()
+    has_prototype: bool = False
+
+
+def place_of(node: Node) -> tuple[str, int, int]:
+    """The name of a node, and where it stands."""
+    return str(node.name), node.line, node.column
 
 
 class Templates:
@@ -129,6 +147,8 @@ class Templates:
         self._file = file
         self._templates = defined.templates
         self._robots = defined.robots
+        self.prototypes = Prototypes(defined.texts, defined.short)
+        self.applied: set[tuple[str, int, int]] = set()
         self._most = most
         self._made = 0
 
@@ -175,6 +195,9 @@ class Templates:
         return item._replace(items=merge(self.preset(item, environment).items, item.items), stereotypes=())
 
     def _applied(self, stereotype: Stereotype, environment: Environment, node: Node, chain: tuple[str, ...]) -> Preset:
+        prototype = self._prototype(stereotype.ref, node)
+        if prototype is not None:
+            return self._of_prototype(prototype, node, chain)
         name, preset = self._find(stereotype.ref, node)
         if name in chain or len(chain) > MAX_DEPTH:
             raise self.refuse(node, f"the template '{name}' applies itself: {' -> '.join([*chain, name])}")
@@ -187,6 +210,36 @@ class Templates:
             base = _combined(base, self._applied(parent, inner, node, (*chain, name)))
         own = tuple(fill(_named_class(item, name), inner, self._file) for item in template.items)
         return Preset((name, *base.types), (*merge(base.items, own), *preset))
+
+    def is_known(self, ref: Ref) -> bool:
+        """Whether a type is a template; one that is none may be a place where types are."""
+        return ref.dotted in self._templates or self.prototypes.find(ref.path) is None
+
+    def _prototype(self, ref: Ref, node: Node) -> Prototype | None:
+        """The vertex or edge that is a type, where no template has the name."""
+        if ref.dotted in self._templates:
+            return None
+        found = self.prototypes.find(ref.path)
+        if found is None or not isinstance(found.item, Node):
+            return None
+        return None if place_of(found.item) == place_of(node) else found
+
+    def _of_prototype(self, prototype: Prototype, node: Node, chain: tuple[str, ...]) -> Preset:
+        """The fields of a prototype and of its own types, and what its name means for a robot.
+
+        Raises: Refusal (HX063) for one that is a type of itself.
+        """
+        name = ".".join(prototype.path)
+        if name in chain or len(chain) > MAX_DEPTH:
+            raise self.refuse(node, f"the type '{name}' leads back to itself: {' -> '.join([*chain, name])}")
+        assert isinstance(prototype.item, Node)
+        self.count(node, 1 + len(prototype.item.items))
+        self.applied.add(place_of(prototype.item))
+        result = Preset((name,), self.prototypes.fields_of(prototype.item), has_prototype=True)
+        for parent in prototype.item.stereotypes:
+            result = _combined(result, self._applied(parent, {}, prototype.item, (*chain, name)))
+        meaning = meaning_of(prototype.item.name)
+        return result if meaning is None else _combined(result, self._applied(Stereotype(Ref((meaning,))), {}, node, ()))
 
     def _find(self, ref: Ref, node: Node) -> tuple[str, tuple[Item, ...]]:
         """The template's name behind a type, and the ``type`` preset of a dotted one (``sensor.imu``)."""
@@ -245,7 +298,8 @@ def _named_class(item: Item, name: str) -> Item:
 
 def _combined(strong: Preset, weak: Preset) -> Preset:
     """The presets of two types of one element: the first one wins."""
-    return Preset(tuple(dict.fromkeys((*strong.types, *weak.types))), merge(weak.items, strong.items))
+    types = tuple(dict.fromkeys((*strong.types, *weak.types)))
+    return Preset(types, merge(weak.items, strong.items), strong.has_prototype or weak.has_prototype)
 
 
 def merge(base: tuple[Item, ...], own: tuple[Item, ...]) -> tuple[Item, ...]:

@@ -123,7 +123,7 @@ class HymekoSheet(Struct, frozen=True):
         if isinstance(arc.weight, Pose):
             weight = pose_value(arc.weight, self.angles)
         elif arc.weight is not None:
-            weight = tuple(map(value_of, arc.weight))
+            weight = tuple([part if isinstance(part, str) else value_of(part) for part in arc.weight])
         return ArcItem(self.ref(arc.target, TARGETS[kind], _DIRECTIONS[arc.sign]), arc.role, weight)
 
 

@@ -23,7 +23,7 @@ _DEGREE = unit_factor("deg") or 1.0
 _DIGITS = (6, 10, 13, 15, 16, 17)
 _UNITS_BLOCK = 15  # letters of `units { angle rad }`
 _WORD = re.compile(r"[^\W\d]\w*")
-_NO_WORDS = frozenset({"inf", "nan", "rel", "seq", "concurrent", "use", "import", "as"})
+_NO_WORDS = frozenset({"inf", "nan", "rel", "seq", "concurrent", "use", "import", "using", "const", "as"})
 
 
 class Angles(Struct, frozen=True):

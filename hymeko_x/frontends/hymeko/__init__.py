@@ -26,6 +26,7 @@ from hymeko_x.frontends.hymeko.kinds import infer_kinds
 from hymeko_x.frontends.hymeko.lumped import remove_folded
 from hymeko_x.frontends.hymeko.nesting import declare_inside
 from hymeko_x.frontends.hymeko.parts import has_attached, read_part
+from hymeko_x.frontends.hymeko.published import with_named_fields
 from hymeko_x.frontends.hymeko.references import resolve_values
 from hymeko_x.frontends.hymeko.values import ValueReader, read_units
 from hymeko_x.ir import parts
@@ -72,7 +73,7 @@ def read(source: Source, report: Report) -> Reading:
 
     try:
         expanded = expand(parse(text, source.name), source.name, fetch)
-        builder = HymekoBuilder(reader=ValueReader(source.name, report))
+        builder = HymekoBuilder(reader=ValueReader(source.name, report), prototypes=expanded.prototypes, root=expanded.root)
         return Reading(_read_expanded(expanded, builder, read_instances(builder, expanded, source.parts)))
     except Refusal as refusal:
         raise with_excerpt(refusal, text, source.name) from refusal
@@ -85,6 +86,9 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
             builder.reader.units = read_units(element.node, builder.reader)
     elements = [element for element in elements if not _is_about_the_whole(element.node)]
     kinds = infer_kinds(expanded, elements)
+    if kinds and OUTER.issuperset(kinds) and "robot" not in expanded.types:
+        expanded, elements = _with_units_as_data(expanded)
+        kinds = infer_kinds(expanded, elements)
     _read_root(builder, expanded, kinds, instances)
     builder.source = take_provenance(builder.notations, FOREIGN, Provenance("hymeko", file=builder.reader.file))
     declared = resolve_values(builder, _declare(builder, expanded, kinds, instances), expanded.items)
@@ -100,6 +104,19 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
     return with_heritage(replace(found, places=builder.places, stored=builder.stored), tuple(instances.values()))
 
 
+def _with_units_as_data(expanded: Expanded) -> tuple[Expanded, list[Element]]:
+    """The text and its elements with units as a vertex like any other: the numbers of plain data have none."""
+    items = tuple(_datum(item) if isinstance(item, Element) and _is_units(item.node) else item for item in expanded.items)
+    elements = [item for item in items if isinstance(item, Element) and not _is_about_the_whole(item.node)]
+    return expanded._replace(items=items), elements
+
+
+def _datum(element: Element) -> Element:
+    """An element as a vertex of data, whatever its name and its fields mean elsewhere."""
+    node = element.node._replace(name=QuotedName(element.node.name), items=(Field("kind", "datum"), *element.node.items))
+    return element._replace(node=node, types=("datum",))
+
+
 def _place_instances(builder: HymekoBuilder, expanded: Expanded, instances: dict[int, Imported]) -> None:
     """Apply the changes of elements of imported robots, and put the robots where they belong."""
     within = [change for imported in instances.values() for change in changes_in(imported)]
@@ -111,6 +128,8 @@ def _place_instances(builder: HymekoBuilder, expanded: Expanded, instances: dict
 
 
 def _read_element(builder: HymekoBuilder, key: Id, element: Element) -> None:
+    if key.kind in ("body", "joint"):
+        element = element._replace(node=with_named_fields(element.node, builder.prototypes))
     if key.kind in _WITH_SHAPES:
         read_body(builder, key, element)
     elif key.kind == "joint" and not element.node.edge and _preset(element, "kind") != "joint":

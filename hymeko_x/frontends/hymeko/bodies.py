@@ -31,11 +31,12 @@ def read_body(builder: HymekoBuilder, key: Id, element: Element) -> None:
     block = Block([item for item in items if not _is_shape(item) and not is_base_arc(item)], builder.reader)
     place = _place(block)
     inertial = _inertial(block, place)
+    color = block.take("color")
     if key.kind == "body":
         builder.vertices[key] = parts.Body(inertial)
     for item in items:
         if _is_shape(item):
-            _read_shape(builder, key, _with_geometry(item, block), place, element.scope)
+            _read_shape(builder, key, _with_color(_with_geometry(item, block), color), place, element.scope)
     block.nodes = [node for node in block.nodes if not _is_referenced(items, node)]
     block.rest(str(key))
     builder.keep(key, block)
@@ -99,15 +100,31 @@ def _with_geometry(item: Item, block: Block) -> Item:
     if node is None:
         return item
     items = tuple(inner._replace(name="mesh") if isinstance(inner, Field) and inner.name in _FILE_WORDS else inner for inner in node.items)
-    kind = node.stereotypes[0].ref.path[-1] if node.stereotypes else "mesh"
+    kind = node.stereotypes[0].ref.path[-1] if node.stereotypes else _named_geometry(node)
+    items = tuple(inner for inner in items if not (isinstance(inner, ArcItem) and inner.role == "geometry"))
     if kind != "mesh":
         items = (Field("type", kind, "", node.line, node.column), *items)
     return Node(item.role, (*items, *item.items), line=item.line, column=item.column)
 
 
+def _named_geometry(node: Node) -> str:
+    """The geometry that ``geometry -> cylinder`` names; a mesh where nothing does."""
+    return next((item.ref.path[-1] for item in node.items if isinstance(item, ArcItem) and item.role == "geometry"), "mesh")
+
+
+def _with_color(item: Item, color: Field | None) -> Item:
+    """A shape that is seen, with the colour of its body where it has no appearance of its own."""
+    if color is None or not isinstance(item, Node) or item.name == "collision":
+        return item
+    given = {inner.name for inner in item.items if isinstance(inner, Field)} | {
+        inner.role for inner in item.items if isinstance(inner, ArcItem)
+    }
+    return item if given & {"color", "material", "rgba"} else item._replace(items=(*item.items, color))
+
+
 def _place(block: Block) -> Pose:
     """``translation`` and ``rotation`` of a link: the frame of its geometry and mass, as in the published listings."""
-    translation, rotation = block.take("translation"), block.take("rotation")
+    translation, rotation = block.take("translation", "origin"), block.take("rotation")
     xyz = cast("Value", translation.value) if translation else ZERO
     if rotation is not None:
         return block.reader.pose((xyz, cast("Value", rotation.value)), rotation)

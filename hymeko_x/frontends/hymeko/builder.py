@@ -13,9 +13,9 @@ from hymeko_x.formats.hymeko.nesting import OUTER
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Provenance
-from hymeko_x.ir.parts import Texture, Weight, World
+from hymeko_x.ir.parts import Datum, Texture, Weight, World
 from hymeko_x.ir.values import compose
-from hymeko_x.language.syntax import ArcItem, QuotedName, is_list
+from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, is_list
 from hymeko_x.language.templates import standard_templates
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.provenance import StoredMesh
     from hymeko_x.ir.values import Pose, Vec3
     from hymeko_x.language.expansion import Element, Scope
+    from hymeko_x.language.prototypes import Prototypes
     from hymeko_x.language.syntax import Item, Ref
 
 _FEW = 8
@@ -49,6 +50,8 @@ class HymekoBuilder(Builder):
     directions: dict[str, Vec3] = field(default_factory=dict)
     folded: set[Id] = field(default_factory=set)
     imported: dict[str, ImportedRoot] = field(default_factory=dict)
+    prototypes: Prototypes | None = None
+    root: str = ""
     places: dict[str, str] = field(default_factory=dict)
     stored: dict[Id, StoredMesh | Texture] = field(default_factory=dict)
 
@@ -98,6 +101,8 @@ class HymekoBuilder(Builder):
         Raises: Refusal (HX040) when there is none.
         """
         found = self.find(ref, scope, kinds)
+        if found is None and not kinds:
+            found = self._imported(ref, item)
         if found is None:
             self._check_roots(ref, scope, kinds, item)
             raise refuse(
@@ -107,6 +112,20 @@ class HymekoBuilder(Builder):
                 hint=self.near(ref.path[-1], kinds),
             )
         return found
+
+    def _imported(self, ref: Ref, item: Item) -> Id | None:
+        """The vertex of data for an element of an imported text, or of a root that holds types: its name is the path there."""
+        prototype = None if self.prototypes is None else self.prototypes.find(ref.path)
+        if prototype is None or self.root in ("", prototype.path[0]):
+            return None
+        key = Id("datum", ".".join(prototype.path))
+        if key not in self.vertices:
+            self.reserve(key.kind, key.name, item)
+            fields = self.prototypes.fields_of(prototype.item) if isinstance(prototype.item, Node) else (prototype.item,)  # type: ignore[union-attr]
+            values = [(field.name, self.reader.datum(field)) for field in fields if isinstance(field, Field) and field.value is not None]
+            self.vertices[key] = Datum(tuple(values))
+            self.layout.append(key)
+        return key
 
     def _check_roots(self, ref: Ref, scope: Scope, kinds: tuple[str, ...], item: Item) -> None:
         """Raises: Refusal (HX045) for the name of an imported robot with no root or several."""

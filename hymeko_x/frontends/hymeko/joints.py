@@ -42,6 +42,7 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
     block = Block(element.node.items, builder.reader)
     scope = element.scope
     block.take("kind"), block.take("moves")
+    typed = _type_of(block)
     mimic = _take_all(block, "mimic")
     axis_arc = _take_axis_arc(builder, block, scope)
     if _has_own_child(builder, key, block):
@@ -49,9 +50,10 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
     compliant = take_compliant(builder, block, scope)
     parent, child = _ends(builder, key, block, element.node)
     pose, child_pose = _poses(builder.reader, parent, child, key)
+    pose = _origin(block, pose)
     child_pose = builder.in_root(child.ref, scope, child_pose)
     target = builder.target(child.ref, scope, _BODIES, child)
-    dofs = _dofs(builder, block, scope, words.ROLE_MOVES.get(child.role.upper()) or moves, axis_arc)
+    dofs = _dofs(builder, block, scope, words.ROLE_MOVES.get(child.role.upper()) or typed or moves, axis_arc)
     dofs = with_compliance(builder, key, compliant, dofs)
     builder.edges[key] = joint_edge(parts.Joint(dofs), builder.target(parent.ref, scope, _BODIES, parent), target, pose, child_pose)
     if mimic:
@@ -61,6 +63,17 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
         builder.edges[builder.reserve("coupling", key.name, element.node)] = coupling_edge(key, leaders)
     block.rest(str(key))
     builder.keep(key, block)
+
+
+def _type_of(block: Block) -> str | None:
+    """How a joint moves by its field ``type "revolute"``, as published meta-models have it."""
+    item = block.fields.get("type")
+    moves = (
+        _MOVES_OF.get(item.value, "none" if item.value == "fixed" else None) if item is not None and isinstance(item.value, str) else None
+    )
+    if moves is not None:
+        block.take("type")
+    return moves
 
 
 def _has_own_child(builder: HymekoBuilder, key: Id, block: Block) -> bool:
@@ -80,6 +93,8 @@ def _ends(builder: HymekoBuilder, key: Id, block: Block, item: Item) -> tuple[Ar
     """The arc of the parent and the arc of the child, taken out of the block."""
     parents = [arc for arc in block.arcs if sign_of(arc) > 0 and arc.role in ("", "parent")]
     children = [arc for arc in block.arcs if sign_of(arc) < 0 and (arc.role in _CHILD_ROLES or arc.role.upper() in words.ROLE_MOVES)]
+    if not parents and len(children) == 2 and all(arc.ref.direction == "->" for arc in children):
+        parents = [children.pop(0)]  # as published: the first of two heads is the parent
     if len(parents) != 1 or len(children) != 1:
         message = f"{key} has {len(parents)} parents and {len(children)} children; a joint joins one '+ parent' and one '- child'"
         raise refuse(codes.MISSING_PART, message, builder.reader.origin(item), element=str(key), hint=_end_hint(block))
@@ -95,6 +110,16 @@ def _end_hint(block: Block) -> str:
             text = f"{arc.role} {arc.ref.direction} {arc.ref.dotted}"
             return f"'{text}' is an arc of the role '{arc.role}'; a comma separates a flag from an arc: {text.replace(' ', ', ', 1)}"
     return "@joint { + base - tip } joins the bodies base and tip"
+
+
+def _origin(block: Block, pose: Pose) -> Pose:
+    """The joint frame by the fields ``origin [x y z]`` and ``rpy [roll pitch yaw]``, where the text has them."""
+    origin, rpy = block.take("origin"), block.take("rpy")
+    item = rpy or origin
+    if item is None:
+        return pose
+    xyz = ZERO if origin is None else origin.value
+    return block.reader.pose(xyz if rpy is None else (xyz, rpy.value), item)  # type: ignore[arg-type]
 
 
 def _poses(reader: ValueReader, parent: ArcItem, child: ArcItem, key: Id) -> tuple[Pose, Pose]:
@@ -129,6 +154,8 @@ def read_dofs(builder: HymekoBuilder, block: Block, scope: Scope) -> tuple[parts
 
 
 def _is_dof(node: Node) -> bool:
+    if node.edge:
+        return False
     if node.name == "dof" and not isinstance(node.name, QuotedName):
         return True
     return bool(node.stereotypes) or any(isinstance(item, Field) and item.name == "moves" for item in node.items)
@@ -158,8 +185,12 @@ def _dof(builder: HymekoBuilder, block: Block, scope: Scope, kind: parts.DofKind
 
 def read_limits(block: Block, motion: str) -> parts.Limits:
     """``limit [lower upper]`` and the other bounds; ``motion`` is the dimension of the coordinate."""
-    span = block.take("limit", "limits", "range")
+    span, group = block.take("limit", "limits", "range"), block.take_node("limit")
     found: dict[str, Any] = block.take_words(words.LIMIT_WORDS, motion)
+    if group is not None:
+        inner = Block(group.items, block.reader)
+        found = {**inner.take_words(words.LIMIT_WORDS, motion), **found}
+        inner.rest("a limit")
     if span is not None:
         found["lower"], found["upper"] = block.reader.numbers(span.value, motion, span, 2)
     return parts.Limits(**found) if found else parts.UNLIMITED
@@ -214,9 +245,7 @@ def _take_axis_arc(builder: HymekoBuilder, block: Block, scope: Scope) -> _Axis 
         if direction is None or (arc.role not in ("", "axis")):
             continue
         block.arcs.remove(arc)
-        sign = -1.0 if sign_of(arc) < 0 and arc.ref.direction == "-" else 1.0
-        turned = _turned(builder, arc, direction)
-        return (_signed(turned, sign) if sign < 0 else scaled(turned, 1.0)), None
+        return scaled(_turned(builder, arc, direction), 1.0), None
     return None
 
 

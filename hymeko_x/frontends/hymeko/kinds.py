@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import AXES
 from hymeko_x.ir.mechanism import KINDS
-from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, is_field
+from hymeko_x.language.prototypes import role_of
+from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, Value, is_field, is_list
 
 if TYPE_CHECKING:
     from hymeko_x.language.expansion import Element, Expanded
@@ -15,6 +16,8 @@ _EDGES = {"+": 1, "<-": 1, "-": -1, "->": -1}
 _SPRING = frozenset({"spring_constant", "stiffness", "k"})
 _DAMPER = frozenset({"damping_const", "damping", "c"})
 _BODY_WORDS = frozenset({"mass", "com", "inertia", "visual", "collision", "geometry", "shape", "translation"})
+_NO_ENDS = frozenset({"limit", "origin", "rpy", "axis", "mimic"})
+"""Roles of a joint's arcs that lead to no body."""
 _COMPLIANT = frozenset({"spring", "damper", "port"})
 _ALL = frozenset(KINDS.values()) | {"axis"}
 
@@ -45,11 +48,19 @@ def is_direction(element: Element) -> bool:
 
 def typed_kind(element: Element) -> str:
     """The kind that the element's types preset, or nothing."""
+    if (
+        element.has_prototype
+        and element.node.edge
+        and not any(isinstance(item, ArcItem) and not role_of(item) for item in element.node.items)
+    ):
+        return ""
     for item in element.node.items:
         if is_field(item, ("kind",)) and isinstance(item.value, str):
             return item.value if item.value in _ALL and element.types else ""
     if element.name == "world" and not element.node.edge and not element.types:
         return "" if isinstance(element.node.name, QuotedName) else "world"
+    if element.name == "world" and not element.node.edge and element.types and not isinstance(element.node.name, QuotedName):
+        return "world"
     return ""
 
 
@@ -64,7 +75,7 @@ def _default(element: Element, mode: str) -> str:
 def _infer_from_edges(elements: list[Element], kinds: list[str], by_name: dict[str, list[int]]) -> None:
     """In an untyped root: an edge with one body on each side is a joint, one with a spring or damper is constitutive."""
     for number, element in enumerate(elements):
-        if not element.node.edge or kinds[number]:
+        if not element.node.edge or kinds[number] or element.types or _is_plain(element.node):
             continue
         ends = [(arc, _target(arc, element, by_name)) for arc in element.node.items if isinstance(arc, ArcItem)]
         lumped = any(end is not None and (kinds[end] or _lumped(elements[end])) in _COMPLIANT for _, end in ends)
@@ -79,8 +90,34 @@ def _infer_from_edges(elements: list[Element], kinds: list[str], by_name: dict[s
                 if end is not None and not kinds[end] and not is_direction(elements[end]):
                     kinds[end] = "body"
     for number, element in enumerate(elements):
+        if kinds[number] == "joint":
+            for arc in element.node.items:
+                is_end = isinstance(arc, ArcItem) and role_of(arc) not in _NO_ENDS
+                end = _target(arc, element, by_name) if is_end else None  # type: ignore[arg-type]
+                if end is not None and not kinds[end] and not is_direction(elements[end]):
+                    kinds[end] = "body"
+    for number, element in enumerate(elements):
         if not kinds[number] and not element.node.edge and _fields(element) & _BODY_WORDS:
             kinds[number] = "body"
+
+
+def _is_plain(node: Node) -> bool:
+    """Whether an edge is one of plain data: edges stand inside of it, or a weight is no pose."""
+    if any(isinstance(item, Node) and item.edge for item in node.items):
+        return True
+    return any(isinstance(item, ArcItem) and item.weight is not None and not _may_be_pose(item.weight) for item in node.items)
+
+
+def _may_be_pose(weight: tuple[Value, ...]) -> bool:
+    """Whether a weight has the form of a pose, or of numbers at all."""
+    if not any(map(is_list, weight)):
+        return True
+    return (
+        len(weight) <= 3
+        and is_list(weight[0])
+        and len(weight[0]) == 3
+        and all(not is_list(part) or len(part) in (3, 4, 6) for part in weight)
+    )
 
 
 def _target(arc: ArcItem, element: Element, by_name: dict[str, list[int]]) -> int | None:
@@ -94,9 +131,17 @@ def _is_joint(ends: list[tuple[ArcItem, int | None]], elements: list[Element]) -
     signs: list[int] = []
     for arc, end in ends:
         names_axis = arc.ref.path[-1] in AXES if end is None else is_direction(elements[end])
+        if not names_axis and (len(arc.ref.path) > 1 if end is None else _is_data(elements[end])):
+            return False
         if not names_axis and arc.role not in ("axis", "mimic"):
             signs.append(_EDGES.get(arc.ref.direction, 0))
     return sorted(signs) == [-1, 1]
+
+
+def _is_data(element: Element) -> bool:
+    """Whether a vertex has fields, and none that a body has."""
+    fields = {item.name for item in element.node.items if isinstance(item, Field) and item.value is not None}
+    return bool(fields) and fields.isdisjoint(_BODY_WORDS | {"name", "color", "origin", "rotation", "axes"})
 
 
 def _fields(element: Element) -> set[str]:

@@ -61,7 +61,8 @@ def _inner(builder: HymekoBuilder, item: Expansion, scope: Scope) -> tuple[str, 
     if not isinstance(item, Element):
         node = item.item if isinstance(item, Statement) else item.node
         raise builder.reader.refuse(node, "data holds data and relations, no robots of other files")
-    kind = typed_kind(item) or ("relation" if item.node.edge else "datum")
+    kind = "" if item.has_prototype else typed_kind(item)
+    kind = kind or ("relation" if item.node.edge else "datum")
     if kind not in OUTER:
         hint = "it stands in the root, or in an assembly"
         raise builder.reader.refuse(item.node, f"'{item.node.name}' is a {kind}, and data holds data and relations", hint=hint)

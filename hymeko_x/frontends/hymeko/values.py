@@ -191,9 +191,31 @@ def name_of(item: Item) -> str:
     return "an import" if not isinstance(item, Node | Field) else f"'{item.name}'"
 
 
+_UNIT_NAMES = MappingProxyType(
+    {
+        "degree": "deg",
+        "degrees": "deg",
+        "radian": "rad",
+        "radians": "rad",
+        "meter": "m",
+        "metre": "m",
+        "millimeter": "mm",
+        "kilogram": "kg",
+        "second": "s",
+    }
+)
+
+
+def _unit_words(item: Field) -> tuple[str, ...]:
+    """A dimension, or its unit; in older texts both: ``angle "degree"``."""
+    if not isinstance(item.value, str):
+        return (item.name,)
+    return item.name, _UNIT_NAMES.get(item.value, item.value)
+
+
 def read_units(node: Node, reader: ValueReader) -> dict[str, float]:
     """The factors that a ``units { angle rad length mm }`` block sets."""
-    words = [item.name for item in node.items if isinstance(item, Field)]
+    words = [word for item in node.items if isinstance(item, Field) for word in _unit_words(item)]
     factors = dict(reader.units)
     for dimension, unit in zip(words[::2], words[1::2], strict=False):
         known = BASE_UNITS.get(dimension)

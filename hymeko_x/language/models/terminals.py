@@ -41,21 +41,21 @@ def _without(letters: str, left_out: list[str]) -> str:
     return "".join(kept)
 
 
-KEYWORDS = ("inf", "nan", "rel", "seq", "concurrent", "import", "as", "use")
+KEYWORDS = ("inf", "nan", "rel", "seq", "concurrent", "import", "using", "const", "as", "use")
 """Words that are no names, or not everywhere: a model has to quote them."""
 
 PLAIN: Mapping[str, str] = MappingProxyType(
     {
         "NAME": rf"{words_except(KEYWORDS)}|`(?:[^`\\\n]|\\[^\n])+`",
         "NUMBER": r"[+-]?[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?|[+-]?inf|nan",
-        "QUANTITY": r"[+-]?[0-9]+(?:\.[0-9]+)?[A-DF-Za-df-z%°µ][A-Za-z0-9/^*%·]*",
+        "QUANTITY": r"[+-]?[0-9]+(?:\.[0-9]+)?[A-DF-Za-df-z%°µ][A-Za-z0-9%]*(?:[/*·][A-Za-z0-9%]+|\^[0-9]+)*",
         "STRING": r'"(?:[^"\\]|\\[^\n])*"|' + r"'(?:[^'\\]|\\[^\n])*'|" + r'"""(?:"?"?[^"])*"""',
         "EXPRESSION": r"\$\{[^{}]*\}",
         "EDGE_WORD": "@",
     }
 )
 """Instead of the terminals of these names."""
-DROPPED = frozenset({"NUMBERS", "MATRIX", "QUOTED_REF", "LEGACY_HEADER"})
+DROPPED = frozenset({"NUMBERS", "MATRIX", "QUOTED_REF", "LEGACY_HEADER", "CONSTANT", "USING", "SEMICOLON"})
 """Lists are the rule `vector`; the others are forms that no text is printed in."""
 
 _COMMENT = r"//[^\n]*\n|/\*(?:[^*]|\*+[^*/])*\*+/"
