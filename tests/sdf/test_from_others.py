@@ -29,6 +29,7 @@ CROSSED = """<robot name="m"><link name="a"/><link name="b"/><joint name="j" typ
 <axis xyz="1 0 0"/><limit lower="2" upper="1" effort="1" velocity="1"/></joint></robot>"""
 TWICE = """<robot name="m"><link name="a"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <gazebo reference="a"><sensor name="eye" type="camera"><camera/></sensor><sensor name="eye" type="imu"/></gazebo></robot>"""
+ANCHOR = """<robot name="m"><link name="a"/><link name="a_anchor"/><joint name="j" type="fixed"><parent link="a"/><child link="a_anchor"/></joint></robot>"""
 INNER_FREE = "m : robot { a { mass 1 } b { mass 1 } @j : floating { [1 2 3] + a - b } }"
 MARKUP = "m : robot { a { mass 1 } `<b> & c` { mass 1 } @j : fixed { [1 2 3] + a - `<b> & c` } }"
 CYCLE = """m : robot { a { mass 1 } b { mass 1 } c { mass 1 } @j : continuous { [1 0 0] + a - b } @k : continuous { [0 1 0] + b - c }
@@ -44,6 +45,7 @@ CASES = {
     "closures that hold free bodies, or join what is joined": ("m.xml", CLOSURES, LIMITED),
     "limits that are crossed": ("m.urdf", CROSSED, SAME),
     "two sensors of one name": ("m.urdf", TWICE, SAME),
+    "a link whose name ends as ours do": ("m.urdf", ANCHOR, SAME),
     "a free joint below a body": ("m.hymeko", INNER_FREE, SAME),
     "names with markup": ("m.hymeko", MARKUP, SAME),
     "a cycle whose closure leads to its root": ("m.hymeko", CYCLE, SAME),

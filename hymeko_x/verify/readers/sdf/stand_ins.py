@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _WORLD_LINK = "world_geometry"
 """A link of this name that is fixed to the world holds what is on the world itself."""
 _ANCHOR = "_anchor"
-"""A link with a name that ends in this, fixed to another one, holds the end of a closure of that."""
+"""A link that is called as a closure with this behind, and is fixed to another one, holds the end of the closure on that."""
 _FLOAT = (Kind.SLIDE, Kind.SLIDE, Kind.SLIDE, Kind.BALL)
 
 
@@ -26,10 +26,11 @@ def without_stand_ins(bodies: Sequence[Body], loops: Sequence[Loop]) -> tuple[tu
     for body in bodies[1:]:
         children[body.parent] += 1
     leaves = [i for i, body in enumerate(bodies) if i and not children[i] and not body.joint.dofs and not body.joint.open]
+    anchors = {(body, f"{loop.name}{_ANCHOR}") for loop in loops for body in (loop.body_a, loop.body_b)}
     gone: dict[int, tuple[int, Array]] = {}
     for i in leaves:
         body = bodies[i]
-        if (body.name == _WORLD_LINK and body.parent == WORLD) or (str(body.name).endswith(_ANCHOR) and _is_nothing(body)):
+        if (body.name == _WORLD_LINK and body.parent == WORLD) or ((i, body.name) in anchors and _is_nothing(body)):
             gone[i] = body.parent, body.joint.placement
     floating = dict(_floating(bodies, children))
     for top, last in floating.items():
