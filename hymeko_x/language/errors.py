@@ -160,7 +160,7 @@ def _expectation_hint(expected: set[str], token: str, before: str) -> str:
         return "a block follows a name: name { ... }"
     if "LBRACE" in expected and "EQUAL" not in expected:
         return "a node or edge has a block, even if it is empty: name : type { }"
-    if expected <= {"NAME", "QUOTED_REF", "LESSTHAN"}:
+    if expected <= {"NAME", "QUOTED_REF", "LESSTHAN"} and before in ("+", "-", "~", ">"):
         return "a direction is followed by the name of an element"
     return _BEHIND.get(before, "")
 

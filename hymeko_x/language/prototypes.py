@@ -26,7 +26,6 @@ MEANINGS: Mapping[str, str] = MappingProxyType(
         "jointedge": "joint",
         "joint": "joint",
         "link": "link",
-        "sensor": "sensor",
     }
 )
 """The type of the standard vocabulary that a prototype means, by its name in small letters without ``_``."""

@@ -129,7 +129,7 @@ def _place_instances(builder: HymekoBuilder, expanded: Expanded, instances: dict
 
 def _read_element(builder: HymekoBuilder, key: Id, element: Element) -> None:
     if key.kind in ("body", "joint"):
-        element = element._replace(node=with_named_fields(element.node, builder.prototypes))
+        element = element._replace(node=with_named_fields(element.node, builder.prototypes, inherits=element.has_prototype))
     if key.kind in _WITH_SHAPES:
         read_body(builder, key, element)
     elif key.kind == "joint" and not element.node.edge and _preset(element, "kind") != "joint":

@@ -14,13 +14,16 @@ _FIELDS = frozenset({"limit", "color", "origin", "rpy"})
 """Roles of arcs that stand for a field: ``limit -> joint_limit``."""
 
 
-def with_named_fields(node: Node, prototypes: Prototypes | None) -> Node:
-    """The node of a body or a joint with fields in the place of arcs that lead to values, and without values that are left open."""
+def with_named_fields(node: Node, prototypes: Prototypes | None, *, inherits: bool) -> Node:
+    """The node of a body or a joint with fields in the place of arcs that lead to values.
+
+    One that ``inherits`` its fields from a vertex is without those that are left open there.
+    """
     if prototypes is None or not any(isinstance(item, ArcItem | Field) and _is_published(item) for item in node.items):
         return node
     found: list[Item] = []
     for item in node.items:
-        if isinstance(item, Field) and _is_open(item.value):
+        if inherits and isinstance(item, Field) and _is_open(item.value):
             continue
         if isinstance(item, ArcItem):
             role = role_of(item)
