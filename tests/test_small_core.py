@@ -89,6 +89,7 @@ ADVICE = {
     "roundtrip": ("arm.urdf", "verify"),
     "schema": ("", None),
     "simulate": ("arm.urdf", "dynamics"),
+    "skill": ("--card", None),
     "update": ("arm.urdf arm.urdf", None),
     "verify": ("arm.urdf arm.urdf", "verify"),
     "view": ("arm.urdf", "view"),

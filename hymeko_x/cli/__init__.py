@@ -63,6 +63,7 @@ GROUPS: Mapping[str, Mapping[str, Verb]] = {
         "formats": Verb("info", "the formats that can be read and written"),
         "explain": Verb("info", "what a code such as HX044 means"),
         "grammar": Verb("grammar", "the grammar of HyMeKo text for programs that hold language models to one"),
+        "skill": Verb("skill", "what a language model has to know: of this program, or of the language (--card)"),
         "schema": Verb("schema", "the JSON Schema of robots in JSON"),
         "completion": Verb("completion", "what makes a shell complete verbs, options and files"),
         "corpus": Verb("corpus", "real robots from published packages: fetch, list, run, stats"),

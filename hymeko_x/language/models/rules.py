@@ -32,6 +32,8 @@ class Before(Enum):
     JOINED = "j"
 
 
+_IN_LISTS = "entry"
+"""A value in a list: no relation, because `[-E]` begins like a number."""
 _SIGNS = frozenset("{}()[],:=<>")
 _JOINS = frozenset({"."})
 
@@ -58,9 +60,12 @@ def _lark_rules() -> tuple[Rules, dict[str, str]]:
     rules: Rules = {}
     for rule in lark.rules:
         symbols = tuple(symbol.name if symbol.is_term else _named(symbol.name) for symbol in rule.expansion)
+        if _named(rule.origin.name).startswith("vector"):
+            symbols = tuple(_IN_LISTS if symbol == "value" else symbol for symbol in symbols)
         if DROPPED.isdisjoint(symbols):
             rules.setdefault(_named(rule.origin.name), []).append(symbols)
     rules[START] = [choice for choice in rules[START] if choice]
+    rules[_IN_LISTS] = [("literal",), ("ref",)]
     return rules, patterns
 
 
