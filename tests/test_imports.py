@@ -27,7 +27,7 @@ LAYERS = (
     ("pipeline", "importing", "disk", "verify", "validation", "corpus"),
     ("agree", "delivery", "edits", "robot", "dynamics"),
     ("api",),
-    ("draw", "server", "mcp"),
+    ("draw", "server", "mcp", "generate"),
     ("cli", "testing"),
     ("__main__",),
 )

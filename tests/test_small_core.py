@@ -78,6 +78,7 @@ ADVICE = {
     "export": ("arm.hymeko --to xacro", "xacro"),
     "fmt": ("arm.hymeko", None),
     "formats": ("", None),
+    "generate": ("arm.hymeko --to urdf --with faults:1", "verify"),
     "grammar": ("--to gbnf", None),
     "graph": ("arm.urdf -o tree.svg", None),
     "import": ("arm.urdf", None),

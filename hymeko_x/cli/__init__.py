@@ -62,6 +62,7 @@ GROUPS: Mapping[str, Mapping[str, Verb]] = {
     "more": {
         "formats": Verb("info", "the formats that can be read and written"),
         "explain": Verb("info", "what a code such as HX044 means"),
+        "generate": Verb("generate", "let a language model convert a robot, check and verify its answers, and let it repair them"),
         "grammar": Verb("grammar", "the grammar of HyMeKo text for programs that hold language models to one"),
         "skill": Verb("skill", "what a language model has to know: of this program, or of the language (--card)"),
         "schema": Verb("schema", "the JSON Schema of robots in JSON"),

@@ -68,6 +68,9 @@ URDF = Format(
     has_single_dof_joints=True,
     missing_shapes=frozenset({"plane", "hfield", "ellipsoid"}),
     claimed_reduction=50.0,
+    prompt="You are an expert in robotics. Convert the following HyMeKo robot description into a valid URDF file. "
+    "Don't forget to include all required elements. Only output the URDF XML, nothing else:\n",
+    error_rates=(0.05, 0.18),
     colour="#1f77b4",
     comment=_XML_COMMENT,
 )
@@ -127,6 +130,10 @@ MJCF = Format(
     requires_mass=True,
     includes=rb"<include\b",
     claimed_reduction=20.0,
+    prompt="You are an expert in robotics. Convert the following HyMeKo robot description into a valid MuJoCo file. Compiler should "
+    "use local coordinates. Don't forget to include all required elements. Include mass in geometry. Include color definition directly "
+    "to links, don't include visual elements in the beginning. Only output the MuJoCo XML, nothing else:\n",
+    error_rates=(0.252, 0.093),
     colour="#d62728",
     comment=_XML_COMMENT,
 )

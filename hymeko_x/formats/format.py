@@ -146,6 +146,10 @@ class Format(Struct, frozen=True):
     """Whether its text holds the points of meshes, so that its length is no measure of the language."""
     claimed_reduction: float | None = None
     """By how many percent HyMeKo is shorter, as the paper reports it."""
+    prompt: str | None = None
+    """The prompt with which the paper asks a language model for a file of it."""
+    error_rates: tuple[float, float] | None = None
+    """Which part of the paper's generated files was not valid: of the robot with one joint, and of the SCARA robot."""
     colour: str = "#7f7f7f"
     """Its colour in figures."""
 
