@@ -145,6 +145,12 @@ def test_ros2_control_has_a_command_interface_for_each_drive(urdf: Path) -> None
     assert system.find("joint[@name='shoulder']/state_interface[@name='position']/param[@name='initial_value']").text == "0.5"
 
 
+def test_the_world_comes_first_and_ros2_control_last(tmp_path: Path) -> None:
+    elements = [(tag.tag, tag.get("name")) for tag in etree.parse(package(FIXED, tmp_path)).getroot() if isinstance(tag.tag, str)]
+    assert elements[0] == ("link", "world")
+    assert elements[-1] == ("ros2_control", "arm")
+
+
 def test_an_interface_of_which_nothing_is_known_is_no_actuator() -> None:
     text = '<ros2_control name="s" type="system"><joint name="j"><command_interface name="position"/></joint></ros2_control>'
     joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'

@@ -109,13 +109,15 @@ def _around(extras: list[Extra], path: str, sheet: UrdfSheet) -> list[str]:
 
 
 def _order(sheet: UrdfSheet) -> list[Id]:
-    """Every element that stands at top level, once: new materials first, then the author's order, then new elements."""
+    """Every element that stands at top level, once: new materials and roots, then the author's order, then other new elements."""
     materials = _robot_materials(sheet)
     rest = [*_tree(sheet), *_transmissions(sheet)]
     wanted = {*materials, *rest}
     known = [key for key in dict.fromkeys(sheet.mechanism.layout) if key in wanted]
     placed = set(known)
-    return [*(key for key in materials if key not in placed), *known, *(key for key in rest if key not in placed)]
+    new = [key for key in rest if key not in placed]
+    roots = {key: None for key in new if key.kind == "body" and key not in sheet.mechanism.parent_joint}
+    return [*(key for key in materials if key not in placed), *roots, *known, *(key for key in new if key not in roots)]
 
 
 def _robot_materials(sheet: UrdfSheet) -> list[Id]:

@@ -42,7 +42,8 @@ def declare_ros2_control(mechanism: Mechanism, context: Context) -> Mechanism:
         return mechanism
     context.report.note(codes.FOR_TARGET, f"<{words.TAG}> has the drives of {counted(len(commands), 'joint')} ({context.reason})")
     text = ready(_system(mechanism, commands), 1)
-    extra = Extra(urdf_words.FORMAT, "", text, 1 + max((extra.index for extra in own), default=len(mechanism.graph.vertices)))
+    last = max(len(mechanism.graph.vertices) + len(mechanism.graph.edges), *(extra.index for extra in own), 0)
+    extra = Extra(urdf_words.FORMAT, "", text, last + 1)
     return replace(mechanism, extras={**mechanism.extras, ROOT: (*own, extra)})
 
 
