@@ -9,12 +9,8 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from msgspec.structs import replace
-
 if TYPE_CHECKING:
     from collections.abc import Iterable
-
-    from hymeko_x.ir.values import Pose
 
 PRECISION = 1e-15
 """How far a computed number may be moved, relative to the largest of those that make one quantity."""
@@ -72,9 +68,3 @@ def _component(value: float) -> float:
     if abs(abs(value) - _HALF_ROOT) < PRECISION:
         return math.copysign(_HALF_ROOT, value)
     return round(value, _QUAT_DECIMALS)
-
-
-def clean_pose(pose: Pose) -> Pose:
-    """A computed pose without noise; lengths relative to 1 m at least. It has no notation."""
-    x, y, z = shortest_of(pose.xyz, 1.0)
-    return replace(pose, xyz=(x, y, z), quat=clean_quat(pose.quat), written=None)

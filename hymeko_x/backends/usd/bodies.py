@@ -10,11 +10,11 @@ from pxr import Gf, Vt
 from hymeko_x.backends.usd.shapes import gprim_of, gprim_pose
 from hymeko_x.backends.usd.sheet import T, apply, put, quatf, transform
 from hymeko_x.formats import usd as words
-from hymeko_x.ir.decimals import clean_pose
 from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import Body, Mesh
 from hymeko_x.ir.values import IDENTITY, NO_ROTATION, Pose, compose, inverse, rotation_angle
+from hymeko_x.rewrite.decimals import clean_pose
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import UsdSheet

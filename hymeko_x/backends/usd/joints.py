@@ -11,10 +11,11 @@ from pxr import Gf, Sdf
 from hymeko_x.backends.usd.sheet import T, apply, point, put, quatf
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import joints as table
-from hymeko_x.ir.decimals import clean_pose, shortest
+from hymeko_x.ir.decimals import shortest
 from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Dof, DofKind, Loop
 from hymeko_x.ir.values import IDENTITY, Pose, X, compose, quat_from_z, quat_inverse, quat_product, unit_quat
+from hymeko_x.rewrite.decimals import clean_pose
 from hymeko_x.rewrite.roots import stands_for_world
 
 if TYPE_CHECKING:

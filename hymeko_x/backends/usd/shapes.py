@@ -11,10 +11,10 @@ from hymeko_x.backends.usd.meshes import write_mesh_shape, write_subsets, write_
 from hymeko_x.backends.usd.sheet import T, apply, put
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import shapes as gprims
-from hymeko_x.ir.decimals import clean_pose
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.ir.parts import MeshShape, Role
 from hymeko_x.ir.values import NO_ROTATION, Pose, compose, quat_inverse
+from hymeko_x.rewrite.decimals import clean_pose
 
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import UsdSheet
