@@ -236,34 +236,42 @@ _ACTIONS: Mapping[str, Reduce] = MappingProxyType(
 """The value of a rule that has no place, from its children."""
 
 
-def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
-    """The items, from the children of their rules and the offset of the first character, whose line and column is ``place``."""
+class _Items:
+    """Makes items of the children of their rules and the offset of the first character, whose line and column is ``place``."""
 
-    def node(edge: str, parts: list[Any], offset: int) -> Node:
-        line, column = place(offset)
+    def __init__(self, place: Callable[[int], tuple[int, int]]) -> None:
+        self._place = place
+
+    def node(self, edge: str, parts: list[Any], offset: int) -> Node:
+        line, column = self._place(offset)
         if len(parts) == 2:
             return Node(parts[0], tuple(parts[-1]), edge=edge, line=line, column=column)
         signature: _Signature = parts[1]
         return Node(parts[0], tuple(parts[-1]), signature.stereotypes, signature.parameters, signature.uses, edge, line, column)
 
-    def changed(edge: str, parts: list[Any], offset: int) -> Node:
-        return node(edge, [parts[0].path[-1], *parts[1:]], offset)._replace(within=parts[0].path[:-1])
+    def changed(self, edge: str, parts: list[Any], offset: int) -> Node:
+        return self.node(edge, [parts[0].path[-1], *parts[1:]], offset)._replace(within=parts[0].path[:-1])
 
-    def array(edge: str, parts: list[Any], offset: int) -> Node:
+    def array(self, edge: str, parts: list[Any], offset: int) -> Node:
         types = [_Signature(None, tuple(parts[2]), ())] if len(parts) > 3 else []
-        return node(edge, [parts[0], *types, parts[-1]], offset)._replace(size=parts[1])
+        return self.node(edge, [parts[0], *types, parts[-1]], offset)._replace(size=parts[1])
 
-    def arc(role: str, weight: tuple[Value, ...] | None, parts: list[Any], offset: int) -> ArcItem:
-        return ArcItem(parts[0], role, weight, tuple(parts[1]) if len(parts) > 1 else (), *place(offset))
+    def arc(self, role: str, weight: tuple[Value, ...] | None, parts: list[Any], offset: int) -> ArcItem:
+        return ArcItem(parts[0], role, weight, tuple(parts[1]) if len(parts) > 1 else (), *self._place(offset))
 
-    def weighted_arc(parts: list[Any], offset: int) -> ArcItem:
-        return arc("", parts[0], parts[1:], offset) if type(parts[1]) is Ref else arc(parts[1], parts[0], parts[2:], offset)
+    def weighted_arc(self, parts: list[Any], offset: int) -> ArcItem:
+        return self.arc("", parts[0], parts[1:], offset) if type(parts[1]) is Ref else self.arc(parts[1], parts[0], parts[2:], offset)
 
-    def group_arc(parts: list[Any], offset: int) -> ArcItem:
+    def group_arc(self, parts: list[Any], offset: int) -> ArcItem:
         role = parts[0] if type(parts[0]) is not Ref else ""
         weight = parts[-1] if type(parts[-1]) is not Ref else None
-        return ArcItem(parts[1] if role else parts[0], role, weight, (), *place(offset))
+        return ArcItem(parts[1] if role else parts[0], role, weight, (), *self._place(offset))
 
+
+def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
+    """What makes an item of each rule; ``place`` gives line and column of an offset."""
+    items = _Items(place)
+    node, changed, array, arc = items.node, items.changed, items.array, items.arc
     return {
         "bare": lambda parts, offset: Field(parts[0], None, parts[1] if len(parts) > 1 else "", *place(offset)),
         "field": lambda parts, offset: Field(parts[0], parts[-1], parts[1] if len(parts) == 3 else "", *place(offset)),
@@ -273,7 +281,7 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
         "constant": lambda parts, offset: _constant(parts[0], place(offset)),
         "tagged_node": lambda parts, offset: node("", [parts[0], parts[-1]], offset),
         "group": lambda parts, _: _Group(parts),
-        "group_arc": group_arc,
+        "group_arc": items.group_arc,
         "node": lambda parts, offset: node("", parts, offset),
         "edge": lambda parts, offset: node(parts[0], parts[1:], offset),
         "changed_node": lambda parts, offset: changed("", parts, offset),
@@ -283,7 +291,7 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
         "typed_edge": lambda parts, offset: node(parts[0], parts[1:], offset),
         "plain_arc": lambda parts, offset: arc("", None, parts, offset),
         "role_arc": lambda parts, offset: arc(parts[0], None, parts[1:], offset),
-        "weighted_arc": weighted_arc,
+        "weighted_arc": items.weighted_arc,
         "quoted_arc": lambda parts, offset: arc("", None, [_quoted_ref(*parts)], offset),
         "legacy_edge": lambda parts, offset: arc(parts[0], None, [_quoted_ref(*parts[1:])], offset),
     }

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 import hymeko_x as hx
-from hymeko_x.cli import exits, main, names
-from hymeko_x.corpus import cache, catalog
+from hymeko_x.cli import exits, main
+from hymeko_x.corpus import cache, catalog, names
 from hymeko_x.diagnostics import Refusal
 
 ARM = '<robot name="arm"><link name="base"/></robot>'

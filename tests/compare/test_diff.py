@@ -60,6 +60,7 @@ FULL: tuple[parts.VertexPart | parts.EdgePart, ...] = (
     parts.Contact("pair", PARAMETERS),
     lumped.Constitutive(),
     parts.Relation(PARAMETERS),
+    parts.Nest(),
 )
 GEOMETRIES: tuple[parts.Geometry, ...] = (
     parts.Box((1.0, 2.0, 3.0)),

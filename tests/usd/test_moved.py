@@ -49,13 +49,16 @@ def test_the_points_are_those_of_the_file_in_single_precision(tmp_path: Path) ->
     assert np.array_equal(before, after)
 
 
-def test_at_home_and_for_packages_of_ros_the_file_is_named_as_before(tmp_path: Path) -> None:
+def test_where_the_package_is_the_file_is_named_as_before_elsewhere_the_points_stand_in(tmp_path: Path) -> None:
     source, stage = moved(tmp_path, "package://p/a.dae", "package://p/b.stl")
-    hx.convert(stage, tmp_path / "away" / "back.urdf", keep="inside")
-    assert "package://p/a.dae" in (tmp_path / "away" / "back.urdf").read_text()
-    at_home = stage.rename(tmp_path / "home" / "r.usdc")
-    hx.convert(at_home, tmp_path / "home" / "back.urdf", keep="inside")
-    assert hx.diff(hx.load(source), hx.load(tmp_path / "home" / "back.urdf")) == ()
+    away = tmp_path / "away" / "back.urdf"
+    hx.convert(stage, away, keep="inside")
+    assert 'filename="shapes/a.obj"' in away.read_text()
+    assert (tmp_path / "away" / "shapes" / "a.obj").is_file()
+    at_home, back = stage.rename(tmp_path / "home" / "r.usdc"), tmp_path / "home" / "back.urdf"
+    hx.convert(at_home, back, packages={"p": tmp_path / "home"}, keep="inside")
+    assert 'filename="package://p/a.dae"' in back.read_text()
+    assert hx.diff(hx.load(source), hx.load(back)) == ()
     assert not (tmp_path / "home" / "shapes").exists()
 
 
