@@ -138,7 +138,7 @@ def _inertial(block: Block, place: Pose) -> parts.Inertial | None:
     if mass is None and com is None and tensor is None and axes is None and marker is None:
         return None
     inertial = parts.Inertial(
-        None if mass is None else reader.number(mass.value, "mass", mass),
+        None if mass is None else reader.finite((reader.number(mass.value, "mass", mass),), mass)[0],
         place.xyz if com is None else reader.vec3(com.value, "length", com),
     )
     if tensor is None:
@@ -154,7 +154,7 @@ def _inertial(block: Block, place: Pose) -> parts.Inertial | None:
 
 def _tensor(item: Field, reader: ValueReader) -> Tensor:
     """Six entries xx yy zz xy xz yz, or the three of a diagonal tensor."""
-    numbers = reader.numbers(item.value, "", item)
+    numbers = reader.finite(reader.numbers(item.value, "", item), item)
     if len(numbers) == 3:
         return (*numbers, 0.0, 0.0, 0.0)
     if len(numbers) != 6:
@@ -223,15 +223,19 @@ def _solid(word: str, item: Field, pose: Pose, reader: ValueReader) -> parts.Geo
         case "box":
             return parts.Box(reader.vec3(item.value, "length", item))
         case "sphere":
-            return parts.Sphere(reader.number(item.value, "length", item))
+            return parts.Sphere(_radius(item, reader))
         case "ellipsoid":
             return parts.Ellipsoid(reader.vec3(item.value, "length", item))
         case "plane":
-            return parts.Plane(cast("tuple[float, float]", reader.numbers(item.value, "length", item, 2)))
+            return parts.Plane(cast("tuple[float, float]", reader.finite(reader.numbers(item.value, "length", item, 2), item)))
     kind = parts.Cylinder if word == "cylinder" else parts.Capsule
     if pose.written is not None and pose.written.kind == "fromto" and not is_list(item.value):
-        return kind(reader.number(item.value, "length", item), length_of(pose.written))
-    return kind(*reader.numbers(item.value, "length", item, 2))
+        return kind(_radius(item, reader), length_of(pose.written))
+    return kind(*reader.finite(reader.numbers(item.value, "length", item, 2), item))
+
+
+def _radius(item: Field, reader: ValueReader) -> float:
+    return reader.finite((reader.number(item.value, "length", item),), item)[0]
 
 
 def _described_geometry(block: Block, key: Id) -> parts.Geometry:

@@ -76,8 +76,14 @@ class ValueReader(Struct):
         return values
 
     def vec3(self, value: Value | None, dimension: str, item: Item) -> Vec3:
-        """Three numbers in SI."""
-        return cast("Vec3", self.numbers(value, dimension, item, 3))
+        """Three finite numbers in SI."""
+        return cast("Vec3", self.finite(self.numbers(value, dimension, item, 3), item))
+
+    def finite(self, numbers: tuple[float, ...], item: Item) -> tuple[float, ...]:
+        """The numbers of a mass, a size or a place. Raises: Refusal (HX062) for one that is infinite or none."""
+        if not all(map(isfinite, numbers)):
+            raise self.refuse(item, f"{name_of(item)} takes finite numbers, not {numbers_text(numbers)}")
+        return numbers
 
     def rgba(self, value: Value | None, item: Item) -> Rgba:
         """``[r g b a]``, or ``[r g b]`` for an opaque colour."""
@@ -158,10 +164,7 @@ class ValueReader(Struct):
 
     def _rotated(self, xyz: Vec3, rotation: tuple[Value, ...], item: Item) -> Pose:
         if len(rotation) == 3:
-            rpy = self.vec3(rotation, "angle", item)
-            if not all(map(isfinite, rpy)):
-                raise self.refuse(item, f"{rpy} are no angles of a rotation")
-            return pose_from_rpy(xyz, rpy)
+            return pose_from_rpy(xyz, self.vec3(rotation, "angle", item))
         w, x, y, z = self.numbers(rotation, "", item, 4)
         try:
             return pose(xyz, (w, x, y, z))
