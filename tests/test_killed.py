@@ -185,7 +185,13 @@ def states(way: Way, folder: Path) -> Iterator[tuple[list[object], bool]]:
             return
 
 
-@pytest.mark.parametrize("way", WAYS.values(), ids=WAYS)
+LATER = ("urdf with points of its own", "mjcf from mjcf", "usda", "hymeko")
+"""Ways whose deaths are like those of others: they have their turn in `make test-full`."""
+
+
+@pytest.mark.parametrize(
+    "way", [pytest.param(way, id=name, marks=[pytest.mark.full] if name in LATER else []) for name, way in WAYS.items()]
+)
 def test_killed_before_any_change_the_output_is_the_old_one_or_the_new_one(way: Way, tmp_path: Path) -> None:
     found = list(states(way, tmp_path))
     old, new = found[0][0], found[-1][0]

@@ -161,7 +161,7 @@ def expand(document: Document, file: str, fetch: Fetch) -> Expanded:
 
 def _without_node_words(items: tuple[Item, ...]) -> tuple[Item, ...]:
     """The items without the word ``node`` before a vertex, which texts with a header in brackets have."""
-    pairs = zip(items, (*items[1:], None), strict=True)
+    pairs = zip(items, (*items, None)[1:], strict=True)
     return tuple(
         item for item, following in pairs if not (is_field(item, ("node",)) and item.value is None and isinstance(following, Node))
     )

@@ -77,7 +77,7 @@ def test_facts_name_no_place_of_this_machine(undisturbed: Path, robots: Path) ->
     assert "hymeko-x-" not in parts
 
 
-@pytest.mark.slow
+@pytest.mark.full
 def test_a_killed_runner_goes_on_where_it_was(robots: Path, undisturbed: Path, tmp_path: Path) -> None:
     results = tmp_path / "killed"
     words = command("run", "--from", str(robots), "--pairs", PAIRS, "--verify", "--jobs", "2", "-o", str(results))

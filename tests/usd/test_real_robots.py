@@ -11,11 +11,6 @@ from hymeko_x.corpus.catalog import development_files
 
 FEW = ("Pendulum.urdf", "cube_no_rotation.urdf", "racecar.urdf", "hopper.xml", "constraints.xml", "pendula.xml", "arm.xml")
 """Tensors that no body can have, worlds that are links, balanced torques, references, loops."""
-UNSAID = {
-    "pendula.xml": ["position limits"],  # of a ball
-    "quadruped.xml": ["collision shapes"],  # a height field
-}
-"""What UsdPhysics has no word for: the residue carries it, and `verify` says that it is not there."""
 FILES = [file for format in ("urdf", "mjcf") for file in development_files(format)]
 
 pytestmark = pytest.mark.corpus
@@ -26,9 +21,7 @@ def assert_same_in_usd(robot: Path, folder: Path) -> None:
     hx.dump(hx.load(robot), stage)
     verdict = hx.verify(robot, stage, samples=20)
     assert verdict.checks, verdict.reason
-    unsaid = UNSAID.get(robot.name, []) if robot.suffix == ".xml" else []
-    assert [f"{check.quantity} at {check.at}" for check in verdict.failed if check.quantity not in unsaid] == []
-    assert {check.quantity for check in verdict.failed} >= set(unsaid)
+    assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == []
 
 
 @pytest.mark.parametrize("robot", [file for file in FILES if Path(file.path).name in FEW], ids=lambda file: file.id, indirect=True)

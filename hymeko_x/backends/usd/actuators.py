@@ -53,12 +53,12 @@ def write_drives(sheet: UsdSheet) -> None:
 
 
 def _limited_dofs(sheet: UsdSheet) -> dict[tuple[Any, str], float]:
-    """The effort limit of each hinge and slide that has one, by its prim and the instance of its drive."""
+    """The positive effort limit of each hinge and slide that has one, by its prim and the instance of its drive."""
     found: dict[tuple[Any, str], float] = {}
     for (key, number), (path, axis) in sheet.dofs.items():
         dof = sheet.mechanism.joints[key].joint.dofs[number] if key in sheet.mechanism.joints else None
-        if dof is not None and dof.kind in (DofKind.HINGE, DofKind.SLIDE) and dof.limits.effort:
-            found[path, axis or _instance(dof)] = dof.limits.effort
+        if dof is not None and dof.kind in (DofKind.HINGE, DofKind.SLIDE) and (effort := dof.limits.effort or 0.0) > 0.0:
+            found[path, axis or _instance(dof)] = effort
     return found
 
 
@@ -83,8 +83,8 @@ def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None
     most = authored.get("forcerange")
     if isinstance(most, tuple) and len(most) == 2:
         put(spec, f"drive:{instance}:physics:maxForce", T.Float, max(map(abs, most)))
-    elif dof.limits.effort:
-        put(spec, f"drive:{instance}:physics:maxForce", T.Float, dof.limits.effort)
+    elif (effort := dof.limits.effort or 0.0) > 0.0:
+        put(spec, f"drive:{instance}:physics:maxForce", T.Float, effort)
 
 
 # ---- MjcActuator -------------------------------------------------------------------------------------------------------------------
