@@ -95,7 +95,7 @@ HYMEKO = (
     reading("UTF-16 in HyMeKo: r.hymeko", "r : robot { a : link {} }".encode("utf-16"), "HX060"),
     reading("Latin-1 in HyMeKo: r.hymeko", "r : robot { é : link {} }".encode("latin-1"), "HX060"),
     reading("a string without an end: r.hymeko", 'r : robot { a : link { visual "' + "x" * 1_000_000, "HX060"),
-    reading("a mass that is not a number: r.hymeko", "r : robot { a : link { mass nan } }", code=0),
+    reading("a mass that is not a number: r.hymeko", "r : robot { a : link { mass nan } }", "HX062"),
     reading("a pickle as HyMeKo: r.hymeko", PICKLE, "HX060"),
 )
 
