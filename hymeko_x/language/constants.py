@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from graphlib import CycleError, TopologicalSorter
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
@@ -25,8 +26,8 @@ def with_constants(items: tuple[Item, ...], file: str) -> tuple[Item, ...]:
     if not found:
         return items
     numbers: dict[str, float | str] = {}
-    for name in found:
-        _evaluate(name, found, numbers, (), file)
+    for name in _in_order(found, file):
+        numbers[name] = _evaluated(found[name], numbers, file)
     return _filled(items, numbers)
 
 
@@ -36,22 +37,25 @@ def _constants(items: tuple[Item, ...]) -> list[Constant]:
     return [item for block in blocks for item in block if isinstance(item, Constant)]
 
 
-def _evaluate(name: str, found: Mapping[str, Constant], numbers: dict[str, float | str], active: tuple[str, ...], file: str) -> None:
-    """Add the value of a constant, after those of the constants in it."""
-    if name in numbers:
-        return
-    constant = found[name]
-    origin = origin_of(constant, file)
-    if name in active:
-        way = " -> ".join([*active[active.index(name) :], name])
-        raise refuse(codes.CIRCULAR_VALUE, f"the value of '{name}' leads back to itself: {way}", origin)
-    for other in _NAMES.findall(constant.text):
-        if other in found:
-            _evaluate(other, found, numbers, (*active, name), file)
+def _in_order(found: Mapping[str, Constant], file: str) -> list[str]:
+    """The names, each behind those in its expression."""
+    uses = {name: [other for other in _NAMES.findall(constant.text) if other in found] for name, constant in found.items()}
     try:
-        numbers[name] = evaluate(constant.text, numbers)
+        return [*TopologicalSorter(uses).static_order()]
+    except CycleError as error:
+        way = [*reversed(error.args[1])]
+        raise refuse(
+            codes.CIRCULAR_VALUE, f"the value of '{way[0]}' leads back to itself: {' -> '.join(way)}", origin_of(found[way[0]], file)
+        ) from error
+
+
+def _evaluated(constant: Constant, numbers: Mapping[str, float | str], file: str) -> float | str:
+    """The value of a constant; ``numbers`` has those of the constants in it."""
+    try:
+        return evaluate(constant.text, numbers)
     except ExpressionError as error:
-        raise refuse(codes.BAD_EXPRESSION, f"const {name} = {constant.text}: {error}", origin) from error
+        message = f"const {constant.name} = {constant.text}: {error}"
+        raise refuse(codes.BAD_EXPRESSION, message, origin_of(constant, file)) from error
 
 
 def _filled(items: tuple[Item, ...], numbers: Mapping[str, float | str]) -> tuple[Item, ...]:

@@ -224,9 +224,20 @@ def test_the_root_is_found_beside_its_description_and_its_types(tmp_path: Path) 
     assert robot.vertex(Id("datum", "about"), parts.Datum) == parts.Datum((("author", "me"),))
 
 
+def test_a_long_chain_of_constants_has_a_value() -> None:
+    chain = " ".join(f"const a{n} = a{n + 1} + 1;" for n in range(5000))
+    graph = hx.loads(f"d {{ {chain} const a5000 = 0; }}\ng : graph {{ b {{ x a0; }} }}", "hymeko")
+    assert graph.vertex(Id("datum", "b"), parts.Datum) == parts.Datum((("x", 5000.0),))
+
+
 @pytest.mark.parametrize(
     ("text", "message"),
     [
+        ("d { const A = A; }\ng : graph { a {} }", "1:5: error[HX067]: the value of 'A' leads back to itself: A -> A"),
+        (
+            "d { const A = B; const B = C; const C = B; }\ng : graph { a {} }",
+            "1:18: error[HX067]: the value of 'B' leads back to itself: B -> C -> B",
+        ),
         (
             "d { const A = B; const B = A; }\ng : graph { a { x A; } }",
             "1:5: error[HX067]: the value of 'A' leads back to itself: A -> B -> A",

@@ -13,7 +13,9 @@ from hymeko_x.language.models.terminals import BEGINNING
 from hymeko_x.language.models.terminals import BLANKS as BLANKS_PATTERN
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable, Iterator, Mapping
+
+    from hymeko_x.language.models.rules import Rules
 
 _TITLE = "The HyMeKo language for models that are held to a grammar; made by hymeko-x from hymeko.lark."
 
@@ -31,11 +33,7 @@ def llguidance() -> str:
     def symbol(name: str) -> str:
         return optional.get(name) or name.replace("-", "_")
 
-    lines = [f"// {_TITLE}", "%llguidance {}", ""]
-    for name, choices in rules.items():
-        texts = (" ".join(map(symbol, choice)) or '""' for choice in choices)
-        lines.append(f"{symbol(name)}: " + "\n    | ".join(texts))
-    lines.append("")
+    lines = [f"// {_TITLE}", "%llguidance {}", "", *_rule_lines(rules, symbol, ": ", "\n    | "), ""]
     lines += (f"{name}: /{_slashes(pattern)}/" for name, pattern in _all_terminals(terminals).items())
     return "\n".join(lines) + "\n"
 
@@ -48,17 +46,19 @@ def gbnf() -> str:
     def symbol(name: str) -> str:
         return names.get(name) or (name.lower() if name.isupper() else name)
 
-    lines = [f"# {_TITLE}"]
-    for name, choices in rules.items():
-        texts = (" ".join(map(symbol, choice)) or '""' for choice in choices)
-        lines.append(f"{symbol(name)} ::= " + " |\n  ".join(texts))
-    lines.append("gap ::= blanks?")
+    lines = [f"# {_TITLE}", *_rule_lines(rules, symbol, " ::= ", " |\n  "), "gap ::= blanks?"]
     lines += (f"{name.lower()} ::= {_gbnf(patterns.parse(pattern))}" for name, pattern in _all_terminals(terminals).items())
     return "\n".join(lines) + "\n"
 
 
 PRINTERS: Mapping[str, Callable[[], str]] = MappingProxyType({"lark": lark, "gbnf": gbnf, "llguidance": llguidance, "xgrammar": gbnf})
 """By name the grammar for each program."""
+
+
+def _rule_lines(rules: Rules, symbol: Callable[[str], str], defined_as: str, otherwise: str) -> Iterator[str]:
+    """One text for each rule, with its alternatives."""
+    for name, choices in rules.items():
+        yield symbol(name) + defined_as + otherwise.join(" ".join(map(symbol, choice)) or '""' for choice in choices)
 
 
 def _all_terminals(terminals: dict[str, str]) -> dict[str, str]:
