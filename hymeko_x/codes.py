@@ -236,7 +236,7 @@ EDIT_REWRITTEN = Code(
 EDIT_DROPPED = Code(
     "HX118",
     "an edit has no place in the format of the original",
-    "The format of the original has no word for what was edited, so that its text cannot get the edit. It stays in the edited file alone.",
+    "The format of the original cannot represent the edit, so that its text cannot get it. The edit stays in the edited file alone.",
 )
 OPTIONS_FOUND = Code(
     "HX109",

@@ -96,7 +96,7 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
 
 
 def _dropped(edits: tuple[Difference, ...], after: Mechanism, original: Source, format: Format) -> list[Difference]:
-    """The edits for which the format of the original has no word. What a shape weighs is part of its body's inertial."""
+    """The edits that the format of the original cannot represent. The mass of a shape is part of its body's inertial."""
     if not edits or format.is_exact:
         return []
     losses = pipeline.convert(after, format, Options(lenient=True), original.files, Report()).losses or ()

@@ -1,6 +1,6 @@
 """The words of <gazebo> fragments, by which files of other formats hold what SDF represents; for both directions.
 
-Source: libsdformat's reader of such files. An element that has no word of its own there is copied into the link or the joint.
+Source: libsdformat's reader of such files. An element for which they have no own name is copied into the link or the joint.
 """
 
 from __future__ import annotations
