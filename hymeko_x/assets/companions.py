@@ -9,10 +9,11 @@ import re
 from typing import TYPE_CHECKING
 from urllib.parse import unquote
 
+from hymeko_x.assets.shelf import read_file
 from hymeko_x.ir.mechanism import suffix_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.source import Files
@@ -57,6 +58,22 @@ def companions_of(uri: str, path: str, files: Files) -> Iterator[tuple[str, str]
 def beside(path: str, name: str) -> str:
     """The path of a file that is named from the folder of another one."""
     return posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
+
+
+def companion_reader(files: Files, *uris: str) -> Callable[[str], bytes]:
+    """Gives the content of a companion by its name: of the first that is beside one of these references to the mesh file.
+
+    Raises: FileNotFoundError, when it is called, for a companion that is beside none.
+    """
+
+    def fetch(name: str) -> bytes:
+        for uri in uris:
+            found = read_file(files, posixpath.join(posixpath.dirname(uri.replace("\\", "/")), name.replace("\\", "/")))
+            if found is not None:
+                return found[1]
+        raise FileNotFoundError(name)
+
+    return fetch
 
 
 def named_in(path: str, files: Files) -> Iterator[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import posixpath
 import re
 from typing import TYPE_CHECKING
 
@@ -10,6 +9,7 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.assets.companions import companion_reader
 from hymeko_x.assets.pack import package_hint
 from hymeko_x.assets.shelf import Shelf, read_file
 from hymeko_x.backends.mjcf.mesh_names import name_meshes
@@ -23,8 +23,6 @@ from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.meshes.images import UnreadableImage, png_bytes
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from hymeko_x.diagnostics import Code, Report
     from hymeko_x.ir.mechanism import Mechanism, ShapeView
     from hymeko_x.meshes.submesh import Appearance, Submesh
@@ -163,7 +161,7 @@ def _pack_mesh(run: _Packing, key: Id, mesh: Mesh, users: list[ShapeView]) -> No
     seen = [view for view in users if view.shape.role is Role.VISUAL]
     felt = [view for view in users if view.shape.role is not Role.VISUAL]
     try:
-        parts = read_parts(data, suffix_of(path), _fetcher(run.files, path, mesh.uri or ""))
+        parts = read_parts(data, suffix_of(path), companion_reader(run.files, path, mesh.uri or ""))
         hull = _pack_hull(run, key, mesh, parts, found) if felt else None
         pieces = _pack_appearances(run, key, mesh, parts, found, hull) if seen or not users else []
     except Unreadable as error:
@@ -359,19 +357,6 @@ def _material(run: _Packing, found: Appearance | None, mesh: Mesh) -> Id | None:
     if found.image is not None:
         run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", png_bytes(found.image))), key)
     return key
-
-
-def _fetcher(files: Files, path: str, uri: str) -> Callable[[str], bytes]:
-    """Finds what a mesh file refers to: first beside the file as it was found, then beside it as it was written."""
-
-    def fetch(name: str) -> bytes:
-        for place in (path, uri):
-            found = read_file(files, posixpath.join(posixpath.dirname(place.replace("\\", "/")), name.replace("\\", "/")))
-            if found is not None:
-                return found[1]
-        raise FileNotFoundError(name)
-
-    return fetch
 
 
 # ---- diagnostics -----------------------------------------------------------------------------------------------------------------------

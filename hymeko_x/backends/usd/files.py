@@ -8,6 +8,7 @@ from msgspec import field
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.assets.companions import companion_reader
 from hymeko_x.assets.pack import Keep, keep_references
 from hymeko_x.assets.shelf import read_file
 from hymeko_x.formats import mesh_reader
@@ -18,8 +19,6 @@ from hymeko_x.ir.parts import Layer, Material, Mesh, Role, Texture
 from hymeko_x.meshes.submesh import LoadedMesh
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     import numpy as np
     from numpy.typing import NDArray
 
@@ -133,7 +132,7 @@ def _read(run: _Packing, key: Id, mesh: Mesh, own_reader: MeshReader | None, *, 
         _warn(run, key, codes.ASSET_NOT_FOUND, f"'{mesh.uri}' was not found; its shapes are places without geometry")
         return None
     path, data = found
-    fetch = _fetcher(run.files, mesh.uri or "")
+    fetch = companion_reader(run.files, mesh.uri or "")
 
     def miss(image: str) -> None:
         _warn(run, key, codes.ASSET_NOT_FOUND, f"its image '{image}' was not found; it is shown without")
@@ -151,18 +150,6 @@ def _read(run: _Packing, key: Id, mesh: Mesh, own_reader: MeshReader | None, *, 
 
 def _warn(run: _Packing, key: Id, code: Code, words: str) -> None:
     run.report.warn(code, f"{key}: {words}", run.mechanism.origin(key), element=str(key))
-
-
-def _fetcher(files: Files, uri: str) -> Callable[[str], bytes]:
-    folder = uri.replace("\\", "/").rpartition("/")[0]
-
-    def fetch(name: str) -> bytes:
-        found = read_file(files, f"{folder}/{name}" if folder else name)
-        if found is None:
-            raise FileNotFoundError(name)
-        return found[1]
-
-    return fetch
 
 
 def _with_textures(mechanism: Mechanism, shelf: Shelf, files: Files, report: Report) -> Mechanism:
