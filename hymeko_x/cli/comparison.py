@@ -6,12 +6,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hymeko_x import disk
-from hymeko_x.cli.exits import UsageError
+from hymeko_x.cli.exits import UsageError, output_suffix
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input, refuse_own_reading
 from hymeko_x.cli.render import size_of
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_lines, verdict_of
-from hymeko_x.corpus.names import located
 from hymeko_x.diagnostics import Report
 
 if TYPE_CHECKING:
@@ -36,15 +35,13 @@ def report_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_report(chosen: argparse.Namespace) -> int:
     """Write the page, print the verdict; exit as `verify` does."""
-    suffix = Path(chosen.output).suffix.lower()
-    if suffix not in _SUFFIXES:
-        raise UsageError(f"the suffix of the output is one of {', '.join(_SUFFIXES)}, not '{suffix}'")
+    suffix = output_suffix(chosen.output, _SUFFIXES)
     if "-" in (chosen.a, chosen.b):
         raise UsageError("the robots are files: the formats' own engines read them as well")
     refuse_own_reading(chosen)
     from hymeko_x.draw.comparison.facts import comparison, draw
 
-    a, b = (_side(path, chosen) for path in (chosen.a, chosen.b))
+    a, b = (read_side(path, chosen) for path in (chosen.a, chosen.b))
     drawn = draw(a, b, chosen.size)
     page = comparison(a, b, verdict_of(chosen.a, chosen.b, chosen), drawn)
     disk.write_files(_files(page, Path(chosen.output), suffix))
@@ -52,11 +49,12 @@ def run_report(chosen: argparse.Namespace) -> int:
     return exit_code(page.verdict)
 
 
-def _side(path: str, chosen: argparse.Namespace) -> Side:
+def read_side(path: str, chosen: argparse.Namespace) -> Side:
+    """A robot to compare, by its path or its name. Raises: Refusal; Stopped when it has errors, without `--lenient`."""
     from hymeko_x.draw.comparison.facts import Side
 
     report = Report()
-    given = read_input(located(path).path, chosen, report)
+    given = read_input(path, chosen, report)
     show_diagnostics(report, chosen)
     return Side(path, given.mechanism, given.format, given.source)
 

@@ -30,6 +30,14 @@ class UsageError(Exception):
     """Options and arguments on the command line do not fit together."""
 
 
+def output_suffix(output: str, allowed: tuple[str, ...]) -> str:
+    """The suffix of an output in small letters. Raises: UsageError when it is none of those that are allowed."""
+    suffix = os.path.splitext(output)[1].lower()
+    if suffix not in allowed:
+        raise UsageError(f"the suffix of the output is one of {', '.join(allowed)}, not '{suffix}'")
+    return suffix
+
+
 def guarded(verb: str, body: Callable[[], int]) -> int:
     """Run a verb's body; return its exit code, or that of what went wrong. HYMEKO_X_DEBUG shows the traceback of a bug."""
     from hymeko_x import codes

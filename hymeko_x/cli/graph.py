@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hymeko_x import disk
 from hymeko_x.cli import exits
-from hymeko_x.cli.exits import UsageError
+from hymeko_x.cli.exits import UsageError, output_suffix
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.diagnostics import Report
@@ -43,9 +42,7 @@ def graph_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_graph(chosen: argparse.Namespace) -> int:
     """Draw, and write the picture."""
-    suffix = Path(chosen.output).suffix.lower()
-    if suffix not in _SUFFIXES:
-        raise UsageError(f"the suffix of the output is one of {', '.join(_SUFFIXES)}, not '{suffix}'")
+    suffix = output_suffix(chosen.output, _SUFFIXES)
     report = Report()
     robot = read_input(chosen.input, chosen, report).mechanism
     show_diagnostics(report, chosen)

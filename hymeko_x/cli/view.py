@@ -12,18 +12,14 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.cli import exits
+from hymeko_x.cli.comparison import read_side
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
-from hymeko_x.cli.report import show_diagnostics
+from hymeko_x.cli.inputs import input_arguments, lenient_argument
 from hymeko_x.cli.verdicts import engine_arguments, verdict_of
-from hymeko_x.corpus.names import located
-from hymeko_x.diagnostics import Report, refuse
+from hymeko_x.diagnostics import refuse
 
 if TYPE_CHECKING:
     import argparse
-    from collections.abc import Sequence
-
-    from hymeko_x.draw.comparison.facts import Side
 
 
 def view_arguments(parser: argparse.ArgumentParser) -> None:
@@ -48,9 +44,8 @@ def run_view(chosen: argparse.Namespace) -> int:
     with redirect_stdout(StringIO()):  # viser prints where it listens, whatever it is asked for
         server = viser.ViserServer("127.0.0.1", chosen.port if is_local else _INSIDE, label="hymeko-x", verbose=False)
     try:
-        paths = [located(path).path for path in chosen.inputs]
-        two = len(paths) > 1
-        session = Session(server, lambda: _sides(paths, chosen), (lambda: verdict_of(paths[0], paths[1], chosen)) if two else None)
+        judge = (lambda: verdict_of(chosen.inputs[0], chosen.inputs[1], chosen)) if len(chosen.inputs) == 2 else None
+        session = Session(server, lambda: [read_side(path, chosen) for path in chosen.inputs], judge)
         inside = server.get_port()
         print(f"http://127.0.0.1:{inside}" if is_local else _guarded(chosen.host, chosen.port, inside), flush=True)
         session.watch()
@@ -61,15 +56,6 @@ def run_view(chosen: argparse.Namespace) -> int:
 
 _INSIDE = 18080
 """Where the server behind the gate begins to look for a free port."""
-
-
-def _sides(paths: Sequence[str], chosen: argparse.Namespace) -> list[Side]:
-    from hymeko_x.draw.comparison.facts import Side
-
-    report = Report()
-    given = [read_input(path, chosen, report) for path in paths]
-    show_diagnostics(report, chosen)
-    return [Side(path, one.mechanism, one.format, one.source) for path, one in zip(chosen.inputs, given, strict=True)]
 
 
 def _is_loopback(host: str) -> bool:

@@ -1,4 +1,4 @@
-"""The viewer without a browser: sliders move what they should, findings are red, files are read again, the gate lets nobody in."""
+"""The viewer without a browser: sliders move what they should, findings are red, files are read again, the gate asks for the token."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from msgspec import Struct
 from hymeko_x.draw.graph.letters import visible
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from hymeko_x.verify.model import KinematicModel
     from hymeko_x.verify.verdict import Check, Verdict
@@ -24,7 +24,9 @@ class Spot(Struct, frozen=True):
 
 def spots_of(verdict: Verdict, a: KinematicModel, b: KinematicModel) -> list[Spot]:
     """A spot for every difference that is not allowed."""
-    return [Spot(words, (_bodies_in(place, a), _bodies_in(place, b))) for check in verdict.failed for words, place in _places(check)]
+    labels = _labels(a), _labels(b)
+    places = [found for check in verdict.failed for found in _places(check)]
+    return [Spot(words, (_bodies_in(place, labels[0]), _bodies_in(place, labels[1]))) for words, place in places]
 
 
 def _places(check: Check) -> Iterator[tuple[str, str]]:
@@ -37,9 +39,13 @@ def _places(check: Check) -> Iterator[tuple[str, str]]:
         yield visible(f"{check.at}: {check.quantity} {check.worst:.3g}{unit}"), check.at
 
 
-def _bodies_in(words: str, model: KinematicModel) -> frozenset[int]:
-    """The body, or the child body of the joint, that the words name first."""
+def _labels(model: KinematicModel) -> dict[str, int]:
+    """The number of the body for the label of each body, and for that of each dof its child body."""
     labels = {model.body_label(index): index for index in range(1, len(model.bodies))}
-    labels |= {model.dof_label(dof): model.body_of_dof[dof] for dof in range(len(model.dofs))}
+    return labels | {model.dof_label(dof): model.body_of_dof[dof] for dof in range(len(model.dofs))}
+
+
+def _bodies_in(words: str, labels: Mapping[str, int]) -> frozenset[int]:
+    """The body whose label comes first in the words; none where there is no label."""
     places = sorted((place, -len(label), index) for label, index in labels.items() if (place := words.find(label)) >= 0)
     return frozenset({places[0][2]}) if places else frozenset()

@@ -8,23 +8,26 @@ from typing import TYPE_CHECKING
 import numpy as np
 from msgspec import Struct
 
+from hymeko_x.assets.companions import companion_reader
+from hymeko_x.assets.shelf import read_file
+from hymeko_x.draw.view.motion import Motion
 from hymeko_x.ir.geometry import MeshShape, NoShape
 from hymeko_x.ir.mechanism import WORLD, suffix_of
 from hymeko_x.ir.parts import Material, Mesh, Role
 from hymeko_x.meshes.reader import inline_part, read_parts
 from hymeko_x.meshes.submesh import Submesh, Unreadable
-from hymeko_x.residue.originals import fetcher
+from hymeko_x.residue.originals import files_of
 from hymeko_x.verify import model_of
 from hymeko_x.verify.model import WORLD as GROUND
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hymeko_x.compare.contents import Fetch
     from hymeko_x.ir.geometry import Geometry
     from hymeko_x.ir.mechanism import Mechanism, ShapeView
     from hymeko_x.ir.values import Pose
     from hymeko_x.robot import Robot
+    from hymeko_x.source import Files
     from hymeko_x.verify.model import Array, Index, KinematicModel
 
 _GREY = (0.7, 0.7, 0.7, 1.0)
@@ -45,41 +48,43 @@ class Item(Struct, frozen=True, eq=False):
 
 
 class Scene(Struct, frozen=True, eq=False):
-    """A robot: its kinematics, the shapes on its bodies, and what could not be drawn, with the reason."""
+    """A robot: its kinematics, the shapes on its bodies, and what could not be drawn, with the reason.
+
+    ``reach`` is about how large it is, in m: the largest distance of a body from the middle of all bodies at rest, at least 0.1.
+    """
 
     name: str
     model: KinematicModel
     items: tuple[Item, ...]
     missing: tuple[str, ...]
-
-    @property
-    def reach(self) -> float:
-        """About how large the robot is, in m: the largest distance of a part of it from the middle of its bodies at rest, at least 0.1."""
-        from hymeko_x.draw.view.motion import Motion
-
-        places = Motion(self.model).poses()[1:, :3, 3] if len(self.model.bodies) > 1 else np.zeros((1, 3))
-        middle = (places.min(axis=0) + places.max(axis=0)) / 2.0
-        return max(float(np.linalg.norm(places - middle, axis=1).max(initial=0.0)), 0.1)
+    reach: float
 
 
 def scene_of(robot: Robot) -> Scene:
     """The scene of a robot, with what only the engine of its format computes, such as inertias from shapes."""
     mechanism = robot.completed
     model = model_of(mechanism)
-    fetch = fetcher(mechanism, robot.files)
+    files = files_of(mechanism, robot.files)
     items: list[Item] = []
     missing: list[str] = []
     for key, views in mechanism.shapes.items():
         body = GROUND if key == WORLD else model.index.get(key.name, GROUND)
         for view in views:
-            found = [*_items(mechanism, view, body, fetch)]
+            found = [*_items(mechanism, view, body, files)]
             items += found
             if not found and not isinstance(view.shape.geometry, NoShape):
                 missing.append(f"{view.id}: its mesh cannot be read")
-    return Scene(mechanism.name, model, tuple(items), tuple(missing))
+    return Scene(mechanism.name, model, tuple(items), tuple(missing), _reach(model))
 
 
-def _items(mechanism: Mechanism, view: ShapeView, body: int, fetch: Fetch) -> Iterator[Item]:
+def _reach(model: KinematicModel) -> float:
+    """See :class:`Scene`."""
+    places = Motion(model).poses()[1:, :3, 3] if len(model.bodies) > 1 else np.zeros((1, 3))
+    middle = (places.min(axis=0) + places.max(axis=0)) / 2.0
+    return max(float(np.linalg.norm(places - middle, axis=1).max(initial=0.0)), 0.1)
+
+
+def _items(mechanism: Mechanism, view: ShapeView, body: int, files: Files) -> Iterator[Item]:
     """A shape as it is drawn; one that is both visual and for collision is in both layers."""
     geometry, role = view.shape.geometry, view.shape.role
     layers = {Role.VISUAL: (False,), Role.COLLISION: (True,)}.get(role, (False, True))
@@ -91,7 +96,7 @@ def _items(mechanism: Mechanism, view: ShapeView, body: int, fetch: Fetch) -> It
         if not isinstance(geometry, MeshShape):
             yield Item(body, view.pose, geometry, rgba, is_collision)
             continue
-        for part in _submeshes(mechanism, view, fetch):
+        for part in _submeshes(mechanism, view, files):
             own = part.appearance.rgba if part.appearance is not None else None
             shown = rgba if is_collision or colour is not None or own is None else own
             yield Item(body, view.pose, geometry, shown, is_collision, part.points * _scale(mechanism, view), part.faces)
@@ -113,26 +118,18 @@ def _scale(mechanism: Mechanism, view: ShapeView) -> Array:
     return np.array(mesh.scale if isinstance(mesh, Mesh) else (1.0, 1.0, 1.0))
 
 
-def _submeshes(mechanism: Mechanism, view: ShapeView, fetch: Fetch) -> tuple[Submesh, ...]:
+def _submeshes(mechanism: Mechanism, view: ShapeView, files: Files) -> tuple[Submesh, ...]:
     """The triangles of a shape's mesh; nothing where they cannot be read."""
     mesh = None if view.mesh is None else mechanism.graph.vertices.get(view.mesh)
     if not isinstance(mesh, Mesh):
         return ()
     if mesh.vertices and mesh.uri is None:
         return (inline_part(mesh.vertices, mesh.faces),) if mesh.faces else ()
-    data = None if mesh.uri is None else fetch(mesh.uri)
+    found = None if mesh.uri is None else read_file(files, mesh.uri)
     with suppress(Unreadable):
-        if data is not None:
-            return read_parts(data, suffix_of(mesh.uri or ""), lambda name: _beside(fetch, mesh.uri or "", name))
+        if mesh.uri is not None and found is not None:
+            return read_parts(found[1], suffix_of(mesh.uri), companion_reader(files, mesh.uri))
     return ()
-
-
-def _beside(fetch: Fetch, uri: str, name: str) -> bytes:
-    """A file that a mesh refers to. Raises: FileNotFoundError."""
-    data = fetch(f"{uri.rpartition('/')[0]}/{name}" if "/" in uri else name)
-    if data is None:
-        raise FileNotFoundError(name)
-    return data
 
 
 def ellipsoid_of(model: KinematicModel, body: int) -> tuple[Array, Array, Array] | None:

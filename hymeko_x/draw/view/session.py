@@ -9,7 +9,7 @@ import numpy as np
 
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.draw.comparison.facts import lines_of, losses_of
-from hymeko_x.draw.comparison.rows import answer
+from hymeko_x.draw.comparison.rows import answer, gap_line
 from hymeko_x.draw.view.findings import spots_of
 from hymeko_x.draw.view.motion import Motion, Partner
 from hymeko_x.draw.view.page import Page
@@ -90,8 +90,7 @@ class Session:
             else:
                 words = answer(verdict)
                 spots = spots_of(verdict, *(scene.model for scene in self.scenes))
-                cannot = [f"{gap.format} cannot represent {gap}" for gap in verdict.gaps]
-                lists += [("not compared", [*cannot, *verdict.not_compared])]
+                lists += [("not compared", [*map(gap_line, verdict.gaps), *verdict.not_compared])]
             lists.insert(0, ("what B does not have as A has it", lost))
         with self._lock:
             if number == self._round and (words or missing):
