@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import Id, Mechanism
 
-_LONG = re.compile(r"(?<![\w.])-?(?:\d[\d.]{15,}(?:e-?\d+)?|\d[\d.]*e-\d\d+)")
+_LONG = re.compile(r"(?<![\w.])-?(?:(?=[\d.]{16})\d+(?:\.\d+)?(?:e-?\d+)?|\d+(?:\.\d+)?e-\d\d+)(?![\w.])")
 """Numbers with so many digits, or so close to zero, that they may be computed."""
 _AS_THEY_ARE = Mesh | Subset
 """Parts whose numbers are data of files."""
@@ -38,9 +38,7 @@ def shorten_computed(mechanism: Mechanism, source: Mechanism) -> Mechanism:
     edges = _changed(mechanism.graph.edges, source.graph.edges)
     if not vertices and not edges:
         return mechanism
-    found = {text for part in (*vertices.values(), *edges.values()) for text in _LONG.findall(_text(part))}
-    given = "".join(map(_text, (*source.graph.vertices.values(), *source.graph.edges.values())))
-    known = frozenset(float(text) for text in found if text in given)
+    known = _known(source)
     return mechanism.with_graph(
         mechanism.graph.replace(
             vertices={key: _shortened(part, known) for key, part in vertices.items()},
@@ -57,8 +55,14 @@ def clean_pose(pose: Pose) -> Pose:
 
 def _changed(parts: Mapping[Id, Any], before: Mapping[Id, Any]) -> dict[Id, Any]:
     """The parts that the source does not have like this, as far as they have long numbers."""
-    changed = {key: part for key, part in parts.items() if part is not before.get(key)}
-    return {key: part for key, part in changed.items() if _LONG.search(_text(part))}
+    return {key: part for key, part in parts.items() if part is not before.get(key) and _LONG.search(_text(part))}
+
+
+def _known(source: Mechanism) -> frozenset[float]:
+    """The long numbers of the source, and their absolute values."""
+    parts = (*source.graph.vertices.values(), *source.graph.edges.values())
+    numbers = {float(text) for part in parts for text in _LONG.findall(_text(part))}
+    return frozenset(numbers | {*map(abs, numbers)})
 
 
 def _text(part: Any) -> str:

@@ -4,13 +4,18 @@ from __future__ import annotations
 
 import math
 import re
+from typing import TYPE_CHECKING
 
 import hymeko_x as hx
 from hymeko_x.ir.mechanism import Id, shape_edge
-from hymeko_x.ir.parts import Body, Box, Inertial, Role, Shape
+from hymeko_x.ir.parts import Body, Box, Inertial, Role, Sensor, Shape
 from hymeko_x.ir.values import Pose
 from hymeko_x.rewrite.decimals import shorten_computed
+from tests.pace import assert_at_most
 from tests.robots import body, chain, hinge
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 AUTHORED = 0.12345678901234567
 
@@ -30,6 +35,25 @@ def test_a_mechanism_without_computed_numbers_is_the_same_object() -> None:
     other = source.with_graph(source.graph.replace(vertices={body("b0"): Body()}))
     assert shorten_computed(source, source) is source
     assert shorten_computed(other, source) is other
+
+
+def test_a_version_with_many_dots_is_no_number() -> None:
+    firmware = Sensor("imu", parameters=(("firmware", "1.2.3.4.5.6.7.8.9.10"),))
+    source = chain(hinge())
+    given = source.with_graph(source.graph.replace(vertices={Id("sensor", "imu"): firmware}))
+    rewritten = given.with_graph(given.graph.replace(vertices={body("b0"): Body(Inertial(0.1 + 0.2))}))
+    assert shorten_computed(rewritten, given).vertex(body("b0"), Body) == Body(Inertial(0.3))
+
+
+def test_ten_times_as_many_computed_numbers_take_ten_times_as_long() -> None:
+    def shortening(count: int) -> Callable[[], object]:
+        numbers = [0.1 + number / 3 for number in range(count)]
+        source = chain(hinge())
+        given = source.with_graph(source.graph.replace(vertices={body(f"g{i}"): Body(Inertial(x)) for i, x in enumerate(numbers)}))
+        computed = given.with_graph(given.graph.replace(vertices={body(f"g{i}"): Body(Inertial(x + 1)) for i, x in enumerate(numbers)}))
+        return lambda: shorten_computed(computed, given)
+
+    assert_at_most(2.0, shortening(10_000), shortening(1_000), count=10)
 
 
 def test_poses_of_new_elements_are_clean() -> None:
