@@ -192,8 +192,7 @@ def convert(
     contents = None if place.assets == "reference" else PackageFiles(package, files_of(mechanism, files))
     is_kept = options.keep is not None and passed is None and not format.is_exact
     losses, residue, aligned = compared(mechanism, printed, image, format, contents, is_moved=is_moved, is_kept=is_kept)
-    robot = robot_of_network(given, format, Report())
-    if is_kept and robot is not given and robot == mechanism:  # the way home leads to the network
+    if is_kept and _is_network_as_robot(given, mechanism, format):  # the way home leads to the network
         _, residue, aligned = compared(given, printed, image, format, contents, is_moved=is_moved, is_kept=True)
     kept = Kept(residue, "") if passed is None else passed
     if passed is None and options.keep is not None:
@@ -201,6 +200,12 @@ def convert(
         originals, digests = originals_of(mechanism, named, aligned, package, files_of(mechanism, files), missing_only=is_inside)
         kept = kept._replace(originals=originals, digests="" if is_inside else digests)
     return Result(mechanism, with_kept(package, kept, options, report), report, losses)
+
+
+def _is_network_as_robot(given: Mechanism, mechanism: Mechanism, format: Format) -> bool:
+    """Whether the mechanism is a lumped network as the robot that it becomes in a format, and no option has changed that robot."""
+    robot = robot_of_network(given, format, Report())
+    return robot is not given and robot == mechanism
 
 
 def _chosen(mechanism: Mechanism, format: Format, options: Options, files: Files, report: Report) -> tuple[Mechanism, Options]:

@@ -15,6 +15,7 @@ from hymeko_x import disk, formats
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.parser import count
+from hymeko_x.diagnostics import Report
 from hymeko_x.generate.prompts import PROMPTS
 
 if TYPE_CHECKING:
@@ -79,14 +80,15 @@ def table(runs: list[list[Step]]) -> list[str]:
 
 
 def _task(chosen: argparse.Namespace) -> Task:
-    from hymeko_x.api import dumps, load
+    from hymeko_x import pipeline
+    from hymeko_x.api import dumps
     from hymeko_x.generate.loop import Task
 
-    format = formats.by_name(chosen.to)
-    robot = load(chosen.input)
-    data = disk.open_source(chosen.input).data
-    text = data.decode("utf-8", "replace") if formats.of_input(chosen.input, data) is formats.OWN else dumps(robot, formats.OWN.name)
-    return Task(text, Path(chosen.input), robot, format, chosen.prompt)
+    source = disk.open_source(chosen.input)
+    format = formats.of_input(source.name, source.data)
+    robot = pipeline.read(source, format, Report())
+    text = source.data.decode() if format is formats.OWN else dumps(robot, formats.OWN.name)
+    return Task(text, Path(chosen.input), robot, formats.by_name(chosen.to), chosen.prompt)
 
 
 def _model(chosen: argparse.Namespace, task: Task) -> Model:

@@ -57,7 +57,8 @@ def _with_fault(robot: Mechanism, fault: str, chance: random.Random) -> Mechanis
         return robot.with_graph(graph.replace(without=gone))
     if fault == "made-up link":
         extra = Id("body", "tool_link")
-        return robot.with_graph(graph.replace(vertices={extra: parts.Body()}, edges={Id("joint", "tool_joint"): _fixed(body, extra)}))
+        edges = {Id("joint", "tool_joint"): joint_edge(parts.Joint(), body, extra)}
+        return robot.with_graph(graph.replace(vertices={extra: parts.Body()}, edges=edges))
     if fault == "mass":
         inertial = robot.vertex(body, parts.Body).inertial
         heavier = None if inertial is None or inertial.mass is None else replace(inertial, mass=inertial.mass * 10)
@@ -78,7 +79,3 @@ def _with_joint_fault(robot: Mechanism, fault: str, key: Id) -> Mechanism:
         joint = parts.Joint((replace(wrong, written=None), *joint.dofs[1:]))
     edge: Edge[Id, parts.EdgePart, parts.Weight] = joint_edge(joint, view.parent, view.child, place, view.child_pose)
     return robot.with_graph(robot.graph.replace(edges={key: edge}))
-
-
-def _fixed(parent: Id, child: Id) -> Edge[Id, parts.EdgePart, parts.Weight]:
-    return joint_edge(parts.Joint(), parent, child)

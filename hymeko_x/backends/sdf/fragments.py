@@ -51,12 +51,12 @@ def _of_link(body: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
     for node in _content(body, sheet):
         yield _leaf(back[node.tag], _text(node)) if node.tag in back else markup(node)
     shapes = sheet.mechanism.shapes.get(body, ())
-    collisions = [view.id for view in shapes if view.shape.role is Role.COLLISION]
+    collisions = [_whole(view.id, sheet) for view in shapes if view.shape.role is Role.COLLISION]
     frictions = {view.shape.friction[:1] for view in shapes if view.shape.role is Role.COLLISION}
     if len(frictions) == 1 and (friction := next(iter(frictions))):
         yield _leaf("mu1", NUMBER.write(friction[0]))
     for word, (path, name) in words.OF_COLLISION.items():
-        yield from _shared(word, f"{path}/{name}".lstrip("/"), collisions, sheet)
+        yield from _shared(word, f"{path}/{name}".lstrip("/"), collisions)
     scripts = {_script(view.id, sheet) for view in shapes if view.shape.role is Role.VISUAL}
     if len(scripts) == 1 and (script := next(iter(scripts))):
         yield _leaf("material", script)
@@ -65,18 +65,23 @@ def _of_link(body: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
             yield sensor_tag(mount, sdf_words.split_scope(body.name)[0], body, sheet)
 
 
-def _shared(word: str, path: str, keys: Sequence[Id], sheet: SdfSheet) -> Iterator[Tag]:
+def _shared(word: str, path: str, elements: Sequence[Node]) -> Iterator[Tag]:
     """The value below all of these elements, where they have the same one: a fragment is for the whole link."""
-    found = {_value(path, key, sheet) for key in keys}
+    found = {_value(path, element) for element in elements}
     if len(found) == 1 and (value := next(iter(found))) is not None:
         yield _leaf(word, value)
 
 
-def _value(path: str, key: Id, sheet: SdfSheet) -> str | None:
-    """The text of the element at a path below an element of the mechanism, among what SDF alone represents."""
+def _whole(key: Id, sheet: SdfSheet) -> Node:
+    """What SDF alone represents of an element of the mechanism."""
     whole = Tag("x", {})
     put_back(whole, sheet.extras(key), {})
-    nodes = [parse_text(ready(whole, 0))]
+    return parse_text(ready(whole, 0))
+
+
+def _value(path: str, element: Node) -> str | None:
+    """The text of the first element at a path below this one."""
+    nodes = [element]
     for step in path.split("/"):
         nodes = [child for node in nodes for child in node.children if child.tag == step]
     return _text(nodes[0]) if nodes else None
@@ -91,8 +96,9 @@ def _script(key: Id, sheet: SdfSheet) -> str | None:
 
 
 def _of_joint(joint: Id, sheet: SdfSheet) -> Iterator[Tag | str]:
+    whole = _whole(joint, sheet)
     for word, (path, name) in words.OF_JOINT.items():
-        yield from _shared(word, f"{path}/{name}", [joint], sheet)
+        yield from _shared(word, f"{path}/{name}", [whole])
     if not sheet.mechanism.joints[joint].joint.dofs:
         yield _leaf(words.OBEYED[0], "true")
     for sensor in sheet.joint_sensors.get(joint, ()):

@@ -23,18 +23,18 @@ def with_bases_held(model: KinematicModel, other: KinematicModel) -> KinematicMo
     if Feature.HELD_BASES in other.features:
         return model
     bodies = list(model.bodies)
-    done = []
-    for loop in model.loops:
+    done = set()
+    for number, loop in enumerate(model.loops):
         for above, pose_above, base, pose_base in _ways(loop):
             if above < base and _is_free(bodies[base]) and _is_joined(bodies[above], bodies[base], _MOTIONS.get(loop.kind), other):
                 dofs = tuple(Dof(kind, np.array([0.0, 0.0, 1.0]), name=loop.name) for kind in _MOTIONS[loop.kind])
                 joint = between_frames(loop.name, pose_above, dofs, pose_base)
                 bodies[base] = replace(bodies[base], parent=above, joint=joint)
-                done.append(loop)
+                done.add(number)
                 break
     if not done:
         return model
-    held = replace(model, bodies=tuple(bodies), loops=tuple(loop for loop in model.loops if loop not in done))
+    held = replace(model, bodies=tuple(bodies), loops=tuple(loop for number, loop in enumerate(model.loops) if number not in done))
     return _renumbered(held, dict(_numbers(model, held)))
 
 

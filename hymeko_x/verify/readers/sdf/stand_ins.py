@@ -33,10 +33,11 @@ def without_stand_ins(bodies: Sequence[Body], loops: Sequence[Loop]) -> tuple[tu
         if (body.name == _WORLD_LINK and body.parent == WORLD) or ((i, body.name) in anchors and _is_nothing(body)):
             gone[i] = body.parent, body.joint.placement
     floating = dict(_floating(bodies, children))
+    bodies = list(bodies)
     for top, last in floating.items():
         gone |= {carrier: (bodies[top].parent, np.eye(4)) for carrier in range(top, last)}
         joint = Joint(None, bodies[top].joint.placement, (Dof(Kind.FREE, np.array([0.0, 0.0, 1.0])),))
-        bodies = [*bodies[:last], replace(bodies[last], parent=bodies[top].parent, joint=joint), *bodies[last + 1 :]]
+        bodies[last] = replace(bodies[last], parent=bodies[top].parent, joint=joint)
     return _without(bodies, loops, gone) if gone else (tuple(bodies), tuple(loops))
 
 
