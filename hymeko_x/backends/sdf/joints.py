@@ -9,6 +9,7 @@ from hymeko_x.backends.sdf.sensors import joint_sensor_tag
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
+from hymeko_x.formats.sdf.gearboxes import ENDS, GEARBOX, RATIO
 from hymeko_x.formats.sdf.values import (
     DYNAMICS,
     NUMBER,
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from hymeko_x.backends.sdf.sheet import SdfSheet
     from hymeko_x.ir.mechanism import Id
 
-_AXIS = Field("xyz", "axis", VECTOR)
+_RATIO = Field(RATIO, "ratio", NUMBER, 1.0)
 
 
 def joint_tag(key: Id, scope: str, sheet: SdfSheet) -> Tag:
@@ -52,6 +53,26 @@ def joint_tag(key: Id, scope: str, sheet: SdfSheet) -> Tag:
         tag.add(name).children.append(escaped(text))
     for number, dof in enumerate(joint.dofs):
         _add_dof(tag, dof, words.AXES[number], word, key, scope, sheet)
+    sheet.put_back(tag, key)
+    tag.children += [joint_sensor_tag(sensor, scope, sheet) for sensor in sheet.joint_sensors.get(key, ())]
+    return tag
+
+
+def gearbox_tag(key: Id, scope: str, sheet: SdfSheet) -> Tag:
+    """The <joint> of a coupling that is a gearbox, with the names and axes that its author gave it."""
+    gear, texts = sheet.gears[key], sheet.written(key)
+    tag = Tag("joint", {"name": sheet.name(key, scope), "type": GEARBOX})
+    sheet.add_pose(tag, key, scope, gear.child, pose=gear.pose)
+    names: tuple[str, ...] = sheet.mechanism.notation(key, notations.GEARBOX) or ()
+    for name, text in zip(ENDS, names, strict=False):
+        tag.add(name).children.append(escaped(text))
+    sheet.put(tag, _RATIO, gear.ratio, texts)
+    for name in words.AXES:
+        expressed, flag = texts.get(f"{name}/xyz/@expressed_in"), texts.get(f"{name}/use_parent_model_frame")
+        axis = tag.add(name)
+        axis.add("xyz", **({} if expressed is None else {"expressed_in": expressed})).children.append(texts[f"{name}/xyz"])
+        if flag is not None:
+            axis.add("use_parent_model_frame").children.append(escaped(flag))
     sheet.put_back(tag, key)
     tag.children += [joint_sensor_tag(sensor, scope, sheet) for sensor in sheet.joint_sensors.get(key, ())]
     return tag

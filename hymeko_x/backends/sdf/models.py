@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hymeko_x.backends.sdf.joints import joint_tag
+from hymeko_x.backends.sdf.joints import gearbox_tag, joint_tag
 from hymeko_x.backends.sdf.links import link_tag
 from hymeko_x.backends.sdf.sensors import light_tag
 from hymeko_x.formats import sdf as words
@@ -88,6 +88,8 @@ def _member_tag(key: Id, scope: str, world: Id | None, sheet: SdfSheet) -> Tag:
         return link_tag(key, scope, sheet)
     if key.kind == "frame":
         return _frame_tag(key, scope, world, sheet)
+    if key.kind == "coupling":
+        return gearbox_tag(key, scope, sheet)
     return joint_tag(key, scope, sheet)
 
 
@@ -151,6 +153,7 @@ def _all(sheet: SdfSheet) -> Iterable[Id]:
     yield from (joint.id for body in mechanism.depth_first() if (joint := mechanism.parent_joint.get(body)) and not sheet.is_implied(joint))
     yield from (key for key, _, _ in mechanism.edges(Joint) if _is_member(key, sheet))
     yield from (key for key, _, _ in mechanism.edges(Loop))
+    yield from sheet.gears
     yield from (key for key, _ in mechanism.vertices(Frame))
 
 
@@ -161,7 +164,7 @@ def _is_member(key: Id, sheet: SdfSheet) -> bool:
     if key.kind == "joint":
         view = sheet.mechanism.joints.get(key)
         return view is not None and not sheet.is_implied(view)
-    return key.kind == "loop" and key in sheet.mechanism.graph.edges
+    return (key.kind == "loop" and key in sheet.mechanism.graph.edges) or key in sheet.gears
 
 
 def _scope_of_model(key: Id) -> str | None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from hymeko_x.assets.written import files_of_meshes
 from hymeko_x.backends.sdf.frames import Places
+from hymeko_x.backends.sdf.gears import gears
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.formats.sdf.values import BadText, read_pose
@@ -22,6 +23,7 @@ from hymeko_x.xml.unread import COMMENT, FOLLOWING, PRECEDING
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from hymeko_x.backends.sdf.gears import Gear
     from hymeko_x.formats.sdf.values import Codec, Field
     from hymeko_x.ir.mechanism import Extra, Id, JointView, Mechanism, RobotArc
     from hymeko_x.ir.values import Pose
@@ -46,7 +48,7 @@ class SdfSheet:
     def version(self) -> str:
         """The author's version, or the usual one, unless something needs a later one."""
         own = self.mechanism.notation(ROOT, notations.VERSION) or words.DEFAULT_VERSION
-        needed = words.VERSION_OF_MIMIC if any(True for _ in self.mechanism.edges(Coupling)) else own
+        needed = words.VERSION_OF_MIMIC if any(key not in self.gears for key, _, _ in self.mechanism.edges(Coupling)) else own
         return max(own, needed, key=words.minor)
 
     @cached_property
@@ -155,12 +157,17 @@ class SdfSheet:
         return found
 
     @cached_property
+    def gears(self) -> Mapping[Id, Gear]:
+        """The couplings that are written as joints of type gearbox."""
+        return gears(self.mechanism, self.places)
+
+    @cached_property
     def leaders(self) -> Mapping[tuple[Id, str], tuple[Id, RobotArc]]:
         """For each axis of a joint that mimics another one, the coupling and its arc to the leader, with the coefficients."""
         found: dict[tuple[Id, str], tuple[Id, RobotArc]] = {}
         for key, _, arcs in self.mechanism.edges(Coupling):
             followers, leaders = [arc for arc in arcs if arc.sign > 0], [arc for arc in arcs if arc.sign < 0]
-            if len(followers) == len(leaders) == 1 and not any(numbers_weight(leaders[0])[2:]):
+            if key not in self.gears and len(followers) == len(leaders) == 1 and not any(numbers_weight(leaders[0])[2:]):
                 found[followers[0].target, self.axis_name(followers[0])] = key, leaders[0]
         return found
 

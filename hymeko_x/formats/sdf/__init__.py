@@ -85,7 +85,7 @@ JOINT_TYPES: Mapping[str, JointType] = MappingProxyType(
         "revolute2": JointType((DofKind.HINGE, DofKind.HINGE)),
     }
 )
-"""``gearbox`` is none of them: it couples two joints. ``piston`` of old versions was never implemented."""
+"""``gearbox`` is none of them: it couples two joints (``gearboxes.py``). ``piston`` of old versions was never implemented."""
 
 AXES = ("axis", "axis2")
 

@@ -21,6 +21,8 @@ TYPE = word("sdf.type")
 """Joint: its type where another one would be written by default."""
 ENDS = word("sdf.ends")
 """Joint: the frames that it names as parent and child, with a blank between them, where these are not links."""
+GEARBOX: Notation[tuple[str, ...]] = Notation("sdf.gearbox", lambda names: "; ".join(names), lambda text: tuple(text.split("; ")))
+"""Coupling: it is a joint of type gearbox, which names these as its parent, child and, where it does, reference body."""
 ATTACHED = word("sdf.attached")
 """Frame: ``attached_to`` as written."""
 NO_INERTIAL = flag("sdf.inertial", "missing")

@@ -13,6 +13,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.frontends.sdf.builder import Model, SdfBuilder, TextsUnread
+from hymeko_x.frontends.sdf.gearboxes import read_gearboxes
 from hymeko_x.frontends.sdf.include import expand_includes
 from hymeko_x.frontends.sdf.joints import read_joint
 from hymeko_x.frontends.sdf.links import read_link
@@ -126,6 +127,7 @@ def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBui
     _read_content(scenes, builder)
     mount_frames(scenes, builder)
     close_cycles(scenes, builder)
+    read_gearboxes(builder)
     hold_bases(models, builder, in_world=world is not None)
     for node in place.take_children("light"):
         read_light(node, WORLD, around, builder)

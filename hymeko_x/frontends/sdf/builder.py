@@ -62,6 +62,7 @@ class SdfBuilder(Builder):
     joints: dict[str, Id] = field(default_factory=dict)
     attached: dict[Id, Id] = field(default_factory=dict)
     moves_with: dict[Id, Id | None] = field(default_factory=dict)
+    gearboxes: list[tuple[Node, Model]] = field(default_factory=list)
     left: set[Id] = field(default_factory=set)
     written: dict[Id, dict[str, str]] = field(default_factory=dict)
 

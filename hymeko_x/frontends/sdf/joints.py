@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from hymeko_x import codes
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
+from hymeko_x.formats.sdf.gearboxes import GEARBOX
 from hymeko_x.formats.sdf.values import DYNAMICS, NUMBER, OLD_PITCH, PITCH, POSITION_LIMITS, STRENGTH_LIMITS, VECTOR, BadText
 from hymeko_x.frontends.sdf.models import body_of
 from hymeko_x.frontends.sdf.sensors import read_joint_sensor
@@ -27,16 +28,19 @@ _OLD_DEFAULT = 7
 
 
 def read_joint(node: Node, model: Model, builder: SdfBuilder) -> None:
-    """Add a joint; one without two ends, or of a type that is no joint between two bodies, stays as it was written."""
+    """Add a joint; one without two ends or of an unknown type stays as it was written, and a gearbox waits for the other joints."""
     key = node.owner
     assert key is not None
     kind = node.attributes.get("type", "")
+    if kind == GEARBOX:
+        builder.gearboxes.append((node, model))
+        return
     ends = _read_ends(node, model, builder)
     if kind not in words.JOINT_TYPES or ends is None:
         if kind not in words.JOINT_TYPES:
             known = ", ".join(words.JOINT_TYPES)
             builder.warn(codes.UNKNOWN_WORD, node, f"{node.subject} has type '{kind}', known are {known}; it is kept as written")
-        _keep_as_written(node, key, model, builder)
+        keep_as_written(node, key, model, builder)
         return
     parent, child = ends
     node.take("type")
@@ -52,7 +56,7 @@ def read_joint(node: Node, model: Model, builder: SdfBuilder) -> None:
         read_joint_sensor(sensor, key, model, builder)
 
 
-def _keep_as_written(node: Node, key: Id, model: Model, builder: SdfBuilder) -> None:
+def keep_as_written(node: Node, key: Id, model: Model, builder: SdfBuilder) -> None:
     """Give up the id, so that the whole element is unread."""
     node.owner = None
     node.attributes = {"name": words.split_scope(key.name)[1], **node.attributes}
@@ -121,7 +125,7 @@ def _read_dof(node: Node, kind: DofKind, tag: str, word: str, key: Id, model: Mo
         return {field.name: builder.value(axis, field, key, f"{tag}/") for field in fields}
 
     limits = Limits(**(values(POSITION_LIMITS) if words.JOINT_TYPES[word].bounded else {}), **values(STRENGTH_LIMITS))
-    direction, written = _read_axis(axis, tag, key, model, builder)
+    direction, written = read_axis(axis, tag, key, model, builder)
     return Dof(kind, direction, limits=limits, **values(DYNAMICS), pitch=pitch, written=written)
 
 
@@ -137,7 +141,7 @@ def _read_pitch(node: Node, key: Id, builder: SdfBuilder) -> float:
     return float(OLD_PITCH.read("1"))  # libsdformat's default
 
 
-def _read_axis(axis: Node, tag: str, key: Id, model: Model, builder: SdfBuilder) -> tuple[Vec3, Written | None]:
+def read_axis(axis: Node, tag: str, key: Id, model: Model, builder: SdfBuilder) -> tuple[Vec3, Written | None]:
     """The unit axis in the joint's frame, and the numbers as written where they have another length."""
     xyz = axis.take_child("xyz")
     if xyz is None:

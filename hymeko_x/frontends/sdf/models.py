@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
+from hymeko_x.formats.sdf.gearboxes import GEARBOX
 from hymeko_x.formats.sdf.values import TRUTH
 from hymeko_x.frontends.sdf.builder import Model
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge, mount_edge
@@ -77,15 +78,16 @@ def register_content(model: Model, builder: SdfBuilder) -> None:
     for tag, kind in kinds:
         for node in model.node.take_children(tag):
             name = words.scoped(model.scope, node.attributes.get("name", ""))
-            key = builder.own(node, kind, model.scope)
+            is_gearbox = kind == "joint" and node.attributes.get("type") == GEARBOX
+            key = builder.own(node, "coupling" if is_gearbox else kind, model.scope)
             builder.named.setdefault(name, key)
             if model.frame == WORLD:
                 builder.note(key, notations.IN_WORLD, True)
-            if kind == "joint":
+            if kind == "joint" and not is_gearbox:
                 builder.joints.setdefault(name, key)
             elif kind == "body":
                 builder.vertices[key] = Body()
-            else:
+            elif kind == "frame":
                 builder.vertices[key] = Frame()
     builder.layout += [child.owner for child in model.node.children if child.owner is not None]
 

@@ -1,6 +1,7 @@
 """SDF as libsdformat reads it, through Drake's MultibodyPlant.
 
-Drake has bodies, joints, limits, damping, inertia and shapes; mimic joints, which it does not hand out, are taken from the text.
+Drake has bodies, joints, limits, damping, inertia and shapes; mimic joints, which it does not hand out, and gearboxes, which it refuses,
+are taken from the text.
 Source: pydrake.multibody.plant, pydrake.geometry.
 """
 
@@ -9,7 +10,6 @@ from __future__ import annotations
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
-from xml.etree import ElementTree
 
 import numpy as np
 from msgspec.structs import replace
@@ -26,7 +26,6 @@ from hymeko_x.verify.model import (
     WORLD,
     Array,
     Body,
-    Coupling,
     Dof,
     Feature,
     Joint,
@@ -41,6 +40,7 @@ from hymeko_x.verify.model import (
     world_body,
 )
 from hymeko_x.verify.readers import native_output
+from hymeko_x.verify.readers.sdf.couplings import gearboxes, mimics, root_of, text_without_gearboxes
 from hymeko_x.verify.readers.sdf.stand_ins import without_stand_ins
 from hymeko_x.verify.spatial import frame_with_z, shifted_tensor
 
@@ -59,7 +59,6 @@ UNREPRESENTED = frozenset({*((limit, kind) for limit in _LIMITS for kind in (Kin
 _ROLES = {Role.VISUAL: GeometryRole.kIllustration, Role.COLLISION: GeometryRole.kProximity}
 _LEAST = 2e-10
 """kg and kg m^2: a link cannot be without mass, and so little stands for none."""
-_MIMIC = (("multiplier", "1"), ("offset", "0"), ("reference", "0"))
 _STATIC = "sdformat_model_static_"
 """How the names of the joints begin that Drake adds to static models."""
 
@@ -111,10 +110,18 @@ def _load(path: Path, plant: Any, lookup: Lookup) -> None:
         parser.package_map().Add(name, folder)
     with native_output() as output:
         try:
-            parser.AddModelsFromString(path.read_text("utf-8"), "sdf") if path.suffix != ".sdf" else parser.AddModels(path)
+            _parse(path, parser)
         except (RuntimeError, SystemExit, MemoryError) as error:
             reason = " ".join(str(error).split()) or output()
             raise refuse(codes.ENGINE_REFUSED, f"libsdformat refuses the file: {reason}", Origin(str(path))) from error
+
+
+def _parse(path: Path, parser: Any) -> None:
+    text = text_without_gearboxes(path)
+    if text is None and path.suffix == ".sdf":
+        parser.AddModels(path)
+    else:
+        parser.AddModelsFromString(path.read_text("utf-8") if text is None else text, "sdf")
 
 
 def _model(plant: Any, scene: Any | None, path: Path, screws: Mapping[int, Array]) -> KinematicModel:
@@ -143,26 +150,8 @@ def _model(plant: Any, scene: Any | None, path: Path, screws: Mapping[int, Array
         unread=UNREAD,
         unrepresented=UNREPRESENTED,
     )
-    return replace(model, couplings=tuple(_couplings(path, model)))
-
-
-# ---- mimic joints ------------------------------------------------------------------------------------------------------------
-
-
-def _couplings(path: Path, model: KinematicModel) -> Iterator[Coupling]:
-    """The <mimic> of single axes, as the file has them: Drake knows them and does not hand them out."""
-    numbers = {dof.name: number for number, dof in enumerate(model.dofs) if dof.name is not None}
-    try:
-        root = ElementTree.parse(path).getroot()
-    except ElementTree.ParseError:
-        return
-    for joint in root.iter("joint"):
-        mimic = joint.find("axis/mimic")
-        follower, leader = numbers.get(joint.get("name", "")), None if mimic is None else numbers.get(mimic.get("joint", ""))
-        if mimic is None or follower is None or leader is None:
-            continue
-        multiplier, offset, reference = (float(mimic.findtext(tag, usual)) for tag, usual in _MIMIC)
-        yield Coupling(follower, offset - multiplier * reference, ((leader, (multiplier,)),), joint.get("name"))
+    root = root_of(path)
+    return model if root is None else replace(model, couplings=(*mimics(root, model), *gearboxes(root, model, plant)))
 
 
 def _parent(joint: Any) -> int:

@@ -1,0 +1,127 @@
+"""Mimic joints and gearboxes of SDF, from the text: Drake knows the ones and does not hand them out, and refuses a file with the others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
+
+import numpy as np
+
+from hymeko_x.verify.model import WORLD, Array, Coupling, Kind
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from hymeko_x.verify.model import KinematicModel
+
+_MIMIC = (("multiplier", "1"), ("offset", "0"), ("reference", "0"))
+_FRAMES_SINCE = 1.7
+"""The version from which on a model may have frames of its own."""
+_PARALLEL = 1e-6
+
+
+def root_of(path: Path) -> ElementTree.Element | None:
+    """The root element of a file; None for one that is no XML, which libsdformat refuses."""
+    try:
+        return ElementTree.parse(path).getroot()
+    except (ElementTree.ParseError, ValueError):
+        return None
+
+
+# ---- mimic joints --------------------------------------------------------------------------------------------------------
+
+
+def mimics(root: ElementTree.Element, model: KinematicModel) -> Iterator[Coupling]:
+    """The <mimic> of single axes, as the file has them."""
+    numbers = {dof.name: number for number, dof in enumerate(model.dofs) if dof.name is not None}
+    for joint in root.iter("joint"):
+        mimic = joint.find("axis/mimic")
+        follower, leader = numbers.get(joint.get("name", "")), None if mimic is None else numbers.get(mimic.get("joint", ""))
+        if mimic is None or follower is None or leader is None:
+            continue
+        multiplier, offset, reference = (float(mimic.findtext(tag, usual)) for tag, usual in _MIMIC)
+        yield Coupling(follower, offset - multiplier * reference, ((leader, (multiplier,)),), joint.get("name"))
+
+
+# ---- gearboxes -----------------------------------------------------------------------------------------------------------
+
+
+def text_without_gearboxes(path: Path) -> str | None:
+    """The file with a frame in the place of each gearbox, and with absolute paths; None where it has no gearbox."""
+    root = root_of(path)
+    if root is None or not any(joint.get("type") == "gearbox" for joint in root.iter("joint")):
+        return None
+    for model in root.iter("model"):
+        for place, joint in enumerate(list(model)):
+            if joint.tag == "joint" and joint.get("type") == "gearbox":
+                model[place] = _frame(joint, float(root.get("version", "0")))
+    for uri in root.iter("uri"):
+        name = (uri.text or "").strip()
+        if "://" not in name and (path.parent / name).exists():
+            uri.text = str((path.parent / name).resolve())
+    return ElementTree.tostring(root, encoding="unicode")
+
+
+def _frame(joint: ElementTree.Element, version: float) -> Any:
+    """The frame of a joint as a frame, which is given in the child as well; a comment in old files, which have no frames."""
+    if version < _FRAMES_SINCE:
+        return ElementTree.Comment("gearbox")
+    frame = ElementTree.Element("frame", {"name": joint.get("name", ""), "attached_to": (joint.findtext("child") or "").strip()})
+    frame.extend(joint.findall("pose"))
+    return frame
+
+
+def gearboxes(root: ElementTree.Element, model: KinematicModel, plant: Any) -> Iterator[Coupling]:
+    """theta_2 = -ratio theta_1, the angles of the child and of the parent link from the reference body.
+
+    Those of the model at top level whose links have one hinge to the reference body; others are no relation of two coordinates.
+    """
+    bodies = {body.name: number for number, body in enumerate(model.bodies)}
+    for joint in root.findall("model/joint[@type='gearbox']") + root.findall("world/model/joint[@type='gearbox']"):
+        parent, child, reference = (bodies.get(_text(joint, tag, "world")) for tag in ("parent", "child", "gearbox_reference_body"))
+        if parent is None or child is None or reference is None:
+            continue
+        leader, follower = (
+            _turn(model, body, reference, _axis(joint.find(tag), joint, model, plant)) for body, tag in ((parent, "axis"), (child, "axis2"))
+        )
+        if leader is not None and follower is not None and leader[0] != follower[0]:
+            factor = -float(_text(joint, "gearbox_ratio", "1")) * leader[1] * follower[1]
+            yield Coupling(follower[0], 0.0, ((leader[0], (factor,)),), joint.get("name"))
+
+
+def _text(node: ElementTree.Element, tag: str, usual: str) -> str:
+    return (node.findtext(tag) or "").strip() or usual
+
+
+def _axis(axis: ElementTree.Element | None, joint: ElementTree.Element, model: KinematicModel, plant: Any) -> Array | None:
+    """An axis of a gearbox in the world at the zero pose: given in the model, in a named frame, or in that of the joint."""
+    xyz = None if axis is None else axis.find("xyz")
+    if axis is None or xyz is None:
+        return None
+    own = joint.get("name", "")
+    name = xyz.get("expressed_in") or (own if plant.HasFrameNamed(own) else _text(joint, "child", "world"))
+    frame = plant.GetFrameByName("__model__" if _text(axis, "use_parent_model_frame", "0") in ("1", "true") else name)
+    number = next(i for i, body in enumerate(model.bodies) if i == WORLD or body.name == str(frame.body().name()))
+    direction = np.array(frame.GetFixedPoseInBodyFrame().rotation().matrix()) @ [float(word) for word in (xyz.text or "").split()]
+    return _in_world(model, number, direction / np.linalg.norm(direction))
+
+
+def _in_world(model: KinematicModel, body: int, direction: Array) -> Array:
+    """A direction in a body's frame as one in the world at the zero pose."""
+    while body != WORLD:
+        direction, body = model.bodies[body].joint.placement[:3, :3] @ direction, model.bodies[body].parent
+    return direction
+
+
+def _turn(model: KinematicModel, body: int, reference: int, axis: Array | None) -> tuple[int, float] | None:
+    """The dof that is the angle of a body from the reference body about an axis, and its sign; None where there is none."""
+    forwards = model.bodies[body].parent == reference
+    moved = body if forwards else reference
+    dofs = model.bodies[moved].joint.dofs
+    if axis is None or model.bodies[moved].parent not in (body, reference) or [dof.kind for dof in dofs] != [Kind.HINGE]:
+        return None
+    along = float(_in_world(model, moved, dofs[0].axis) @ axis)
+    if abs(abs(along) - 1.0) > _PARALLEL:
+        return None
+    return model.first_dof[moved], (1.0 if along > 0.0 else -1.0) * (1.0 if forwards else -1.0)
