@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from hymeko_x import disk, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
-from hymeko_x.delivery import Delivery, place_of, report_unwritten, unchanged
+from hymeko_x.delivery import Delivery, place_of, reason_against, report_unwritten, unchanged
 from hymeko_x.diagnostics import Report
 from hymeko_x.ir.holder import mechanism_of
 from hymeko_x.rewrite import Options
@@ -84,8 +84,8 @@ class Writing(TypedDict, total=False):
     """Whether to go on where writing makes errors; else they raise Stopped, and nothing is written."""
 
 
-Assets = Literal["copy", "reference"] | None
-"""Copy meshes beside the output, or refer to them where they are; None = usual for the format."""
+Assets = Literal["copy", "reference", "pack"] | None
+"""Copy meshes beside the output, refer to them where they are, or pack all into one archive; None = usual for the format and suffix."""
 
 
 def load(
@@ -151,14 +151,12 @@ def dump(
     Relative meshes are looked for beside the file that the robot was read from, and otherwise as :class:`Finding` says;
     :class:`Writing` lists the other options.
 
-    Raises: Refusal when it cannot be written; then nothing was changed.
+    Raises: Refusal when it cannot be written; then nothing was changed. ValueError for ``assets`` that do not fit to the path.
     """
     report = Report()
     target = formats.by_name(format) if format else formats.of_output(os.fspath(path))
-    files = _files_of(robot, packages, search_path, confine)
-    delivery = Delivery(
-        mechanism_of(robot), target, Options(**writing, beside=Path(path).stem), files, place_of(os.fspath(path), assets), os.fspath(path)
-    )
+    files, place = _files_of(robot, packages, search_path, confine), _place(path, assets, target)
+    delivery = Delivery(mechanism_of(robot), target, Options(**writing, beside=Path(path).stem), files, place, os.fspath(path))
     delivery.put(delivery.convert(report))
     return report
 
@@ -215,6 +213,7 @@ def convert(
     :class:`Reading` and :class:`Writing` list the options.
 
     Raises: Refusal when the input cannot be read or has errors, or the output cannot be written; then nothing was changed.
+    ValueError for ``assets`` that do not fit to the path.
     """
     report = Report()
     given = _source(source, **reading)
@@ -224,7 +223,7 @@ def convert(
     options = Options(base, actuators, layout, nested, split, keep, lenient, Path(output).stem, target=target)
     options = replace(options, density=density, inertia_from=inertia_from, sites=sites, mesh_prefix=mesh_prefix)
     own = unchanged(given, read_as, format)
-    delivery = Delivery(robot, format, options, given.files, place_of(os.fspath(output), assets), os.fspath(output), own, passed)
+    delivery = Delivery(robot, format, options, given.files, _place(output, assets, format), os.fspath(output), own, passed)
     result = delivery.convert(report)
     delivery.put(result)
     return result
@@ -282,6 +281,14 @@ def _source(
     )
     chosen = {"arguments": dict(arguments or {}), "environment": dict(environment or {}), "variants": dict(variants or {})}
     return replace(given, **chosen, ignores_kept=ignore_kept)
+
+
+def _place(path: Place, assets: Assets, format: formats.Format) -> pipeline.Place:
+    """Where the output and its files go. Raises: ValueError where they cannot go there."""
+    reason = reason_against(os.fspath(path), assets, format)
+    if reason:
+        raise ValueError(reason)
+    return place_of(os.fspath(path), assets)
 
 
 def _input_format(source: Source, format: str | None) -> formats.Format:

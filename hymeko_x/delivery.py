@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from msgspec import Struct
 from msgspec.structs import replace
 
-from hymeko_x import codes, disk, pipeline
+from hymeko_x import codes, disk, formats, pipeline
+from hymeko_x.assets import archives
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Report
@@ -21,6 +22,7 @@ from hymeko_x.source import Kept
 
 if TYPE_CHECKING:
     from hymeko_x.formats import Format
+    from hymeko_x.formats.format import Assets
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.pipeline import Place
     from hymeko_x.source import Files, Package, Source
@@ -50,10 +52,10 @@ class Delivery(Struct, frozen=True):
         if self._follows():
             return replace(self, options=replace(self.options, keep="beside")).convert(report, measured=measured)
         package = self._copied(report)
-        if package is not None and self._in_the_way(package, f"{safe_name(self.options.beside)}/") is None:
+        if package is not None and (self.is_archive or self._in_the_way(package, f"{safe_name(self.options.beside)}/") is None):
             package = pipeline.with_kept(package, self.passed or Kept("", ""), self.options, report)
             return Result(self.mechanism, package, report, ())
-        place = replace(self.place, in_the_way=self._in_the_way if self.path else None)
+        place = replace(self.place, in_the_way=self._in_the_way if self.path and not self.is_archive else None)
         result = pipeline.convert(
             self.mechanism, self.format, self.options, self.files, report, place, measured=measured, passed=self.passed
         )
@@ -86,16 +88,42 @@ class Delivery(Struct, frozen=True):
 
     def put(self, result: Result) -> None:
         """Write what :meth:`convert` made, whole or not at all. Raises: Refusal HX002."""
-        disk.write_package(result.package, self.path, self.files, self.below)
+        if self.is_archive:
+            disk.write_archive(result.package, self.path, archives.main_name(self.format), self.files)
+        else:
+            disk.write_package(result.package, self.path, self.files, self.below)
+
+    @property
+    def is_archive(self) -> bool:
+        """Whether everything goes into one file."""
+        return archives.is_archive(self.path)
 
     def _in_the_way(self, package: Package, folder: str) -> str | None:
         return disk.in_the_way(package, self.path, folder, self.files)
 
 
-def place_of(path: str, assets: Literal["copy", "reference"] | None) -> pipeline.Place:
-    """The place of an output on the disk."""
+def place_of(path: str, assets: Assets | None) -> pipeline.Place:
+    """The place of an output on the disk. An archive is a place of its own, in which nothing is but what is put there."""
     folder = os.path.dirname(path) or "."
+    if archives.is_archive(path):
+        return pipeline.Place(path, "pack")
     return pipeline.Place(folder, assets, disk.package_uri(folder), DiskFiles(Path(folder)))
+
+
+def archive_suffix(format: Format) -> str:
+    """The suffix of the archive with everything of a robot in this format: that of its own container where it has one (``.usdz``)."""
+    own = next((row for row in formats.FORMATS if row.holds_files and row.family == format.family), None)
+    return format.archive if own is None else own.suffixes[0]
+
+
+def reason_against(path: str, assets: Assets | None, format: Format) -> str:
+    """Why files cannot go where they are asked to go; empty where they can."""
+    is_whole = format.holds_files or archives.is_archive(path)
+    if assets == "pack" and not is_whole:
+        return f"everything is packed into one file: name the output {Path(path).stem}{archive_suffix(format)}"
+    if assets not in (None, "pack") and is_whole:
+        return f"{path} holds the files that it refers to: they cannot be {'copied beside it' if assets == 'copy' else 'referred to'}"
+    return ""
 
 
 def unchanged(source: Source, from_format: Format, to_format: Format) -> Source | None:

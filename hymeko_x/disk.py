@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from msgspec import Struct, field
 
 from hymeko_x import codes
+from hymeko_x.assets import archives
 from hymeko_x.assets.resolve import DiskFiles, package_name
 from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Origin, Refusal, refuse
@@ -38,14 +39,27 @@ def open_source(
 
     Raises: Refusal HX001 when it cannot be read or is outside ``confine``, HX007 when it is larger than 1 GiB.
     """
+    if archives.is_archive(path) and Path(path).is_file():
+        _check(path, confine)
+        path = archives.main_file(path)
     files = DiskFiles(Path(path).parent, packages or {}, search_path, confine)
     beside = f"{path}{KEPT_SUFFIX}"
-    kept = Kept(_read(beside, confine).decode("utf-8", "replace"), beside) if Path(beside).is_file() else None
+    kept = Kept(_read(beside, confine).decode("utf-8", "replace"), beside) if _is_file(beside) else None
     return Source(path, _read(path, confine), files, kept=kept, originals=_originals(Path(f"{path}{KEPT_FOLDER}")))
+
+
+def _is_file(path: str) -> bool:
+    """Whether there is such a file, on the disk or in an archive."""
+    within = archives.inside(Path(path))
+    return Path(path).is_file() if within is None else within.name in archives.names_in(within.archive)
 
 
 def _originals(folder: Path) -> dict[str, str]:
     """The files in a folder of originals, by their paths below it."""
+    within = archives.inside(folder)
+    if within is not None:
+        start, names = f"{within.name}/", sorted(archives.names_in(within.archive))
+        return {name.removeprefix(start): f"{within.archive}/{name}" for name in names if name.startswith(start) and not name.endswith("/")}
     if not folder.is_dir():
         return {}
     found = (Path(place, name) for place, _, names in os.walk(folder) for name in names)
@@ -53,7 +67,19 @@ def _originals(folder: Path) -> dict[str, str]:
 
 
 def _read(path: str, confine: Path | None) -> bytes:
-    place, origin = Path(path), Origin(path)
+    """The content of a file, on the disk or in an archive. Raises: Refusal."""
+    _check(path, confine)
+    within, origin = archives.inside(Path(path)), Origin(path)
+    try:
+        return _content(Path(path), origin) if within is None else archives.read_inside(*within)
+    except (OSError, ValueError) as error:
+        raise refuse(codes.CANNOT_READ, f"cannot be read: {_reason(error)}", origin) from error
+
+
+def _check(path: str, confine: Path | None) -> None:
+    """Raises: Refusal where a file, or the archive that has it, is none that may be read."""
+    within, origin = archives.inside(Path(path)), Origin(path)
+    place = Path(path if within is None else within.archive)
     try:
         if place.is_dir():
             raise refuse(codes.CANNOT_READ, "this is a folder, and a file was expected", origin)
@@ -63,7 +89,6 @@ def _read(path: str, confine: Path | None) -> bytes:
             raise refuse(codes.CANNOT_READ, f"the file is outside '{confine}', to which reading is confined", origin)
         if place.stat().st_size > MOST_BYTES:
             raise refuse(codes.TOO_LARGE, f"the file has {place.stat().st_size} bytes; at most {MOST_BYTES} are read", origin)
-        return _content(place, origin)
     except (OSError, ValueError) as error:
         raise refuse(codes.CANNOT_READ, f"cannot be read: {_reason(error)}", origin) from error
 
@@ -141,6 +166,18 @@ def _remove_others(folder: Path, originals: Mapping[str, str]) -> None:
     for place, _, _ in sorted(os.walk(folder), reverse=True):
         with suppress(OSError):  # a folder that is not empty stays
             os.rmdir(place)
+
+
+def write_archive(package: Package, path: str, main: str, files: Files) -> None:
+    """Write an archive with the main file under this name, its assets and what is kept; whole or not at all. Raises: Refusal HX002."""
+    contents, home = PackageFiles(package, files), Path(path).parent
+    try:
+        assets = [(name, contents.read(name)) for name in sorted({*package.files, *package.copies})]
+        kept = [(place.relative_to(home).as_posix(), data) for place, data in _kept_files(package, home / main, files)]
+        data = archives.packed([(main, package.main), *assets, *kept])
+    except (OSError, ValueError) as error:
+        raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(path)) from error
+    write_package(Package(data), path, files)
 
 
 def write_files(contents: Mapping[str, bytes]) -> None:

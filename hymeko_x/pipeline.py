@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from importlib import import_module
-from typing import TYPE_CHECKING, Literal, NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.compare.ledger import Loss
     from hymeko_x.formats import Format
+    from hymeko_x.formats.format import Assets
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files, Package, Reading
 
@@ -50,7 +51,8 @@ class Writer(Protocol):
 
 
 class Place(Struct, frozen=True):
-    """Where the output goes: its ``folder``, and whether files go beside it or are referred to (None = the format's own way).
+    """Where the output goes: its ``folder``, and whether files go beside it or with it into an archive, or are referred to (None = the
+    format's own way).
 
     ``package`` is the uri of the folder as a part of a package (``package://NAME``), where that is known; ``around`` finds files
     from the folder.
@@ -60,7 +62,7 @@ class Place(Struct, frozen=True):
     """
 
     folder: str = "."
-    assets: Literal["copy", "reference"] | None = None
+    assets: Assets | None = None
     package: str = ""
     around: Files = NO_FILES
     in_the_way: Callable[[Package, str], str | None] | None = None
@@ -260,7 +262,7 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
     """A legal mechanism with its files placed, and printed."""
     options = replace(options, mesh_prefix=_prefix(options, format, place))
     prefix = options.mesh_prefix or ""
-    shelf = Shelf(place.assets or format.assets, place.folder, options.within, place.around)
+    shelf = Shelf(place.assets or format.assets, place.folder, options.within, place.around, legal.source.file)
     placed, new, copies = pack(legal, format, files, shelf, report, is_laid_out=bool(prefix))
     placed = with_prefix(placed, prefix, {*new, *copies}) if prefix else placed
     package = replace(writer(format)(placed, options, report), prefix=prefix)
@@ -274,7 +276,7 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
 
 def _prefix(options: Options, format: Format, place: Place) -> str | None:
     """What stands before the paths of files beside the output; None where they are relative, or no files are put there."""
-    prefix = options.mesh_prefix if "mesh_prefix" in format.layout_options and (place.assets or format.assets) == "copy" else None
+    prefix = options.mesh_prefix if "mesh_prefix" in format.layout_options and (place.assets or format.assets) != "reference" else None
     return (place.package or None) if prefix == "package://" else prefix and prefix.rstrip("/")
 
 

@@ -12,7 +12,7 @@ import re
 from contextlib import suppress
 from enum import Enum
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from msgspec import field
 from msgspec.structs import replace
@@ -33,12 +33,11 @@ if TYPE_CHECKING:
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Report
     from hymeko_x.formats import Format
+    from hymeko_x.formats.format import Assets
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.ir.parts import Material
     from hymeko_x.ir.provenance import StoredLook, StoredMesh
     from hymeko_x.source import Files
-
-Mode = Literal["copy", "reference"]
 
 
 def pack(
@@ -87,7 +86,7 @@ class Keep(Enum):
     """Those, and relative paths below the source: their files are copied to the same place below the output."""
 
     @staticmethod
-    def of(format: Format, mode: Literal["copy", "reference"]) -> Keep:
+    def of(format: Format, mode: Assets) -> Keep:
         """Which references stay in files of this format."""
         if mode == "reference":
             return Keep.PACKAGES
@@ -132,12 +131,12 @@ def with_prefix(mechanism: Mechanism, prefix: str, paths: Set[str]) -> Mechanism
 
 
 def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> str | None:
-    """The uri to write, or None when there is no such file. A package's that stays is not looked for.
+    """The uri to write, or None when there is no such file. A package's that stays is not looked for, but for an archive.
 
     Where only a stand-in is left of a package's file, this goes into a folder of the package's name, in which the uri finds it.
     """
     is_kept = keep is not Keep.NOTHING and is_of_package(uri)
-    if _REMOTE.match(uri) or (is_kept and (find_stand_in(files, uri) is None or shelf.around.find(uri) is not None)):
+    if _REMOTE.match(uri) or (is_kept and _stays(uri, shelf, files)):
         return uri
     path = files.find(uri)
     if path is None:
@@ -149,6 +148,14 @@ def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> st
         return uri
     found = read_file(files, uri)
     return None if found is None else shelf.copy(folder, file_stem(uri), suffix_of(path), *found)
+
+
+def _stays(uri: str, shelf: Shelf, files: Files) -> bool:
+    """Whether the file of a package is where its uri finds it from the output as well."""
+    if shelf.mode == "pack":
+        return False
+    is_away = shelf.is_from_archive or find_stand_in(files, uri) is not None
+    return not is_away or shelf.around.find(uri) is not None
 
 
 def place_of(uri: str) -> str:

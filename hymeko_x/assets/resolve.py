@@ -9,7 +9,6 @@ import errno
 import io
 import os
 import re
-import zipfile
 from contextlib import suppress
 from fnmatch import fnmatchcase
 from functools import cached_property
@@ -20,6 +19,8 @@ from urllib.parse import unquote
 
 from msgspec import Struct, field
 from msgspec.structs import replace
+
+from hymeko_x.assets.archives import inside, names_in, read_inside
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -54,11 +55,11 @@ class DiskFiles(Struct, frozen=True, dict=True):
         A package is looked for in ``packages``, then in the search path, then upwards from ``base``, nearest first: a
         folder whose `package.xml` bears the name, and a folder of that name above or beside. One without a name (``package:///a.stl``)
         is ``base`` or a folder above. A file in a package of USD is
-        named as there: ``robot.usdz[textures/a.png]``.
+        named as there: ``robot.usdz[textures/a.png]``; another archive is like a folder: ``robot.mjz/meshes/a.stl``.
         """
         if (packed := _PACKED.fullmatch(uri)) is not None:
             package = self.find(packed[1])
-            return None if package is None or packed[2] not in _names_packed(package) else f"{package}[{packed[2]}]"
+            return None if package is None or packed[2] not in names_in(package) else f"{package}[{packed[2]}]"
         for candidate in self._candidates(uri.strip().replace("\\", "/")):
             if self._may_read(candidate):
                 return str(_tidy(candidate))
@@ -70,9 +71,11 @@ class DiskFiles(Struct, frozen=True, dict=True):
         Raises: OSError when the file vanished, is no regular file, may not be read, or is larger than 1 GiB.
         """
         if (packed := _PACKED.fullmatch(path)) is not None:
-            return _read_packed(self.read(packed[1]), packed[2])
+            return read_inside(io.BytesIO(self.read(packed[1])), packed[2])
         if not self._may_read(Path(path)):
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
+        if (within := inside(Path(path))) is not None:
+            return read_inside(*within)
         if Path(path).stat().st_size > MOST_BYTES:
             raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), path)
         self.opened[path] = None
@@ -212,9 +215,21 @@ class DiskFiles(Struct, frozen=True, dict=True):
     def _may_read(self, path: Path) -> bool:
         """Whether this is a readable regular file inside the border. Odd names (NUL bytes, too long) are just not there."""
         try:
+            if (within := inside(path)) is not None:
+                return self._may_read(Path(within.archive)) and within.name in self._names_inside(within.archive)
             return path.is_file() and os.access(path, os.R_OK) and self._is_inside(path)
         except (OSError, ValueError):
             return False
+
+    def _names_inside(self, archive: str) -> frozenset[str]:
+        """The files in an archive, which is opened once."""
+        if archive not in self._archives:
+            self._archives[archive] = names_in(archive)
+        return self._archives[archive]
+
+    @cached_property
+    def _archives(self) -> dict[str, frozenset[str]]:
+        return {}
 
     def _is_inside(self, path: Path) -> bool:
         return self.confine is None or path.resolve().is_relative_to(self.confine.resolve())
@@ -251,6 +266,8 @@ def _tidy(path: Path) -> Path:
     if ".." not in path.parts:
         return path
     short = Path(os.path.normpath(path))
+    if inside(path) is not None:
+        return short
     return short if short.exists() and short.samefile(path) else path
 
 
@@ -264,26 +281,6 @@ def search_path(environ: Mapping[str, str]) -> tuple[Path, ...]:
 
 def _entries(environ: Mapping[str, str], name: str) -> list[str]:
     return [text for text in environ.get(name, "").split(os.pathsep) if text]
-
-
-def _names_packed(package: str) -> list[str]:
-    """The files in a package of USD; none where it is damaged."""
-    try:
-        with zipfile.ZipFile(package) as inside:
-            return inside.namelist()
-    except (zipfile.BadZipFile, OSError):
-        return []
-
-
-def _read_packed(package: bytes, name: str) -> bytes:
-    """Raises: OSError when the file is not there, damaged or too large."""
-    try:
-        with zipfile.ZipFile(io.BytesIO(package)) as inside:
-            if inside.getinfo(name).file_size > MOST_BYTES:
-                raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), name)
-            return inside.read(name)
-    except (zipfile.BadZipFile, KeyError, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name) from error
 
 
 def package_name(folder: Path) -> str | None:

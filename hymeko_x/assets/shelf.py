@@ -5,12 +5,15 @@ from __future__ import annotations
 import os
 import posixpath
 import re
-from typing import TYPE_CHECKING, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING
 
+from hymeko_x.assets.archives import inside
 from hymeko_x.ir.names import free_name
 from hymeko_x.source import NO_FILES
 
 if TYPE_CHECKING:
+    from hymeko_x.formats.format import Assets
     from hymeko_x.source import Files
 
 _UNSAFE = re.compile(r"[^\w.+=@()-]+")
@@ -21,13 +24,15 @@ _DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)", re.IGNORECASE)
 class Shelf:
     """Where packers put files. ``files`` and ``copies`` are what `source.Package` wants, in the order of arrival.
 
-    With ``within``, which ends in a slash, all of them are below that folder. ``around`` are the files around the output.
+    With ``within``, which ends in a slash, all of them are below that folder. ``around`` are the files around the output. ``origin`` is
+    the file of the robot: what lies with it in an archive is found from nowhere else.
     """
 
-    def __init__(self, mode: Literal["copy", "reference"], out_dir: str | None, within: str = "", around: Files = NO_FILES) -> None:
+    def __init__(self, mode: Assets, out_dir: str | None, within: str = "", around: Files = NO_FILES, origin: str = "") -> None:
         self.mode = mode
         self.within = within
         self.around = around
+        self.is_from_archive = inside(Path(origin)) is not None
         self.files: dict[str, bytes] = {}
         self.copies: dict[str, str] = {}
         self._out_dir = out_dir

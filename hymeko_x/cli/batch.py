@@ -44,12 +44,12 @@ class Ended(NamedTuple):
     lines: tuple[str, ...]
 
 
-def jobs_into(folder: str, sources: Sequence[str], format: Format) -> list[Job]:
+def jobs_into(folder: str, sources: Sequence[str], format: Format, suffix: str = "") -> list[Job]:
     """A job for each source, into this folder: by the file's name, or by its path below their common folder where names are equal.
 
     Raises: UsageError where two of them would still be one file.
     """
-    suffix = format.suffixes[0]
+    suffix = suffix or format.suffixes[0]
     names = [PurePath(source).name for source in sources]
     if max(Counter(PurePath(name).stem for name in names).values()) > 1:
         common = os.path.commonpath([os.path.dirname(os.path.abspath(source)) for source in sources])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec.structs import replace
 
@@ -17,7 +17,7 @@ from hymeko_x.cli.parser import count
 from hymeko_x.cli.report import one_line, report_arguments, show_report, written_line
 from hymeko_x.cli.terminal import is_coloured
 from hymeko_x.cli.verdicts import engine_arguments, exit_code, verdict_lines, verdict_of
-from hymeko_x.delivery import Delivery, place_of, report_unwritten, unchanged
+from hymeko_x.delivery import Delivery, archive_suffix, place_of, reason_against, report_unwritten, unchanged
 from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.reporting.document import document
 from hymeko_x.reporting.sarif import sarif
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from hymeko_x.cli.inputs import Input
     from hymeko_x.compare.ledger import Loss
     from hymeko_x.formats import Format
+    from hymeko_x.formats.format import Assets
     from hymeko_x.pipeline import Result
     from hymeko_x.reporting.document import Json
     from hymeko_x.source import Source
@@ -106,7 +107,7 @@ def run_convert(chosen: argparse.Namespace) -> int:
     from hymeko_x.cli.batch import jobs_into, run_batch
 
     format = _output_format(chosen, "")
-    jobs = jobs_into(output, sources, format)
+    jobs = jobs_into(output, sources, format, archive_suffix(format) if chosen.assets == "pack" else "")
     if len(jobs) == 1:
         return _convert(chosen, *jobs[0])
     if chosen.json or chosen.report:
@@ -179,7 +180,8 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     inertia_arguments(parser)
     for_help = "the program that the output is for (`hymeko-x formats` lists them): what it expects is added, and reported"
     parser.add_argument("--for", dest="target", metavar="TARGET", help=for_help)
-    parser.add_argument("--assets", choices=("copy", "reference"), help="put meshes beside the output, or refer to them where they are")
+    where = "put meshes beside the output, refer to them where they are, or pack all into one archive (OUT.mjz, .zip, .usdz)"
+    parser.add_argument("--assets", choices=("copy", "reference", "pack"), help=where)
     layouts = "USD: one file, or an interface with files for geometry, materials and physics behind it"
     parser.add_argument("--layout", choices=("single", "layered"), help=layouts)
     parser.add_argument("--nested", action="store_true", default=None, help="USD: put each body inside of its parent")
@@ -212,6 +214,8 @@ def deliver(
     options = Options(chosen.base, chosen.actuators, *layout, chosen.keep, chosen.lenient, Path(path).stem, target=chosen.target)
     options = replace(options, density=chosen.density, inertia_from=chosen.inertia_from)
     options = replace(options, sites=chosen.sites, mesh_prefix=chosen.mesh_prefix)
+    if path and (reason := reason_against(path, chosen.assets, output.format)):
+        raise UsageError(reason)
     place = _place(output, chosen.assets)
     delivery = Delivery(given.mechanism, output.format, options, given.source.files, place, path, own, given.passed)
     result = delivery.convert(report, measured=measured)
@@ -242,7 +246,7 @@ def _check_applicable(format: Format, chosen: argparse.Namespace) -> None:
             raise UsageError(f"--{option.replace('_', '-')} is for {takers}, and the output is {format.name}")
 
 
-def _place(output: Output, assets: Literal["copy", "reference"] | None) -> pipeline.Place:
+def _place(output: Output, assets: Assets | None) -> pipeline.Place:
     """Beside standard output nothing can be put, so that files are referred to from the working folder."""
     if output.path == "-":
         return pipeline.Place(assets="reference")

@@ -6,6 +6,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
+from hymeko_x.assets.archives import is_archive
 from hymeko_x.cli.terminal import alike_diagnostics, is_coloured, render, render_alike, show
 from hymeko_x.diagnostics import Severity
 from hymeko_x.reporting.summary import counted, kept_line, minor_line, summary_lines
@@ -102,6 +103,8 @@ def written_line(path: str, mechanism: Mechanism, package: Package) -> str:
     named = ", ".join(f"{folder}/" if folder else "the same folder" for folder in folders[:_FOLDERS])
     more = f", ... ({len(folders)} folders)" if len(folders) > _FOLDERS else ""
     where = f" and {counted(len(beside), 'file')} in {named}{more}" if beside else ""
+    if is_archive(path):
+        where = f" with {counted(len(beside), 'file')} inside" if beside else ""
     bodies = sum(key.kind == "body" for key in mechanism.graph.vertices)
     joints = sum(key.kind == "joint" for key in mechanism.graph.edges)
     count = sum(name != DIGESTS for name in package.originals)

@@ -34,7 +34,7 @@ def copied(source: Source, format: Format, mechanism: Mechanism, place: pipeline
     if _is_folder(os.path.dirname(source.name) or ".", place.folder):
         return Package(source.data)
     found = Report()
-    shelf = Shelf(place.assets or format.assets, place.folder)
+    shelf = Shelf(place.assets or format.assets, place.folder, around=place.around, origin=source.name)
     placed = _placed(mechanism, format, shelf, source.files, found)
     package = _with_text(source, format, mechanism, placed, Package(source.data, shelf.files, shelf.copies))
     if package is None or not _is_same_robot(package, source, format, placed, place.folder):

@@ -14,6 +14,7 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.formats.format import ZIP
 from hymeko_x.formats.format import Format as Format
 from hymeko_x.formats.format import loaded as loaded
 
@@ -105,6 +106,7 @@ MJCF = Format(
     "hymeko_x.backends.mjcf.rules",
     roots=("mujoco", "mujocoinclude"),
     shared_suffixes=frozenset({".xml"}),
+    archive=".mjz",
     outline="hymeko_x.frontends.mjcf.outline:outline",
     completes="hymeko_x.frontends.mjcf.complete:complete",
     flattens="hymeko_x.frontends.mjcf.flat:flatten",
@@ -177,6 +179,7 @@ USDZ = replace(
     name="usdz",
     title="Universal Scene Description, package",
     suffixes=(".usdz",),
+    holds_files=True,
     backend="hymeko_x.backends.usd.bundle",
     magic=(),
     container_of="usd",
@@ -308,8 +311,17 @@ def of_input(name: str, data: bytes) -> Format:
 
 
 def of_file(name: str) -> Format | None:
-    """The format to which the suffix of a file belongs, first of all; None where there is none."""
-    return next((format for format in FORMATS if name.lower().endswith(format.suffixes)), None)
+    """The format to which the suffix of a file, or of an archive, belongs, first of all; None where there is none.
+
+    A ``.zip`` may have the suffix of its robot before its own: ``robot.urdf.zip``.
+    """
+    plain = name.lower().removesuffix(ZIP)
+    return next((format for format in FORMATS if plain.endswith((*format.suffixes, format.archive))), None)
+
+
+def archive_suffixes() -> tuple[str, ...]:
+    """The suffixes of archives."""
+    return tuple(dict.fromkeys(format.archive for format in FORMATS))
 
 
 def of_root(root: str | None) -> Format | None:

@@ -14,6 +14,12 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
 
+Assets = Literal["copy", "reference", "pack"]
+"""Meshes and images are put beside the output, referred to where they are, or put with it into an archive."""
+
+ZIP = ".zip"
+
+
 class Format(Struct, frozen=True):
     """One format. Only name, title and suffixes are needed; without ``frontend`` it cannot be read, without ``backend`` not written."""
 
@@ -82,7 +88,11 @@ class Format(Struct, frozen=True):
     """The suffixes of files of the same name beside one of its files that are read with it (SRDF)."""
 
     # ---- its files
-    assets: Literal["copy", "reference"] = "copy"
+    archive: str = ZIP
+    """The suffix of archives that hold one of its files with all that it refers to."""
+    holds_files: bool = False
+    """Whether its own files hold all that they refer to (usdz)."""
+    assets: Assets = "copy"
     """Whether meshes and images are put beside the output when the user does not choose."""
     pack: str | None = None
     """The function ``(mechanism, shelf, files, report) -> mechanism`` that names its files; None: it refers to any file by its uri."""

@@ -9,18 +9,19 @@ import contextlib
 import os
 import sys
 import tempfile
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
 from hymeko_x import codes, formats
+from hymeko_x.assets import archives
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.extras import install_command
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
-    from pathlib import Path
 
     from hymeko_x.source import Files
     from hymeko_x.verify.model import KinematicModel
@@ -50,6 +51,11 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
 
     Raises: Refusal HX001 (no such file), HX003 (no such format), HX301 (no engine), HX302 (the engine refuses the file).
     """
+    if archives.is_archive(path.name) and path.is_file():
+        path = Path(archives.main_file(str(path)))
+    within = archives.inside(path)
+    if within is not None and within.name in archives.names_in(within.archive):
+        return _read_inside(within, lookup)
     if not path.is_file():
         raise refuse(codes.CANNOT_READ, f"there is no file '{path}'", Origin(str(path)))
     with path.open("rb") as file:
@@ -66,6 +72,16 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
         message = f"{format.name} is verified with {engine}, which is not installed"
         raise refuse(codes.ENGINE_MISSING, message, Origin(str(path)), hint=install_command(extra)) from error
     return found
+
+
+def _read_inside(within: archives.Inside, lookup: Lookup) -> KinematicModel:
+    """The robot in a file of an archive, which is unpacked meanwhile: few engines open archives. Raises: as :func:`read`."""
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            archives.unpack(within.archive, Path(folder))
+        except OSError as error:
+            raise refuse(codes.CANNOT_READ, f"cannot be unpacked: {error}", Origin(within.archive)) from error
+        return read(Path(folder, within.name), lookup)
 
 
 @contextlib.contextmanager
