@@ -13,11 +13,12 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from hymeko_x import formats
-from hymeko_x.assets.pack import Mode, pack
+from hymeko_x.assets.pack import pack
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.assets.shelf import Shelf, safe_name
 from hymeko_x.backends import mjcf
 from hymeko_x.diagnostics import Report
+from hymeko_x.formats.format import Assets
 from hymeko_x.ir.mechanism import Id, Mechanism, file_stem, layer_edge, shape_edge
 from hymeko_x.ir.parts import Material, Mesh, MeshShape, Role, Shape, Texture
 from hymeko_x.ir.values import IDENTITY
@@ -48,7 +49,7 @@ def with_meshes(*meshes: Mesh, role: Role = Role.VISUAL, material: Id | None = N
 
 
 def packed(
-    mechanism: Mechanism, files: dict[str, bytes], target: str = "mjcf", mode: Mode | None = None, out_dir: str | None = None
+    mechanism: Mechanism, files: dict[str, bytes], target: str = "mjcf", mode: Assets | None = None, out_dir: str | None = None
 ) -> tuple[Mechanism, dict[str, bytes], dict[str, str], list[str]]:
     report = Report()
     format = formats.by_name(target)
