@@ -21,8 +21,7 @@ from hymeko_x.rewrite import Options
 from hymeko_x.source import Kept
 
 if TYPE_CHECKING:
-    from hymeko_x.formats import Format
-    from hymeko_x.formats.format import Assets
+    from hymeko_x.formats import Assets, Format
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.pipeline import Place
     from hymeko_x.source import Files, Package, Source

@@ -28,8 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
     from hymeko_x.compare.ledger import Loss
-    from hymeko_x.formats import Format
-    from hymeko_x.formats.format import Assets
+    from hymeko_x.formats import Assets, Format
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files, Package, Reading
 

@@ -32,8 +32,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.assets.shelf import Shelf
     from hymeko_x.diagnostics import Report
-    from hymeko_x.formats import Format
-    from hymeko_x.formats.format import Assets
+    from hymeko_x.formats import Assets, Format
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.ir.parts import Material
     from hymeko_x.ir.provenance import StoredLook, StoredMesh

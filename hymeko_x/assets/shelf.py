@@ -13,7 +13,7 @@ from hymeko_x.ir.names import free_name
 from hymeko_x.source import NO_FILES
 
 if TYPE_CHECKING:
-    from hymeko_x.formats.format import Assets
+    from hymeko_x.formats import Assets
     from hymeko_x.source import Files
 
 _UNSAFE = re.compile(r"[^\w.+=@()-]+")

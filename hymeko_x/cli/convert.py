@@ -29,8 +29,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.cli.inputs import Input
     from hymeko_x.compare.ledger import Loss
-    from hymeko_x.formats import Format
-    from hymeko_x.formats.format import Assets
+    from hymeko_x.formats import Assets, Format
     from hymeko_x.pipeline import Result
     from hymeko_x.reporting.document import Json
     from hymeko_x.source import Source

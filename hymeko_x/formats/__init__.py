@@ -15,6 +15,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.formats.format import ZIP
+from hymeko_x.formats.format import Assets as Assets
 from hymeko_x.formats.format import Format as Format
 from hymeko_x.formats.format import loaded as loaded
 
