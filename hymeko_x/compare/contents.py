@@ -10,13 +10,15 @@ from msgspec.structs import replace
 from hymeko_x import formats
 from hymeko_x.compare.diff import Difference
 from hymeko_x.ir.mechanism import suffix_of
-from hymeko_x.ir.parts import Mesh, Texture
+from hymeko_x.ir.parts import Mesh, Role, Texture
 from hymeko_x.ir.values import number_text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterator, Mapping, Sequence
 
     from hymeko_x.ir.mechanism import Id, Mechanism
+    from hymeko_x.ir.values import Pose
+    from hymeko_x.meshes.change import Change
     from hymeko_x.meshes.submesh import Submesh
 
     Fetch = Callable[[str], bytes | None]
@@ -33,23 +35,45 @@ class Contents(NamedTuple):
 def with_same_files(a: Contents, b: Contents) -> Mechanism:
     """The mechanism of ``b`` that has the files of ``a`` by the names of ``a``, where the contents are the same: to be compared with it."""
     changed: dict[Id, Mesh | Texture] = {}
+    pieces = _pieces(a.mechanism, b.mechanism)
     for key, part in a.mechanism.assets():
         other = b.mechanism.graph.vertices.get(key)
-        if type(other) is type(part) and _reference(other) != _reference(part) and not any(_of_asset(key, a, b)):
+        if type(other) is type(part) and _reference(other) != _reference(part) and not any(_of_asset(key, a, b, pieces)):
             changed[key] = _with_reference(other, part)
     mechanism = b.mechanism.with_graph(b.mechanism.graph.replace(vertices=changed)) if changed else b.mechanism
     return _with_same_extras(a, b, mechanism)
 
 
 def content_differences(a: Contents, b: Contents, keys: Callable[[Id], bool] = lambda _: True) -> Iterator[Difference]:
-    """In what the files of both differ that are found, asset by asset; ``keys`` chooses among them."""
+    """In what the files of both differ that are found, asset by asset; ``keys`` chooses among them.
+
+    A mesh that ``b`` has in pieces, one per appearance, is compared with all of them together.
+    """
+    pieces = _pieces(a.mechanism, b.mechanism)
     for key, part in a.mechanism.assets():
         other = b.mechanism.graph.vertices.get(key)
         if type(other) is type(part) and keys(key):
-            yield from (found for found in _of_asset(key, a, b) if found is not None)
+            yield from (found for found in _of_asset(key, a, b, pieces) if found is not None)
 
 
-def _of_asset(key: Id, a: Contents, b: Contents) -> Iterator[Difference | None]:
+def _pieces(a: Mechanism, b: Mechanism) -> dict[Id, tuple[Id, ...]]:
+    """By mesh of ``a``, the further meshes of ``b`` that may show it: those of visuals that ``a`` has not, where a visual of it is."""
+    found: dict[Id, tuple[Id, ...]] = {}
+    for body, views in b.shapes.items():
+        here = {view.id: view for view in views}
+        ours = [view for view in a.shapes.get(body, ()) if view.mesh is not None and view.shape.role is Role.VISUAL and view.id in here]
+        new = here.keys() - {view.id for view in a.shapes.get(body, ())} if ours else ()
+        places: dict[Pose, list[Id]] = {}
+        for view in views:
+            if view.id in new and view.mesh is not None and view.mesh not in a.graph.vertices:
+                places.setdefault(view.pose, []).append(view.mesh)
+        for view in ours:
+            if view.mesh is not None and (meshes := places.get(here[view.id].pose)):
+                found.setdefault(view.mesh, tuple(meshes))
+    return found
+
+
+def _of_asset(key: Id, a: Contents, b: Contents, pieces: Mapping[Id, tuple[Id, ...]]) -> Iterator[Difference | None]:
     """The differences of one asset; None where a content is not known, so that nothing can be said."""
     part, other = a.mechanism.graph.vertices[key], b.mechanism.graph.vertices[key]
     before, after = _data(part, a), _data(other, b)
@@ -59,21 +83,31 @@ def _of_asset(key: Id, a: Contents, b: Contents) -> Iterator[Difference | None]:
         if any(formats.is_placing(extra) for each in (a, b) for extra in each.mechanism.extras.get(key, ())):
             yield None  # its points are elsewhere than in its file
             return
-        yield from _of_meshes(key, _submesh(part, before, a), _submesh(other, after, b))
+        further = [_mesh_of(piece, b) for piece in pieces.get(key, ())]
+        yield from _of_meshes(key, _submesh(part, before, a), _submesh(other, after, b), further)
     elif before is None or after is None:
         yield None
     else:
         yield from _of_images(key, before, after)
 
 
-def _of_meshes(key: Id, before: Submesh | None, after: Submesh | None) -> Iterator[Difference | None]:
+def _of_meshes(key: Id, before: Submesh | None, after: Submesh | None, further: Sequence[Submesh | None]) -> Iterator[Difference | None]:
     if before is None or after is None:
         yield None
         return
-    from hymeko_x.meshes.change import changes
+    from hymeko_x.meshes.change import ORDER, changes
+    from hymeko_x.meshes.reader import merged
 
-    for name, was, now in changes(before, after):
+    found: Sequence[Change] = changes(before, after)
+    if found and (pieces := tuple(piece for piece in further if piece is not None)):
+        together = [change for change in changes(before, merged((after, *pieces))) if change.name != ORDER]
+        found = min(found, together, key=_triangles_changed)
+    for name, was, now in found:
         yield Difference(key, f"content.{name}", _shown(was), _shown(now))
+
+
+def _triangles_changed(found: Sequence[Change]) -> float:
+    return abs(found[0].before - found[0].after) if found else -1.0
 
 
 def _shown(value: float) -> str:
@@ -98,6 +132,11 @@ def _of_images(key: Id, before: bytes, after: bytes) -> Iterator[Difference | No
 def _data(part: object, of: Contents) -> bytes | None:
     uri = getattr(part, "uri", None)
     return None if uri is None else of.fetch(uri)
+
+
+def _mesh_of(key: Id, of: Contents) -> Submesh | None:
+    mesh = of.mechanism.vertex(key, Mesh)
+    return _submesh(mesh, _data(mesh, of), of)
 
 
 def _submesh(mesh: Mesh, data: bytes | None, of: Contents) -> Submesh | None:

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from hymeko_x.meshes.submesh import Submesh
 
+ORDER = "order of triangles"
+"""The change of meshes that have the same surface, but not triangle by triangle."""
 _ROUNDING = 1e-6
 """Lengths that differ by less, as a part of the largest extent, are the same in single precision."""
 _MOST_POINTS = 5_000
@@ -45,7 +47,7 @@ def changes(before: Submesh, after: Submesh) -> tuple[Change, ...]:
     found += [change for change in sizes if abs(change.before - change.after) > _ROUNDING * max(abs(change.before), abs(change.after))]
     found.append(Change("distance", 0.0, distance(before, after)))
     rows = [change for change in found if change.before != change.after]
-    return (*rows, *_of_places(before, after)) or (Change("order of triangles", 0.0, 1.0),)
+    return (*rows, *_of_places(before, after)) or (Change(ORDER, 0.0, 1.0),)
 
 
 def is_closed(part: Submesh) -> bool:
@@ -118,7 +120,9 @@ def _one_way(a: Submesh, b: Submesh) -> float:
         near: Any = np.broadcast_to(np.arange(len(corners)), (len(points), len(corners)))
     else:
         near = cKDTree(corners.mean(axis=1)).query(points, _NEAREST)[1]
-    return max(float(_to_triangles(some, corners[rows]).min(axis=1).max()) for some, rows in _pieces(points, near))
+    to_corners = cKDTree(b.points[np.unique(b.faces)]).query(points)[0]
+    to_surface = np.concatenate([_to_triangles(some, corners[rows]).min(axis=1) for some, rows in _pieces(points, near)])
+    return float(np.minimum(to_corners, to_surface).max())
 
 
 def _pieces(points: NDArray[Any], near: NDArray[Any]) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:

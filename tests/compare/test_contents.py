@@ -9,9 +9,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+import hymeko_x as hx
+from hymeko_x import formats
+from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.cli import exits, main
+from hymeko_x.compare.contents import Contents
 from hymeko_x.meshes.change import area, changes, distance, volume
 from hymeko_x.meshes.submesh import Submesh
+from hymeko_x.residue.measuring import losses_between_files
+from hymeko_x.residue.originals import fetch_from
 from tests.assets.test_originals import TETRAHEDRON, home, png
 
 if TYPE_CHECKING:
@@ -111,3 +117,37 @@ def test_the_report_has_the_change_of_a_converted_mesh_in_physical_units(tmp_pat
         "content.distance": (0, pytest.approx(1e-4), "m"),
     }
     assert "surface of 1 mesh, off by up to 0.0001 m: 'flat'" in capsys.readouterr().err
+
+
+CUBE_IN_TWO_COLOURS = """mtllib paint.mtl
+v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1
+usemtl red\nf 1 3 2\nf 1 4 3\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5
+usemtl blue\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8
+"""
+
+
+def painted(folder: Path) -> Path:
+    """A URDF with a visual whose mesh has two materials, so that MJCF has it in two pieces."""
+    (folder / "cube.obj").write_text(CUBE_IN_TWO_COLOURS)
+    (folder / "paint.mtl").write_text("newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n")
+    shape = '<visual><geometry><mesh filename="cube.obj"/></geometry></visual>'
+    (folder / "r.urdf").write_text(f'<robot name="r"><link name="b">{shape}</link></robot>')
+    return folder / "r.urdf"
+
+
+def test_a_mesh_in_pieces_shows_the_same_as_the_whole(tmp_path: Path) -> None:
+    losses = hx.convert(painted(tmp_path), tmp_path / "r.xml").losses
+    assert losses is not None
+    assert [str(loss) for loss in losses if "content" in loss.field] == []
+
+
+def test_a_piece_without_a_triangle_is_a_change_of_the_whole(tmp_path: Path) -> None:
+    source = painted(tmp_path)
+    hx.convert(source, tmp_path / "r.xml")
+    piece = tmp_path / "meshes" / "cube_red.obj"
+    vertices = [line for line in piece.read_text().splitlines() if not line.startswith("f ")]
+    piece.write_text("\n".join([*vertices, "f 1 2 3", ""]))
+    fetch = fetch_from(DiskFiles(tmp_path))
+    losses = losses_between_files(Contents(hx.load(source), fetch), Contents(hx.load(tmp_path / "r.xml"), fetch), formats.MJCF)
+    found = {loss.field: (loss.before, loss.after) for loss in losses if loss.field.startswith("content")}
+    assert found["content.triangles"] == ("12", "7")
