@@ -10,7 +10,7 @@ from mjmodels import compiled, differences, read, read_text, through_hymeko, wri
 
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.frontends import mjcf
-from hymeko_x.ir.parts import Mesh
+from hymeko_x.ir.parts import Actuator, Body, Mesh
 from hymeko_x.source import Source
 from tests.robots import MemoryFiles
 
@@ -118,7 +118,27 @@ def test_files_of_attached_models_are_seen_from_the_main_file(folder: Path) -> N
 def test_a_note_says_that_mujoco_expanded_it() -> None:
     report = Report()
     read_text('<mujoco><worldbody><flexcomp name="f" count="2 2 1" mass="1"/></worldbody></mujoco>', report)
-    assert [said.message for said in report] == ["<flexcomp> was expanded by MuJoCo; lines after it are those of the expanded file"]
+    assert [said.message for said in report] == ["<flexcomp> was expanded by MuJoCo; what it became has its line"]
+
+
+def test_no_place_is_one_of_the_expanded_text() -> None:
+    text = """<mujoco>
+      <worldbody>
+        <body name="arm">
+          <joint name="j"/>
+          <geom size="1"/>
+        </body>
+        <replicate count="2" offset="1 0 0">
+          <body name="b"><geom size=".1"/></body>
+        </replicate>
+      </worldbody>
+      <actuator><motor name="m" joint="j"/></actuator>
+    </mujoco>"""
+    robot = read_text(text)
+    assert {key.name: origin.line for key, _ in robot.vertices(Body) if (origin := robot.origin(key))} == {"arm": 3, "b0": 7, "b1": 7}
+    assert {key.name: origin.line for key, _ in robot.vertices(Actuator) if (origin := robot.origin(key))} == {"m": 11}
+    wrong = '<mujoco><worldbody>\n<flexcomp name="f" count="2 2 1" dim="7"/></worldbody></mujoco>'
+    assert refused(wrong).endswith("expand <flexcomp>: XML Error: Invalid dim, must be between 1 and 3 Element 'flexcomp'")
 
 
 def refused(main: str, **files: str) -> str:
@@ -149,5 +169,5 @@ def test_a_file_that_vanishes_is_missing() -> None:
 
 def test_what_mujoco_says_names_the_files_as_the_author_did() -> None:
     main = '<mujoco><worldbody><flexcomp name="f" type="mesh" file="no.obj" mass="1"/></worldbody></mujoco>'
-    said = "MuJoCo refuses to expand <flexcomp>: XML Error: Error: Error opening file 'no.obj' Element 'flexcomp', line 1"
+    said = "MuJoCo refuses to expand <flexcomp>: XML Error: Error: Error opening file 'no.obj' Element 'flexcomp'"
     assert refused(main) == f"main.xml:1: error[HX302]: {said}"

@@ -187,7 +187,7 @@ def test_replicate_is_expanded_by_mujoco_with_a_note() -> None:
     report = Report()
     robot = read_text(text, report)
     assert [key.name for key, _ in robot.vertices(Body)] == ["b0", "b1", "b2"]
-    assert [said.message for said in report] == ["<replicate> was expanded by MuJoCo; lines after it are those of the expanded file"]
+    assert [said.message for said in report] == ["<replicate> was expanded by MuJoCo; what it became has its line"]
     assert differences(compiled(text), compiled(write(robot))) == []
 
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import os
 import posixpath
+import re
 import sys
 from importlib.util import find_spec
 from pathlib import Path
@@ -90,6 +91,10 @@ def included_source(include: Element, source: Source) -> tuple[str, Source]:
 # ---- expansion by MuJoCo -------------------------------------------------------------------------------------------------------
 
 _CHILD = "hymeko_x.frontends.mjcf_child"
+_LINE = re.compile(r",? line \d+\b")
+"""A place in the text that MuJoCo gets, which is not the author's."""
+_SECTIONS = frozenset({"mujoco", "asset", "worldbody", "deformable", "contact", "equality", "tendon", "actuator", "sensor", "keyframe"})
+"""Elements without names of which a model has one of each."""
 _REFUSED = 3
 """The exit code of the process when MuJoCo refuses the model; its message is the output."""
 
@@ -114,16 +119,25 @@ def expand_by_mujoco(root: Element, source: Source, report: Report) -> Element:
     flat = flatten(root, source, report)
     code, text = _run_mujoco(verbatim(root), flat)
     if code == _REFUSED:
-        reason = flat.with_own_names(" ".join(text.split()))
+        reason = flat.with_own_names(_LINE.sub("", " ".join(text.split())))
         raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses to expand <{found.tag}>: {reason}", found.origin)
     if code != 0:
         raise refuse(codes.TOO_LARGE, f"expanding <{found.tag}> ended MuJoCo ({text}): it has no end, or takes too much", found.origin)
-    report.note(codes.REWRITTEN, f"<{found.tag}> was expanded by MuJoCo; lines after it are those of the expanded file", found.origin)
+    report.note(codes.REWRITTEN, f"<{found.tag}> was expanded by MuJoCo; what it became has its line", found.origin)
     expanded = parse_text(text)
     flat.restore(expanded)
-    for element in expanded.walk():
-        element.file = source.name
+    _give_origins(expanded, root, found)
     return expanded
+
+
+def _give_origins(expanded: Element, root: Element, found: Element) -> None:
+    """Let what the author wrote be where it was written, and what was made of another element be where that is."""
+    written = {(element.tag, element.attributes.get("name")): element for element in reversed([*root.walk()])}
+    for element in expanded.walk():
+        name = element.attributes.get("name")
+        inherited = found if name is not None or element.parent is None else element.parent
+        known = written.get((element.tag, name)) if name is not None or element.tag in _SECTIONS else None
+        element.file, element.line = (known or inherited).origin.file, (known or inherited).origin.line
 
 
 def _check_size(root: Element) -> None:
