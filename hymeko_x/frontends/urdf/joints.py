@@ -301,7 +301,7 @@ def _is_fixed(key: Id | None, builder: UrdfBuilder) -> bool:
 
 
 def _note_meaningless(joints: list[Node], builder: UrdfBuilder) -> None:
-    """Note the meaningless elements that at least half of the fixed joints, and at least two, have alike; others stay extras."""
+    """Note the meaningless elements that all fixed joints have, and at least half of them and two alike; others stay extras."""
     fixed = [node for node in joints if _is_fixed(node.owner, builder)]
     usual = tuple((tag, text) for tag in words.MEANINGLESS_IF_FIXED if (text := _take_usual(fixed, tag)))
     if usual:
@@ -309,11 +309,11 @@ def _note_meaningless(joints: list[Node], builder: UrdfBuilder) -> None:
 
 
 def _take_usual(fixed: list[Node], tag: str) -> str:
-    """The most frequent text of this child, taken out of the joints that have it; empty when it is not frequent enough."""
+    """The most frequent text of this child, taken out of the joints that have it; empty where it is not frequent, or a joint has none."""
     found = [(child, f"<{tag}{attributes_text(child.attributes)}/>") for node in fixed if (child := _plain_child(node, tag))]
     votes = Counter(text for _, text in found)
     text, count = votes.most_common(1)[0] if votes else ("", 0)
-    if count < 2 or 2 * count < len(fixed):
+    if count < 2 or 2 * count < len(fixed) or len(found) < len(fixed):
         return ""
     for child, own in found:
         if own == text:
