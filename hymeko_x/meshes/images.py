@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.meshes.png import SIGNATURE, png_fault, without_faulty_chunks
@@ -60,7 +61,13 @@ def pixels(data: bytes) -> Pixels:
         with Image.open(io.BytesIO(png_bytes(data))) as image:
             return Pixels(image.size, image.convert("RGBA").tobytes())
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise UnreadableImage(str(error)) from error
+        raise UnreadableImage(_reason(error)) from error
+
+
+def _reason(error: Exception) -> str:
+    """Why Pillow does not read an image, without the address of its bytes."""
+    words = re.sub(r" <_io\.BytesIO object at \w+>", "", str(error).split("\n")[0]).replace("image file", "the type of the image")
+    return words or type(error).__name__
 
 
 def _encoded(data: bytes, as_it_is: tuple[bytes, ...], *, decode: bool) -> bytes:
@@ -77,7 +84,7 @@ def _encoded(data: bytes, as_it_is: tuple[bytes, ...], *, decode: bool) -> bytes
             _in_bytes(image).save(out, "PNG", compress_level=3)
             return out.getvalue()
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError) as error:
-        raise UnreadableImage(str(error).split("\n")[0] or type(error).__name__) from error
+        raise UnreadableImage(_reason(error)) from error
 
 
 def _in_bytes(image: PillowImage) -> PillowImage:

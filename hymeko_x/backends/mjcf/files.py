@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
 _MESHES = "meshes"
 _TEXTURES = "textures"
+_KTX = b"\xabKTX"
+"""The first bytes of images that are compressed for the graphics card; MuJoCo hands them to its renderer as they are."""
 _LEAST_VOLUME = 1e-13
 """m^3; MuJoCo refuses solid meshes below 1e-15, which it computes in single precision."""
 _FLAT = 1e-7
@@ -82,7 +84,7 @@ def pack_for_mujoco(mechanism: Mechanism, shelf: Shelf, files: Files, report: Re
 
 
 def _pack_textures(run: _Packing) -> None:
-    """PNG is copied, other images are converted; a texture that is not there is left out, and its material keeps its colour."""
+    """PNG and KTX are copied, other images are converted; a texture that is not there is left out, and its material keeps its colour."""
     lost = {key for key, texture in run.mechanism.vertices(Texture) if not _pack_texture(run, key, texture)}
     run.gone += lost
     run.gone += [key for key, _, arcs in run.mechanism.edges(Layer) if any(arc.target in lost for arc in arcs)]
@@ -94,6 +96,9 @@ def _pack_texture(run: _Packing, key: Id, texture: Texture) -> bool:
         _warn(run, key, codes.ASSET_NOT_FOUND, f"'{texture.uri}' was not found; the texture is left out", texture.uri)
         return False
     path, data = found
+    if data.startswith(_KTX):
+        run.vertices[key] = replace(texture, uri=run.shelf.copy(_TEXTURES, file_stem(texture.uri or ""), ".ktx", path, data))
+        return True
     try:
         png = png_bytes(data)
     except UnreadableImage as error:

@@ -1,0 +1,88 @@
+"""500 meshes of real robots have the same solid, as MuJoCo computes it, after a way through another format without the source's files."""
+
+from __future__ import annotations
+
+import random
+import shutil
+from pathlib import Path
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+import pytest
+
+import hymeko_x as hx
+from hymeko_x.corpus import catalog
+from tests.conftest import RealRobots
+
+MODEL = """<mujoco model="r"><asset><mesh name="m" file="{}"/></asset>
+  <worldbody><body name="b"><freejoint/><geom type="mesh" mesh="m"/></body></worldbody></mujoco>"""
+SUFFIXES = (".stl", ".obj", ".msh")
+MOST_BYTES = 3_000_000
+PACKAGES = [package.name for package in catalog.load()]
+MESHES = 500
+LEAST_MOMENT = 1e-13
+"""In kg m^2: MuJoCo reads tensors with products only above about this, so that smaller ones are written without, and this is reported."""
+
+
+class Solid(NamedTuple):
+    """What MuJoCo computes of the mesh of the one geom of a model."""
+
+    counts: tuple[int, ...]
+    """Points, triangles, and points and faces of the hull."""
+    mass: float
+    centre: np.ndarray
+    tensor: np.ndarray
+    box: np.ndarray
+
+    def is_same(self, other: Solid) -> bool:
+        """Whether another one is the same to float32."""
+        size = max(float(np.abs(self.box).max()), 1e-3)
+        lengths = all(np.allclose(a, b, rtol=0, atol=2e-6 * size) for a, b in ((self.centre, other.centre), (self.box, other.box)))
+        least = float(np.abs(self.tensor).max())
+        moments = least < LEAST_MOMENT or np.allclose(self.tensor, other.tensor, rtol=1e-5, atol=1e-5 * least)
+        return self.counts == other.counts and lengths and moments and bool(np.isclose(self.mass, other.mass, rtol=1e-5))
+
+
+def solid(path: Path) -> Solid:
+    """Raises: ValueError where MuJoCo refuses the mesh."""
+    model = mujoco.MjModel.from_xml_path(str(path))
+    turn = np.zeros(9)
+    mujoco.mju_quat2Mat(turn, model.body_iquat[1])
+    axes = turn.reshape(3, 3)
+    start = model.mesh_graphadr[0]
+    hull = tuple(int(count) for count in model.mesh_graph[start : start + 2]) if start >= 0 else ()
+    tensor = axes @ np.diag(model.body_inertia[1]) @ axes.T
+    counts = (model.nmeshvert, model.nmeshface, *hull)
+    return Solid(counts, float(model.body_mass[1]), model.body_ipos[1].copy(), tensor, model.geom_aabb[0].copy())
+
+
+@pytest.mark.full
+@pytest.mark.parametrize("name", PACKAGES)
+def test_real_meshes_are_the_same_solids(name: str, real_robots: RealRobots, tmp_path: Path) -> None:
+    folder = real_robots.package(next(package for package in catalog.load() if package.name == name))
+    found = sorted(path for path in folder.rglob("*") if path.suffix.lower() in SUFFIXES and path.stat().st_size < MOST_BYTES)
+    chosen = random.Random(name).sample(found, min(len(found), MESHES // len(PACKAGES) + 1))
+    different = [str(path) for number, path in enumerate(chosen) if not comes_back(path, tmp_path / str(number))]
+    assert different == []
+
+
+def comes_back(mesh: Path, place: Path) -> bool:
+    """Whether the mesh is the same solid after a stage and after URDF, or MuJoCo refuses it from the start."""
+    source = place / "source"
+    source.mkdir(parents=True)
+    shutil.copy(mesh, source / f"m{mesh.suffix}")
+    (source / "r.xml").write_text(MODEL.format(f"m{mesh.suffix}"))
+    try:
+        expected = solid(source / "r.xml")
+    except ValueError:
+        return True
+    for output in ("r.usda", "r.urdf"):
+        (place / output).mkdir()
+        hx.convert(source / "r.xml", place / output / output)
+    shutil.rmtree(source)
+    for output in ("r.usda", "r.urdf"):
+        hx.convert(place / output / output, place / output / "back.xml", base="free")
+    same = all(expected.is_same(solid(place / output / "back.xml")) for output in ("r.usda", "r.urdf"))
+    shutil.rmtree(place)
+    return same
