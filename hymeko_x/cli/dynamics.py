@@ -31,7 +31,7 @@ def dynamics_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--form", choices=_FORMS, default=_FORMS[0], help="the form of the equations (default state-space)")
     where = "operating point of a mechanism: a named configuration, joint=value,..., or found (default: every joint at its reference)"
     parser.add_argument("--at", default="", metavar="WHERE", help=where)
-    _base_argument(parser)
+    _mechanism_arguments(parser)
     parser.add_argument("--to", choices=_LANGUAGES, help="write the equations as a file of this kind (octave and simulink: linearised)")
     parser.add_argument("-o", "--output", type=Path, metavar="OUT", help="where to write (default: standard output)")
     parser.add_argument("--symbolic", action="store_true", help="formulas in the parameters instead of numbers")
@@ -75,7 +75,9 @@ def _write(found: Lumped | Multibody, chosen: argparse.Namespace) -> int:
     return exits.DONE
 
 
-def _base_argument(parser: argparse.ArgumentParser) -> None:
+def _mechanism_arguments(parser: argparse.ArgumentParser) -> None:
+    what = "inputs of a mechanism: forces of its joints, or controls of its actuators, which act by their laws (default joints)"
+    parser.add_argument("--inputs", choices=("joints", "actuators"), default="joints", help=what)
     parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the file leaves open (default fixed)")
 
 
@@ -83,7 +85,7 @@ def _dynamics(chosen: argparse.Namespace, report: Report) -> Lumped | Multibody:
     import hymeko_x as hx
 
     given = read_input(chosen.input, chosen, report)
-    return hx.dynamics(given.mechanism, base=chosen.base, files=given.source.files, report=report)
+    return hx.dynamics(given.mechanism, base=chosen.base, inputs=chosen.inputs, files=given.source.files, report=report)
 
 
 # ---- simulate ------------------------------------------------------------------------------------------------------------
@@ -92,7 +94,9 @@ def _dynamics(chosen: argparse.Namespace, report: Report) -> Lumped | Multibody:
 def simulate_arguments(parser: argparse.ArgumentParser) -> None:
     """The options of `simulate`."""
     parser.add_argument("input", metavar="FILE", help="a robot or a lumped network in any format; - is standard input")
-    _base_argument(parser)
+    _mechanism_arguments(parser)
+    where = "where a mechanism starts: a named configuration or joint=value,... (default: every joint at its reference)"
+    parser.add_argument("--at", default="", metavar="WHERE", help=where)
     parser.add_argument("--time", type=float, default=2.0, metavar="S", help="how long, in s (default 2)")
     parser.add_argument("--step", type=float, metavar="S", help="time between rows in s (default a thousandth of --time)")
     what = "a signal for an input, instead of the file's: pulse,period=2,duty=0.05 or table.csv:COLUMN (repeatable)"
@@ -113,7 +117,7 @@ def run_simulate(chosen: argparse.Namespace) -> int:
     found = _dynamics(chosen, report)
     step = chosen.time / 1000 if chosen.step is None else chosen.step
     signals = dict(_signal(text, chosen.time) for text in chosen.signals)
-    response = found.simulate(chosen.time, step, signals)
+    response = found.simulate(chosen.time, step, signals, at=chosen.at)
     show_diagnostics(report, chosen)
     if chosen.output is None:
         print(csv_text(response), end="")

@@ -13,7 +13,7 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -28,12 +28,14 @@ def dynamics(
     *,
     base: str | None = None,
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81),
+    inputs: Literal["joints", "actuators"] = "joints",
     files: Files | None = None,
     report: Report | None = None,
 ) -> Lumped | Multibody:
     """The equations of motion of a lumped network, or of a mechanism with joints.
 
-    ``base`` is what becomes of a base without a joint (fixed, free), ``gravity`` in m/s^2 in the world; inertias that only the
+    ``base`` is what becomes of a base without a joint (fixed, free), ``gravity`` in m/s^2 in the world; the inputs of a mechanism are
+    forces of its joints, or the controls of its actuators, which then act by their laws; inertias that only the
     engine of the robot's format computes are computed with the meshes among ``files`` (those beside the robot's file by default).
 
     Raises: Refusal (HX4xx) that names the element for which there are none.
@@ -44,18 +46,23 @@ def dynamics(
 
     if has_network(robot):
         return Lumped(network_of(robot))
+    found = multibody_of(_with_inertias(robot, files, report), base=base, gravity=gravity, actuated=inputs == "actuators")
     if report is not None:
-        _report_left_out(robot, report)
-    return multibody_of(_with_inertias(robot, files, report), base=base, gravity=gravity)
+        _report_left_out(found, report)
+    return found
 
 
-def _report_left_out(robot: Mechanism, report: Report) -> None:
+def _report_left_out(found: Multibody, report: Report) -> None:
     """Warn (HX408) of every element that acts on a robot's motion and has no part in its equations."""
     from hymeko_x import codes
+    from hymeko_x.dynamics.drives import cables_of, motors_of
+    from hymeko_x.dynamics.loops import closures_of
     from hymeko_x.ir import parts
 
-    words = [(key, f"{key} is a loop") for key, loop, _ in robot.edges(parts.Loop) if loop.active]
-    words += [(key, f"{key} pulls") for key, tendon, _ in robot.edges(parts.Tendon) if tendon.stiffness or tendon.damping]
+    robot, tree = found.mechanism, found.tree
+    words = [(key, f"{key} is a loop of a kind") for key in closures_of(robot, tree)[1]]
+    words += [(key, f"{key} pulls along a path or with a law") for key in cables_of(robot, tree)[1]]
+    words += [(key, f"{key} has a law or an end") for key in (motors_of(robot, tree)[1] if found.motors is not None else [])]
     for key, joint, _ in robot.edges(parts.Joint):
         if any(dof.friction for dof in joint.dofs):
             words.append((key, f"{key} has Coulomb friction"))

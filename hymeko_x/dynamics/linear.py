@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 _RANK = 1e-9
 """A singular value that is smaller than this part of the largest one is zero."""
+_ROUNDING = 100.0
+"""How many times the estimate of its rounding error a pole is away from zero."""
 
 
 class Pole(NamedTuple):
@@ -32,6 +34,11 @@ class Pole(NamedTuple):
     value: complex
     frequency: float
     damping: float
+
+
+def _damping(pole: complex) -> float:
+    ratio = -pole.real / abs(pole) if pole else 0.0
+    return ratio if abs(ratio) > _RANK else 0.0
 
 
 class StateSpace(Struct, frozen=True, dict=True):
@@ -60,7 +67,7 @@ class StateSpace(Struct, frozen=True, dict=True):
         import numpy as np
 
         values = map(complex, np.linalg.eigvals(self.floats[0])) if self.states else ()
-        poles = [Pole(value, abs(value), -value.real / abs(value) if value else 0.0) for value in values]
+        poles = [Pole(value, abs(value), _damping(value)) for value in values]
         return sorted(poles, key=lambda pole: (float(f"{pole.frequency:.9g}"), pole.value.real, pole.value.imag))
 
     @property
@@ -203,21 +210,36 @@ def is_linear(system: System) -> bool:
 
 
 def report_unstable(space: StateSpace, report: Report) -> None:
-    """Warn (HX405) of every input that reaches a pole with a positive real part. Source: the test of Popov, Belevitch and Hautus."""
-    import numpy as np
+    """Warn (HX405) of every input that reaches a pole with a positive real part, once, with the fastest such pole."""
+    found: dict[int, complex] = {}
+    for pole, reach in _unstable(*space.floats[:2]):
+        for number in reach:
+            found[number] = max(found.get(number, 0j), pole, key=lambda value: value.real)
+    for number, pole in sorted(found.items()):
+        variable = space.inputs[number]
+        words = f"input '{variable.name}' excites the unstable pole {complex_text(pole)} 1/s"
+        report.warn(codes.UNSTABLE_INPUT, f"{variable.element or variable.name}: {words}", element=variable.element)
 
-    a, b, _, _ = space.floats
-    scale = max(1.0, float(np.abs(a).max(initial=0.0)))
-    for pole in space.poles:
-        if pole.value.real <= _RANK * scale or pole.value.imag < 0:
-            continue
-        left = np.linalg.svd(a.T - pole.value * np.eye(len(a)))[2][-1].conj()
-        for number, variable in enumerate(space.inputs):
-            if abs(left @ b[:, number]) > _RANK * max(1.0, float(np.abs(b[:, number]).max())):
-                message = (
-                    f"{variable.element or variable.name}: input '{variable.name}' excites the unstable pole {complex_text(pole.value)} 1/s"
-                )
-                report.warn(codes.UNSTABLE_INPUT, message, element=variable.element)
+
+def _unstable(a: Floats, b: Floats) -> list[tuple[complex, list[int]]]:
+    """The poles with a positive real part beyond rounding, and the inputs that reach each.
+
+    Rounding moves a pole by eps |A| / |y'x| with its left and right unit eigenvectors y and x: much where poles coincide.
+    Source: Golub & Van Loan, 7.2.2, and the test of Popov, Belevitch and Hautus.
+    """
+    import numpy as np
+    from scipy.linalg import eig
+
+    if not a.size:
+        return []
+    poles, left, right = eig(a, left=True)
+    moved = _ROUNDING * np.finfo(float).eps * np.linalg.norm(a, 2) / np.maximum(np.abs(np.sum(left.conj() * right, axis=0)), 1e-300)
+    found = []
+    for pole, y, error in zip(poles, left.T, moved, strict=True):
+        if pole.real > max(error, _RANK) and pole.imag >= 0:
+            reach = np.abs(y.conj() @ b) / np.maximum(np.linalg.norm(b, axis=0), 1e-300)
+            found.append((complex(pole), [int(number) for number in np.flatnonzero(reach > _RANK)]))
+    return found
 
 
 def complex_text(value: complex) -> str:

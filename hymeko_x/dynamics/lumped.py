@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics import forms
 from hymeko_x.dynamics.equations import system_of
 from hymeko_x.dynamics.linear import StateSpace, is_linear, linearize
@@ -62,11 +64,13 @@ class Lumped(Struct, frozen=True, dict=True):
         """
         return input_of(self.system, name)
 
-    def simulate(self, duration: float, step: float, inputs: Mapping[str, Signal] | None = None) -> Response:
+    def simulate(self, duration: float, step: float, inputs: Mapping[str, Signal] | None = None, at: str = "") -> Response:
         """The response from rest to the signals of the file, or to these instead, by the name of their input or its element.
 
-        Raises: Refusal (HX407) for signals and names, HX409 when the solution cannot be continued.
+        Raises: Refusal (HX407) for signals and names, and for ``at``; HX409 when the solution cannot be continued.
         """
+        if at:
+            raise refuse(codes.BAD_SIGNAL, f"{self.network.name} starts at rest; only a mechanism starts at '{at}'")
         signals = {}
         for variable in self.system.inputs:
             port = next((port for port in self._ports() if str(port[0]) == variable.element), None)

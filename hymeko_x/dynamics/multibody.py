@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.dynamics.assembly import reduction
 from hymeko_x.dynamics.couplings import expanded, followers_of, independent
+from hymeko_x.dynamics.drives import cables_of, motors_of
 from hymeko_x.dynamics.forms import SecondOrder
-from hymeko_x.dynamics.loops import closed_forward, constraint, freedom
+from hymeko_x.dynamics.loops import closing, closures_of
 from hymeko_x.dynamics.numbers import floats
-from hymeko_x.dynamics.operating import OperatingPoint, linearized, named_positions, operating_point, sympy_matrix
-from hymeko_x.dynamics.recursion import GRAVITY, Constants
+from hymeko_x.dynamics.operating import OperatingPoint, linearized, named_positions, operating_point, start_of, sympy_matrix
+from hymeko_x.dynamics.recursion import GRAVITY, mass_matrix
 from hymeko_x.dynamics.simulation import Response, simulate
 from hymeko_x.dynamics.system import Variable, input_of
 from hymeko_x.dynamics.tree import tree_of
@@ -41,7 +44,7 @@ class Multibody(Trees, frozen=True, dict=True):
         """
         if words == "found":
             return operating_point(self, {}, search=True)
-        return operating_point(self, named_positions(self.mechanism, words) if words else {})
+        return operating_point(self, named_positions(self.mechanism, words) if words else {}, keep="=" in words)
 
     def state_space(self, at: str = "") -> StateSpace:
         """A, B, C, D at an operating point (:meth:`at`), from exact derivatives."""
@@ -51,26 +54,34 @@ class Multibody(Trees, frozen=True, dict=True):
         """M d'' + C d' + K d = F u for small displacements d from an operating point."""
         space, point = self.state_space(at), self.at(at)
         n = len(space.states) // 2
-        whole = expanded(self.tree, self.followers, point.positions, [0.0] * n, floats())
-        mass = reduced_mass(Constants(self.tree, floats(), self.gravity), whole, n)
-        m = sympy_matrix(mass)
+        basis = reduction(self, point.positions).basis
+        whole = expanded(self.tree, self.followers, point.positions, [0.0] * len(basis), floats())
+        mass = reduced_mass(mass_matrix(self._constants, whole.q), whole)
+        m = sympy_matrix(basis.T @ mass @ basis)
         a, b = space.A, space.B
         return SecondOrder(space.states[:n], space.inputs, m, -m * a[n:, n:], -m * a[n:, :n], m * b[n:, :], m * space.offset[n:, :])
 
     # ---- closed loops ------------------------------------------------------------------------------------------------------
 
-    @cached_property
-    def closure(self) -> Any:
-        """The casadi function (q, v) -> (phi, J, J' v) of the loops between all coordinates."""
-        return constraint(self)
-
     def closed_forward(self, q: Sequence[float], v: Sequence[float], tau: Sequence[float], rate: float = 0.0) -> tuple[Floats, Floats]:
-        """The accelerations and the closures' forces of a mechanism with loops, without damping and springs; ``rate`` (1/s) stabilises."""
-        return closed_forward(self, self.closure, q, v, tau, rate)
+        """The accelerations and the closures' forces of a mechanism with loops, without damping and springs; ``rate`` (1/s) stabilises.
+
+        Closures that repeat each other (a planar four-bar closed by a point in space) share their force evenly.
+        """
+        import numpy as np
+
+        state, rates = np.array(q, dtype=float), np.array(v, dtype=float)
+        gap, slope, drift = (np.array(part, dtype=float) for part in closing(self.closures, self._constants, list(state), list(rates)))
+        mass, bias = self.mass_matrix(state), self.bias(state, rates)
+        free = np.linalg.solve(mass, np.array(tau) - bias)
+        wanted = -drift - 2 * rate * slope @ rates - rate**2 * gap
+        inverse = np.linalg.solve(mass, slope.T)
+        force = np.linalg.lstsq(slope @ inverse, wanted - slope @ free, rcond=1e-10)[0]
+        return free + inverse @ force, force
 
     def freedom(self, q: Sequence[float]) -> int:
-        """The degrees of freedom that the loops leave at q."""
-        return freedom(self, self.closure, q)
+        """The degrees of freedom that the loops leave at q, the independent coordinates."""
+        return len(reduction(self, q).columns)
 
     # ---- over time ---------------------------------------------------------------------------------------------------------
 
@@ -90,15 +101,27 @@ class Multibody(Trees, frozen=True, dict=True):
 
         signals = {self.input(name).name: signal for name, signal in (inputs or {}).items()}
         width = sum(link.velocities for link in independent(self.tree, self.followers))
-        start = [*operating_point(self, named_positions(self.mechanism, at) if at else {}).positions, *[0.0] * width]
+        positions = self.at(at).positions if at == "found" else self._start(at)
+        start = [*positions, *[0.0] * width]
         graph = self.graph
         return simulate(self.system, signals, duration, step, start, lambda x, u: np.array(graph(x, u), dtype=float).reshape(-1))
 
+    def _start(self, at: str) -> list[float]:
+        return start_of(self, named_positions(self.mechanism, at) if at else {}, keep="=" in at)
 
-def multibody_of(mechanism: Mechanism, *, base: str | None = None, gravity: tuple[float, float, float] = GRAVITY) -> Multibody:
-    """The dynamics of a mechanism.
 
-    Raises: Refusal (HX400) when nothing moves, HX403 couplings in a circle, HX404 a dof that moves no mass.
+def multibody_of(
+    mechanism: Mechanism, *, base: str | None = None, gravity: tuple[float, float, float] = GRAVITY, actuated: bool = False
+) -> Multibody:
+    """The dynamics of a mechanism; its inputs are the controls of its actuators if ``actuated``.
+
+    Raises: Refusal (HX400) when nothing moves, HX403 couplings in a circle, HX404 a dof that moves no mass, HX408 no actuator to use.
     """
     tree = tree_of(mechanism, base=base)
-    return Multibody(mechanism, tree, followers_of(mechanism, tree), gravity)
+    closures, _ = closures_of(mechanism, tree)
+    cables, _ = cables_of(mechanism, tree)
+    motors = motors_of(mechanism, tree)[0] if actuated else None
+    if actuated and not motors:
+        message = f"{mechanism.name}: no actuator of it drives a joint by a law that is linear in control, position and velocity"
+        raise refuse(codes.NO_FORM, message, hint="the inputs are forces of the joints without --inputs actuators")
+    return Multibody(mechanism, tree, followers_of(mechanism, tree), gravity, closures, cables, motors)

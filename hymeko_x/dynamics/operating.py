@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
+from hymeko_x.dynamics.assembly import assembled, reduction
 from hymeko_x.dynamics.couplings import independent
 from hymeko_x.dynamics.linear import StateSpace
-from hymeko_x.dynamics.numbers import Number, floats, graphs
-from hymeko_x.dynamics.spatial import of_quaternion, turned
+from hymeko_x.dynamics.positions import moved
 from hymeko_x.dynamics.system import Variable
-from hymeko_x.dynamics.tree import joint_name
 from hymeko_x.ir import parts
 from hymeko_x.ir.kinematics import dof_number
 from hymeko_x.ir.mechanism import numbers_weight
@@ -72,24 +71,26 @@ def named_positions(mechanism: Mechanism, words: str) -> dict[str, float]:
         raise refuse(codes.BAD_SIGNAL, f"'{words}' is no configuration", hint=hint) from error
 
 
-def operating_point(found: Trees, positions: Mapping[str, float], *, search: bool = False) -> OperatingPoint:
+def operating_point(found: Trees, positions: Mapping[str, float], *, search: bool = False, keep: bool = True) -> OperatingPoint:
     """The point at these positions (others at their reference); with ``search`` the equilibrium without inputs next to it.
 
-    Raises: Refusal (HX407) for a joint that is not there, HX408 when there is no equilibrium near.
+    Loops are closed; joints with a position keep it if ``keep``.
+
+    Raises: Refusal (HX407) for a joint that is not there, HX408 when there is no equilibrium near, or loops cannot be closed.
     """
     import numpy as np
 
+    z = start_of(found, positions, keep=keep)
     links = independent(found.tree, found.followers)
-    z = _positions(links, positions)
-    system, numbers = found.system, floats()
     width = sum(link.velocities for link in links)
+    graph, still = found.graph, np.zeros(width)
 
     def accelerations(z: Sequence[float], u: Sequence[float]) -> Floats:
-        return np.array([float(value) for value in system.rates([*z, *[0.0] * width], u, (), numbers)])[-width:]
+        return np.array(graph([*z, *still], u), dtype=float)[-width:, 0]
 
-    none = [0.0] * len(system.inputs)
+    none = [0.0] * len(found.system.inputs)
     if search:
-        z = _equilibrium(links, z, lambda moved: accelerations(moved, none))
+        z = _equilibrium(found, links, z, lambda moved: accelerations(moved, none))
         return OperatingPoint(z, none, accelerations(z, none).tolist())
     free = accelerations(z, none)
     each = np.array([accelerations(z, row.tolist()) - free for row in np.eye(len(none))]).reshape(len(none), width).T
@@ -98,48 +99,41 @@ def operating_point(found: Trees, positions: Mapping[str, float], *, search: boo
     return OperatingPoint(z, held.tolist(), (free + each @ held).tolist())
 
 
+def start_of(found: Trees, positions: Mapping[str, float], *, keep: bool = True) -> list[float]:
+    """The independent coordinates at these positions (others at their reference), with closed loops."""
+    z = _positions(independent(found.tree, found.followers), positions)
+    return assembled(found, z, positions if keep else ())
+
+
 def _positions(links: Sequence[Link], given: Mapping[str, float]) -> list[float]:
-    names = [joint_name(link) for link in links if link.coordinates == 1]
+    names = [link.name for link in links if link.coordinates == 1]
     wrong = [name for name in given if name not in names]
     if wrong:
         raise refuse(codes.BAD_SIGNAL, f"there is no independent joint '{wrong[0]}' with one coordinate; there are {', '.join(names)}")
     z: list[float] = []
     for link in links:
         if link.coordinates == 1:
-            z.append(given.get(joint_name(link), link.dof.ref))
+            z.append(given.get(link.name, link.dof.ref))
         else:
             z += [0.0] * (link.coordinates - 4) + [1.0, 0.0, 0.0, 0.0]
     return z
 
 
-def _equilibrium(links: Sequence[Link], z: list[float], accelerations: Any) -> list[float]:
+def _equilibrium(trees: Trees, links: Sequence[Link], z: list[float], accelerations: Any) -> list[float]:
     import numpy as np
     from scipy.optimize import root
 
     width = sum(link.velocities for link in links)
+
+    def missing(step: Floats) -> Floats:
+        there = moved(links, z, step.tolist())
+        return np.concatenate([accelerations(there), trees.closed_at(there)[0]]) if trees.closures else accelerations(there)
+
     with np.errstate(all="ignore"):
-        found = root(lambda step: accelerations(moved(links, z, step.tolist())), np.zeros(width), tol=1e-13)
+        found = root(missing, np.zeros(width), method="lm" if trees.closures else "hybr", tol=1e-13)
     if not found.success or np.abs(found.fun).max(initial=0.0) > 1e-6:
         raise refuse(codes.NO_FORM, "no equilibrium without inputs was found near the configuration", hint=_ELSEWHERE)
     return [float(value) for value in moved(links, z, found.x.tolist())]
-
-
-def moved(links: Sequence[Link], z: Sequence[Number], step: Sequence[Number]) -> list[Number]:
-    """Positions after a small step along the velocities; exact to first order."""
-    found: list[Number] = []
-    at = column = 0
-    for link in links:
-        own, along = list(z[at : at + link.coordinates]), list(step[column : column + link.velocities])
-        at, column = at + link.coordinates, column + link.velocities
-        if link.coordinates == 1:
-            found.append(own[0] + along[0])
-            continue
-        if link.dof.kind is DofKind.FREE:
-            found += [a + b for a, b in zip(own[:3], turned(of_quaternion(own[3:]), along[:3]), strict=True)]
-        w, x, y, z_ = own[-4:]
-        a, b, c = (value / 2 for value in along[-3:])
-        found += [w - x * a - y * b - z_ * c, x + w * a + y * c - z_ * b, y + w * b + z_ * a - x * c, z_ + w * c + x * b - y * a]
-    return found
 
 
 _TANGENTS = {DofKind.BALL: ("rx", "ry", "rz"), DofKind.FREE: ("dx", "dy", "dz", "rx", "ry", "rz")}
@@ -149,7 +143,7 @@ def displacements(links: Sequence[Link]) -> tuple[Variable, ...]:
     """The small displacements from an operating point, one per velocity, in the moving axes."""
     found: list[Variable] = []
     for link in links:
-        name, turns = joint_name(link), link.dof.kind is not DofKind.SLIDE
+        name, turns = link.name, link.dof.kind is not DofKind.SLIDE
         if link.coordinates == 1:
             plain = name.replace("_", r"\_")
             found.append(Variable(f"{name}.position", "rad" if turns else "m", rf"q_{{\mathrm{{{plain}}}}}", element=str(link.joint)))
@@ -171,21 +165,22 @@ def linearized(found: Trees, point: OperatingPoint) -> StateSpace:
     width, system = sum(link.velocities for link in links), found.system
     step, v, u = casadi.SX.sym("d", width), casadi.SX.sym("v", width), casadi.SX.sym("u", len(system.inputs))
     z = moved(links, point.positions, [step[k] for k in range(width)])
-    rates = system.rates([*z, *[v[k] for k in range(width)]], [u[k] for k in range(len(system.inputs))], (), graphs())
-    accelerations = casadi.vertcat(*rates[-width:])
+    accelerations = found.graph(casadi.vertcat(*z, v), u)[-width:]
     slopes = casadi.Function("f", [step, v, u], [casadi.jacobian(accelerations, part) for part in (step, v, u)] + [accelerations])
     by_step, by_v, by_u, rest = (np.array(block, dtype=float) for block in slopes(np.zeros(width), np.zeros(width), np.array(point.inputs)))
-    a = np.block([[np.zeros((width, width)), np.eye(width)], [by_step, by_v]])
-    b = np.vstack([np.zeros((width, len(point.inputs))), by_u.reshape(width, len(point.inputs))])
+    kept, basis = reduction(found, point.positions)
+    count = len(kept)
+    a = np.block([[np.zeros((count, count)), np.eye(count)], [by_step[kept] @ basis, by_v[kept] @ basis]])
+    b = np.vstack([np.zeros((count, len(point.inputs))), by_u.reshape(width, len(point.inputs))[kept]])
     positions = displacements(links)
     outputs = [number for number, variable in enumerate(positions) if variable.name.endswith(".position")]
-    c = np.zeros((len(outputs), 2 * width))
-    c[range(len(outputs)), outputs] = 1.0
+    c = np.hstack([basis[outputs], np.zeros((len(outputs), count))])
     rest[np.abs(rest) <= _HELD] = 0.0
-    offset = np.concatenate([np.zeros(width), rest.reshape(-1)])
-    velocities = tuple(Variable(_rate_name(v.name), f"{v.unit}/s", rf"\dot {v.symbol}") for v in positions)
+    offset = np.concatenate([np.zeros(count), rest.reshape(-1)[kept]])
+    states = tuple(positions[k] for k in kept)
+    velocities = tuple(Variable(_rate_name(v.name), f"{v.unit}/s", rf"\dot {v.symbol}") for v in states)
     matrices = map(sympy_matrix, (a, b, c, np.zeros((len(outputs), b.shape[1])), offset[:, None]))
-    return StateSpace((*positions, *velocities), system.inputs, tuple(positions[k] for k in outputs), *matrices)
+    return StateSpace((*states, *velocities), system.inputs, tuple(positions[k] for k in outputs), *matrices)
 
 
 def _rate_name(name: str) -> str:

@@ -9,7 +9,9 @@ from msgspec import Struct
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
+from hymeko_x.dynamics.assembly import reduction
 from hymeko_x.dynamics.linear import complex_text
+from hymeko_x.dynamics.loops import STABILISATION
 from hymeko_x.dynamics.lumped import Lumped
 
 if TYPE_CHECKING:
@@ -64,10 +66,18 @@ def page_of(dynamics: Lumped | Multibody, form: str, *, symbolic: bool = False, 
     }[form]()
     formula, variables, blocks, facts = made
     names = [variable.name for variable in dynamics.system.states]
-    where = {name: value for name, value in zip(names, point.positions, strict=False) if value}
+    where = {name: value for name, value in zip(names, point.positions, strict=False) if value != float(name.endswith(".qw"))}
     held = {variable.name: value for variable, value in zip(dynamics.system.inputs, point.inputs, strict=True) if value}
     place = {"at": _pairs(where), "held by": _pairs(held), "equilibrium": "yes" if point.is_equilibrium else "no"}
-    return Page(dynamics.tree.name, form, formula, variables, blocks, {**place, **facts})
+    return Page(dynamics.tree.name, form, formula, variables, blocks, {**place, **_loops(dynamics, point.positions), **facts})
+
+
+def _loops(dynamics: Multibody, positions: Sequence[float]) -> Mapping[str, str]:
+    if not dynamics.closures:
+        return {}
+    width, freedom = reduction(dynamics, positions).basis.shape
+    words = f"{len(dynamics.closures)} closed; {freedom} of {width} degrees of freedom remain"
+    return {"loops": f"{words}; in simulations and generated files stabilised (Baumgarte) at {STABILISATION:g} 1/s"}
 
 
 def _pairs(values: Mapping[str, float]) -> str:
@@ -190,7 +200,7 @@ def _entry(value: Any) -> str:
 
 def _pole_lines(poles: Sequence[Pole]) -> list[str]:
     lines = ["poles (1/s)             natural frequency (rad/s)  damping ratio"]
-    return lines + [f"  {complex_text(pole.value):<22}{pole.frequency:<27.6g}{pole.damping:.6g}" for pole in poles]
+    return lines + [f"  {complex_text(pole.value):<21} {pole.frequency:<27.6g}{pole.damping:.6g}" for pole in poles]
 
 
 def _is_matrix(value: Any) -> bool:

@@ -58,11 +58,11 @@ class Constants:
     def __init__(self, tree: Tree, numbers: Numbers, gravity: Sequence[float] = GRAVITY) -> None:
         self.tree = tree
         self.numbers = numbers
-        self.frames = [_exact_frame(link.frame, numbers) for link in tree.links]
+        self.frames = [exact_frame(link.frame, numbers) for link in tree.links]
         self.inertias = [inertia_of(link, numbers) for link in tree.links]
         self.subspaces = [subspace(link, numbers) for link in tree.links]
-        self.armatures = [_number(link.dof.armature, numbers) for link in tree.links]
-        self.pull = Spatial(ZERO, [_number(-value, numbers) for value in gravity])
+        self.armatures = [constant(link.dof.armature, numbers) for link in tree.links]
+        self.pull = Spatial(ZERO, [constant(-value, numbers) for value in gravity])
 
     def link_frames(self, q: Sequence[Number]) -> list[Frame]:
         """The pose of each link in its parent at q."""
@@ -77,36 +77,37 @@ class Constants:
         return found
 
 
-def _number(value: float, numbers: Numbers) -> Number:
+def constant(value: float, numbers: Numbers) -> Number:
     """A constant; the plain zero and one stay, because products with them cost nothing."""
     return int(value) if value in (0.0, 1.0, -1.0) else numbers.exact(value)
 
 
-def _exact_frame(frame: Frame, numbers: Numbers) -> Frame:
-    return Frame([[_number(x, numbers) for x in row] for row in frame.rotation], [_number(x, numbers) for x in frame.position])
+def exact_frame(frame: Frame, numbers: Numbers) -> Frame:
+    """A constant frame in one number type."""
+    return Frame([[constant(x, numbers) for x in row] for row in frame.rotation], [constant(x, numbers) for x in frame.position])
 
 
 def inertia_of(link: Link, numbers: Numbers) -> Inertia:
     """The inertia of all that is fixed to a link, in its frame: tensors about its origin, not about the centres of mass."""
     whole = NO_INERTIA
     for frame, inertial in link.bodies:
-        xx, yy, zz, xy, xz, yz = (_number(x, numbers) for x in inertial.tensor or (0.0,) * 6)
-        at_centre = Inertia(_number(inertial.mass or 0.0, numbers), ZERO, [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        centre = Frame(UNIT, [_number(x, numbers) for x in inertial.com])
-        whole = joined(whole, seen_from_parent(_exact_frame(frame, numbers), seen_from_parent(centre, at_centre)))
+        xx, yy, zz, xy, xz, yz = (constant(x, numbers) for x in inertial.tensor or (0.0,) * 6)
+        at_centre = Inertia(constant(inertial.mass or 0.0, numbers), ZERO, [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        centre = Frame(UNIT, [constant(x, numbers) for x in inertial.com])
+        whole = joined(whole, seen_from_parent(exact_frame(frame, numbers), seen_from_parent(centre, at_centre)))
     return whole
 
 
 def subspace(link: Link, numbers: Numbers) -> list[Spatial]:
     """The columns of S: the motions of a link at unit velocities, in its own frame. Source: table 4.1."""
-    axis = [_number(x, numbers) for x in link.dof.axis]
+    axis = [constant(x, numbers) for x in link.dof.axis]
     match link.dof.kind:
         case DofKind.HINGE:
             return [Spatial(axis, ZERO)]
         case DofKind.SLIDE:
             return [Spatial(ZERO, axis)]
         case DofKind.SCREW:
-            return [Spatial(axis, scaled(axis, _number(link.dof.pitch, numbers)))]
+            return [Spatial(axis, scaled(axis, constant(link.dof.pitch, numbers)))]
         case DofKind.BALL:
             return [Spatial(unit, ZERO) for unit in UNIT]
         case DofKind.FREE:
@@ -120,12 +121,12 @@ def motion(link: Link, q: Sequence[Number], numbers: Numbers) -> Frame:
         return Frame(of_quaternion(q[3:]), list(q[:3]))
     if kind is DofKind.BALL:
         return Frame(of_quaternion(q), ZERO)
-    axis = [_number(x, numbers) for x in link.dof.axis]
-    moved = add(q[0], _number(-link.dof.ref, numbers))
+    axis = [constant(x, numbers) for x in link.dof.axis]
+    moved = add(q[0], constant(-link.dof.ref, numbers))
     if kind is DofKind.SLIDE:
         return Frame(UNIT, scaled(axis, moved))
     turned = about(axis, moved, numbers)
-    return Frame(turned, scaled(scaled(axis, _number(link.dof.pitch, numbers)), moved) if kind is DofKind.SCREW else ZERO)
+    return Frame(turned, scaled(scaled(axis, constant(link.dof.pitch, numbers)), moved) if kind is DofKind.SCREW else ZERO)
 
 
 def inverse_dynamics(constants: Constants, q: Sequence[Number], v: Sequence[Number], a: Sequence[Number] | None = None) -> list[Number]:

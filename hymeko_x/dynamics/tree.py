@@ -6,6 +6,7 @@ joint is fixed to the world, or free on request.
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
@@ -20,7 +21,7 @@ from hymeko_x.ir.parts import DofKind
 from hymeko_x.ir.values import Pose, compose, inverse, matrix_from_quat, scaled
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from hymeko_x.ir.ids import Id
     from hymeko_x.ir.mechanism import Mechanism
@@ -38,7 +39,7 @@ class Link(Struct, frozen=True):
     """What one dof moves: ``frame`` is where the dof's frame is in the parent link, -1 the world, before it moves.
 
     ``q`` and ``v`` are the first columns of its coordinates, ``bodies`` the inertials that are fixed to it with the frames that they
-    are given in, ``joint`` and ``number`` the dof's place.
+    are given in, ``joint`` and ``number`` the dof's place, ``name`` is that of the dof: no two links have the same.
     """
 
     joint: Id
@@ -49,6 +50,7 @@ class Link(Struct, frozen=True):
     q: int
     v: int
     bodies: tuple[tuple[Frame, parts.Inertial], ...] = ()
+    name: str = ""
 
     @property
     def velocities(self) -> int:
@@ -115,7 +117,8 @@ def tree_of(mechanism: Mechanism, *, base: str | None = None) -> Tree:
         own.setdefault(parent, []).append((body, place))
     if not links:
         raise refuse(codes.NO_DYNAMICS, f"{mechanism.name}: no joint of it moves", hint="--base free lets its base move")
-    whole = tuple(replace(link, bodies=_inertials(mechanism, own.get(number, []))) for number, link in enumerate(links))
+    named = zip(links, _names(links), strict=True)
+    whole = tuple(replace(link, bodies=_inertials(mechanism, own.get(at, [])), name=name) for at, (link, name) in enumerate(named))
     bodies = {body: (link, frame_of(place)) for body, (link, place) in placed.items()}
     tree = Tree(mechanism.name, whole, nq, nv, bodies)
     _refuse_massless(mechanism, tree)
@@ -149,8 +152,8 @@ def _weighs(inertial: parts.Inertial) -> bool:
     return bool(inertial.mass) or any(inertial.tensor or ())
 
 
-def joint_name(link: Link) -> str:
-    """The name of a dof: its own, that of its joint, or that of its joint with its number."""
-    if link.dof.name:
-        return link.dof.name
-    return link.joint.name if link.number == 0 else f"{link.joint.name}#{link.number}"
+def _names(links: Sequence[Link]) -> list[str]:
+    """The names of dofs: their own where no other has it, that of their joint, or that of their joint with their number."""
+    names = [link.dof.name or (link.joint.name if link.number == 0 else f"{link.joint.name}#{link.number}") for link in links]
+    count = Counter(names)
+    return [name if count[name] == 1 else f"{link.joint.name}#{link.number}" for name, link in zip(names, links, strict=True)]

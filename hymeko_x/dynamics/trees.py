@@ -6,15 +6,18 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.couplings import Expanded, Follower, expanded, independent
+from hymeko_x.dynamics.drives import Cable, Motor, drive, pull_cables
+from hymeko_x.dynamics.loops import STABILISATION, Closing, Closure, closed_acceleration, closing
 from hymeko_x.dynamics.numbers import add, dot, factorize, floats, graphs, solve, symbols, times
+from hymeko_x.dynamics.positions import nearest
 from hymeko_x.dynamics.recursion import GRAVITY, Constants, forward_dynamics, inverse_dynamics, mass_matrix
 from hymeko_x.dynamics.spatial import minus
 from hymeko_x.dynamics.system import System, Variable
-from hymeko_x.dynamics.tree import Tree, joint_name
 from hymeko_x.ir.parts import DofKind
 
 if TYPE_CHECKING:
@@ -24,7 +27,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
-    from hymeko_x.dynamics.tree import Link
+    from hymeko_x.dynamics.tree import Link, Tree
     from hymeko_x.ir.mechanism import Mechanism
 
     Floats = NDArray[np.floating[Any]]
@@ -45,13 +48,17 @@ class Trees(Struct, frozen=True, dict=True):
 
     Configurations q are (nq,) or (n, nq), velocities v, accelerations and forces (nv,) or (n, nv), in the order of the links of
     ``tree``; a free base has a position and a quaternion (w, x, y, z), and a linear before an angular velocity, both in its own
-    axes. With couplings, ``system`` has the independent coordinates only; the other functions have all of them.
+    axes. With couplings, ``system`` has the independent coordinates only; the other functions have all of them. Loops and tendons
+    are in ``system``, not in the functions of the trees. ``motors`` None: the inputs are a force for each dof of one coordinate.
     """
 
     mechanism: Mechanism
     tree: Tree
     followers: tuple[Follower, ...] = ()
     gravity: tuple[float, float, float] = GRAVITY
+    closures: tuple[Closure, ...] = ()
+    cables: tuple[Cable, ...] = ()
+    motors: tuple[Motor, ...] | None = None
 
     @cached_property
     def _constants(self) -> Constants:
@@ -96,19 +103,22 @@ class Trees(Struct, frozen=True, dict=True):
         raise refuse(codes.SINGULAR_MASS, message, element=str(link.joint), hint="give what it moves an inertia tensor, or it an armature")
 
     def passive(self, q: Floats, v: Floats) -> Floats:
-        """The forces of damping and springs."""
-        return _array(passive_forces(self.tree, _columns(q), _columns(v), floats()), q)
+        """The forces of damping and springs, at joints and of tendons."""
+        return _array(passive_forces(self.tree, self.cables, _columns(q), _columns(v), floats()), q)
 
     @cached_property
     def system(self) -> System:
-        """x = (q, v) of the independent links, u = a force for each dof of one coordinate, y = their positions."""
+        """x = (q, v) of the independent links, u = controls of motors or a force for each dof of one coordinate, y = their positions."""
         links = independent(self.tree, self.followers)
         states = [_variable(link, k, "position") for link in links for k in range(link.coordinates)]
+        if self.closures:
+            closed = nearest(links, self.closed_at, [variable.value for variable in states])
+            states = [replace(variable, value=value) for variable, value in zip(states, closed, strict=True)]
         states += [_variable(link, k, "velocity") for link in links for k in range(link.velocities)]
         scalar = [link for link in links if link.velocities == 1]
-        inputs = tuple(_variable(link, 0, "effort") for link in scalar)
+        inputs = tuple(_variable(link, 0, "effort") for link in scalar) if self.motors is None else tuple(map(_control, self.motors))
         outputs = tuple(_variable(link, 0, "position") for link in scalar)
-        rates = _rates(self.tree, self.followers, self.gravity)
+        rates = _rates(self)
 
         def measured(x: Sequence[Number], u: Sequence[Number], p: Sequence[Number], numbers: Numbers) -> list[Number]:
             at = [place for place, state in enumerate(states) if state.name in {output.name for output in outputs}]
@@ -137,6 +147,29 @@ class Trees(Struct, frozen=True, dict=True):
         rates = system.rates([x[k] for k in range(x.numel())], [u[k] for k in range(u.numel())], (), graphs())
         return casadi.Function("rates", [x, u], [casadi.vertcat(*rates)], ["x", "u"], ["rates"])
 
+    @cached_property
+    def closure(self) -> Any:
+        """The casadi function (z, z') -> (phi, J, J' z') of the loops, over the independent coordinates."""
+        import casadi
+
+        links = independent(self.tree, self.followers)
+        z = casadi.SX.sym("z", sum(link.coordinates for link in links))
+        w = casadi.SX.sym("w", sum(link.velocities for link in links))
+        positions, rates = ([part[k] for k in range(part.numel())] for part in (z, w))
+        whole = expanded(self.tree, self.followers, positions, rates, graphs())
+        closed = reduced_closing(self.closures, Constants(self.tree, graphs(), self.gravity), whole)
+        rows = [casadi.horzcat(*row) for row in closed.slope]
+        values = [casadi.vertcat(*closed.gap), casadi.vertcat(*rows), casadi.vertcat(*closed.drift)]
+        return casadi.Function("closure", [z, w], values, ["z", "w"], ["phi", "J", "drift"])
+
+    def closed_at(self, z: Sequence[float]) -> tuple[Floats, Floats]:
+        """phi and J of the loops over the independent coordinates z."""
+        import numpy as np
+
+        width = sum(link.velocities for link in independent(self.tree, self.followers))
+        phi, slope, _ = self.closure(z, np.zeros(width))
+        return np.array(phi, dtype=float)[:, 0], np.array(slope, dtype=float)
+
 
 def _columns(values: Floats) -> list[Number]:
     import numpy as np
@@ -159,7 +192,7 @@ _UNITS = {"position": ("m", "rad"), "velocity": ("m/s", "rad/s"), "effort": ("N"
 
 
 def _variable(link: Link, k: int, quantity: str) -> Variable:
-    name, kind = joint_name(link), link.dof.kind
+    name, kind = link.name, link.dof.kind
     turns = kind is not DofKind.SLIDE
     if kind in _PARTS and quantity == "position":
         part = _PARTS[kind][k]
@@ -173,8 +206,13 @@ def _variable(link: Link, k: int, quantity: str) -> Variable:
     return Variable(f"{name}.{quantity}", _UNITS[quantity][turns], rf"{letter}_{{\mathrm{{{plain}}}}}", value, str(link.joint))
 
 
-def passive_forces(tree: Tree, q: Sequence[Number], v: Sequence[Number], numbers: Numbers) -> list[Number]:
-    """The forces of dampers and springs at the dofs. A spring of a ball is left out: no format agrees on its rest."""
+def _control(motor: Motor) -> Variable:
+    plain = motor.id.name.replace("_", r"\_")
+    return Variable(f"{motor.id.name}.control", motor.unit, rf"u_{{\mathrm{{{plain}}}}}", 0.0, str(motor.id))
+
+
+def passive_forces(tree: Tree, cables: Sequence[Cable], q: Sequence[Number], v: Sequence[Number], numbers: Numbers) -> list[Number]:
+    """The forces of dampers and springs at the dofs and of tendons. A spring of a ball is left out: no format agrees on its rest."""
     forces: list[Number] = [0] * tree.nv
     for link in tree.links:
         for k in range(link.v, link.v + link.velocities):
@@ -183,42 +221,65 @@ def passive_forces(tree: Tree, q: Sequence[Number], v: Sequence[Number], numbers
         if link.dof.stiffness and link.coordinates == 1:
             stretch = add(q[link.q], numbers.exact(-link.dof.spring_ref))
             forces[link.v] = add(forces[link.v], minus(times(numbers.exact(link.dof.stiffness), stretch)))
+    pull_cables(forces, cables, tree, q, v, numbers)
     return forces
 
 
-def _rates(
-    tree: Tree, followers: tuple[Follower, ...], gravity: tuple[float, float, float]
-) -> Callable[[Sequence[Number], Sequence[Number], Sequence[Number], Numbers], list[Number]]:
+def _rates(found: Trees) -> Callable[[Sequence[Number], Sequence[Number], Sequence[Number], Numbers], list[Number]]:
+    tree, followers = found.tree, found.followers
     links = independent(tree, followers)
-    nz, nr = sum(link.coordinates for link in links), sum(link.velocities for link in links)
+    nz = sum(link.coordinates for link in links)
 
     def rates(x: Sequence[Number], u: Sequence[Number], p: Sequence[Number], numbers: Numbers) -> list[Number]:
-        constants = Constants(tree, numbers, gravity)
+        constants = Constants(tree, numbers, found.gravity)
         whole = expanded(tree, followers, x[:nz], x[nz:], numbers)
-        tau = passive_forces(tree, whole.q, whole.v, numbers)
-        for link, value in zip([link for link in links if link.velocities == 1], u, strict=True):
-            tau[link.v] = add(tau[link.v], value)
-        moved = reduced_acceleration(constants, whole, tau, nr) if followers else forward_dynamics(constants, whole.q, whole.v, tau)
+        tau = passive_forces(tree, found.cables, whole.q, whole.v, numbers)
+        if found.motors is not None:
+            drive(tau, found.motors, u, tree, whole.q, whole.v, numbers)
+        else:
+            for link, value in zip([link for link in links if link.velocities == 1], u, strict=True):
+                tau[link.v] = add(tau[link.v], value)
+        if not followers and not found.closures:
+            moved = forward_dynamics(constants, whole.q, whole.v, tau)
+        else:
+            moved = reduced_acceleration(constants, whole, tau, found.closures, x[nz:])
         return [*_position_rates(links, x[:nz], x[nz:]), *moved]
 
     return rates
 
 
-def reduced_acceleration(constants: Constants, whole: Expanded, tau: list[Number], count: int) -> list[Number]:
-    """The accelerations of the independent coordinates: G' M G z'' = G' (tau - bias - M drift)."""
+def reduced_acceleration(
+    constants: Constants, whole: Expanded, tau: list[Number], closures: Sequence[Closure], rate: Sequence[Number]
+) -> list[Number]:
+    """The accelerations z'' of the independent coordinates with the velocities ``rate``: G' M G z'' = G' (tau - bias - M drift),
+    and the forces of closed loops."""
     mass = mass_matrix(constants, whole.q)
     against = inverse_dynamics(constants, whole.q, whole.v)
     force = [add(add(t, minus(b)), minus(dot(row, whole.drift))) for t, b, row in zip(tau, against, mass, strict=True)]
-    columns = [[row[k] for row in whole.ratios] for k in range(count)]
-    return solve(factorize(reduced_mass(constants, whole, count)), [dot(column, force) for column in columns])
+    reduced = reduced_mass(mass, whole)
+    own = [dot(column, force) for column in zip(*whole.ratios, strict=True)] if len(rate) < len(force) else force
+    if not closures:
+        return solve(factorize(reduced), own)
+    return closed_acceleration(reduced, own, reduced_closing(closures, constants, whole), rate, STABILISATION)
 
 
-def reduced_mass(constants: Constants, whole: Expanded, count: int) -> Matrix:
+def reduced_closing(closures: Sequence[Closure], constants: Constants, whole: Expanded) -> Closing:
+    """The closures over the independent coordinates: J G, and J' v + J drift."""
+    closed = closing(closures, constants, whole.q, whole.v)
+    columns = list(zip(*whole.ratios, strict=True))
+    if len(columns) == constants.tree.nv:
+        return closed
+    slope = [[dot(row, column) for column in columns] for row in closed.slope]
+    return Closing(closed.gap, slope, [add(d, dot(row, whole.drift)) for d, row in zip(closed.drift, closed.slope, strict=True)])
+
+
+def reduced_mass(mass: Matrix, whole: Expanded) -> Matrix:
     """G' M G, the mass matrix of the independent coordinates."""
-    mass = mass_matrix(constants, whole.q)
-    columns = [[row[k] for row in whole.ratios] for k in range(count)]
+    columns = list(zip(*whole.ratios, strict=True))
+    if len(columns) == len(mass):
+        return mass
     moved = [[dot(row, column) for row in mass] for column in columns]
-    return [[dot(columns[i], moved[j]) for j in range(count)] for i in range(count)]
+    return [[dot(one, other) for other in moved] for one in columns]
 
 
 def _position_rates(links: Sequence[Link], q: Sequence[Number], v: Sequence[Number]) -> list[Number]:
