@@ -7,7 +7,9 @@ import ipaddress
 import secrets
 import threading
 from contextlib import redirect_stdout
+from functools import partial
 from io import StringIO
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
@@ -44,11 +46,12 @@ def run_view(chosen: argparse.Namespace) -> int:
     with redirect_stdout(StringIO()):  # viser prints where it listens, whatever it is asked for
         server = viser.ViserServer("127.0.0.1", chosen.port if is_local else _INSIDE, label="hymeko-x", verbose=False)
     try:
-        judge = (lambda: verdict_of(chosen.inputs[0], chosen.inputs[1], chosen)) if len(chosen.inputs) == 2 else None
-        session = Session(server, lambda: [read_side(path, chosen) for path in chosen.inputs], judge)
-        inside = server.get_port()
-        print(f"http://127.0.0.1:{inside}" if is_local else _guarded(chosen.host, chosen.port, inside), flush=True)
-        session.watch()
+        with TemporaryDirectory(prefix="hymeko-x-") as folder:
+            judge = partial(verdict_of, chosen=chosen)
+            session = Session(server, chosen.inputs, partial(read_side, chosen=chosen), judge, folder)
+            inside = server.get_port()
+            print(f"http://127.0.0.1:{inside}" if is_local else _guarded(chosen.host, chosen.port, inside), flush=True)
+            session.watch()
     finally:
         server.stop()
     return exits.DONE

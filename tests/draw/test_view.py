@@ -58,12 +58,12 @@ def open_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Ca
     from hymeko_x.draw.view.session import Session
 
     monkeypatch.chdir(tmp_path)
+    (tmp_path / "sent").mkdir()
     servers, sessions = [], []
 
     def opened(*paths: str) -> Session:
         servers.append(viser.ViserServer("127.0.0.1", 18300, verbose=False))
-        judge = (lambda: verify(*paths, samples=3, meshes=False)) if len(paths) > 1 else None
-        sessions.append(Session(servers[-1], lambda: [read_side(path) for path in paths], judge))
+        sessions.append(Session(servers[-1], paths, read_side, lambda a, b: verify(a, b, samples=3, meshes=False), tmp_path / "sent"))
         return sessions[-1]
 
     yield opened
@@ -195,6 +195,20 @@ def test_a_file_that_changes_is_read_again_within_two_seconds(open_session: Call
         until(lambda: not page.problem.visible, 2.0)
     finally:
         session.stop()
+
+
+def test_a_file_that_a_browser_sends_is_compared_with_the_first_robot(open_session: Callable[..., object], tmp_path: Path) -> None:
+    (tmp_path / "arm.urdf").write_text(ARM)
+    session = open_session("arm.urdf")
+    page = session.page
+    session.compare_with("../../evil/broken.urdf", b"<robot")
+    assert "broken.urdf" in page.problem.content
+    assert len(page.bodies) == 1, "the robot stays alone"
+    session.compare_with("moved.urdf", ARM.replace("0 0 0.14", "0.1 0 0.14").encode())
+    assert not page.problem.visible
+    until(lambda: page.buttons, 30.0)
+    assert [button.hint for button in page.buttons] == ["body 'fore': forward kinematics, position 0.1 m"]
+    assert sorted(path.name for path in (tmp_path / "sent").iterdir()) == ["broken.urdf", "moved.urdf"]
 
 
 def test_hostile_names_are_text(open_session: Callable[..., object], tmp_path: Path) -> None:

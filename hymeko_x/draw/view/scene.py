@@ -11,7 +11,7 @@ from msgspec import Struct
 from hymeko_x.assets.companions import companion_reader
 from hymeko_x.assets.shelf import read_file
 from hymeko_x.draw.view.motion import Motion
-from hymeko_x.ir.geometry import MeshShape, NoShape
+from hymeko_x.ir.geometry import Box, Capsule, Cylinder, Ellipsoid, MeshShape, NoShape, Sphere
 from hymeko_x.ir.mechanism import WORLD, suffix_of
 from hymeko_x.ir.parts import Material, Mesh, Role
 from hymeko_x.meshes.reader import inline_part, read_parts
@@ -21,7 +21,7 @@ from hymeko_x.verify import model_of
 from hymeko_x.verify.model import WORLD as GROUND
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from hymeko_x.ir.geometry import Geometry
     from hymeko_x.ir.mechanism import Mechanism, ShapeView
@@ -50,7 +50,8 @@ class Item(Struct, frozen=True, eq=False):
 class Scene(Struct, frozen=True, eq=False):
     """A robot: its kinematics, the shapes on its bodies, and what could not be drawn, with the reason.
 
-    ``reach`` is about how large it is, in m: the largest distance of a body from the middle of all bodies at rest, at least 0.1.
+    ``reach`` is about how large it is, in m: half of the diagonal of a box around its bodies and their shapes at rest,
+    at least 0.1.
     """
 
     name: str
@@ -74,14 +75,33 @@ def scene_of(robot: Robot) -> Scene:
             items += found
             if not found and not isinstance(view.shape.geometry, NoShape):
                 missing.append(f"{view.id}: its mesh cannot be read")
-    return Scene(mechanism.name, model, tuple(items), tuple(missing), _reach(model))
+    return Scene(mechanism.name, model, tuple(items), tuple(missing), _reach(model, items))
 
 
-def _reach(model: KinematicModel) -> float:
-    """See :class:`Scene`."""
-    places = Motion(model).poses()[1:, :3, 3] if len(model.bodies) > 1 else np.zeros((1, 3))
-    middle = (places.min(axis=0) + places.max(axis=0)) / 2.0
-    return max(float(np.linalg.norm(places - middle, axis=1).max(initial=0.0)), 0.1)
+def _reach(model: KinematicModel, items: Sequence[Item]) -> float:
+    """See :class:`Scene`. Shapes of the world, such as a floor, are no part of the robot."""
+    poses = Motion(model).poses()
+    shapes = [item for item in items if item.body != GROUND]
+    centres = [poses[item.body][:3] @ (*item.pose.xyz, 1.0) for item in shapes]
+    places = np.array([*poses[1:, :3, 3], *centres]).reshape(-1, 3)
+    if not len(places):
+        return 0.1
+    sizes = np.array([0.0] * (len(poses) - 1) + [_radius(item) for item in shapes])[:, None]
+    return max(float(np.linalg.norm((places + sizes).max(axis=0) - (places - sizes).min(axis=0))) / 2.0, 0.1)
+
+
+def _radius(item: Item) -> float:
+    """The radius of a sphere around the origin of a shape that contains it, in m."""
+    match item.geometry:
+        case Box(size):
+            return float(np.linalg.norm(size)) / 2.0
+        case Sphere(radius):
+            return radius
+        case Cylinder(radius, length) | Capsule(radius, length):
+            return radius + length / 2.0
+        case Ellipsoid(radii):
+            return max(radii)
+    return 0.0 if item.points is None else float(np.linalg.norm(item.points, axis=1).max(initial=0.0))
 
 
 def _items(mechanism: Mechanism, view: ShapeView, body: int, files: Files) -> Iterator[Item]:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import posixpath
 import threading
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hymeko_x.assets.shelf import safe_name
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.draw.comparison.facts import lines_of, losses_of
 from hymeko_x.draw.comparison.rows import answer, gap_line
@@ -30,34 +33,49 @@ if TYPE_CHECKING:
 
 PERIOD = 0.5
 """Seconds between two looks at the files."""
-_APART = 1.6
-"""The distance of two robots by the reach of the larger one."""
 
 
 class Session:
     """One or two robots on a page.
 
-    ``read`` gives them anew from their files, ``judge`` the verdict about two. Raises: Refusal when a file cannot be read at first; later
-    the page shows why.
+    ``read`` reads the robot in a file, ``judge`` gives the verdict about two files. A file that a browser sends is put into ``folder``.
+    Raises: Refusal when a file cannot be read at first; later the page shows why.
     """
 
-    def __init__(self, server: viser.ViserServer, read: Callable[[], Sequence[Side]], judge: Callable[[], Verdict] | None) -> None:
-        self._read, self._judge = read, judge
+    def __init__(
+        self,
+        server: viser.ViserServer,
+        paths: Sequence[str],
+        read: Callable[[str], Side],
+        judge: Callable[[str, str], Verdict],
+        folder: str | Path,
+    ) -> None:
+        self._paths, self._read, self._judge = list(paths), read, judge
+        self._folder = Path(folder)
         self._lock = threading.RLock()
         self._stopped = threading.Event()
         self._round = 0
-        self.page = Page(server, self._move, self._place)
+        self.page = Page(server, self._move, self._place, self.compare_with)
         self.sides: Sequence[Side] = ()
         self.scenes: Sequence[Scene] = ()
         self.motion = Motion(KinematicModel("", "", "", (world_body(),)))
         self.partner: Partner | None = None
-        self._show(read())
+        self._show(self._paths)
 
     # ---- reading ---------------------------------------------------------------------------------------------------------
 
-    def _show(self, sides: Sequence[Side]) -> None:
-        """Robots that were read, where the joints of the last ones were as far as these have them."""
-        self._take(sides, [scene_of(Robot(side.mechanism, side.source.files)) for side in sides])
+    def _show(self, paths: Sequence[str]) -> None:
+        """Read robots, and show them where the joints of the last ones were as far as these have them."""
+        sides = [self._read(path) for path in paths]
+        scenes = [scene_of(Robot(side.mechanism, side.source.files)) for side in sides]
+        self._paths = list(paths)
+        self._take(sides, scenes)
+
+    def compare_with(self, name: str, content: bytes) -> None:
+        """Show a file that a browser sent as the second robot; an error is shown in the page, and the robots stay."""
+        path = self._folder / safe_name(posixpath.basename(name.replace("\\", "/")))
+        path.write_bytes(content)
+        self._try([self._paths[0], str(path)])
 
     def _take(self, sides: Sequence[Side], scenes: Sequence[Scene]) -> None:
         with self._lock:
@@ -81,10 +99,10 @@ class Session:
         missing = [line for scene in self.scenes for line in scene.missing]
         lists: list[tuple[str, Sequence[str]]] = [("not drawn", missing)]
         spots, words = [], ""
-        if self.partner is not None and self._judge is not None:
+        if self.partner is not None:
             lost = lines_of(losses_of(*self.sides))
             try:
-                verdict = self._judge()
+                verdict = self._judge(self._paths[0], self._paths[1])
             except Refusal as refusal:
                 words = f"not verified: {refusal.diagnostic.message}"
             else:
@@ -105,11 +123,15 @@ class Session:
         """Read the robots again if a file has changed; an error is shown in the page, and the robots stay."""
         if not self._watch.has_changed():
             return False
+        self._try(self._paths)
+        return True
+
+    def _try(self, paths: Sequence[str]) -> None:
+        """Show robots; an error is shown in the page, and the last ones stay."""
         try:
-            self._show(self._read())
+            self._show(paths)
         except Refusal as refusal:
             self.page.show_problem(str(refusal.diagnostic))
-        return True
 
     def stop(self) -> None:
         """End :meth:`watch`, and wait for the verifier."""
@@ -140,7 +162,7 @@ class Session:
         """Where the second robot stands: beside the first one, or in the same place."""
         is_apart = self.page.layout.value == "side by side"
         self.page.overlay(is_overlaid=not is_apart)
-        return np.array([0.0, -_APART * max(scene.reach for scene in self.scenes) * is_apart, 0.0])
+        return np.array([0.0, -self.page.distance * is_apart, 0.0])
 
     def _value(self, dof: int) -> float:
         return float(self.motion.q[self.motion.model.columns[dof]])
