@@ -118,6 +118,14 @@ class Format(Struct, frozen=True):
     """Notations that hold more than how a value was written, by the name of the field as which the ledger lists them."""
     inherited: str | None = None
     """The function ``text -> text`` that leaves out of an extra what the elements have in fields of their own (classes of MJCF)."""
+    classes: str | None = None
+    """The function ``texts -> {class: {kind of element: fields}}``: what its default classes give, from the elements of the whole."""
+    class_elements: tuple[str, ...] = ()
+    """How the texts of these elements begin: those of the classes first, then what is needed to understand them."""
+    leading: tuple[str, ...] = ()
+    """The parameters of an actuator that come first, whatever its class gives."""
+    main_class: str = ""
+    """The name of the class that is in force where no other one is."""
     shapes_have_weight: str | None = None
     """The function ``mechanism -> bool``: whether masses of shapes may count although their bodies have inertials."""
     numbers_constraints: bool = False

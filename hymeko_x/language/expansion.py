@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct, field
 
+from hymeko_x.language.classes import settled
 from hymeko_x.language.constants import with_constants
 from hymeko_x.language.expressions import INDEX, fill, fill_text, fill_value
 from hymeko_x.language.prototypes import role_of
@@ -290,7 +291,7 @@ class _Expansion:
             yield Instance(self._plain(node, name, environment), source, arguments, inner, scope)
             return
         preset = self._templates.preset(node, environment)
-        merged = merge(preset.items, node.items)
+        merged = settled(merge(preset.items, node.items))
         if "assembly" in preset.types:
             yield from self._assembly(node, name, merged, environment, scope, depth, made=made)
             return

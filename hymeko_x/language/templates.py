@@ -10,12 +10,15 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x import codes, formats
 from hymeko_x.diagnostics import Origin, refuse
+from hymeko_x.language.classes import IMPLIED, is_class, kind_of, settled
 from hymeko_x.language.expressions import fill, fill_value
 from hymeko_x.language.parser import parse
 from hymeko_x.language.prototypes import Prototypes, meaning_of
 from hymeko_x.language.syntax import ArcItem, Field, Import, Item, Node, Quantity, QuotedName, Ref, Stereotype, Using, Value, origin_of
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from hymeko_x.diagnostics import Refusal
     from hymeko_x.language.expressions import Environment
     from hymeko_x.language.prototypes import Prototype
@@ -192,7 +195,7 @@ class Templates:
             kind.ref.dotted in standard or kind.ref.dotted not in self._templates for kind in item.stereotypes
         ):
             return item
-        return item._replace(items=merge(self.preset(item, environment).items, item.items), stereotypes=())
+        return item._replace(items=settled(merge(self.preset(item, environment).items, item.items)), stereotypes=())
 
     def _applied(self, stereotype: Stereotype, environment: Environment, node: Node, chain: tuple[str, ...]) -> Preset:
         prototype = self._prototype(stereotype.ref, node)
@@ -202,6 +205,8 @@ class Templates:
         if name in chain or len(chain) > MAX_DEPTH:
             raise self.refuse(node, f"the template '{name}' applies itself: {' -> '.join([*chain, name])}")
         template = self._templates[name]
+        if is_class(template):
+            return Preset((name,), (*self._of_class(template, node), *preset))
         if template is not standard_templates().get(name):
             self.count(node, 1 + len(template.items))
         inner = self._bind(template, stereotype, environment, node)
@@ -210,6 +215,29 @@ class Templates:
             base = _combined(base, self._applied(parent, inner, node, (*chain, name)))
         own = tuple(fill(_named_class(item, name), inner, self._file) for item in template.items)
         return Preset((name, *base.types), (*merge(base.items, own), *preset))
+
+    def _of_class(self, template: Node, node: Node) -> tuple[Item, ...]:
+        """What a default class gives to an element: the fields for its kind, and the class itself."""
+        kind = kind_of(node, self._bases(node))
+        blocks = {item.name: item.items for item in template.items if isinstance(item, Node)}
+        self.count(node, 1 + len(blocks.get(kind, ())))
+        return (*blocks.get(kind, ()), *(item for item in template.items if isinstance(item, Field)))
+
+    def _bases(self, node: Node) -> Iterator[str]:
+        """The standard types of a node, through the templates of the text."""
+        stack = [*node.stereotypes]
+        seen: set[str] = set()
+        while stack:
+            path = stack.pop(0).ref.path
+            name = ".".join(path) if ".".join(path) in self._templates else path[0]
+            template = self._templates.get(name)
+            if template is None or name in seen or is_class(template):
+                continue
+            seen.add(name)
+            if name in standard_templates():
+                yield ".".join(path)
+                yield name
+            stack.extend(template.stereotypes)
 
     def is_known(self, ref: Ref) -> bool:
         """Whether a type is a template; one that is none may be a place where types are."""
@@ -307,10 +335,15 @@ def merge(base: tuple[Item, ...], own: tuple[Item, ...]) -> tuple[Item, ...]:
     if not base:
         return own
     given = {slot: item for item in own if (slot := _slot(item)) is not None}
-    replaced = [(_slot(item), item) for item in base]
+    replaced = [(slot, item) for item in base if (slot := _slot(item)) not in given or not _is_of_class(item)]
     used = {slot for slot, _ in replaced} & set(given)
     merged = [given[slot] if slot is not None and slot in given else item for slot, item in replaced]
     return (*merged, *(item for item in own if _slot(item) not in used))
+
+
+def _is_of_class(item: Item) -> bool:
+    """Whether it is a field that a default class gives; one that is given again stands in its own place."""
+    return isinstance(item, Field) and item.type == IMPLIED
 
 
 def _slot(item: Item) -> str | None:

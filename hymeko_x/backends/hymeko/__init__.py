@@ -18,13 +18,17 @@ from hymeko_x.backends.hymeko.parts import attached_arcs, part_items
 from hymeko_x.backends.hymeko.sheet import HymekoSheet, written_items
 from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
 from hymeko_x.backends.hymeko.values import ExplicitAngles, shortest_angles
-from hymeko_x.formats.hymeko import AXES, ROOT_NAME
+from hymeko_x.formats import native_format
+from hymeko_x.formats.hymeko import AXES, RESERVED, ROOT_NAME
+from hymeko_x.formats.hymeko.classes import classes_in_force
 from hymeko_x.formats.hymeko.nesting import BLOCK_SETTINGS
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.provenance import kept_notations
+from hymeko_x.language.classes import PLAIN_UNITS, given_fields, is_class, is_section
 from hymeko_x.language.printer import print_document
 from hymeko_x.language.syntax import Comment, Document, Field, Item, Node, QuotedName, Ref, Stereotype
+from hymeko_x.language.templates import standard_templates
 from hymeko_x.source import Package
 
 if TYPE_CHECKING:
@@ -33,6 +37,7 @@ if TYPE_CHECKING:
     from hymeko_x.backends.hymeko.assemblies import Piece, Row
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import Extra, Mechanism
+    from hymeko_x.language.classes import Given
     from hymeko_x.rewrite.context import Options
 
 _MOST_TRIES = 4
@@ -58,6 +63,7 @@ def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
     inline = inline_assets(mechanism)
     root = mechanism.notation(ROOT, ROOT_NAME)
     name = root if root is not None else mechanism.name
+    around = None if flat or plain else _classes(mechanism)
     sheet = HymekoSheet(
         mechanism,
         "" if flat else files_prefix(mechanism),
@@ -67,6 +73,7 @@ def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
         attached_arcs(mechanism),
         ExplicitAngles() if flat else shortest_angles(mechanism),
         nesting=nesting_of(mechanism, name),
+        around=around,
     )
     items = _settings(sheet, plain)
     items += [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})] if plain or flat else _grouped(sheet)
@@ -75,6 +82,12 @@ def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
     node = Node(name_of(name), tuple(items), (kind,))
     preceding, following = _outer_comments(mechanism)
     return Document((*preceding, node, *following), header)
+
+
+def _classes(mechanism: Mechanism) -> Mapping[Id, str] | None:
+    """The default classes in force at its elements, where it has one section of them; see :attr:`HymekoSheet.around`."""
+    sections = sum(map(is_section, mechanism.extras.get(ROOT, ())))
+    return classes_in_force(mechanism) if sections == 1 and native_format(mechanism) is not None else None
 
 
 def _outer_comments(mechanism: Mechanism) -> tuple[list[Item], list[Item]]:
@@ -127,15 +140,25 @@ def _grouped(sheet: HymekoSheet) -> list[Item]:
             break
         refused |= sheet.clashes
         sheet.clashes.clear()
-    return _assembled(pieces_of(rows, texts, homes))
+    return _assembled(pieces_of(rows, texts, homes), _given(sheet))
 
 
-def _assembled(pieces: Sequence[Piece]) -> list[Item]:
+def _given(sheet: HymekoSheet) -> Given:
+    """What the default classes give to their elements, where they are stereotypes."""
+    if sheet.around is None:
+        return {}
+    texts = [extra.text for extra in sheet.mechanism.extras.get(ROOT, ())]
+    reserved = {*standard_templates(), *RESERVED}
+    given = given_fields(texts, PLAIN_UNITS if sheet.angles.degrees else {**PLAIN_UNITS, "angle": "rad"})
+    return {name: kinds for name, kinds in given.items() if name not in reserved}
+
+
+def _assembled(pieces: Sequence[Piece], given: Given) -> list[Item]:
     """The stereotypes and templates, then the pieces: as they are, in assemblies, or as instances."""
     taken: set[str] = set()
     defined, placed = templates(pieces, taken)
     blocks = [*(node.items for node in defined), *(() if isinstance(piece, Instance) else piece.items for piece in placed)]
-    items = with_stereotypes([item for block in blocks for item in block], taken)
+    items = with_stereotypes([item for block in blocks for item in block], taken, given)
     first = len(items) - sum(map(len, blocks))
     found = items[:first]
     for block, piece in zip(blocks, (*defined, *placed), strict=True):
@@ -147,7 +170,14 @@ def _assembled(pieces: Sequence[Piece]) -> list[Item]:
             found.append(piece._replace(items=inner))
         else:
             found.extend([Node(piece.home, inner, (Stereotype(Ref(("assembly",))),))] if piece.home else inner)
-    return found
+    return _behind_classes(found)
+
+
+def _behind_classes(items: list[Item]) -> list[Item]:
+    """The items with the stereotypes and templates behind the default classes that they may refine."""
+    last = max((place for place, item in enumerate(items) if is_class(item)), default=-1)
+    moved = [item for item in items[: last + 1] if isinstance(item, Node) and item.parameters is not None and not is_class(item)]
+    return [*(item for item in items[: last + 1] if item not in moved), *moved, *items[last + 1 :]] if moved else items
 
 
 def _rows(sheet: HymekoSheet) -> list[Row]:
@@ -169,7 +199,9 @@ def _rows(sheet: HymekoSheet) -> list[Row]:
 
 def _texts(within: Mapping[str, HymekoSheet], row: Row, homes: Mapping[Id, str]) -> list[Item]:
     """The items of a row, as they stand in its assembly."""
-    return standing_items(row) if isinstance(row, list) else [_element(within[homes.get(row, "")], row)]
+    return (
+        standing_items(row, classes=within[""].around is not None) if isinstance(row, list) else [_element(within[homes.get(row, "")], row)]
+    )
 
 
 def _in_place(mechanism: Mechanism) -> tuple[list[Extra], list[Extra]]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import FOREIGN
 from hymeko_x.language import markup
+from hymeko_x.language.classes import definitions_of, is_section
 from hymeko_x.language.markup import INDENT, PLACE, TEXT, block_of, markup_of, usual_spacing
 from hymeko_x.language.syntax import Comment, Field, Item, Node, QuotedName, Ref, Value
 
@@ -33,11 +34,18 @@ def foreign_items(extras: Iterable[Extra], *, at_root: bool = False, deep: bool 
     return items
 
 
-def standing_items(extras: list[Extra]) -> list[Item]:
-    """The extras that stand among the elements of the root, in order: comments, and one block for neighbours of one format."""
+def standing_items(extras: list[Extra], *, classes: bool = False) -> list[Item]:
+    """The extras that stand among the elements of the root, in order: comments, and one block for neighbours of one format.
+
+    ``classes``: default classes are stereotypes.
+    """
     items: list[Item] = []
     for extra in extras:
         node = _standing_block(extra)
+        definitions = definitions_of(node) if classes and node is not None and is_section(extra) else None
+        if definitions is not None:
+            items += definitions
+            continue
         last = items[-1] if items else None
         if node is not None and isinstance(last, Node) and last.name == extra.format:
             items[-1] = last._replace(items=(*last.items, node))

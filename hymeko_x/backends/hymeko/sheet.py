@@ -14,6 +14,7 @@ from hymeko_x.formats.hymeko import CHILD_CLASS, NAMED_AFTER_ID, PARTS, SHORT_TY
 from hymeko_x.ir.fields import layout_of
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id
 from hymeko_x.ir.values import Pose
+from hymeko_x.language.classes import IMPLIED, SAME
 from hymeko_x.language.markup import value_of_text
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Ref, Stereotype, Value, is_field
 
@@ -35,6 +36,7 @@ class HymekoSheet(Struct, frozen=True):
     that follows; ``attached``: arcs of mounts, drives and the like in the block of the vertex that they attach; ``angles``: the unit
     of plain angles; ``homes``: the assemblies of elements, by the elements' names, and ``inside``: the one that is being printed;
     ``nesting``: what stands in the blocks of data, and ``within``: the element whose block is being printed;
+    ``around``: the class in force at joints, shapes and frames, where classes are stereotypes of this text;
     ``clashes`` collects the assemblies in which a reference would mean another element.
     """
 
@@ -49,6 +51,7 @@ class HymekoSheet(Struct, frozen=True):
     inside: str = ""
     nesting: Nesting = Nesting()
     within: Id | None = None
+    around: Mapping[Id, str] | None = None
     clashes: set[str] = field(default_factory=set)
     names: dict[str, list[str]] = field(default_factory=dict)
 
@@ -80,11 +83,17 @@ class HymekoSheet(Struct, frozen=True):
         return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
 
     def class_items(self, key: Id) -> list[Item]:
-        """``class "a"``: the default classes of an element of MJCF, of a joint one for each of its dofs."""
+        """``class "a"``: the default classes of an element of MJCF, of a joint one for each of its dofs.
+
+        Where classes are stereotypes, an element without one has a field of the type ``IMPLIED`` with the class in force there, and a
+        field that must be written, because that is the class in force there, has the type ``SAME``.
+        """
         classes = self.mechanism.stereotypes.get(key)
-        if not classes or native_format(self.mechanism) is None:
-            return []
-        return [Field("class", value_of(classes[0]) if len(classes) == 1 else classes)]
+        row = native_format(self.mechanism)
+        if not classes or row is None:
+            return [] if self.around is None or row is None else [Field("class", self.around.get(key, row.main_class), IMPLIED)]
+        is_same = self.around is not None and classes == (self.around.get(key, row.main_class),)
+        return [Field("class", value_of(classes[0]) if len(classes) == 1 else classes, SAME if is_same else "")]
 
     def ref(self, target: Id, kinds: tuple[str, ...], direction: str = "") -> Ref:
         """A reference: by name alone where the name means the target, else with its kind before it."""

@@ -12,11 +12,11 @@ from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, refuse
-from hymeko_x.formats.hymeko import AXES, FOREIGN, ROOT_NAME, SETTINGS, attached_key
+from hymeko_x.formats.hymeko import AXES, FOREIGN, RESERVED, ROOT_NAME, SETTINGS, attached_key
 from hymeko_x.formats.hymeko.nesting import OUTER
 from hymeko_x.frontends.hymeko.block import Block, is_written, read_written, read_written_block
 from hymeko_x.frontends.hymeko.bodies import is_base_arc, read_body, read_fixed
-from hymeko_x.frontends.hymeko.builder import HymekoBuilder
+from hymeko_x.frontends.hymeko.builder import HymekoBuilder, without_implied
 from hymeko_x.frontends.hymeko.changes import change_element
 from hymeko_x.frontends.hymeko.extras import is_foreign, read_extra, read_foreign
 from hymeko_x.frontends.hymeko.heritage import with_heritage
@@ -32,13 +32,14 @@ from hymeko_x.frontends.hymeko.values import ValueReader, read_units
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Provenance
 from hymeko_x.ir.provenance import take_provenance
+from hymeko_x.language.classes import with_classes
 from hymeko_x.language.errors import with_excerpt
 from hymeko_x.language.expansion import Change, Element, Expanded, Instance, Statement, expand
 from hymeko_x.language.markup import SECTION_COMMENT
 from hymeko_x.language.parser import parse
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import Comment, Field, QuotedName, is_field
-from hymeko_x.language.templates import decode
+from hymeko_x.language.templates import decode, standard_templates
 from hymeko_x.source import Reading
 
 if TYPE_CHECKING:
@@ -72,7 +73,7 @@ def read(source: Source, report: Report) -> Reading:
             return None
 
     try:
-        expanded = expand(parse(text, source.name), source.name, fetch)
+        expanded = expand(with_classes(parse(text, source.name), {*standard_templates(), *RESERVED}), source.name, fetch)
         builder = HymekoBuilder(reader=ValueReader(source.name, report), prototypes=expanded.prototypes, root=expanded.root)
         return Reading(_read_expanded(expanded, builder, read_instances(builder, expanded, source.parts)))
     except Refusal as refusal:
@@ -98,7 +99,7 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
     _place_instances(builder, expanded, instances)
     if expanded.root and expanded.root != expanded.name:
         builder.note(ROOT, ROOT_NAME, expanded.root)
-    found = builder.build(expanded.name, builder.source)
+    found = without_implied(builder.build(expanded.name, builder.source), builder.implied)
     if not instances:
         return found
     return with_heritage(replace(found, places=builder.places, stored=builder.stored), tuple(instances.values()))

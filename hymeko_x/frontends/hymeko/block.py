@@ -9,6 +9,7 @@ from hymeko_x.formats.hymeko import CHILD_CLASS, FOREIGN
 from hymeko_x.frontends.hymeko.extras import is_foreign, read_extras, read_foreign, read_text
 from hymeko_x.frontends.hymeko.values import name_of
 from hymeko_x.ir.mechanism import Extra
+from hymeko_x.language.classes import IMPLIED
 from hymeko_x.language.printer import print_item
 from hymeko_x.language.syntax import ArcItem, Comment, Field, Item, Node, QuotedName, is_list
 
@@ -36,6 +37,7 @@ class Block:
         self.extras: list[Extra] = []
         self.written: dict[str, str] = {}
         self.classes: tuple[str, ...] = ()
+        self.is_implied = False
         self.unnamed = False
         comments = 0
         for item in items:
@@ -66,6 +68,7 @@ class Block:
             self.extras += read_extras(item, self.reader)
         elif item.name == "class":
             self.classes = read_classes(item, self.reader)
+            self.is_implied = item.type == IMPLIED
         elif item.name == "written":
             self.written.update(read_written(item, self.reader))
         elif item.name == CHILD_CLASS:

@@ -5,23 +5,26 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import field
+from msgspec.structs import replace
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.hymeko import POSED_EDGES, TARGETS
+from hymeko_x.formats.hymeko.classes import classes_in_force
 from hymeko_x.formats.hymeko.nesting import OUTER
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Provenance
 from hymeko_x.ir.parts import Datum, Texture, Weight, World
 from hymeko_x.ir.values import compose
+from hymeko_x.language.classes import native
 from hymeko_x.language.syntax import ArcItem, Field, Node, QuotedName, is_list
 from hymeko_x.language.templates import standard_templates
 
 if TYPE_CHECKING:
     from hymeko_x.frontends.hymeko.block import Block
     from hymeko_x.frontends.hymeko.values import ValueReader
-    from hymeko_x.ir.mechanism import RobotArc
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc
     from hymeko_x.ir.provenance import StoredMesh
     from hymeko_x.ir.values import Pose, Vec3
     from hymeko_x.language.expansion import Element, Scope
@@ -52,6 +55,7 @@ class HymekoBuilder(Builder):
     imported: dict[str, ImportedRoot] = field(default_factory=dict)
     prototypes: Prototypes | None = None
     root: str = ""
+    implied: set[Id] = field(default_factory=set)
     places: dict[str, str] = field(default_factory=dict)
     stored: dict[Id, StoredMesh | Texture] = field(default_factory=dict)
 
@@ -91,6 +95,7 @@ class HymekoBuilder(Builder):
         self.add_extras(key, *block.extras)
         if block.classes:
             self.stereotypes[key] = block.classes
+            self.implied.update({key} if block.is_implied else ())
         written = {**({"unnamed": "yes"} if block.unnamed else {}), **block.written}
         if written:
             self.notations[key] = {**self.notations.get(key, {}), **written}
@@ -197,6 +202,20 @@ class HymekoBuilder(Builder):
         if len(flat) != len(item.weight):
             raise self.reader.refuse(item, f"the weight of the arc to '{item.ref.dotted}' is a list of numbers")
         return self.reader.numbers(item.weight, "", item)
+
+
+def without_implied(mechanism: Mechanism, implied: set[Id]) -> Mechanism:
+    """The mechanism without classes that elements have as their stereotypes and that are in force there anyway."""
+    if not implied:
+        return mechanism
+    around = classes_in_force(mechanism)
+    main = (native().main_class,)
+    left = {
+        key: classes
+        for key, classes in mechanism.stereotypes.items()
+        if key not in implied or classes != ((around[key],) if key in around else main)
+    }
+    return replace(mechanism, stereotypes=left)
 
 
 def sign_of(item: ArcItem) -> int:
