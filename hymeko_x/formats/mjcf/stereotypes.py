@@ -30,7 +30,9 @@ _SIZED: Mapping[str, int] = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3,
 
 
 def fields_of_classes(texts: Iterable[str]) -> dict[str, dict[str, Fields]]:
-    """By class and by kind of element (joint, prismatic, ball, shape, frame, mesh, material, and each type of actuator) what the class gives.
+    """By class and by kind of element what the class gives.
+
+    Kinds: joint, prismatic, ball, shape, frame, mesh, material, and each type of actuator.
 
     ``texts``: the <compiler> and <default> elements.
     """
