@@ -76,6 +76,8 @@ class Writing(TypedDict, total=False):
     """The program that the output is for, a row of `hymeko_x.targets`. What it expects belongs to the robot from then on."""
     sites: bool | None
     """URDF: whether each frame on a body is a link with a fixed joint."""
+    package_layout: bool
+    """SDF: whether the output's folder becomes a model of Gazebo, with `model.config`, which ``model://FOLDER`` finds."""
     mesh_prefix: str | None
     """URDF: what stands before the paths of meshes; ``package://`` is the package in which the output lies."""
     keep: Literal["beside", "inside"] | None
@@ -201,6 +203,7 @@ def convert(
     split: bool = False,
     sites: bool | None = None,
     mesh_prefix: str | None = None,
+    package_layout: bool = False,
     keep: Literal["beside", "inside"] | None = None,
     target: str | None = None,
     density: float | None = None,
@@ -221,7 +224,9 @@ def convert(
     format = formats.of_output(os.fspath(output), to_format)
     robot, passed = pipeline.read_for(format, given, read_as, report, lenient=lenient)
     options = Options(base, actuators, layout, nested, split, keep, lenient, Path(output).stem, target=target)
-    options = replace(options, density=density, inertia_from=inertia_from, sites=sites, mesh_prefix=mesh_prefix)
+    options = replace(
+        options, density=density, inertia_from=inertia_from, sites=sites, mesh_prefix=mesh_prefix, package_layout=package_layout
+    )
     own = unchanged(given, read_as, format)
     delivery = Delivery(robot, format, options, given.files, _place(output, assets, format), os.fspath(output), own, passed)
     result = delivery.convert(report)

@@ -106,7 +106,8 @@ def place_of(path: str, assets: Assets | None) -> pipeline.Place:
     folder = os.path.dirname(path) or "."
     if archives.is_archive(path):
         return pipeline.Place(path, "pack")
-    return pipeline.Place(folder, assets, disk.package_uri(folder), DiskFiles(Path(folder)))
+    name = os.path.basename(os.path.abspath(folder))
+    return pipeline.Place(folder, assets, name, package=disk.package_uri(folder), around=DiskFiles(Path(folder)))
 
 
 def archive_suffix(format: Format) -> str:

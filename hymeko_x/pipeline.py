@@ -10,7 +10,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats, targets
-from hymeko_x.assets.pack import pack, with_prefix, with_stand_ins
+from hymeko_x.assets.pack import GAZEBO_MODEL, ROS_PACKAGE, pack, with_prefix, with_stand_ins
 from hymeko_x.assets.shelf import Shelf, safe_name
 from hymeko_x.collector import uncollected
 from hymeko_x.compare.geometry import with_points_of_files
@@ -53,8 +53,8 @@ class Place(Struct, frozen=True):
     """Where the output goes: its ``folder``, and whether files go beside it or with it into an archive, or are referred to (None = the
     format's own way).
 
-    ``package`` is the uri of the folder as a part of a package (``package://NAME``), where that is known; ``around`` finds files
-    from the folder.
+    ``name`` is the folder's own name, and ``package`` its uri as a part of a package (``package://NAME``), where these are known;
+    ``around`` finds files from the folder.
 
     ``in_the_way(package, other_folder)`` names a file of another output that one of the package's would overwrite; then all of them go
     below the other folder, which ends in a slash.
@@ -62,6 +62,7 @@ class Place(Struct, frozen=True):
 
     folder: str = "."
     assets: Assets | None = None
+    name: str = ""
     package: str = ""
     around: Files = NO_FILES
     in_the_way: Callable[[Package, str], str | None] | None = None
@@ -262,7 +263,8 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
     options = replace(options, mesh_prefix=_prefix(options, format, place))
     prefix = options.mesh_prefix or ""
     shelf = Shelf(place.assets or format.assets, place.folder, options.within, place.around, legal.source.file)
-    placed, new, copies = pack(legal, format, files, shelf, report, is_laid_out=bool(prefix))
+    layout = GAZEBO_MODEL if options.package_layout else ROS_PACKAGE
+    placed, new, copies = pack(legal, format, files, shelf, report, layout=layout if prefix else None)
     placed = with_prefix(placed, prefix, {*new, *copies}) if prefix else placed
     package = replace(writer(format)(placed, options, report), prefix=prefix)
     if package.enclose is not None and (new or copies):
@@ -275,6 +277,8 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
 
 def _prefix(options: Options, format: Format, place: Place) -> str | None:
     """What stands before the paths of files beside the output; None where they are relative, or no files are put there."""
+    if options.package_layout:
+        return f"model://{place.name}" if place.name and place.assets != "reference" else None
     prefix = options.mesh_prefix if "mesh_prefix" in format.layout_options and (place.assets or format.assets) != "reference" else None
     return (place.package or None) if prefix == "package://" else prefix and prefix.rstrip("/")
 

@@ -12,7 +12,7 @@ import re
 from contextlib import suppress
 from enum import Enum
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import field
 from msgspec.structs import replace
@@ -46,17 +46,16 @@ def pack(
     shelf: Shelf,
     report: Report,
     *,
-    is_laid_out: bool = False,
+    layout: Layout | None = None,
 ) -> tuple[Mechanism, dict[str, bytes], dict[str, str]]:
     """The mechanism with its files' new paths, the new files by relative path, and the copies by relative path.
 
-    With ``is_laid_out`` copies go to the folders ``meshes`` and ``textures``, wherever they are in the source. A file that
-    is not there is a warning. For MJCF its shapes are left out, since MuJoCo reads no model with a missing file; in the other
-    formats the reference stays as it is.
+    With a ``layout`` copies go to its folders, wherever they are in the source. A file that is not there is a warning. For MJCF its shapes
+    are left out, since MuJoCo reads no model with a missing file; in the other formats the reference stays as it is.
     """
     if format.pack is None:
         read = mechanism if format.is_exact else _with_meshes_of_source(mechanism, files, report)
-        packed = keep_references(read, shelf, files, report, Keep.PACKAGES if is_laid_out else Keep.of(format, shelf.mode))
+        packed = keep_references(read, shelf, files, report, layout.keep if layout else Keep.of(format, shelf.mode), layout)
         row = formats.of_source(mechanism)
         if format.is_exact and row is not None and row.place_extras is not None:
             packed = formats.loaded(row.place_extras)(mechanism, packed, shelf, files, report, Keep.of(format, shelf.mode))
@@ -92,18 +91,37 @@ class Keep(Enum):
         return Keep.PACKAGES_AND_PATHS if format.keeps_package_uris else Keep.NOTHING
 
 
+class Layout(NamedTuple):
+    """The folders of an output that programs find by the name of a package: which references stay, and where textures go."""
+
+    keep: Keep
+    textures: str = "textures"
+
+
+ROS_PACKAGE = Layout(Keep.PACKAGES)
+GAZEBO_MODEL = Layout(Keep.NOTHING, "materials/textures")
+
+
 def keep_references(
-    mechanism: Mechanism, shelf: Shelf, files: Files, report: Report, keep: Keep, *, with_companions: bool = True
+    mechanism: Mechanism,
+    shelf: Shelf,
+    files: Files,
+    report: Report,
+    keep: Keep,
+    layout: Layout | None = None,
+    *,
+    with_companions: bool = True,
 ) -> Mechanism:
     """The mechanism with every uri kept or rewritten; a file that is not there keeps its uri, with a warning.
 
     Files that meshes refer to go along, unless the target's programs never look at them.
     """
+    folders = _FOLDERS if layout is None else {**_FOLDERS, Texture: layout.textures}
     changed: dict[Id, Mesh | Texture] = {}
     for key, part in mechanism.assets():
         if part.uri is None:
             continue
-        uri = new_uri(part.uri, _FOLDERS[type(part)], shelf, files, keep)
+        uri = new_uri(part.uri, folders[type(part)], shelf, files, keep)
         if uri is None:
             report.warn(
                 codes.ASSET_NOT_FOUND,

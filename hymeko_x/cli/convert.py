@@ -193,6 +193,8 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-sites", dest="sites", action="store_false", help="leave sites out where the target makes them links")
     prefix = "URDF: what stands before the paths of meshes; `package://` is the package in which the output lies"
     parser.add_argument("--mesh-prefix", metavar="URI", help=prefix)
+    model = "SDF: make the output's folder a model that Gazebo finds as model://FOLDER, with model.config, meshes/ and materials/"
+    parser.add_argument("--package-layout", action="store_true", help=model)
     parser.add_argument("--split", action="store_true", help="xacro: put the macros into a file of their own")
     report_arguments(parser)
     parser.add_argument("--fail-on", choices=FAIL_ON, help="exit 3, and write no output, when one of these (or worse) happened")
@@ -212,7 +214,7 @@ def deliver(
     layout = chosen.layout, chosen.nested, chosen.split
     options = Options(chosen.base, chosen.actuators, *layout, chosen.keep, chosen.lenient, Path(path).stem, target=chosen.target)
     options = replace(options, density=chosen.density, inertia_from=chosen.inertia_from)
-    options = replace(options, sites=chosen.sites, mesh_prefix=chosen.mesh_prefix)
+    options = replace(options, sites=chosen.sites, mesh_prefix=chosen.mesh_prefix, package_layout=chosen.package_layout)
     if path and (reason := reason_against(path, chosen.assets, output.format)):
         raise UsageError(reason)
     place = _place(output, chosen.assets)
@@ -239,7 +241,7 @@ def deliver(
 
 def _check_applicable(format: Format, chosen: argparse.Namespace) -> None:
     """Refuse options that change nothing in this format. Raises: UsageError."""
-    for option in ("layout", "nested", "split", "sites", "mesh_prefix"):
+    for option in ("layout", "nested", "split", "sites", "mesh_prefix", "package_layout"):
         if getattr(chosen, option) and option not in format.layout_options:
             takers = ", ".join(row.name for row in formats.FORMATS if option in row.layout_options)
             raise UsageError(f"--{option.replace('_', '-')} is for {takers}, and the output is {format.name}")

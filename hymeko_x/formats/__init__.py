@@ -198,6 +198,7 @@ SDF = Format(
     "hymeko_x.backends.sdf",
     "hymeko_x.backends.sdf.rules",
     roots=("sdf",),
+    layout_options=frozenset({"package_layout"}),
     fragments="hymeko_x.backends.sdf.fragments:fragments_of",
     outline="hymeko_x.xml.outline:outline",
     keeps_package_uris=True,

@@ -46,7 +46,7 @@ class Format(Struct, frozen=True):
     shared_suffixes: frozenset[str] = frozenset()
     """Those of its suffixes that other files have as well, so that the content decides."""
     layout_options: frozenset[str] = frozenset()
-    """Those of the options ``layout``, ``nested``, ``split``, ``sites`` and ``mesh_prefix`` that it takes when it is written."""
+    """Those of the options ``layout``, ``nested``, ``split``, ``sites``, ``mesh_prefix`` and ``package_layout`` that it takes."""
     comment: tuple[bytes, str] | None = None
     """The pattern of what stands before a first comment, and a line of comment with ``{}`` for its text; None where there are none."""
     is_exact: bool = False

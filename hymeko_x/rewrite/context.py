@@ -26,6 +26,7 @@ class Options(Struct, frozen=True):
     ``density`` in kg/m^3 and ``inertia_from``: the inertials that bodies without one get, where one of the two is given.
     ``sites``: whether frames on bodies are links of their own. ``mesh_prefix``: what stands before the paths of files beside the output;
     ``package://`` alone is the package in which the output lies.
+    ``package_layout``: whether the output's folder is a model of Gazebo, which ``model://FOLDER`` finds.
     ``beside``: how files of our own that may stand beside the output begin, which is its own name; empty = there is no place.
     ``within``: the folder below the output's own that holds every file beside it, and ends in a slash; empty = each where it belongs.
     """
@@ -44,6 +45,7 @@ class Options(Struct, frozen=True):
     inertia_from: Literal["collision", "visual", "hull"] | None = None
     sites: bool | None = None
     mesh_prefix: str | None = None
+    package_layout: bool = False
 
 
 def _write_nothing(mechanism: Mechanism) -> Package:

@@ -60,3 +60,9 @@ def test_drake_sees_the_same_robot(case: str, tmp_path: Path) -> None:
     hx.convert(str(tmp_path / name), str(tmp_path / "out.sdf"))
     verdict = hx.verify(str(tmp_path / name), str(tmp_path / "out.sdf"), samples=20)
     assert verdict.verdict == expected, [*verdict.failed, *verdict.limits, verdict.reason]
+
+
+def test_a_size_of_zero_is_very_small() -> None:
+    """Source: libsdformat, Sphere.cc: a radius that is not above zero becomes 1."""
+    point = '<robot name="m"><link name="a"><visual><geometry><sphere radius="0"/></geometry></visual></link></robot>'
+    assert hx.dumps(hx.loads(point, "urdf"), "sdf").count("<radius>1e-6</radius>") == 1

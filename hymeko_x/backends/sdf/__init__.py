@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hymeko_x import codes
 from hymeko_x.assets.written import contents_of
 from hymeko_x.backends.sdf.models import document
 from hymeko_x.backends.sdf.sheet import SdfSheet
 from hymeko_x.formats import sdf as words
 from hymeko_x.source import Package
 from hymeko_x.xml.printing import Tag, render
-from hymeko_x.xml.text import escaped_lines, parts_of_text
+from hymeko_x.xml.text import escaped, escaped_lines, parts_of_text
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
@@ -27,7 +28,6 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
 
     Raises: Refusal with HX104 for a joint or a shape that SDF cannot represent; rewriting replaces those beforehand.
     """
-    del report  # printing takes no decisions, so there is nothing to report
     sheet = SdfSheet(mechanism, options.within)
     root = document(sheet)
     before, after = sheet.around()
@@ -36,7 +36,22 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
         whole = Tag(root.name, root.attributes, [*root.children, *_residue_elements(residue)])
         return "\n".join(['<?xml version="1.0"?>', *before, *render(whole), *after, ""]).encode()
 
-    return Package(printed(""), contents_of(mechanism, sheet.mesh_files, sheet.images), carry=printed)
+    files = {**contents_of(mechanism, sheet.mesh_files, sheet.images), **_model_config(sheet, options, report)}
+    return Package(printed(""), files, carry=printed)
+
+
+def _model_config(sheet: SdfSheet, options: Options, report: Report) -> dict[str, bytes]:
+    """The `model.config` by which Gazebo finds the model of a folder; none for a file that is no single model, which is reported."""
+    if not (options.package_layout and options.beside):
+        return {}
+    if sheet.has_several_models:
+        report.warn(codes.NOT_SAID, "model.config is not written: it is for a file with one model")
+        return {}
+    config = Tag("model", {})
+    config.add("name").children.append(escaped(sheet.mechanism.name))
+    config.add("version").children.append("1.0")
+    config.add("sdf", version=sheet.version).children.append(escaped(f"{options.beside}.sdf"))
+    return {"model.config": "\n".join(['<?xml version="1.0"?>', *render(config), ""]).encode()}
 
 
 def _residue_elements(text: str) -> list[str]:

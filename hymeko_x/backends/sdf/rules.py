@@ -23,7 +23,7 @@ from hymeko_x.rewrite.inertia import fill_tensors, give_every_body_mass, make_te
 from hymeko_x.rewrite.joints import lower_inner_free_joints
 from hymeko_x.rewrite.names import make_names_usable
 from hymeko_x.rewrite.roots import put_world_link_into_world
-from hymeko_x.rewrite.shapes import drop_engine_shapes, drop_unused_assets, prefer_own_colours, split_shared_shapes
+from hymeko_x.rewrite.shapes import drop_engine_shapes, drop_unused_assets, make_sizes_positive, prefer_own_colours, split_shared_shapes
 from hymeko_x.rewrite.subsets import part_meshes_by_looks
 
 if TYPE_CHECKING:
@@ -187,6 +187,7 @@ RULES: tuple[Rule, ...] = (
     split_shared_shapes,
     unless_from_sdf(obey_gazebo_fragments),
     part_meshes_by_looks,
+    unless_from_sdf(make_sizes_positive),
     unless_from_sdf(make_names_unique_in_models),
     drop_unused_assets,
     make_names_usable,  # once more, for what the rules have added

@@ -8,6 +8,7 @@ Source: pydrake.multibody.plant, pydrake.geometry.
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -21,6 +22,7 @@ from pydrake.multibody.tree import BodyIndex
 from pydrake.systems.framework import DiagramBuilder
 
 from hymeko_x import codes
+from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.verify.model import (
     WORLD,
@@ -40,7 +42,7 @@ from hymeko_x.verify.model import (
     world_body,
 )
 from hymeko_x.verify.readers import native_output
-from hymeko_x.verify.readers.sdf.couplings import gearboxes, mimics, root_of, text_without_gearboxes
+from hymeko_x.verify.readers.sdf.couplings import gearboxes, mimics, readable_text, root_of
 from hymeko_x.verify.readers.sdf.stand_ins import without_stand_ins
 from hymeko_x.verify.spatial import frame_with_z, shifted_tensor
 
@@ -56,6 +58,7 @@ UNREAD = _SHAPES | {Feature.FRICTION, Feature.EFFORT_LIMITS, Feature.SPRINGS, Fe
 """What SDF represents and this reader leaves out."""
 UNREPRESENTED = frozenset({*((limit, kind) for limit in _LIMITS for kind in (Kind.BALL, Kind.FREE)), (Feature.DAMPING, Kind.FREE)})
 """A free base is a link without a joint, which has no damping and no limits; the axes of a ball have no limits either."""
+_PACKAGE = re.compile(rb"(?:model|package)://([^/<>\s]+)")
 _ROLES = {Role.VISUAL: GeometryRole.kIllustration, Role.COLLISION: GeometryRole.kProximity}
 _LEAST = 2e-10
 """kg and kg m^2: a link cannot be without mass, and so little stands for none."""
@@ -106,7 +109,7 @@ def _floating(plant: Any) -> Iterator[Any]:
 
 def _load(path: Path, plant: Any, lookup: Lookup) -> None:
     parser = Parser(plant)
-    for name, folder in lookup.packages.items():
+    for name, folder in _packages(path, lookup).items():
         parser.package_map().Add(name, folder)
     with native_output() as output:
         try:
@@ -116,8 +119,16 @@ def _load(path: Path, plant: Any, lookup: Lookup) -> None:
             raise refuse(codes.ENGINE_REFUSED, f"libsdformat refuses the file: {reason}", Origin(str(path))) from error
 
 
+def _packages(path: Path, lookup: Lookup) -> dict[str, Path]:
+    """The folders of the packages and models that a file names, and of the user's own."""
+    names = dict.fromkeys(name.decode("utf-8", "replace") for name in _PACKAGE.findall(path.read_bytes()))
+    files = DiskFiles(path.parent, lookup.packages, lookup.search_path)
+    found = {name: Path(folder) for name in names if (folder := files.find_package(name)) is not None}
+    return {**found, **lookup.packages}
+
+
 def _parse(path: Path, parser: Any) -> None:
-    text = text_without_gearboxes(path)
+    text = readable_text(path)
     if text is None and path.suffix == ".sdf":
         parser.AddModels(path)
     else:

@@ -1,7 +1,8 @@
-"""Mimic joints and gearboxes of SDF, from the text: Drake knows the ones and does not hand them out, and refuses a file with the others."""
+"""Mimic joints and gearboxes of SDF, from the text: Drake knows the ones and does not hand them out, and refuses the others."""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.verify.model import KinematicModel
 
+_FOLDER = re.compile(r"(model|package)://[^/]+")
 _MIMIC = (("multiplier", "1"), ("offset", "0"), ("reference", "0"))
 _FRAMES_SINCE = 1.7
 """The version from which on a model may have frames of its own."""
@@ -47,11 +49,17 @@ def mimics(root: ElementTree.Element, model: KinematicModel) -> Iterator[Couplin
 # ---- gearboxes -----------------------------------------------------------------------------------------------------------
 
 
-def text_without_gearboxes(path: Path) -> str | None:
-    """The file with a frame in the place of each gearbox, and with absolute paths; None where it has no gearbox."""
+def readable_text(path: Path) -> str | None:
+    """The file as Drake reads it, with absolute paths; None where it reads the file as it is.
+
+    A gearbox is a frame, and a model that is included by the name of its folder has a slash behind that name.
+    """
     root = root_of(path)
-    if root is None or not any(joint.get("type") == "gearbox" for joint in root.iter("joint")):
+    folders = [] if root is None else [uri for uri in root.iterfind(".//include/uri") if _FOLDER.fullmatch((uri.text or "").strip())]
+    if root is None or not (folders or any(joint.get("type") == "gearbox" for joint in root.iter("joint"))):
         return None
+    for uri in folders:
+        uri.text = f"{(uri.text or '').strip()}/"
     for model in root.iter("model"):
         for place, joint in enumerate(list(model)):
             if joint.tag == "joint" and joint.get("type") == "gearbox":
