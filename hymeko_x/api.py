@@ -215,20 +215,17 @@ def convert(
 
     :class:`Reading` and :class:`Writing` list the options.
 
-    Raises: Refusal when the input cannot be read or has errors, or the output cannot be written; then nothing was changed.
-    ValueError for ``assets`` that do not fit to the path.
+    Raises: Refusal when input or output has errors; then nothing was changed. ValueError for ``assets`` that do not fit to the path.
     """
     report = Report()
     given = _source(source, **reading)
     read_as = _input_format(given, from_format)
     format = formats.of_output(os.fspath(output), to_format)
     robot, passed = pipeline.read_for(format, given, read_as, report, lenient=lenient)
-    options = Options(base, actuators, layout, nested, split, keep, lenient, Path(output).stem, target=target)
-    options = replace(
-        options, density=density, inertia_from=inertia_from, sites=sites, mesh_prefix=mesh_prefix, package_layout=package_layout
-    )
-    own = unchanged(given, read_as, format)
-    delivery = Delivery(robot, format, options, given.files, _place(output, assets, format), os.fspath(output), own, passed)
+    options = Options(base, actuators, layout, nested, split, keep, lenient, Path(output).stem, "", target, density, inertia_from, sites)
+    options = replace(options, mesh_prefix=mesh_prefix, package_layout=package_layout)
+    place, own = _place(output, assets, format), unchanged(given, read_as, format)
+    delivery = Delivery(robot, format, options, given.files, place, os.fspath(output), own, passed)
     result = delivery.convert(report)
     delivery.put(result)
     return result

@@ -73,7 +73,7 @@ def _begin(tag: Tag, scope: str, sheet: SdfSheet) -> None:
     text = sheet.text(TRUTH, sheet.says_static(scope, key), False, sheet.written(key).get("static"))
     if text is not None:
         tag.add("static").children.append(text)
-    sheet.add_model_pose(tag, key, outer, around, scope)
+    sheet.add_model_pose(tag, key, outer if scope else words.WORLD_SCOPE, around, scope)
 
 
 def _is_top(scope: str, sheet: SdfSheet) -> bool:

@@ -13,6 +13,7 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.frontends.sdf.builder import Model, SdfBuilder, TextsUnread
+from hymeko_x.frontends.sdf.checks import check_models
 from hymeko_x.frontends.sdf.gearboxes import read_gearboxes
 from hymeko_x.frontends.sdf.include import expand_includes
 from hymeko_x.frontends.sdf.joints import read_joint
@@ -102,6 +103,7 @@ def _take_world(root: Node, report: Report) -> Node | None:
 def _read_models(root: Node, world: Node | None, source: Source, builder: SdfBuilder) -> str:
     """Everything in the world, or in the model of the file. Returns the name of the mechanism."""
     place = root if world is None else world
+    check_models(place, builder.report)
     tops = list(place.take_children("model"))
     named = None if world is None else world.take("name") or "default"
     if named is not None:

@@ -100,7 +100,9 @@ def _path(uri: str, place: _Place, found: Included) -> str | None:
     if _REMOTE.match(uri):
         problem = "is on the network, and nothing is ever fetched; download it and name its folder with --package"
     elif uri:
-        for name in dict.fromkeys((posixpath.join(place.folder, uri) if place.folder and ":" not in uri else uri, uri)):
+        is_path = ":" not in uri and not uri.startswith("/")
+        near = posixpath.join(place.folder, uri) if place.folder and is_path else uri
+        for name in dict.fromkeys((near, uri, f"model://{uri}" if is_path else uri)):
             path = files.find(name) or _of_folder(name, found)
             if path is not None and path in place.chain:
                 problem = "includes itself"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import posixpath
 from typing import TYPE_CHECKING
 
+from hymeko_x import codes
 from hymeko_x.formats.sdf import materials as words
 from hymeko_x.formats.sdf.values import COLOUR, NUMBER
 from hymeko_x.ir.mechanism import layer_edge
@@ -23,6 +24,11 @@ def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | No
     if node is None or not node.children:
         return None, None
     node.taken = True
+    script = next((child for child in node.children if child.tag == "script"), None)
+    if script is not None and not any(child.tag == "uri" and (child.text or "").strip() for child in script.children):
+        builder.warn(
+            codes.MISSING_PART, script, f"{visual.subject}: <script> without a <uri>, which libsdformat refuses, is kept as written"
+        )
     rgba = builder.child_value(node, "diffuse", COLOUR, None, key, "material/diffuse")
     pbr = next((child for child in node.children if child.tag == "pbr"), None)
     metal = None if pbr is None else next((child for child in pbr.children if child.tag == "metal"), None)

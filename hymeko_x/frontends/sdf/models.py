@@ -145,7 +145,7 @@ def place_model(model: Model, builder: SdfBuilder) -> None:
     The model's pose is that of its placement frame where it names one.
     """
     around = WORLD if model.around is None else model.around.frame
-    scope = "" if model.around is None else model.around.scope
+    scope = words.WORLD_SCOPE if model.around is None and not model.scope else "" if model.around is None else model.around.scope
     key = model.frame if model.frame in builder.vertices else ROOT
     pose, name = builder.pose(model.node, key)
     base = builder.base_of(model.node, scope, name, around)

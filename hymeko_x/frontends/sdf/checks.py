@@ -1,0 +1,51 @@
+"""What libsdformat refuses and this reader accepts: files that other programs of SDF will not load are reported."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes
+
+if TYPE_CHECKING:
+    from hymeko_x.diagnostics import Report
+    from hymeko_x.xml.tree import Node
+
+_CONTENT = ("link", "model", "include")
+_OWN_NAMES = ("plugin",)
+"""Elements whose names need not differ."""
+_RENAMED = ("link", "joint", "frame", "model")
+"""Elements that get another name where one of their own kind has it, which their readers report."""
+
+
+def check_models(place: Node, report: Report) -> None:
+    """Report several models without a world around them, models without links, and names that the elements in one element share."""
+    tops = [child for child in place.children if child.tag == "model"]
+    if place.tag == "sdf" and len(tops) > 1:
+        message = f"the file has {len(tops)} models and no <world> around them; libsdformat reads the first one alone"
+        report.warn(codes.REPEATED, message, tops[1].origin)
+    stack = [place]
+    while stack:
+        node = stack.pop()
+        _check_names(node, report)
+        if node.tag == "model":
+            _check_links(node, report)
+        stack += [child for child in reversed(node.children) if child.tag in ("model", "link")]
+
+
+def _check_links(node: Node, report: Report) -> None:
+    is_static = any(child.tag == "static" and (child.text or "").strip() in ("1", "true") for child in node.children)
+    if not is_static and not any(child.tag in _CONTENT for child in node.children):
+        message = f"the model '{node.attributes.get('name', '')}' has no link, which libsdformat refuses"
+        report.warn(codes.MISSING_PART, message, node.origin)
+
+
+def _check_names(node: Node, report: Report) -> None:
+    taken: dict[str, str] = {}
+    for child in node.children:
+        name = "" if child.tag in _OWN_NAMES else child.attributes.get("name", "")
+        other = taken.get(name)
+        taken.setdefault(name, child.tag)
+        if not name or other is None or (other == child.tag and child.tag in _RENAMED):
+            continue
+        both = f"a <{other}> and a <{child.tag}> are" if other != child.tag else f"two <{child.tag}> are"
+        report.warn(codes.DUPLICATE_NAME, f"{both} called '{name}', which libsdformat refuses; both keep the name", child.origin)
