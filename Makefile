@@ -73,7 +73,7 @@ fuzz: $(STAMP)
 	HYPOTHESIS_PROFILE=$(PROFILE) $(BIN)/python -m pytest -q -n $(JOBS) tests/test_pipeline_laws.py tests/test_format_laws.py tests/verify/test_verify_laws.py tests/urdf/test_laws.py tests/language/test_laws.py tests/language/test_grammar_texts.py
 	$(BIN)/python -m tests.fuzz --profile $(PROFILE)
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check --only-binary :all: atheris || echo "atheris has no wheel for this Python; the guided part is left out"
-	@for format in hymeko urdf mjcf usd; do $(BIN)/python -m tests.fuzz.guided $$format -max_total_time=$(GUIDED_SECONDS) -verbosity=0 || failed=1; done; exit $${failed:-0}
+	@for format in hymeko urdf mjcf usd sdf; do $(BIN)/python -m tests.fuzz.guided $$format -max_total_time=$(GUIDED_SECONDS) -verbosity=0 || failed=1; done; exit $${failed:-0}
 
 corpus: $(STAMP)
 	$(BIN)/hymeko-x corpus fetch

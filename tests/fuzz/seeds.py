@@ -8,6 +8,7 @@ from pathlib import Path
 import hymeko_x as hx
 from hymeko_x.ir.parts import Body
 from tests.fuzz import texts
+from tests.sdf.samples import SAMPLES
 
 FOLDER = Path(__file__).parents[2] / "corpus"
 SMALL = Path(__file__).parent / "small"
@@ -16,7 +17,7 @@ SMALL = Path(__file__).parent / "small"
 LARGEST = 4000
 """Small texts are read quickly, and a mutation hits something that means something."""
 
-FORMATS = ("hymeko", "urdf", "mjcf", "usd", "xacro", "xml")
+FORMATS = ("hymeko", "urdf", "mjcf", "usd", "sdf", "xacro", "xml")
 """The text formats that are fuzzed; ``xml`` is any XML, whose root decides what reads it."""
 
 
@@ -37,6 +38,8 @@ def small_seeds(format: str) -> tuple[bytes, ...]:
     """The small texts of a format, in a fixed order."""
     if format == "xml":
         return (*(text.encode() for text in texts.SDF), *small_seeds("urdf")[:4], *small_seeds("mjcf")[:4])
+    if format == "sdf":
+        return tuple(text.encode() for text in SAMPLES.values())
     return tuple(path.read_bytes() for path in sorted((SMALL / format).iterdir()))
 
 

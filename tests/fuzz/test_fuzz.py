@@ -30,7 +30,7 @@ REFUSED = {
     "euler_of_no_axes.mjcf": "HX020",
     "notation_with_endless_angle.hymeko": "HX062",
 }
-CASES = {"hymeko": 400, "urdf": 800, "mjcf": 400, "usd": 100, "xacro": 4, "xml": 200}
+CASES = {"hymeko": 400, "urdf": 800, "mjcf": 400, "usd": 100, "sdf": 400, "xacro": 4, "xml": 200}
 
 
 @pytest.mark.parametrize("path", FOUND, ids=lambda path: path.name)
@@ -55,7 +55,7 @@ def test_damaged_texts_are_a_mechanism_or_a_diagnostic(format: str) -> None:
     assert {number: finding for number, finding in findings.items() if finding} == {}
 
 
-@pytest.mark.parametrize("format", ["hymeko", "urdf", "mjcf", "usd", "xacro"])
+@pytest.mark.parametrize("format", ["hymeko", "urdf", "mjcf", "usd", "sdf", "xacro"])
 def test_seeds_are_read_without_damage(format: str) -> None:
     assert {text: code for text in (*small_seeds(format), *seeds(format)) if (code := _refused(format, text))} == {}
 

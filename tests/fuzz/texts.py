@@ -173,5 +173,5 @@ SDF = (
 """,
 )
 
-BY_FORMAT = {"urdf": URDF, "mjcf": MJCF, "hymeko": HYMEKO, "usd": USD, "xacro": XACRO}
+BY_FORMAT = {"urdf": URDF, "mjcf": MJCF, "hymeko": HYMEKO, "usd": USD, "sdf": SDF, "xacro": XACRO}
 """The texts of each format by its name."""

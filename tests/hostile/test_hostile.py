@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from tests.hostile import path_cases, text_cases, xml_cases
+from tests.hostile import path_cases, sdf_cases, text_cases, xml_cases
 from tests.hostile.case import Case
 from tests.hostile.child import Child
 
-CASES = (*xml_cases.CASES, *text_cases.CASES, *path_cases.CASES)
+CASES = (*xml_cases.CASES, *text_cases.CASES, *path_cases.CASES, *sdf_cases.CASES)
 SECRETS = {
     "secret.xml": "<mujocoinclude><option timestep='0.1'/></mujocoinclude>",
     "secret.xacro": "<robot/>",

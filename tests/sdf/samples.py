@@ -50,6 +50,12 @@ SAMPLES = {
     "universal": joint("universal", "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2>"),
     "revolute2": joint("revolute2", "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>0 0 1</xyz></axis2>"),
     "gearbox": joint("gearbox", f"<gearbox_ratio>2</gearbox_ratio>{AXIS.format('')}"),
+    "a gearbox between hinges": model(
+        f'{TWO}<link name="c"/><joint name="j" type="revolute"><parent>a</parent><child>b</child>{AXIS.format("")}</joint>'
+        f'<joint name="k" type="continuous"><parent>a</parent><child>c</child>{AXIS.format(DYNAMICS)}</joint>'
+        '<joint name="l" type="gearbox"><parent>b</parent><child>c</child><gearbox_reference_body>a</gearbox_reference_body>'
+        '<gearbox_ratio>3</gearbox_ratio><axis><xyz expressed_in="b">0 1 0</xyz></axis><axis2><xyz>0 1 0</xyz></axis2></joint>'
+    ),
     "the model's axis in an old file": joint(
         "revolute", "<axis><xyz>0 0 1</xyz><use_parent_model_frame>1</use_parent_model_frame></axis>", "1.6"
     ),

@@ -16,7 +16,7 @@ from hymeko_x.xml.parse import parse
 from hymeko_x.xml.tree import Node
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
 MOST_FILES = 10_000
 """How many files one file may include in all; models that include each other could otherwise grow without bound."""
@@ -29,12 +29,19 @@ _REFERENCES = (("pose", "relative_to"), ("xyz", "expressed_in"))
 
 
 class Included(Struct):
-    """The texts of all files that elements come from, and the version of SDF in which each is written, by the name of the file."""
+    """The texts of all files that elements come from, and the version of SDF in which each is written, by the name of the file.
+
+    ``inserted`` has what comes into the place of each <include>, and ``parents`` the elements around these, by identity; ``paths`` the
+    files that were found, by uri and folder.
+    """
 
     source: Source
     report: Report
     texts: dict[str, bytes] = field(default_factory=dict)
     versions: dict[str, int] = field(default_factory=dict)
+    inserted: dict[int, list[Node]] = field(default_factory=dict)
+    parents: dict[int, Node] = field(default_factory=dict)
+    paths: dict[tuple[str, str], list[str]] = field(default_factory=dict)
     count: int = 0
     bytes: int = 0
 
@@ -54,7 +61,20 @@ def expand_includes(root: Node, source: Source, data: bytes, version: int, repor
     while stack:
         place = stack.pop()
         stack += [_Place(node, *below) for node, below in _expand(place, found)]
+    for parent in found.parents.values():
+        parent.children = list(_expanded(parent, found.inserted))
     return found
+
+
+def _expanded(parent: Node, inserted: Mapping[int, list[Node]]) -> Iterator[Node]:
+    """The children of an element with models in the places of their includes, also of those in merged models. Not recursive."""
+    stack = parent.children[::-1]
+    while stack:
+        node = stack.pop()
+        if id(node) in inserted:
+            stack += reversed(inserted[id(node)])
+        else:
+            yield node
 
 
 def _includes(node: Node) -> Iterator[Node]:
@@ -81,12 +101,12 @@ def _expand(place: _Place, found: Included) -> list[tuple[Node, tuple[str, tuple
     _override(model, place.node)
     parent = place.node.parent
     assert parent is not None
-    at = parent.children.index(place.node)
     merges = (place.node.attributes.get("merge") or "").lower() in ("true", "1")
     inserted = _merged(model, place.node) if merges else [model]
     for node in inserted:
         node.parent = parent
-    parent.children[at : at + 1] = inserted
+    found.inserted[id(place.node)] = inserted
+    found.parents[id(parent)] = parent
     return below
 
 
@@ -95,22 +115,30 @@ def _expand(place: _Place, found: Included) -> list[tuple[Node, tuple[str, tuple
 
 def _path(uri: str, place: _Place, found: Included) -> str | None:
     """The path of the model's file; None where there is none, which is reported."""
-    files = found.source.files
     problem = "is not found"
     if _REMOTE.match(uri):
         problem = "is on the network, and nothing is ever fetched; download it and name its folder with --package"
     elif uri:
-        is_path = ":" not in uri and not uri.startswith("/")
-        near = posixpath.join(place.folder, uri) if place.folder and is_path else uri
-        for name in dict.fromkeys((near, uri, f"model://{uri}" if is_path else uri)):
-            path = files.find(name) or _of_folder(name, found)
-            if path is not None and path in place.chain:
-                problem = "includes itself"
-            elif path is not None:
-                return path
+        paths = _paths(uri, place.folder, found)
+        path = next((path for path in paths if path not in place.chain), None)
+        if path is not None:
+            return path
+        problem = "includes itself" if paths else problem
     code = codes.CYCLE if problem == "includes itself" else codes.INCLUDE_NOT_FOUND
     found.report.error(code, f"the model '{uri}' {problem}; the <include> is kept as written", place.node.origin)
     return None
+
+
+def _paths(uri: str, folder: str, found: Included) -> list[str]:
+    """The files that a uri in a file of this folder may mean: there, from the main file, or as the name of a model's folder."""
+    known = found.paths.get((uri, folder))
+    if known is not None:
+        return known
+    is_path = ":" not in uri and not uri.startswith("/")
+    near = posixpath.join(folder, uri) if folder and is_path else uri
+    names = dict.fromkeys((near, uri, f"model://{uri}" if is_path else uri))
+    paths = [path for name in names if (path := found.source.files.find(name) or _of_folder(name, found)) is not None]
+    return found.paths.setdefault((uri, folder), paths)
 
 
 def _of_folder(uri: str, found: Included) -> str | None:
@@ -140,7 +168,8 @@ def _model(path: str, include: Node, found: Included) -> Node | None:
             return None
         document = parse(Source(path, data), report)
     except (Refusal, OSError) as error:
-        report.error(codes.INCLUDE_NOT_FOUND, f"'{path}' cannot be read: {error}; the <include> is kept as written", include.origin)
+        reason = error.diagnostic.message if isinstance(error, Refusal) else error.strerror
+        report.error(codes.INCLUDE_NOT_FOUND, f"'{path}' cannot be read: {reason}; the <include> is kept as written", include.origin)
         return None
     root = document.root
     model = next((node for node in root.children if node.tag == "model"), None) if root.tag == "sdf" else None

@@ -219,18 +219,19 @@ def attach_models(models: list[Model], builder: SdfBuilder) -> None:
 def mount_frames(models: list[Model], builder: SdfBuilder) -> None:
     """Every frame, and every model that has one of its own, becomes a frame on its body."""
     keys = [key for model in models for key in (model.frame, *(node.owner for node in model.node.children if node.tag == "frame"))]
-    for key in keys:
-        if key is not None and key != WORLD and key in builder.vertices:
-            mount_frame(key, builder)
+    frames = [key for key in keys if key is not None and key != WORLD and key in builder.vertices]
+    lost = [key for key in frames if body_of(key, builder) is None]
+    if lost:
+        those = str(lost[0]) if len(lost) == 1 else f"{lost[0]} and {len(lost) - 1} more frames"
+        message = f"{those}: attached in a circle, to no link; attached to the world instead"
+        builder.report.error(codes.CYCLE, message, builder.origins.get(lost[0]), element=str(lost[0]))
+    for key in frames:
+        mount_frame(key, builder)
 
 
 def mount_frame(key: Id, builder: SdfBuilder) -> None:
-    """Put a frame on the body that it is attached to."""
-    body = body_of(key, builder)
-    if body is None:
-        message = f"{key} is attached to no link; it is attached to the world"
-        builder.report.error(codes.CYCLE, message, builder.origins.get(key), element=str(key))
-        body = WORLD
+    """Put a frame on the body that it is attached to; one that is attached in a circle on the world."""
+    body = body_of(key, builder) or WORLD
     if body == WORLD:
         builder.vertices.setdefault(WORLD, World())
     builder.edges[builder.names.take("mount", key.name)] = mount_edge(body, key, builder.frames.relative(key, body))
