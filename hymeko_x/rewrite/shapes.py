@@ -258,7 +258,8 @@ def _pieces(view: ShapeView, names: Names) -> dict[Id, RobotEdge]:
     role = view.shape.role
     for geometry, pose in pieces:
         key = view.id if not found else names.take("shape", f"{view.body.name}/{'shape' if role is Role.BOTH else role.value}")
-        found[key] = _in_place(view, geometry, compose(view.pose, pose), None)
+        place = compose(view.pose, pose)
+        found[key] = _in_place(view, geometry, Pose(place.xyz) if isinstance(geometry, Sphere) else place, None)
     return found
 
 

@@ -75,3 +75,15 @@ def test_a_file_from_mjcf_has_no_noise_in_urdf() -> None:
     assert 'length="0.2"' in urdf
     assert '<origin xyz="0 0 0" rpy="1.5707963267948966 -1.5707963267948966 0"/>' in urdf
     assert not re.search(r"e-1\d|\d00000000\d|99999999", urdf)
+
+
+def test_ends_of_a_capsule_have_no_rotation_and_a_rotation_about_y_is_a_pitch_alone() -> None:
+    geom = '<geom type="capsule" size="0.1" fromto="0.5 0 0.25 1 0 0.5" mass="1"/>'
+    mjcf = f'<mujoco><worldbody><body name="a">{geom}</body></worldbody></mujoco>'
+    urdf = hx.dumps(hx.loads(mjcf.encode(), "mjcf"), "urdf")
+    found = re.findall(r'<collision>\s*<origin xyz="([^"]*)" rpy="([^"]*)"/>\s*<geometry>\s*<(\w+)', urdf)
+    assert [(place, solid) for place, _, solid in found] == [("0.75 0 0.375", "cylinder"), ("0.5 0 0.25", "sphere"), ("1 0 0.5", "sphere")]
+    roll, pitch, yaw = map(float, found[0][1].split())
+    assert (roll, yaw) == (0.0, 0.0)
+    assert math.isclose(abs(math.tan(pitch)), 2.0, rel_tol=1e-12)
+    assert [rpy for _, rpy, solid in found if solid == "sphere"] == ["0 0 0", "0 0 0"]

@@ -13,6 +13,7 @@ from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import Id, file_stem
 from hymeko_x.ir.names import Names
+from hymeko_x.ir.uses import first_uses
 from hymeko_x.ir.values import IDENTITY, ZERO
 from hymeko_x.ir.written import length_of
 from hymeko_x.language.syntax import Field, Item, Node, Value
@@ -148,27 +149,11 @@ def _material(sheet: HymekoSheet, key: Id) -> Item:
     return Field("color", rgba[:3] if rgba[3] == 1.0 else rgba)
 
 
-def _first_uses(mechanism: Mechanism) -> dict[Id, Id]:
-    """For every mesh and material the first shape that uses it, in the order in which shapes are printed."""
-    graph = mechanism.graph
-    order = [key for key in dict.fromkeys(mechanism.layout) if key.kind in ("body", "world")]
-    placed = set(order)
-    order += [key for key in graph.vertices if key.kind == "world" and key not in placed]
-    order += [key for key in graph.vertices if key.kind == "body" and key not in placed]
-    found: dict[Id, Id] = {}
-    for body in order:
-        for view in mechanism.shapes.get(body, ()):
-            for used in (view.mesh, view.material):
-                if used is not None:
-                    found.setdefault(used, view.id)
-    return found
-
-
 def inline_assets(mechanism: Mechanism) -> dict[Id, Id]:
     """Meshes given by a file alone, and nameless colours of one shape, with the shape in which they are defined."""
     side = {key for table in (mechanism.extras, mechanism.notations) for key in table} | set(mechanism.layout)
     inline: dict[Id, Id] = {}
-    for key, shape in _first_uses(mechanism).items():
+    for key, shape in first_uses(mechanism).items():
         if key in side or key not in mechanism.graph.vertices:
             continue
         part = mechanism.graph.vertices[key]

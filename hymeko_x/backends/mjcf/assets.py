@@ -5,11 +5,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
-from hymeko_x.formats.mjcf.notations import MESHES
+from hymeko_x.formats.mjcf.mesh_order import mesh_order
 from hymeko_x.formats.mjcf.places import MATERIAL, MESH
 from hymeko_x.formats.mjcf.words import below
 from hymeko_x.ir.graph import Arc
-from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Layer, Material, Mesh, Texture
 from hymeko_x.xml.printing import Tag
 
@@ -34,12 +33,11 @@ def write_assets(sheet: MjcfSheet) -> None:
 
 
 def _in_order(sheet: MjcfSheet, meshes: list[tuple[Id, Mesh]]) -> list[tuple[Id, Mesh]]:
-    """The meshes in the order of their file in MJCF: by name, or as was noted while there are as many as there were."""
+    """The meshes in the order of their file in MJCF."""
     if not sheet.from_mjcf:
         return meshes
-    by_name = sorted(meshes, key=lambda item: item[0].name)
-    places = sheet.mechanism.notation(ROOT, MESHES) or ()
-    return [by_name[place] for place in places] if sorted(places) == list(range(len(meshes))) else by_name
+    parts = dict(meshes)
+    return [(key, parts[key]) for key in mesh_order(sheet.mechanism)]
 
 
 def _file(uri: str | None, folder: str) -> str | None:

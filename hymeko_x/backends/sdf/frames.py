@@ -11,6 +11,7 @@ from hymeko_x.ir.kinematics import reference_poses
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, pose_weight
 from hymeko_x.ir.parts import Frame, Loop
 from hymeko_x.ir.values import IDENTITY, compose, inverse
+from hymeko_x.rewrite.decimals import clean_pose
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -60,11 +61,12 @@ class Places:
         if base == self._body_below(frame) and frame.kind == "frame":
             return self._mount_pose(frame)
         poses = self.in_world
-        return compose(inverse(poses.get(base, IDENTITY)), poses.get(frame, IDENTITY))
+        return clean_pose(compose(inverse(poses.get(base, IDENTITY)), poses.get(frame, IDENTITY)))
 
     def seen_from(self, base: Id, default: Id, pose: Pose) -> Pose:
         """A pose that is given in the default frame, seen from another one."""
-        return compose(inverse(self.relative(base, default)), pose)
+        around = self.relative(base, default)
+        return pose if around == IDENTITY else clean_pose(compose(inverse(around), pose))
 
     @cached_property
     def mounts(self) -> Mapping[Id, tuple[Id, Pose]]:

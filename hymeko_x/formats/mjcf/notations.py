@@ -45,15 +45,9 @@ def is_joint(prefix: str) -> Notation[str]:
     return word(f"{prefix}tag")
 
 
-def _places(text: str) -> tuple[int, ...]:
-    return tuple(int(place) for place in text.split() if place.isdigit())
-
-
 CHILDCLASS = word("childclass")
 """Body: the default class of the elements in it."""
 LAYERS = flag("layers", "yes")
 """Material: its only texture is in a <layer>."""
 GRID = Notation("grid", number_text, float)
 """Plane: the distance in m of the lines that are drawn on it."""
-MESHES = Notation[tuple[int, ...]]("meshes", lambda places: " ".join(map(str, places)), _places)
-"""Mechanism: the order of the meshes, as places among their sorted names."""

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
-from hymeko_x.formats.mjcf.notations import LAYERS, MESHES
+from hymeko_x.formats.mjcf.notations import LAYERS
 from hymeko_x.formats.mjcf.places import MATERIAL, MESH
 from hymeko_x.formats.mjcf.words import joined
-from hymeko_x.ir.mechanism import ROOT, Id, file_stem, layer_edge
+from hymeko_x.ir.mechanism import Id, file_stem, layer_edge
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Material, Mesh, Texture
 
@@ -24,23 +24,14 @@ def read_assets(sections: list[Element], builder: MjcfBuilder) -> None:
     for section in sections:
         for element in section.detach("texture"):
             read_texture(element, builder)
-    meshes = len(builder.vertices)
     for section in sections:
         for element in section.detach("mesh"):
             read_mesh(element, builder)
-    _note_order([key.name for key in list(builder.vertices)[meshes:]], builder)
     for section in sections:
         for element in section.detach("material"):
             read_material(element, builder)
         for element in section.children:
             builder.keep_at_root(element, "asset")
-
-
-def _note_order(names: list[str], builder: MjcfBuilder) -> None:
-    """Meshes are defined where they are used first, elsewhere; their order in the file is a list of places among the sorted names."""
-    places = {name: place for place, name in enumerate(sorted(names))}
-    if names != sorted(names):
-        builder.note(ROOT, MESHES, tuple(places[name] for name in names))
 
 
 def _uri(element: Element, file: str, folder: str, builder: MjcfBuilder) -> str:

@@ -11,11 +11,13 @@ from hymeko_x.diagnostics import refuse
 from hymeko_x.formats.mjcf import words
 from hymeko_x.formats.mjcf.classes import merge
 from hymeko_x.formats.mjcf.codec import REFUSED, BadAttribute, InheritedValues
+from hymeko_x.formats.mjcf.mesh_order import MESHES, noted_order
 from hymeko_x.formats.mjcf.notations import attribute
 from hymeko_x.formats.mjcf.tree import verbatim
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import ROOT, Id, Provenance
 from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.parts import Mesh
 from hymeko_x.ir.values import IDENTITY, Pose, compose
 from hymeko_x.xml.tree import read_numbers
 from hymeko_x.xml.unread import extra_of, unread_extras
@@ -175,7 +177,11 @@ class MjcfBuilder(Builder):
 
     def finish(self, name: str) -> Mechanism:
         """The finished mechanism."""
-        return self.build(name, Provenance(words.NAME, words.VERSION, self.file))
+        found = self.build(name, Provenance(words.NAME, words.VERSION, self.file))
+        order = noted_order(found, [key for key, _ in found.vertices(Mesh)])
+        if order:
+            self.note(ROOT, MESHES, order)  # the mechanism has the builder's notations
+        return found
 
 
 def _are_same_numbers(a: str | None, b: str | None) -> bool:
