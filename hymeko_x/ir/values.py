@@ -230,15 +230,9 @@ def _rpy_from_quat(quat: Quat) -> Vec3:
         roll -= 2.0 * math.pi
     elif roll <= -math.pi:
         roll += 2.0 * math.pi
-    return _in_one_turn(clean_angles((roll, pitch, yaw)))  # type: ignore[arg-type]
-
-
-def _in_one_turn(rpy: Vec3) -> Vec3:
-    """Half a turn about x and about z with a pitch between is a pitch alone, as a person would write it."""
-    roll, pitch, yaw = rpy
-    if abs(roll) != math.pi or abs(yaw) != math.pi:
-        return rpy
-    return clean_angles((0.0, math.copysign(math.pi, pitch) - pitch, 0.0))  # type: ignore[return-value]
+    roll, pitch, yaw = clean_angles((roll, pitch, yaw))
+    is_pitch = abs(roll) == abs(yaw) == math.pi  # half a turn about x and about z with a pitch between is a pitch alone
+    return (0.0, clean_angles((math.copysign(math.pi, pitch) - pitch,))[0], 0.0) if is_pitch else (roll, pitch, yaw)
 
 
 def matrix_from_quat(quat: Quat) -> Matrix3:
