@@ -99,6 +99,8 @@ def simulate_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--at", default="", metavar="WHERE", help=where)
     parser.add_argument("--time", type=float, default=2.0, metavar="S", help="how long, in s (default 2)")
     parser.add_argument("--step", type=float, metavar="S", help="time between rows in s (default a thousandth of --time)")
+    which = "scipy's solver, or rules of the port-Hamiltonian form that keep the power balance in every step (default scipy)"
+    parser.add_argument("--integrator", choices=("scipy", "energy"), default="scipy", help=which)
     what = "a signal for an input, instead of the file's: pulse,period=2,duty=0.05 or table.csv:COLUMN (repeatable)"
     parser.add_argument("--input", dest="signals", action="append", default=[], metavar="NAME=SIGNAL", help=what)
     parser.add_argument(
@@ -111,13 +113,17 @@ def simulate_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_simulate(chosen: argparse.Namespace) -> int:
     """Write the response over time."""
+    from hymeko_x.dynamics.balance import balanced_response
     from hymeko_x.dynamics.tables import csv_text, draw, write_table
 
     report = Report()
     found = _dynamics(chosen, report)
     step = chosen.time / 1000 if chosen.step is None else chosen.step
     signals = dict(_signal(text, chosen.time) for text in chosen.signals)
-    response = found.simulate(chosen.time, step, signals, at=chosen.at)
+    if chosen.integrator == "energy":
+        response = balanced_response(found, chosen.time, step, signals, chosen.at)
+    else:
+        response = found.simulate(chosen.time, step, signals, at=chosen.at)
     show_diagnostics(report, chosen)
     if chosen.output is None:
         print(csv_text(response), end="")

@@ -175,13 +175,19 @@ def drive(
         _act(forces, motor.terms, force, tree, numbers)
 
 
-def _motion(terms: Terms, tree: Tree, q: Sequence[Number], v: Sequence[Number], numbers: Numbers) -> tuple[Number, Number]:
+def length_of(terms: Terms, tree: Tree, q: Sequence[Number], numbers: Numbers) -> Number:
+    """The sum of coefficient * position."""
     length: Number = 0
+    for place, factor in terms:
+        length = add(length, times(numbers.exact(factor), q[tree.links[place].q]))
+    return length
+
+
+def _motion(terms: Terms, tree: Tree, q: Sequence[Number], v: Sequence[Number], numbers: Numbers) -> tuple[Number, Number]:
     rate: Number = 0
     for place, factor in terms:
-        link, exact = tree.links[place], numbers.exact(factor)
-        length, rate = add(length, times(exact, q[link.q])), add(rate, times(exact, v[link.v]))
-    return length, rate
+        rate = add(rate, times(numbers.exact(factor), v[tree.links[place].v]))
+    return length_of(terms, tree, q, numbers), rate
 
 
 def _act(forces: list[Number], terms: Terms, force: Number, tree: Tree, numbers: Numbers) -> None:

@@ -71,15 +71,22 @@ class Lumped(Struct, frozen=True, dict=True):
         """
         if at:
             raise refuse(codes.BAD_SIGNAL, f"{self.network.name} starts at rest; only a mechanism starts at '{at}'")
+        return simulate(self.system, self.signals(duration, inputs or {}), duration, step)
+
+    def signals(self, duration: float, inputs: Mapping[str, Signal]) -> dict[str, Signal]:
+        """The signal of each input: that of the file, or this instead.
+
+        Raises: Refusal (HX407) for signals and names.
+        """
         signals = {}
         for variable in self.system.inputs:
             port = next((port for port in self._ports() if str(port[0]) == variable.element), None)
             own = signal_of(port[1], duration, variable.element) if port and not variable.rate_of else constant(0.0)
             signals[variable.name] = total([constant(variable.value), own])
-        for name, signal in (inputs or {}).items():
+        for name, signal in inputs.items():
             variable = self.input(name)
             signals[variable.name] = total([constant(variable.value), signal])
-        return simulate(self.system, signals, duration, step)
+        return signals
 
     def _ports(self) -> list[tuple[object, tuple[tuple[str, float | str | tuple[float, ...]], ...]]]:
         """Every port with the parameters of its signal: all that are no gains."""

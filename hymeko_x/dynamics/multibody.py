@@ -10,6 +10,7 @@ from hymeko_x.dynamics.assembly import reduction
 from hymeko_x.dynamics.couplings import expanded, followers_of, independent
 from hymeko_x.dynamics.drives import cables_of, motors_of
 from hymeko_x.dynamics.forms import SecondOrder
+from hymeko_x.dynamics.hamilton import MechanicalHamiltonian, mechanical_hamiltonian
 from hymeko_x.dynamics.loops import closing, closures_of
 from hymeko_x.dynamics.numbers import floats
 from hymeko_x.dynamics.operating import OperatingPoint, linearized, named_positions, operating_point, start_of, sympy_matrix
@@ -17,7 +18,7 @@ from hymeko_x.dynamics.recursion import GRAVITY, mass_matrix
 from hymeko_x.dynamics.simulation import Response, simulate
 from hymeko_x.dynamics.system import Variable, input_of
 from hymeko_x.dynamics.tree import tree_of
-from hymeko_x.dynamics.trees import Trees, reduced_mass
+from hymeko_x.dynamics.trees import Trees, reduced
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -56,10 +57,17 @@ class Multibody(Trees, frozen=True, dict=True):
         n = len(space.states) // 2
         basis = reduction(self, point.positions).basis
         whole = expanded(self.tree, self.followers, point.positions, [0.0] * len(basis), floats())
-        mass = reduced_mass(mass_matrix(self._constants, whole.q), whole)
+        mass = reduced(mass_matrix(self._constants, whole.q), whole)
         m = sympy_matrix(basis.T @ mass @ basis)
         a, b = space.A, space.B
         return SecondOrder(space.states[:n], space.inputs, m, -m * a[n:, n:], -m * a[n:, :n], m * b[n:, :], m * space.offset[n:, :])
+
+    def port_hamiltonian(self) -> MechanicalHamiltonian:
+        """H, J, R, G over positions and momenta.
+
+        Raises: Refusal (HX408) for closed loops.
+        """
+        return mechanical_hamiltonian(self)
 
     # ---- closed loops ------------------------------------------------------------------------------------------------------
 
@@ -99,14 +107,23 @@ class Multibody(Trees, frozen=True, dict=True):
         """
         import numpy as np
 
-        signals = {self.input(name).name: signal for name, signal in (inputs or {}).items()}
+        signals = self.signals(duration, inputs or {})
         width = sum(link.velocities for link in independent(self.tree, self.followers))
-        positions = self.at(at).positions if at == "found" else self._start(at)
-        start = [*positions, *[0.0] * width]
+        start = [*self.start(at), *[0.0] * width]
         graph = self.graph
         return simulate(self.system, signals, duration, step, start, lambda x, u: np.array(graph(x, u), dtype=float).reshape(-1))
 
-    def _start(self, at: str) -> list[float]:
+    def signals(self, duration: float, inputs: Mapping[str, Signal]) -> dict[str, Signal]:
+        """The signals by the names of inputs.
+
+        Raises: Refusal (HX407) for names.
+        """
+        return {self.input(name).name: signal for name, signal in inputs.items()}
+
+    def start(self, at: str) -> list[float]:
+        """The independent positions at an operating point (:meth:`at`)."""
+        if at == "found":
+            return self.at(at).positions
         return start_of(self, named_positions(self.mechanism, at) if at else {}, keep="=" in at)
 
 

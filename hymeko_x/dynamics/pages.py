@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
 
-from hymeko_x import codes
-from hymeko_x.diagnostics import refuse
 from hymeko_x.dynamics.assembly import reduction
+from hymeko_x.dynamics.hamilton import formulas_of
 from hymeko_x.dynamics.linear import complex_text
 from hymeko_x.dynamics.loops import STABILISATION
 from hymeko_x.dynamics.lumped import Lumped
+from hymeko_x.dynamics.operating import sympy_matrix
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -53,10 +53,10 @@ def page_of(dynamics: Lumped | Multibody, form: str, *, symbolic: bool = False, 
     """
     if isinstance(dynamics, Lumped):
         return _lumped_page(dynamics, form, symbolic=symbolic)
+    if form == "port-hamiltonian":
+        return _energy_formulas(dynamics) if symbolic else _energy_at(dynamics, at)
     if symbolic:
         return _symbolic_page(dynamics)
-    if form == "port-hamiltonian":
-        raise refuse(codes.NO_FORM, f"{dynamics.tree.name}: the port-Hamiltonian form is that of lumped networks")
     point = dynamics.at(at)
     space = dynamics.state_space(at)
     made = {
@@ -65,10 +65,8 @@ def page_of(dynamics: Lumped | Multibody, form: str, *, symbolic: bool = False, 
         "transfer-function": lambda: _transfer(space),
     }[form]()
     formula, variables, blocks, facts = made
-    names = [variable.name for variable in dynamics.system.states]
-    where = {name: value for name, value in zip(names, point.positions, strict=False) if value != float(name.endswith(".qw"))}
     held = {variable.name: value for variable, value in zip(dynamics.system.inputs, point.inputs, strict=True) if value}
-    place = {"at": _pairs(where), "held by": _pairs(held), "equilibrium": "yes" if point.is_equilibrium else "no"}
+    place = {"at": _where(dynamics, point.positions), "held by": _pairs(held), "equilibrium": "yes" if point.is_equilibrium else "no"}
     return Page(dynamics.tree.name, form, formula, variables, blocks, {**place, **_loops(dynamics, point.positions), **facts})
 
 
@@ -78,6 +76,39 @@ def _loops(dynamics: Multibody, positions: Sequence[float]) -> Mapping[str, str]
     width, freedom = reduction(dynamics, positions).basis.shape
     words = f"{len(dynamics.closures)} closed; {freedom} of {width} degrees of freedom remain"
     return {"loops": f"{words}; in simulations and generated files stabilised (Baumgarte) at {STABILISATION:g} 1/s"}
+
+
+def _where(dynamics: Multibody, positions: Sequence[float]) -> str:
+    names = [variable.name for variable in dynamics.system.states]
+    return _pairs({name: value for name, value in zip(names, positions, strict=False) if value != float(name.endswith(".qw"))})
+
+
+_ENERGY = "x' = (J - R) dH/dx + G u, y = G' dH/dx, x = (q, p), H = p' M(q)^-1 p / 2 + V(q)"
+
+
+def _energy_formulas(dynamics: Multibody) -> Page:
+    form = dynamics.port_hamiltonian()
+    m, v, j, r, g = formulas_of(form)
+    blocks = (Block("M", m), Block("V", v), Block("J", j), Block("R", r), Block("G", g))
+    return Page(dynamics.tree.name, "port-hamiltonian", _ENERGY, {"states": form.states, "inputs": dynamics.system.inputs}, blocks, {})
+
+
+def _energy_at(dynamics: Multibody, at: str) -> Page:
+    """The form at rest at an operating point."""
+    import numpy as np
+
+    form, positions = dynamics.port_hamiltonian(), dynamics.at(at).positions
+    x = form.state(positions, [0.0] * (len(form.states) - len(positions)))
+    energy, gradient, j, r, g = (np.array(value, dtype=float) for value in form.functions(x))
+    matrices = (("dH/dx", gradient), ("J", j), ("R", r), ("G", g))
+    blocks = (Block("H", sympy_matrix(energy)[0]), *[Block(name, sympy_matrix(matrix)) for name, matrix in matrices])
+    checks = {
+        "antisymmetric J": bool((j == -j.T).all()),
+        "positive semidefinite R": np.linalg.eigvalsh(r).min() >= -1e-12 * np.abs(r).max(),
+    }
+    facts = {"at": _where(dynamics, positions), **{name: "yes" if holds else "no" for name, holds in checks.items()}}
+    names = {"states": form.states, "inputs": dynamics.system.inputs}
+    return Page(dynamics.tree.name, "port-hamiltonian", _ENERGY, names, blocks, facts)
 
 
 def _pairs(values: Mapping[str, float]) -> str:
@@ -183,7 +214,7 @@ def _text(page: Page) -> str:
 
 def _block_lines(block: Block) -> list[str]:
     if not _is_matrix(block.value):
-        return [f"{block.name} = {block.value}"]
+        return [f"{block.name} = {_entry(block.value)}"]
     if not block.value.cols or not block.value.rows:
         return [f"{block.name} = []"]
     rows = [[_entry(entry) for entry in block.value.row(i)] for i in range(block.value.rows)]

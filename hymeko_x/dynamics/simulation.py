@@ -65,17 +65,28 @@ def simulate(
     """
     import numpy as np
 
-    if not 0 < step <= duration < float("inf"):
-        raise refuse(codes.BAD_SIGNAL, f"a simulation of {duration:g} s in steps of {step:g} s; 0 < step <= duration")
-    if duration / step * (len(system.states) + len(system.inputs) + len(system.outputs) + 1) > _MOST:
-        raise refuse(codes.BAD_SIGNAL, f"{duration:g} s in steps of {step:g} s make a table of more than {_MOST} numbers")
-    count = max(1, round(duration / step))
-    time = np.arange(count + 1) / (count / duration)
+    time = grid_of(duration, step, len(system.states) + len(system.inputs) + len(system.outputs) + 1)
     initial = np.array(system.values("states") if start is None else start, dtype=float)
     straight = all(signal.straight for signal in signals.values())
     if rates is None and straight and is_linear(system):
         return _exact(system, linearize(system, [0.0] * len(initial), [0.0] * len(system.inputs)), signals, time, initial)
     return _integrated(system, signals, time, initial, rates or _rates(system))
+
+
+def grid_of(duration: float, step: float, columns: int) -> Floats:
+    """The times of a table with so many columns.
+
+    Raises: Refusal (HX407) for times that cannot be, and for a table that is too long.
+    """
+    import numpy as np
+
+    if not 0 < step <= duration < float("inf"):
+        raise refuse(codes.BAD_SIGNAL, f"a simulation of {duration:g} s in steps of {step:g} s; 0 < step <= duration")
+    if duration / step * columns > _MOST:
+        raise refuse(codes.BAD_SIGNAL, f"{duration:g} s in steps of {step:g} s make a table of more than {_MOST} numbers")
+    count = max(1, round(duration / step))
+    time: Floats = np.arange(count + 1) / (count / duration)
+    return time
 
 
 def _grid(time: Floats, signals: Mapping[str, Signal]) -> Floats:

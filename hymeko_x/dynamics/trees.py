@@ -243,7 +243,7 @@ def _rates(found: Trees) -> Callable[[Sequence[Number], Sequence[Number], Sequen
             moved = forward_dynamics(constants, whole.q, whole.v, tau)
         else:
             moved = reduced_acceleration(constants, whole, tau, found.closures, x[nz:])
-        return [*_position_rates(links, x[:nz], x[nz:]), *moved]
+        return [*position_rates(links, x[:nz], x[nz:]), *moved]
 
     return rates
 
@@ -256,11 +256,11 @@ def reduced_acceleration(
     mass = mass_matrix(constants, whole.q)
     against = inverse_dynamics(constants, whole.q, whole.v)
     force = [add(add(t, minus(b)), minus(dot(row, whole.drift))) for t, b, row in zip(tau, against, mass, strict=True)]
-    reduced = reduced_mass(mass, whole)
+    inertia = reduced(mass, whole)
     own = [dot(column, force) for column in zip(*whole.ratios, strict=True)] if len(rate) < len(force) else force
     if not closures:
-        return solve(factorize(reduced), own)
-    return closed_acceleration(reduced, own, reduced_closing(closures, constants, whole), rate, STABILISATION)
+        return solve(factorize(inertia), own)
+    return closed_acceleration(inertia, own, reduced_closing(closures, constants, whole), rate, STABILISATION)
 
 
 def reduced_closing(closures: Sequence[Closure], constants: Constants, whole: Expanded) -> Closing:
@@ -273,16 +273,16 @@ def reduced_closing(closures: Sequence[Closure], constants: Constants, whole: Ex
     return Closing(closed.gap, slope, [add(d, dot(row, whole.drift)) for d, row in zip(closed.drift, closed.slope, strict=True)])
 
 
-def reduced_mass(mass: Matrix, whole: Expanded) -> Matrix:
-    """G' M G, the mass matrix of the independent coordinates."""
+def reduced(matrix: Matrix, whole: Expanded) -> Matrix:
+    """G' A G of a matrix A over all coordinates: over the independent ones."""
     columns = list(zip(*whole.ratios, strict=True))
-    if len(columns) == len(mass):
-        return mass
-    moved = [[dot(row, column) for row in mass] for column in columns]
+    if len(columns) == len(matrix):
+        return matrix
+    moved = [[dot(row, column) for row in matrix] for column in columns]
     return [[dot(one, other) for other in moved] for one in columns]
 
 
-def _position_rates(links: Sequence[Link], q: Sequence[Number], v: Sequence[Number]) -> list[Number]:
+def position_rates(links: Sequence[Link], q: Sequence[Number], v: Sequence[Number]) -> list[Number]:
     """How positions change at velocities: quaternions by half their product with the angular velocity, in the moving axes."""
     from hymeko_x.dynamics.spatial import of_quaternion, turned
 

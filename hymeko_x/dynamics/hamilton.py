@@ -1,0 +1,309 @@
+"""The port-Hamiltonian form of mechanisms: x = (q, p), H = p' M(q)^-1 p / 2 + V(q), x' = (J - R) dH/dx + G u, y = G' dH/dx.
+
+J = [[0, N], [-N', C]], where q' = N(q) v and C(p) turns the momenta of balls and free bodies with their own axes:
+p' = p x w of an angular momentum, and so on. R has the dampers, G the inputs. Energies are in J.
+Source: van der Schaft & Jeltsema, Port-Hamiltonian Systems Theory (2014), chapters 2 and 6.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from msgspec import Struct
+
+from hymeko_x import codes
+from hymeko_x.diagnostics import refuse
+from hymeko_x.dynamics.couplings import expanded, independent
+from hymeko_x.dynamics.drives import length_of
+from hymeko_x.dynamics.numbers import add, dot, factorize, graphs, solve, symbols, times
+from hymeko_x.dynamics.recursion import Constants, mass_matrix
+from hymeko_x.dynamics.spatial import composed, minus, plus, scaled, skew, turned
+from hymeko_x.dynamics.system import Variable
+from hymeko_x.dynamics.trees import position_rates, reduced
+from hymeko_x.ir.parts import DofKind
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from hymeko_x.dynamics.drives import Terms
+    from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
+    from hymeko_x.dynamics.spatial import Frame
+    from hymeko_x.dynamics.tree import Link
+    from hymeko_x.dynamics.trees import Trees
+
+    Floats = NDArray[np.floating[Any]]
+
+_ITERATIONS = 50
+_EXACT = 1e-12
+"""Newton's last step, relative to the state."""
+_TINY = 1e-300
+
+
+class Blocks(NamedTuple):
+    """What a form is made of at (q, p): mass matrix, potential energy, J, R, G."""
+
+    mass: Matrix
+    potential: Number
+    J: Matrix
+    R: Matrix
+    G: Matrix
+
+
+class Flow(NamedTuple):
+    """States and energies at n + 1 times; outputs y, and what dampers take (J), within each of the n steps between them."""
+
+    states: Floats
+    energies: Floats
+    outputs: Floats
+    losses: Floats
+
+
+class MechanicalHamiltonian(Struct, frozen=True, dict=True):
+    """The port-Hamiltonian form of a mechanism without loops, over its independent coordinates."""
+
+    found: Trees
+
+    @property
+    def links(self) -> list[Link]:
+        """The independent links."""
+        return independent(self.found.tree, self.found.followers)
+
+    @property
+    def states(self) -> tuple[Variable, ...]:
+        """Positions and momenta."""
+        system, links = self.found.system, self.links
+        count = sum(link.coordinates for link in links)
+        return (*system.states[:count], *[_momentum(variable) for variable in system.states[count:]])
+
+    def blocks(self, q: Sequence[Number], p: Sequence[Number], numbers: Numbers) -> Blocks:
+        """M, V, J, R and G at a state, on any number type."""
+        found, links = self.found, self.links
+        constants = Constants(found.tree, numbers, found.gravity)
+        whole = expanded(found.tree, found.followers, q, [0] * len(p), numbers)
+        mass = reduced(mass_matrix(constants, whole.q), whole)
+        resistance = reduced(_damping(found, numbers), whole)
+        driven = _driven(found, numbers)
+        columns = [[dot(column, force) for column in zip(*whole.ratios, strict=True)] for force in driven]
+        width = len(q) + len(p)
+        r: Matrix = [[0] * width for _ in q] + [[*[0] * len(q), *row] for row in resistance]
+        g: Matrix = [[0] * len(columns) for _ in q] + [[column[k] for column in columns] for k in range(len(p))]
+        return Blocks(mass, _potential(found, constants, whole.q, numbers), _structure(links, q, p), r, g)
+
+    # ---- as expressions of casadi ------------------------------------------------------------------------------------------------
+
+    @cached_property
+    def functions(self) -> Any:
+        """The casadi function x -> (H, dH/dx, J, R, G)."""
+        import casadi
+
+        x = casadi.SX.sym("x", len(self.states))
+        count = sum(link.coordinates for link in self.links)
+        whole = [x[k] for k in range(x.numel())]
+        q, p = whole[:count], whole[count:]
+        blocks = self.blocks(q, p, graphs())
+        energy = dot(p, solve(factorize(blocks.mass), p)) / 2 + blocks.potential
+        matrices = [_expressions(matrix) for matrix in blocks[2:]]
+        return casadi.Function("form", [x], [energy, casadi.gradient(energy, x), *matrices], ["x"], ["H", "e", "J", "R", "G"])
+
+    @cached_property
+    def _step(self) -> Any:
+        """The casadi function (x0, x1, u, h) -> what is missing to a step, its derivative by x1, y, and what dampers take."""
+        import casadi
+
+        n, m = len(self.states), len(self.found.system.inputs)
+        a, b, u, h = casadi.SX.sym("a", n), casadi.SX.sym("b", n), casadi.SX.sym("u", m), casadi.SX.sym("h")
+        before, after = self.functions(a)[0], self.functions(b)[0]
+        _, middle, j, r, g = self.functions((a + b) / 2)
+        change = b - a
+        gradient = middle + change * (after - before - casadi.dot(middle, change)) / (casadi.dot(change, change) + _TINY)
+        missing = change - h * (casadi.mtimes(j - r, gradient) + casadi.mtimes(g, u))
+        lost = h * casadi.dot(gradient, casadi.mtimes(r, gradient))
+        return casadi.Function("step", [a, b, u, h], [missing, casadi.jacobian(missing, b), casadi.mtimes(g.T, gradient), lost])
+
+    def state(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
+        """The state at positions and velocities of the independent coordinates."""
+        import numpy as np
+
+        from hymeko_x.dynamics.numbers import floats
+
+        mass = np.array(self.blocks(q, [0.0] * len(v), floats()).mass, dtype=float)
+        return [*q, *(mass @ np.array(v, dtype=float)).tolist()]
+
+    def simulate(self, start: Sequence[float], inputs: Floats, step: float) -> Flow:
+        """The flow from a state by Gonzalez' discrete gradient, ``inputs`` (n, m) held within each of n steps.
+
+        The energy grows in every step by step * y'u less what dampers take, but for rounding; quaternions keep their length.
+        Source: O. Gonzalez, Time integration and discrete Hamiltonian systems (1996).
+
+        Raises: Refusal (HX409) where a step has no solution.
+        """
+        import numpy as np
+
+        states, outputs, losses = [np.array(start, dtype=float)], [], []
+        for number, u in enumerate(inputs):
+            x = states[-1]
+            after = x + 1e-3 * step if number == 0 else 2 * x - states[-2]
+            after, output, lost = self._advanced(x, after, u, step, number)
+            states.append(after)
+            outputs.append(output)
+            losses.append(lost)
+        energies = [float(self.functions(x)[0]) for x in states]
+        return Flow(np.array(states), np.array(energies), np.array(outputs).reshape(len(outputs), -1), np.array(losses))
+
+    def _advanced(self, x: Floats, guess: Floats, u: Floats, step: float, number: int) -> tuple[Floats, Floats, float]:
+        import numpy as np
+
+        after = guess
+        for _ in range(_ITERATIONS):
+            missing, slope, output, lost = (np.array(value, dtype=float) for value in self._step(x, after, u, step))
+            change = np.linalg.solve(slope, missing[:, 0]) if np.isfinite(slope).all() else np.full(len(x), np.nan)
+            after = after - change
+            if not np.isfinite(after).all():
+                break
+            if np.abs(change).max() <= _EXACT * (1.0 + np.abs(after).max()):
+                return after, output[:, 0], float(lost[0, 0])
+        message = f"the step at {number * step:.6g} s has no solution; a shorter --step may have one"
+        raise refuse(codes.SIMULATION_FAILED, message)
+
+
+def _expressions(matrix: Matrix) -> Any:
+    import casadi
+
+    return casadi.vertcat(*[casadi.horzcat(*row) if row else casadi.SX(1, 0) for row in matrix])
+
+
+def mechanical_hamiltonian(found: Trees) -> MechanicalHamiltonian:
+    """The port-Hamiltonian form of a mechanism.
+
+    Raises: Refusal (HX408) for closed loops, whose forces are no ports.
+    """
+    if found.closures:
+        loop = found.closures[0].id
+        message = f"{loop} closes a loop; there is no port-Hamiltonian form over independent coordinates"
+        raise refuse(codes.NO_FORM, message, found.mechanism.origin(loop), element=str(loop), hint="--form state-space")
+    return MechanicalHamiltonian(found)
+
+
+def _momentum(velocity: Variable) -> Variable:
+    stem, _, last = velocity.name.rpartition(".")
+    name = f"{stem}.momentum" if last == "velocity" else f"{stem}.p{last}"
+    return Variable(
+        name, "kg*m/s" if velocity.unit == "m/s" else "kg*m^2/s", velocity.symbol.replace(r"\dot q", "p"), element=velocity.element
+    )
+
+
+# ---- blocks ------------------------------------------------------------------------------------------------------------------------
+
+
+def _potential(found: Trees, constants: Constants, q: Sequence[Number], numbers: Numbers) -> Number:
+    """The energy of weights, springs of joints and tendons, and of actuators that pull by position."""
+    energy: Number = 0
+    world: list[Frame] = []
+    frames = constants.link_frames(q)
+    up = constants.pull.linear
+    for link, frame, inertia in zip(found.tree.links, frames, constants.inertias, strict=True):
+        world.append(composed(world[link.parent], frame) if link.parent >= 0 else frame)
+        moment = plus(scaled(world[-1].position, inertia.mass), turned(world[-1].rotation, inertia.moment))
+        energy = add(energy, dot(up, moment))
+        if link.dof.stiffness and link.coordinates == 1:
+            stretch = add(q[link.q], numbers.exact(-link.dof.spring_ref))
+            energy = add(energy, times(numbers.exact(link.dof.stiffness) / 2, times(stretch, stretch)))
+    for cable in found.cables:
+        stretch = add(length_of(cable.terms, found.tree, q, numbers), numbers.exact(-cable.rest))
+        energy = add(energy, times(numbers.exact(cable.stiffness) / 2, times(stretch, stretch)))
+    for motor in found.motors or ():
+        length = length_of(motor.terms, found.tree, q, numbers)
+        constant, slope = (numbers.exact(value) for value in motor.bias[:2])
+        energy = add(energy, minus(add(times(constant, length), times(slope / 2, times(length, length)))))
+    return energy
+
+
+def _damping(found: Trees, numbers: Numbers) -> Matrix:
+    """What resists velocities: the dampers of joints, tendons and actuators."""
+    count = found.tree.nv
+    matrix: Matrix = [[0] * count for _ in range(count)]
+    for link in found.tree.links:
+        for k in range(link.v, link.v + link.velocities):
+            matrix[k][k] = numbers.exact(link.dof.damping) if link.dof.damping else 0
+    along = [(cable.terms, cable.damping) for cable in found.cables]
+    along += [(motor.terms, -motor.bias[2]) for motor in found.motors or ()]
+    for terms, damping in along:
+        row = _row(found, terms, numbers)
+        for i, a in enumerate(row):
+            matrix[i] = [add(x, times(times(numbers.exact(damping), a), b)) for x, b in zip(matrix[i], row, strict=True)]
+    return matrix
+
+
+def _row(found: Trees, terms: Terms, numbers: Numbers) -> list[Number]:
+    row: list[Number] = [0] * found.tree.nv
+    for place, factor in terms:
+        row[found.tree.links[place].v] = numbers.exact(factor)
+    return row
+
+
+def _driven(found: Trees, numbers: Numbers) -> list[list[Number]]:
+    """The forces of all coordinates for a unit of each input."""
+    if found.motors is not None:
+        return [[times(numbers.exact(motor.gain), x) for x in _row(found, motor.terms, numbers)] for motor in found.motors]
+    scalar = [link for link in independent(found.tree, found.followers) if link.velocities == 1]
+    return [[int(k == link.v) for k in range(found.tree.nv)] for link in scalar]
+
+
+def _structure(links: Sequence[Link], q: Sequence[Number], p: Sequence[Number]) -> Matrix:
+    """J: how positions follow velocities, and what turning axes do to momenta."""
+    columns = [position_rates(links, q, [int(k == j) for j in range(len(p))]) for k in range(len(p))]
+    turns = _turns(links, p)
+    upper = [[*[0] * len(q), *[column[i] for column in columns]] for i in range(len(q))]
+    return upper + [[*[minus(x) for x in column], *turn] for column, turn in zip(columns, turns, strict=True)]
+
+
+def _turns(links: Sequence[Link], p: Sequence[Number]) -> Matrix:
+    """C(p), antisymmetric: l' = l x w and a' = l x v + a x w of a free body with the linear momentum l and the angular one a."""
+    matrix: Matrix = [[0] * len(p) for _ in p]
+    at = 0
+    for link in links:
+        own, first = list(p[at : at + link.velocities]), at
+        at += link.velocities
+        if link.dof.kind is DofKind.BALL:
+            _place(matrix, first, first, skew(own))
+        elif link.dof.kind is DofKind.FREE:
+            for row, column, momentum in ((0, 3, own[:3]), (3, 0, own[:3]), (3, 3, own[3:])):
+                _place(matrix, first + row, first + column, skew(momentum))
+    return matrix
+
+
+def _place(matrix: Matrix, row: int, column: int, block: Matrix) -> None:
+    for i, values in enumerate(block):
+        matrix[row + i][column : column + 3] = values
+
+
+# ---- formulas ------------------------------------------------------------------------------------------------------------------------
+
+
+class Formulas(NamedTuple):
+    """The form in symbols: M and V over q1, q2, ..., and J, R, G over p1, p2, ... as well."""
+
+    mass: Any
+    potential: Any
+    J: Any
+    R: Any
+    G: Any
+
+
+def formulas_of(form: MechanicalHamiltonian) -> Formulas:
+    """The form as formulas of sympy, numbers as fractions. For a handful of dofs."""
+    import sympy
+
+    links = form.links
+    q = [sympy.Symbol(f"q{k}", real=True) for k in range(1, sum(link.coordinates for link in links) + 1)]
+    p = [sympy.Symbol(f"p{k}", real=True) for k in range(1, sum(link.velocities for link in links) + 1)]
+    blocks = form.blocks(q, p, symbols())
+    width, inputs = len(q) + len(p), len(form.found.system.inputs)
+    shapes = ((len(p), len(p)), (width, width), (width, width), (width, inputs))
+    matrices = (blocks.mass, blocks.J, blocks.R, blocks.G)
+    m, j, r, g = (sympy.Matrix(*shape, [x for row in rows for x in row]) for shape, rows in zip(shapes, matrices, strict=True))
+    return Formulas(m.applyfunc(sympy.trigsimp), sympy.trigsimp(blocks.potential), j, r, g)
