@@ -11,7 +11,7 @@ from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.mechanism import WORLD, Id
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED
@@ -23,10 +23,11 @@ from hymeko_x.source import PackageFiles
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from hymeko_x.compare.diff import Difference
     from hymeko_x.formats import Format
     from hymeko_x.ir.mechanism import JointView, Mechanism
     from hymeko_x.rewrite import Options
-    from hymeko_x.source import Source
+    from hymeko_x.source import Files, Source
 
 _BASES = ("fixed", "free")
 _ACTUATORS = ("none", "motor", "position", "velocity")
@@ -63,11 +64,29 @@ class Conversion:
         """
         guess = self._found_out(self._guess(options, pipeline.Place(self.folder, package=disk.package_uri(self.folder))))
         self._report_found(options, guess)
+        self._used = guess
         residue = residue_of(self.mechanism, guess.image)
         names = renames(self.edited, guess.image)
         restored = restore(with_old_names(self._with_inertials(guess.image), names), residue, self.notes).mechanism
         ours = dict(residue.alignment.names)
-        return with_new_names(restored, {new: ours.get(old, old) for new, old in names.items()})
+        return with_new_names(restored, {new: ours.get(old, old) for new, old in names.items() if ours.get(old) != WORLD})
+
+    def missing(self, source: Source) -> list[str]:
+        """The edits that did not arrive, in words: what the edited file has otherwise than ORIGINAL with its new text, converted again."""
+        changed, edits = self._against(self._used.image)
+        if not changed and not edits:
+            return []
+        home = pipeline.read(source, self.home, Report(), lenient=True)
+        names, rest = self._against(self._converted(home, self._used.options, self._used.place, source.files))
+        new_names = {old: new for new, old in changed.items() if new not in names}
+        known = {(new_names.get(edit.element, edit.element), *edit[1:]) for edit in edits}
+        named = [f"{old.kind} '{old.name}' is called '{new.name}'" for new, old in names.items() if new in changed]
+        return named + [str(edit) for edit in rest if tuple(edit) in known and _is_telling(edit)]
+
+    def _against(self, image: Mechanism) -> tuple[dict[Id, Id], tuple[Difference, ...]]:
+        """The old ids of elements that the edited file calls otherwise than an image, by their new ones, and what else differs."""
+        names = renames(self.edited, image)
+        return names, diff(image, with_old_names(self.edited, names), TOLERANCE)
 
     def _with_inertials(self, image: Mechanism) -> Mechanism:
         """The edited robot; a body without an inertial, where the image has one or has no such body, has what the engine computes."""
@@ -79,10 +98,13 @@ class Conversion:
         return self.edited.with_graph(self.edited.graph.replace(vertices={key: complete.graph.vertices[key] for key in bare}))
 
     def _guess(self, options: Options, place: pipeline.Place) -> Guess:
-        files = self.source.files
-        package = pipeline.write(self.mechanism, self.format, options, files, Report(), place)
-        image = pipeline.read_back(package, self.format, PackageFiles(package, files))
-        return Guess(options, place, image, len(diff(image, with_old_names(self.edited, renames(self.edited, image)), TOLERANCE)))
+        image = self._converted(self.mechanism, options, place, self.source.files)
+        return Guess(options, place, image, len(self._against(image)[1]))
+
+    def _converted(self, mechanism: Mechanism, options: Options, place: pipeline.Place, files: Files) -> Mechanism:
+        """A mechanism as the format has it. Raises: as :func:`hymeko_x.pipeline.write`."""
+        package = pipeline.write(mechanism, self.format, options, files, Report(), place)
+        return pipeline.read_back(package, self.format, PackageFiles(package, files))
 
     def _found_out(self, first: Guess) -> Guess:
         """The guess with the fewest differences, one option after the other; only those that may explain some are tried."""
@@ -133,6 +155,18 @@ class Conversion:
         found = [f"--{name} {value}" for name, value in names.items() if value != given[name]]
         if found:
             self.report.note(codes.OPTIONS_FOUND, f"the file was converted with {' '.join(found)}, as far as can be seen")
+
+
+def _is_telling(edit: Difference) -> bool:
+    """Whether a difference that is left is an edit, and not a value that one of two equal robots leaves to be computed."""
+    if None in (edit.before, edit.after):
+        return edit.element.kind in _WHOLE and not edit.field
+    is_weight = edit.element.kind == "shape" and edit.field in ("mass", "density")
+    return edit.element != ROOT and not is_weight and "none" not in (edit.before, edit.after)
+
+
+_WHOLE = frozenset({"body", "joint", "actuator", "sensor", "camera", "light", "coupling", "loop", "tendon", "contact"})
+"""The kinds of elements that no format computes from others."""
 
 
 def _on_world(robot: Mechanism) -> Iterator[JointView]:

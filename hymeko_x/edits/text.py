@@ -62,8 +62,8 @@ class EditedFiles(PackagesBehind, frozen=True):
     changed: Mapping[str, bytes]
 
     def find(self, uri: str) -> str | None:
-        """The path of a file."""
-        return self.behind.find(uri)
+        """The path of a file, or the uri of one that is new."""
+        return self.behind.find(uri) or (uri if uri in self.changed else None)
 
     def read(self, path: str) -> bytes:
         """The content of a path that :meth:`find` returned. Raises: OSError."""

@@ -16,7 +16,7 @@ from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Origin, Report, refuse
 from hymeko_x.edits.conversion import Conversion, new_assets
-from hymeko_x.edits.text import Texts, text_with_edits
+from hymeko_x.edits.text import EditedFiles, Texts, text_with_edits
 from hymeko_x.ir.parts import Mesh, Texture
 from hymeko_x.rewrite import Options
 
@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from hymeko_x.source import Source
 
 _ASSETS = "meshes"
+_MOST_MISSING = 10
+"""How many edits that did not arrive are listed."""
 
 
 class Updated(Struct, frozen=True):
@@ -88,11 +90,23 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
         report.warn(codes.EDIT_DROPPED, message, before.origin(edit.element), element=str(edit.element))
     edits = tuple([edit for edit in every if edit not in lost])
     texts = text_with_edits(original, format, before, after, report) if edits else Texts({}, {})
+    if not lost:
+        files = EditedFiles(original.files, {**texts.changed, **beside, **texts.beside})
+        text = texts.changed.get(original.name, original.data)
+        _report_missing(conversion.missing(replace(original, data=text, files=files)), original, report)
     if not texts.changed:  # the original is the same already, in the words of its own format
         return Updated(before, (), original.data, {}, {}, {}, report)
     report.extend(notes)
     old = {path: original.data if path == original.name else original.files.read(path) for path in texts.changed}
     return Updated(replace(after, origins=before.origins), edits, original.data, texts.changed, old, {**beside, **texts.beside}, report)
+
+
+def _report_missing(missing: list[str], original: Source, report: Report) -> None:
+    """Warn of edits that have no place in the original, by what the edited file has."""
+    for words in missing[:_MOST_MISSING]:
+        report.warn(codes.EDIT_DROPPED, f"the edit did not arrive: {words}", Origin(original.name))
+    if len(missing) > _MOST_MISSING:
+        report.warn(codes.EDIT_DROPPED, f"{len(missing) - _MOST_MISSING} more edits did not arrive", Origin(original.name))
 
 
 def _dropped(edits: tuple[Difference, ...], after: Mechanism, original: Source, format: Format) -> list[Difference]:
