@@ -5,7 +5,10 @@ from __future__ import annotations
 import errno
 import io
 import os
+import shutil
+import stat
 import zipfile
+import zlib
 from pathlib import Path, PurePosixPath
 from typing import IO, TYPE_CHECKING, NamedTuple
 
@@ -14,9 +17,15 @@ from hymeko_x.diagnostics import Origin, Refusal, refuse
 from hymeko_x.source import KEPT_SUFFIX
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
+DAMAGED = (zipfile.BadZipFile, zlib.error, NotImplementedError, RuntimeError, EOFError, ValueError)
+"""The exceptions of `zipfile` for archives that are damaged, encrypted or of an unknown kind."""
 MOST_BYTES = 2**30
+"""So large may be a file that is read from an archive."""
+MOST_UNPACKED = 4 * 2**30
+MOST_MEMBERS = 200_000
+"""So many bytes, and files, may be unpacked from one archive."""
 _STEM = "model"
 """The name of the main file without its suffix: engines find it whatever the archive is called."""
 _EPOCH = (1980, 1, 1, 0, 0, 0)
@@ -59,7 +68,7 @@ def read_inside(archive: str | IO[bytes], name: str) -> bytes:
             if opened.getinfo(name).file_size > MOST_BYTES:
                 raise OSError(errno.EFBIG, os.strerror(errno.EFBIG), name)
             return opened.read(name)
-    except (zipfile.BadZipFile, KeyError, NotImplementedError, RuntimeError, EOFError, ValueError) as error:
+    except (KeyError, *DAMAGED) as error:
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name) from error
 
 
@@ -118,12 +127,34 @@ def packed(contents: Iterable[tuple[str, bytes]]) -> bytes:
     return data.getvalue()
 
 
-def unpack(archive: str, folder: Path) -> None:
-    """Write the files of an archive into a folder, but for those whose names lead out of it. Raises: OSError."""
-    for name in sorted(names_in(archive)):
-        relative = PurePosixPath(name)
-        if name.endswith("/") or relative.is_absolute() or ".." in relative.parts or "\\" in name or ":" in name:
-            continue
-        place = folder / relative
-        place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_bytes(read_inside(archive, name))
+def unpack(archive: Path, folder: Path, wants: Callable[[str], bool]) -> None:
+    """Unpack the members of a zip file that are wanted into a new folder.
+
+    Raises: Refusal HX212 when a member would land outside the folder or is a link, HX007 when there is too much;
+    one of DAMAGED when the archive is.
+    """
+    with zipfile.ZipFile(archive) as zipped:
+        members = [member for member in zipped.infolist() if not member.is_dir() and wants(member.filename)]
+        check_members(archive.name, members)
+        for member in members:
+            target = folder / member.filename
+            target.parent.mkdir(parents=True, exist_ok=True)
+            with zipped.open(member) as packed, target.open("wb") as file:
+                shutil.copyfileobj(packed, file, 2**20)
+
+
+def check_members(archive: str, members: list[zipfile.ZipInfo]) -> None:
+    """Look at every name and size before anything is written. (Reading stops at the declared size, so that cannot lie.)"""
+    for member in members:
+        if not stays_inside(member.filename) or stat.S_ISLNK(member.external_attr >> 16):
+            raise refuse(codes.PACKAGE_DAMAGED, f"{archive} holds '{member.filename}', which would leave the folder")
+    total = sum(member.file_size for member in members)
+    if total > MOST_UNPACKED or len(members) > MOST_MEMBERS:
+        allowed = f"{MOST_MEMBERS} files, {MOST_UNPACKED} bytes"
+        raise refuse(codes.TOO_LARGE, f"{archive} unpacks to {len(members)} files, {total} bytes; allowed: {allowed}")
+
+
+def stays_inside(name: str) -> bool:
+    """Whether a member's name stays below the folder that it is unpacked into, on every platform."""
+    path = PurePosixPath(name)
+    return bool(path.parts) and not path.is_absolute() and ".." not in path.parts and "\\" not in name and ":" not in name

@@ -146,3 +146,14 @@ def test_several_robots_become_an_archive_each(source: Path, tmp_path: Path) -> 
     second = shutil.copy(source, source.with_name("second.urdf"))
     assert cli.main(["convert", str(source), str(second), "--to", "mjcf", "--assets", "pack", "-o", f"{tmp_path}/out/"]) == 0
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["r.mjz", "second.mjz"]
+
+
+def test_an_archive_with_damaged_data_is_refused(tmp_path: Path) -> None:
+    with zipfile.ZipFile(tmp_path / "r.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("r.urdf", '<robot name="r">' + '<link name="base"/>' * 50 + "</robot>")
+    data = bytearray((tmp_path / "r.zip").read_bytes())
+    data[40:60] = bytes(20)
+    (tmp_path / "r.zip").write_bytes(data)
+    for use in (hx.load, lambda path: hx.verify(path, path)):
+        with pytest.raises(Refusal):
+            use(tmp_path / "r.zip")

@@ -13,6 +13,7 @@ import msgspec
 import pytest
 
 from hymeko_x import codes
+from hymeko_x.assets import archives
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal
 
@@ -225,7 +226,7 @@ def test_an_archive_that_would_write_elsewhere_is_refused_whole(name: str, tmp_p
         zipped.writestr("good.urdf", "<robot/>")
         zipped.writestr(name, "<robot/>")
     with pytest.raises(Refusal, match="which would leave the folder") as refusal:
-        cache.unpack(tmp_path / "evil.whl", tmp_path / "to", lambda _: True)
+        archives.unpack(tmp_path / "evil.whl", tmp_path / "to", lambda _: True)
     assert refusal.value.diagnostic.code == codes.PACKAGE_DAMAGED
     assert not (tmp_path / "to").exists()
 
@@ -236,15 +237,15 @@ def test_a_link_in_an_archive_is_refused(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "evil.whl", "w") as zipped:
         zipped.writestr(link, "/etc/passwd")
     with pytest.raises(Refusal, match="which would leave the folder"):
-        cache.unpack(tmp_path / "evil.whl", tmp_path / "to", lambda _: True)
+        archives.unpack(tmp_path / "evil.whl", tmp_path / "to", lambda _: True)
 
 
 def test_an_archive_that_grows_without_bound_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cache, "MOST_BYTES", 2**20)
+    monkeypatch.setattr(archives, "MOST_UNPACKED", 2**20)
     with zipfile.ZipFile(tmp_path / "bomb.whl", "w", zipfile.ZIP_DEFLATED) as zipped:
         zipped.writestr("zeros.stl", bytes(2**20 + 1))
     with pytest.raises(Refusal, match="unpacks to 1 files, 1048577 bytes; allowed") as refusal:
-        cache.unpack(tmp_path / "bomb.whl", tmp_path / "to", lambda _: True)
+        archives.unpack(tmp_path / "bomb.whl", tmp_path / "to", lambda _: True)
     assert refusal.value.diagnostic.code == codes.TOO_LARGE
 
 

@@ -78,8 +78,8 @@ def _read_inside(within: archives.Inside, lookup: Lookup) -> KinematicModel:
     """The robot in a file of an archive, which is unpacked meanwhile: few engines open archives. Raises: as :func:`read`."""
     with tempfile.TemporaryDirectory() as folder:
         try:
-            archives.unpack(within.archive, Path(folder))
-        except OSError as error:
+            archives.unpack(Path(within.archive), Path(folder), archives.stays_inside)
+        except (OSError, *archives.DAMAGED) as error:
             raise refuse(codes.CANNOT_READ, f"cannot be unpacked: {error}", Origin(within.archive)) from error
         return read(Path(folder, within.name), lookup)
 
