@@ -11,7 +11,8 @@ from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Report
-from hymeko_x.ir.mechanism import ROOT, WORLD, Id
+from hymeko_x.edits.poses import with_edited_poses
+from hymeko_x.ir.mechanism import WORLD, Id
 from hymeko_x.ir.parts import Actuator, Body, Mesh, Texture
 from hymeko_x.residue.delta import residue_of
 from hymeko_x.residue.landmarks import NAMED
@@ -69,7 +70,8 @@ class Conversion:
         names = renames(self.edited, guess.image)
         restored = restore(with_old_names(self._with_inertials(guess.image), names), residue, self.notes).mechanism
         ours = dict(residue.alignment.names)
-        return with_new_names(restored, {new: ours.get(old, old) for new, old in names.items() if ours.get(old) != WORLD})
+        named = with_new_names(restored, {new: ours.get(old, old) for new, old in names.items() if ours.get(old) != WORLD})
+        return with_edited_poses(named, guess.image, self.edited, self.format)
 
     def missing(self, source: Source) -> list[str]:
         """The edits that did not arrive, in words: what the edited file has otherwise than ORIGINAL with its new text, converted again."""
@@ -162,7 +164,7 @@ def _is_telling(edit: Difference) -> bool:
     if None in (edit.before, edit.after):
         return edit.element.kind in _WHOLE and not edit.field
     is_weight = edit.element.kind == "shape" and edit.field in ("mass", "density")
-    return edit.element != ROOT and not is_weight and "none" not in (edit.before, edit.after)
+    return not is_weight and "none" not in (edit.before, edit.after)
 
 
 _WHOLE = frozenset({"body", "joint", "actuator", "sensor", "camera", "light", "coupling", "loop", "tendon", "contact"})

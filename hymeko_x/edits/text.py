@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import posixpath
 from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct
@@ -14,6 +16,7 @@ from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.edits.merging import merged
 from hymeko_x.edits.splicing import Lines
+from hymeko_x.residue.pairing import other_names
 from hymeko_x.rewrite import Options, legalize
 from hymeko_x.source import Source
 from hymeko_x.xml.unread import COMMENT
@@ -79,19 +82,35 @@ def text_with_edits(source: Source, format: Format, before: Mechanism, after: Me
     Raises: Refusal when the format cannot represent the mechanism.
     """
     attempt = _Attempt(source, format, before, after, report)
+    companion = _companion_with_edits(source, format, before, after)
     replaced: dict[Block, Id] = {}
     for _ in range(_MOST_TRIES):
         files = attempt.files(replaced)
         wrong = attempt.wrong(files)
         if wrong is None:
             _report_replaced(replaced.values(), source, report)
-            return Texts(files, attempt.beside)
+            return Texts({**files, **companion}, attempt.beside)
         more = None if wrong is _UNREADABLE else attempt.blocks_of(wrong)
         if more is None or more.keys() <= replaced.keys():
             break
         replaced |= more
     report.warn(codes.EDIT_REWRITTEN, f"the edits could not be placed in the text of '{source.name}', which is printed anew as a whole")
-    return Texts({source.name: attempt.whole}, attempt.beside)
+    return Texts({source.name: attempt.whole, **companion}, attempt.beside)
+
+
+def _companion_with_edits(source: Source, format: Format, before: Mechanism, after: Mechanism) -> dict[str, bytes]:
+    """The file that is read with a source (SRDF), if it changes."""
+    stem = posixpath.splitext(os.path.basename(source.name))[0]
+    path = next((path for suffix in format.companions if (path := source.files.find(f"{stem}{suffix}")) is not None), None)
+    if path is None or format.companion is None:
+        return {}
+    write, outline = formats.loaded(format.companion), formats.loaded(format.outline or "")
+    names = {old: new for new, old in other_names(after, before).items()}
+    prints = write(before, {}), write(after, names)
+    if prints[0] == prints[1] or not all(prints):
+        return {}
+    own, old, new = (outline(Source(path, data), Report()) for data in (source.files.read(path), *prints))
+    return {own.files[name].path: data for name, data in merged(own, old, new).items()}
 
 
 def _report_replaced(elements: Iterable[Id], source: Source, report: Report) -> None:

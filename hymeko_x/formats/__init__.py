@@ -63,6 +63,7 @@ URDF = Format(
     keeps_package_uris=True,
     layout_options=frozenset({"sites", "mesh_prefix"}),
     companions=(".srdf",),
+    companion="hymeko_x.backends.urdf.srdf:srdf_text",
     reference="hymeko_x.verify.readers.urdf",
     libraries=MappingProxyType({"pinocchio": "verify", "yourdfpy": "verify", "pydrake": "sdf"}),
     memory=MappingProxyType({"pinocchio": "hymeko_x.verify.readers.urdf.memory:load"}),

@@ -86,6 +86,8 @@ class Format(Struct, frozen=True):
     """The function ``mechanism -> texts``: the elements in which other formats hold what only it represents of its robots."""
     companions: tuple[str, ...] = ()
     """The suffixes of files of the same name beside one of its files that are read with it (SRDF)."""
+    companion: str | None = None
+    """The function ``(mechanism, names) -> bytes`` that prints such a file; ``names`` are new ids of elements by those in its extras."""
 
     # ---- its files
     archive: str = ZIP

@@ -8,7 +8,7 @@ from msgspec.structs import replace
 
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import srdf
-from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, numbers_weight
+from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, numbers_weight
 from hymeko_x.ir.parts import Body, Contact, PoseSet, Stance
 from hymeko_x.ir.values import numbers_text
 from hymeko_x.rewrite.roots import without
@@ -27,19 +27,30 @@ if TYPE_CHECKING:
 
 def srdf_beside(printed: Mechanism, _package: Package, _files: Files, options: Options) -> Mapping[str, bytes]:
     """The SRDF file of a robot that was printed as URDF, by its name; none where there is nothing to write."""
-    tags: list[Tag] = [*_extras(printed), *_poses(printed), *_exclusions(printed)]
+    text = srdf_text(printed, {})
+    return {f"{options.beside}{srdf.SUFFIX}": text} if text else {}
+
+
+def srdf_text(printed: Mechanism, names: Mapping[Id, Id]) -> bytes:
+    """The SRDF of a robot, empty where there is nothing to write. ``names`` are the new ids of links and joints that its extras name."""
+    tags: list[Tag] = [*_extras(printed, names), *_poses(printed), *_exclusions(printed)]
     if not tags:
-        return {}
+        return b""
     places = {name: place for place, name in enumerate(srdf.ORDER)}
     tags.sort(key=lambda tag: places.get(tag.name, len(places)))
     root = Tag("robot", {"name": printed.name}, tags)
-    return {f"{options.beside}{srdf.SUFFIX}": "\n".join(['<?xml version="1.0"?>', *render(root), ""]).encode()}
+    return "\n".join(['<?xml version="1.0"?>', *render(root), ""]).encode()
 
 
-def _extras(printed: Mechanism) -> Iterator[Tag]:
+def _extras(printed: Mechanism, names: Mapping[Id, Id]) -> Iterator[Tag]:
     for extra in printed.extras.get(ROOT, ()):
         if extra.format == words.FORMAT and extra.path == srdf.PATH:
-            yield tag_of(parse_text(extra.text))
+            top = parse_text(extra.text)
+            for node in top.walk():
+                for attribute, kind in srdf.REFERENCES.get(node.tag, {}).items():
+                    new = names.get(Id(kind, node.attributes.get(attribute, "")))
+                    node.attributes |= {} if new is None else {attribute: new.name}
+            yield tag_of(top)
 
 
 def tag_of(node: Node) -> Tag:

@@ -1,0 +1,40 @@
+"""Edits of named configurations that a format keeps as texts (keyframes), as edits of the poses that they were made of."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import formats
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.parts import Stance
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from hymeko_x.formats import Format
+    from hymeko_x.ir.mechanism import Id, Mechanism, RobotArc, RobotEdge
+
+
+def with_edited_poses(robot: Mechanism, image: Mechanism, edited: Mechanism, format: Format) -> Mechanism:
+    """The robot with the coordinates, in rad or m, that its named poses have in ``edited`` and not in ``image``; both are of the format."""
+    moved = {} if format.poses is None else _moved(dict(formats.loaded(format.poses)(image)), dict(formats.loaded(format.poses)(edited)))
+    changed: dict[Id, RobotEdge] = {}
+    for key, _, arcs in robot.edges(Stance):
+        values = next((moved[arc.target.name] for arc in arcs if arc.sign > 0 and arc.target.name in moved), {})
+        if any(arc.target in values for arc in arcs):
+            changed[key] = Edge(Stance(), tuple([_at(arc, values) for arc in arcs]))
+    return robot.with_graph(robot.graph.replace(edges=changed)) if changed else robot
+
+
+Poses = dict[str, "Mapping[Id, tuple[float, ...]]"]
+
+
+def _moved(before: Poses, after: Poses) -> Poses:
+    """The coordinates that differ, of each pose that both have."""
+    both = {name: (before[name], values) for name, values in after.items() if name in before}
+    found = {name: {key: at for key, at in new.items() if old.get(key) != at} for name, (old, new) in both.items()}
+    return {name: values for name, values in found.items() if values}
+
+
+def _at(arc: RobotArc, values: Mapping[Id, tuple[float, ...]]) -> RobotArc:
+    return Arc(arc.target, arc.sign, values[arc.target], arc.role) if arc.target in values else arc
