@@ -9,3 +9,4 @@ arm="$folder/arm"
 cp corpus/robots/arm6.hymeko "$arm.hymeko"
 for suffix in urdf xml xacro usda sdf; do hymeko-x convert -q "$arm.hymeko" "$arm.$suffix"; done
 hymeko-x render "$arm.hymeko" "$arm.urdf" "$arm.xml" "$arm.xacro" "$arm.usda" "$arm.sdf" --size 320x300 -o docs/pictures/arm.png
+hymeko-x dynamics corpus/listings/quarter_vehicle_model.hymeko --bode docs/pictures/bode.svg -o "$folder/quarter.txt"

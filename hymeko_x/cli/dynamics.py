@@ -34,6 +34,7 @@ def dynamics_arguments(parser: argparse.ArgumentParser) -> None:
     _mechanism_arguments(parser)
     parser.add_argument("--to", choices=_LANGUAGES, help="write the equations as a file of this kind (octave and simulink: linearised)")
     parser.add_argument("-o", "--output", type=Path, metavar="OUT", help="where to write (default: standard output)")
+    parser.add_argument("--bode", type=Path, metavar="OUT", help="draw the linear system's frequency responses into OUT.png, .svg or .pdf")
     parser.add_argument("--symbolic", action="store_true", help="formulas in the parameters instead of numbers")
     parser.add_argument("--style", choices=_STYLES, default="text", help="how to print them (default text)")
     parser.add_argument("--json", action="store_const", dest="style", const="json", help="the same as --style json")
@@ -43,6 +44,7 @@ def dynamics_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_dynamics(chosen: argparse.Namespace) -> int:
     """Print the equations of motion."""
+    from hymeko_x.dynamics.bode import draw_bode
     from hymeko_x.dynamics.linear import report_unstable
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.pages import page_of, printed
@@ -53,8 +55,11 @@ def run_dynamics(chosen: argparse.Namespace) -> int:
         show_diagnostics(report, chosen)
         return _write(found, chosen)
     text = printed(page_of(found, chosen.form, symbolic=chosen.symbolic, at=chosen.at), chosen.style)
-    if not chosen.symbolic:
-        report_unstable(found.state_space() if isinstance(found, Lumped) else found.state_space(chosen.at), report)
+    if not chosen.symbolic or chosen.bode:
+        space = found.state_space() if isinstance(found, Lumped) else found.state_space(chosen.at)
+        report_unstable(space, report)
+        if chosen.bode:
+            draw_bode(space, found.system.name, chosen.bode)
     show_diagnostics(report, chosen)
     if chosen.output is None:
         print(text, end="")

@@ -6,6 +6,7 @@ import csv
 import io
 import itertools
 import math
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
@@ -14,7 +15,10 @@ from hymeko_x.dynamics.signals import table
 from hymeko_x.ir.values import number_text
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
     from pathlib import Path
+
+    from matplotlib.figure import Figure
 
     from hymeko_x.dynamics.signals import Signal
     from hymeko_x.dynamics.simulation import Response
@@ -48,11 +52,13 @@ def write_table(response: Response, path: Path) -> None:
         raise refuse(codes.CANNOT_WRITE, f"'{path}' cannot be written: {error.strerror}") from error
 
 
-def draw(response: Response, title: str, path: Path) -> None:
-    """Draw the inputs above the outputs.
+@contextmanager
+def figure_file(path: Path, title: str) -> Iterator[Figure]:
+    """A figure that is written when the block ends.
 
     Raises: Refusal (HX002) when it cannot be written, HX003 for a suffix that matplotlib does not know.
     """
+    from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -60,22 +66,32 @@ def draw(response: Response, title: str, path: Path) -> None:
     canvas = FigureCanvasAgg(figure)
     if path.suffix[1:] not in canvas.get_supported_filetypes():
         raise refuse(codes.UNKNOWN_FORMAT, f"'{path}': a figure is written to .png, .svg or .pdf")
+    yield figure
+    figure.suptitle(title)
+    try:
+        with rc_context({"svg.hashsalt": title}):
+            figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
+    except OSError as error:
+        raise refuse(codes.CANNOT_WRITE, f"'{path}' cannot be written: {error.strerror}") from error
+
+
+def draw(response: Response, title: str, path: Path) -> None:
+    """Draw the inputs above the outputs.
+
+    Raises: Refusal (HX002) when it cannot be written, HX003 for a suffix that matplotlib does not know.
+    """
     inputs, _, outputs = response.names
     driven = [(variable, response.inputs[:, i]) for i, variable in enumerate(inputs) if not variable.rate_of]
     shown = (driven, [(variable, response.outputs[:, i]) for i, variable in enumerate(outputs)])
-    for axes, curves, kind in zip(figure.subplots(2, 1, sharex=True), shown, ("inputs", "outputs"), strict=True):
-        for variable, values in curves:
-            axes.plot(response.time, values, label=f"{variable.name} ({variable.unit})", linewidth=1)
-        axes.set_ylabel(kind)
-        axes.grid(alpha=0.3)
-        if curves:
-            axes.legend(loc="best")
-    axes.set_xlabel("time (s)")
-    figure.suptitle(title)
-    try:
-        figure.savefig(path)
-    except OSError as error:
-        raise refuse(codes.CANNOT_WRITE, f"'{path}' cannot be written: {error.strerror}") from error
+    with figure_file(path, title) as figure:
+        for axes, curves, kind in zip(figure.subplots(2, 1, sharex=True), shown, ("inputs", "outputs"), strict=True):
+            for variable, values in curves:
+                axes.plot(response.time, values, label=f"{variable.name} ({variable.unit})", linewidth=1)
+            axes.set_ylabel(kind)
+            axes.grid(alpha=0.3)
+            if curves:
+                axes.legend(loc="best")
+        axes.set_xlabel("time (s)")
 
 
 def read_signal(path: Path, column: str) -> Signal:
