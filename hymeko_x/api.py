@@ -62,7 +62,7 @@ class Writing(TypedDict, total=False):
     """What becomes of a base that the source leaves open (None = usual for the format). It belongs to the robot from then on."""
     actuators: Literal["none", "motor", "position", "velocity"] | None
     """The actuators to give it (None = those that it has). They belong to the robot from then on."""
-    layout: Literal["single", "layered"] | None
+    layout: Literal["single", "layered", "rep158"] | None
     """USD: one file, or an interface with files for geometry, materials and physics behind it."""
     nested: bool | None
     """USD: whether each body stands inside of its parent."""
@@ -198,7 +198,7 @@ def convert(
     assets: Assets = None,
     base: Literal["fixed", "free"] | None = None,
     actuators: Literal["none", "motor", "position", "velocity"] | None = None,
-    layout: Literal["single", "layered"] | None = None,
+    layout: Literal["single", "layered", "rep158"] | None = None,
     nested: bool | None = None,
     split: bool = False,
     sites: bool | None = None,

@@ -218,6 +218,7 @@ def _chosen(mechanism: Mechanism, format: Format, options: Options, files: Files
     stop_on_errors(report, since, lenient=options.lenient)
     mechanism = actuate(choose(mechanism, options, report, files=files_of(mechanism, files)), format.name, options, report)
     files = files_of(mechanism, files)
+    mechanism = mechanism if target is None else completed(mechanism, format, files, report)
 
     def printed(robot: Mechanism) -> Package:
         return _printed(robot, robot, format, replace(options, beside="", lenient=True), files, Report(), HERE).package

@@ -84,7 +84,7 @@ NEWTON = Peer(
     ),
     "newton_models.py",
 )
-VALIDATOR = Peer("omniverse-asset-validator", ("omniverse-asset-validator==1.18.0", "usd-core==26.11"), "validator.py")
+VALIDATOR = Peer("usd-validation-nvidia", ("usd-validation-nvidia==1.22.0", "usd-core==26.11", "numpy"), "validator.py")
 URDF2MJCF = Peer("urdf2mjcf", ("urdf2mjcf==0.2.39",), "urdf2mjcf_run.py")
 URDF_TO_MJCF = Peer("urdf-to-mjcf", ("urdf-to-mjcf==0.1.1",), "urdf_to_mjcf_run.py")
 MJCF_URDF = Peer("mjcf-urdf-simple-converter", ("mjcf-urdf-simple-converter==0.7.3",), "mjcf_urdf.py")

@@ -181,8 +181,8 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--for", dest="target", metavar="TARGET", help=for_help)
     where = "put meshes beside the output, refer to them where they are, or pack all into one archive (OUT.mjz, .zip, .usdz)"
     parser.add_argument("--assets", choices=("copy", "reference", "pack"), help=where)
-    layouts = "USD: one file, or an interface with files for geometry, materials and physics behind it"
-    parser.add_argument("--layout", choices=("single", "layered"), help=layouts)
+    layouts = "USD: one file, an interface with files for geometry, materials and physics behind it, or the layers of REP 158"
+    parser.add_argument("--layout", choices=("single", "layered", "rep158"), help=layouts)
     parser.add_argument("--nested", action="store_true", default=None, help="USD: put each body inside of its parent")
     beside = "keep what the format cannot represent in OUT.keep.hymeko beside the output, so that it comes back"
     parser.add_argument("--keep", "--keep=beside", dest="keep", action="store_const", const="beside", help=beside)

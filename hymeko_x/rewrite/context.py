@@ -33,7 +33,7 @@ class Options(Struct, frozen=True):
 
     base: Literal["fixed", "free"] | None = None
     actuators: Literal["none", "motor", "position", "velocity"] | None = None
-    layout: Literal["single", "layered"] | None = None
+    layout: Literal["single", "layered", "rep158"] | None = None
     nested: bool | None = None
     split: bool = False
     keep: Literal["beside", "inside"] | None = None

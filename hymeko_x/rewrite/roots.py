@@ -28,10 +28,10 @@ def put_world_link_into_world(mechanism: Mechanism, context: Context) -> Mechani
     body = mechanism.graph.vertices.get(_WORLD_LINK)
     if not isinstance(body, Body):
         return mechanism
-    if _WORLD_LINK not in mechanism.parent_joint and _massless(body):
+    if _WORLD_LINK not in mechanism.parent_joint and is_massless(body):
         return rename(with_world(mechanism), {_WORLD_LINK: WORLD})
     new = names_in_use(mechanism).take("body", "world_link")
-    why = "has a mass" if not _massless(body) else "is not the root"
+    why = "has a mass" if not is_massless(body) else "is not the root"
     context.report.warn(
         codes.RENAMED,
         f"link 'world' {why}, so it is not the world itself, which alone may have this name; it is written as '{new.name}'",
@@ -54,7 +54,8 @@ def report_open_bases(mechanism: Mechanism, context: Context) -> Mechanism:
     return mechanism
 
 
-def _massless(body: Body) -> bool:
+def is_massless(body: Body) -> bool:
+    """Whether a body has neither mass nor inertia."""
     inertial = body.inertial
     return inertial is None or (not inertial.mass and not any(inertial.tensor or ()))
 
@@ -71,7 +72,7 @@ def with_world(mechanism: Mechanism) -> Mechanism:
 
 def stands_for_world(root: Id, mechanism: Mechanism) -> bool:
     """Whether a root is the link without mass that stands for the world."""
-    return root.name.partition("#")[0] == WORLD.name and _massless(mechanism.vertex(root, Body))
+    return root.name.partition("#")[0] == WORLD.name and is_massless(mechanism.vertex(root, Body))
 
 
 def make_world_a_link(mechanism: Mechanism, _context: Context) -> Mechanism:

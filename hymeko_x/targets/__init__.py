@@ -66,8 +66,9 @@ PINOCCHIO = Target(
     "pinocchio", "Pinocchio 4.1, with mimic=True", ("urdf",), "hymeko_x.targets.pinocchio", MappingProxyType({"sites": True})
 )
 DRAKE = Target("drake", "Drake 1.51", ("urdf",), "hymeko_x.targets.drake")
-NEWTON = Target("newton", "Newton 1.8, and REP 158's rules for the whole stage", ("usd",), "hymeko_x.targets.newton")
-ISAAC = Target("isaac", "Isaac Sim 5, which takes the same stages as Newton", ("usd",), "hymeko_x.targets.newton")
+_LAYERS = MappingProxyType({"layout": "rep158"})
+NEWTON = Target("newton", "Newton 1.8, with stages that follow REP 158", ("usd",), "hymeko_x.targets.newton", _LAYERS)
+ISAAC = Target("isaac", "Isaac Sim 5, which takes the same stages as Newton", ("usd",), "hymeko_x.targets.newton", _LAYERS)
 GAZEBO = Target("gazebo", "Gazebo Sim 9 (Ionic)", ("sdf",), "hymeko_x.targets.gazebo")
 
 TARGETS: tuple[Target, ...] = (MUJOCO, MJX, ROS2, PINOCCHIO, DRAKE, NEWTON, ISAAC, GAZEBO)

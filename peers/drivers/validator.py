@@ -1,11 +1,11 @@
-"""omniverse-asset-validator: a stage in ``stage``; answers the ``issues`` that its rules find, without mere information."""
+"""usd-validation-nvidia: a stage in ``stage``; answers the ``issues`` that its rules find, without mere information."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from loop import answer_all
-from omni.asset_validator import IssueSeverity, ValidationEngine
+from usd_validation_nvidia import IssueSeverity, ValidationEngine
 
 
 def validate(job: dict[str, Any]) -> dict[str, Any]:

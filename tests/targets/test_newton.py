@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from pxr import Usd, UsdGeom, UsdPhysics
+from pxr import Usd, UsdPhysics
 
 import hymeko_x as hx
+from tests.usd.rep158 import problems
 
 ARM = """
 <mujoco model="my arm">
@@ -28,25 +29,6 @@ ARM = """
 """
 
 
-def rep_158_problems(path: Path) -> list[str]:
-    """What contradicts the rules of REP 158 (draft of 2026) for a stage as a whole: sections 1.1, 1.2.2 and 1.2.5."""
-    stage = Usd.Stage.Open(str(path))
-    layer, root = stage.GetRootLayer(), stage.GetDefaultPrim()
-    info = root.GetAssetInfo() if root else {}
-    rules = {
-        "metersPerUnit": layer.pseudoRoot.GetInfo("metersPerUnit") == 1.0,
-        "kilogramsPerUnit": layer.pseudoRoot.GetInfo("kilogramsPerUnit") == 1.0,
-        "upAxis": UsdGeom.GetStageUpAxis(stage) == "Z",
-        "timeCodesPerSecond": layer.HasTimeCodesPerSecond() and layer.timeCodesPerSecond == 1.0,
-        "defaultPrim": bool(root),
-        "assetInfo": bool(info.get("identifier")) and bool(info.get("version")),
-        "kind": Usd.ModelAPI(root).GetKind() in ("component", "assembly", "group"),
-        "relative paths": all(file.startswith("./") for file in layer.subLayerPaths),
-        "root transform": UsdGeom.Xformable(root).GetLocalTransformation() == type(UsdGeom.Xformable(root).GetLocalTransformation())(1.0),
-    }
-    return [name for name, holds in rules.items() if not holds]
-
-
 def forces(path: Path) -> dict[str, float]:
     """The greatest force of each driven joint."""
     found = {}
@@ -63,7 +45,7 @@ def forces(path: Path) -> dict[str, float]:
 def test_a_stage_keeps_the_rules_and_has_the_forces_of_the_actuators(target: str, base: str, tmp_path: Path) -> None:
     (tmp_path / "arm.xml").write_text(ARM.replace("BASE", base), "utf-8")
     result = hx.convert(tmp_path / "arm.xml", tmp_path / "arm.usda", target=target)
-    assert rep_158_problems(tmp_path / "arm.usda") == []
+    assert problems(tmp_path / "arm.usda") == []
     assert forces(tmp_path / "arm.usda") == {"shoulder": 40.0, "extend": 25.0}
     stage = Usd.Stage.Open(str(tmp_path / "arm.usda"))
     scenes = [prim for prim in stage.Traverse() if prim.IsA(UsdPhysics.Scene)]
@@ -75,7 +57,8 @@ def test_a_stage_keeps_the_rules_and_has_the_forces_of_the_actuators(target: str
 def test_without_a_target_the_rules_find_what_is_missing(tmp_path: Path) -> None:
     (tmp_path / "arm.xml").write_text(ARM.replace("BASE", ""), "utf-8")
     hx.convert(tmp_path / "arm.xml", tmp_path / "arm.usda")
-    assert rep_158_problems(tmp_path / "arm.usda") == ["timeCodesPerSecond", "assetInfo"]
+    found = {found.partition(":")[0] for found in problems(tmp_path / "arm.usda")}
+    assert found == {"1.1 units", "1.2.5 identity", "1.3 inertia", "1.3.4 contact", "1.4 engines"}
     assert forces(tmp_path / "arm.usda") == {}
 
 
@@ -85,4 +68,4 @@ def test_what_the_target_adds_is_no_loss_and_stays_within_usd(tmp_path: Path) ->
     assert [loss for loss in result.losses or () if loss.element == "mechanism" and loss.field.startswith("usd") and loss.before] == []
     again = hx.convert(tmp_path / "arm.usda", tmp_path / "again.usda", target="newton")
     assert again.losses == ()
-    assert rep_158_problems(tmp_path / "again.usda") == []
+    assert problems(tmp_path / "again.usda") == []

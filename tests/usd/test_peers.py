@@ -284,3 +284,17 @@ def test_the_asset_validator_finds_no_failure(layout: Literal["single", "layered
     answers = VALIDATOR.run(jobs)
     assert [answer["error"] for answer in answers if "error" in answer] == []
     assert [issue for answer in answers for issue in answer["issues"] if "WARNING" not in issue] == []
+
+
+@pytest.mark.parametrize("target", ["newton", "isaac"])
+def test_the_asset_validator_finds_no_failure_in_a_stage_for_a_target(target: str, tmp_path: Path) -> None:
+    need(VALIDATOR)
+    jobs = []
+    for path in [*files_of("urdf", [*VALIDATED, "Pendulum"]), *files_of("mjcf", ["yam", "car", "tendon"])]:
+        (tmp_path / path.stem).mkdir()
+        stage = tmp_path / path.stem / "robot.usda"
+        hx.convert(path, stage, target=target)
+        jobs.append({"stage": str(stage)})
+    answers = VALIDATOR.run(jobs)
+    assert [answer["error"] for answer in answers if "error" in answer] == []
+    assert [issue for answer in answers for issue in answer["issues"] if "WARNING" not in issue] == []

@@ -15,7 +15,7 @@ from hymeko_x.backends.usd.contacts import write_contacts, write_frictions
 from hymeko_x.backends.usd.couplings import write_mimics
 from hymeko_x.backends.usd.extras import restore_extras
 from hymeko_x.backends.usd.joints import write_joints, write_loops
-from hymeko_x.backends.usd.layers import encoded, set_points_aside, split, text_with_residue
+from hymeko_x.backends.usd.layers import encoded, set_points_aside, split, split_by_concern, text_with_residue
 from hymeko_x.backends.usd.materials import write_materials
 from hymeko_x.backends.usd.mounts import write_mounts
 from hymeko_x.backends.usd.shapes import write_shapes
@@ -61,6 +61,8 @@ def write(mechanism: Mechanism, options: Options, report: Report) -> Package:
 def write_layers(mechanism: Mechanism, options: Options, report: Report, suffix: str) -> dict[str, Any]:
     """The layers of the stage by file name, the one to open under an empty name."""
     layer = write_layer(mechanism, options, report)
+    if options.layout == words.REP_158 and options.beside:
+        return split_by_concern(layer, f"{options.within}{valid_name(mechanism.name)}_layers", suffix)
     if options.layout != "layered":
         return {"": layer}
     return split(layer, f"{options.within}{valid_name(mechanism.name)}_payload", suffix)

@@ -31,6 +31,19 @@ def _root(name: str, mechanism: Mechanism) -> str:
     return f'def Xform "{name}" (\n{schemas}{asset}{display}    kind = "component"\n)\n{{\n}}'
 
 
+def follow_rep_158(mechanism: Mechanism, context: Context) -> Mechanism:
+    """The stage has a layer for each concern and each engine, infinite limits, neutral couplings, and tensors as principal moments alone.
+
+    Source: REP 158 (draft of 2026), 1.3 Joint Limits, Inertia Representation and Extended Physics, and 1.4.
+    """
+    own = mechanism.notations.get(ROOT, {})
+    if own.get(words.PROFILE.name) == words.REP_158:
+        return mechanism
+    message = f"tensors are principal moments in single precision, and limits that joints do not have are infinite ({context.reason})"
+    context.report.note(codes.FOR_TARGET, message)
+    return replace(mechanism, notations={**mechanism.notations, ROOT: {**own, words.PROFILE.name: words.REP_158}})
+
+
 def describe_stage(mechanism: Mechanism, context: Context) -> Mechanism:
     """One time code is one second, the asset has an identifier and a version, and there is a scene; for robots of other formats.
 

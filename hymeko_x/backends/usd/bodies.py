@@ -54,7 +54,7 @@ def _write_body(sheet: UsdSheet, spec: Any, key: Id) -> None:
     apply(spec, "PhysicsRigidBodyAPI")
     inertial = sheet.mechanism.vertex(key, Body).inertial
     if inertial is not None:
-        write_inertial(spec, inertial, sheet.in_prim_space(key, inertial.com))
+        write_inertial(spec, inertial, sheet.in_prim_space(key, inertial.com), is_neutral=sheet.is_neutral)
 
 
 def _parents_first(mechanism: Mechanism) -> list[Id]:
@@ -105,8 +105,11 @@ _ROUNDING = 1e-12
 """Of the largest moment: a thin rod has no other about its axis."""
 
 
-def write_inertial(spec: Any, inertial: Inertial, com: Vec3) -> None:
-    """Mass, centre of mass (in the prim's space), and the tensor both as principal moments and as Newton's six doubles."""
+def write_inertial(spec: Any, inertial: Inertial, com: Vec3, *, is_neutral: bool = False) -> None:
+    """Mass, centre of mass (in the prim's space), and the tensor both as principal moments and as Newton's six doubles.
+
+    The neutral form is principal moments alone.
+    """
     apply(spec, "PhysicsMassAPI")
     if inertial.mass:  # a mass of 0 means that nothing was authored
         put(spec, "physics:mass", T.Float, inertial.mass)
@@ -117,6 +120,8 @@ def write_inertial(spec: Any, inertial: Inertial, com: Vec3) -> None:
     if max(moments) > 0.0 and min(moments) >= -_ROUNDING * max(moments):  # UsdPhysics takes three zeros for "not authored"
         put(spec, "physics:diagonalInertia", T.Float3, Gf.Vec3f(*(max(moment, 0.0) for moment in moments)))
         put(spec, "physics:principalAxes", T.Quatf, quatf(quat))
+    if is_neutral:
+        return
     apply(spec, "NewtonMassAPI")
     put(spec, "newton:inertia", T.DoubleArray, Vt.DoubleArray(list(inertial.tensor)))
 

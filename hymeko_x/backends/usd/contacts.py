@@ -56,6 +56,8 @@ def _write_material(sheet: UsdSheet, friction: tuple[float, ...]) -> Any:
     apply(spec, "PhysicsMaterialAPI")
     put(spec, "physics:staticFriction", T.Float, friction[0])
     put(spec, "physics:dynamicFriction", T.Float, friction[0])
+    if sheet.is_neutral:
+        put(spec, "physics:restitution", T.Float, 0.0)
     for value, mjc, newton in zip(friction[1:3], ("torsional", "rolling"), ("torsional", "rolling"), strict=False):
         apply(spec, "MjcMaterialAPI", "NewtonMaterialAPI")
         put(spec, f"mjc:{mjc}friction", T.Double, value)

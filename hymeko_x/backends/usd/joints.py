@@ -130,7 +130,7 @@ def write_frames(sheet: UsdSheet, spec: Any, key: Id, ends: tuple[End, End], dof
         _write_generic(spec, dofs)
     elif len(dofs) == 1 and dofs[0].kind in (DofKind.HINGE, DofKind.SLIDE):
         put(spec, "physics:axis", T.Token, token)
-        _write_limits(spec, dofs[0])
+        _write_limits(spec, dofs[0], is_neutral=sheet.is_neutral)
     for dof in dofs[:1]:
         write_behaviour(spec, dof)
 
@@ -156,10 +156,11 @@ def quat_between_x_and(axis: Vec3) -> Quat:
     return unit_quat(quat_product(quat_from_z(axis), quat_inverse(quat_from_z(X))))
 
 
-def _write_limits(spec: Any, dof: Dof) -> None:
-    for name, value in (("lower", dof.limits.lower), ("upper", dof.limits.upper)):
-        if value is not None:
-            put(spec, f"physics:{name}Limit", T.Float, _coordinate(dof, value))
+def _write_limits(spec: Any, dof: Dof, *, is_neutral: bool) -> None:
+    """Both limits; one that is not there is infinite, which is the default and written only where a profile wants it."""
+    for name, value, none in (("lower", dof.limits.lower, -math.inf), ("upper", dof.limits.upper, math.inf)):
+        if value is not None or is_neutral:
+            put(spec, f"physics:{name}Limit", T.Float, none if value is None else _coordinate(dof, value))
 
 
 def _coordinate(dof: Dof, value: float) -> float:

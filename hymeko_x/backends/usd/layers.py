@@ -20,13 +20,17 @@ if TYPE_CHECKING:
 
 
 GEOMETRY, MATERIALS, PHYSICS = ASPECTS = ("geometry", "materials", "physics")
+MUJOCO, NEWTON, PHYSX, OURS = ENGINES = ("mujoco", "newton", "physx", "hymeko")
 _CONTENTS = "contents"
-_PHYSICS = ("physics:", "mjc:", "newton:", "physx", "urdf:", "hymeko:", "drive:", "limit:", "state:", "collection:colliders")
+_BASE, _POINTS = "base", "geometries"
+_PHYSICS = ("physics:", "ext_physics:", "drive:", "limit:", "state:", "collection:colliders")
+_OF_ENGINES = {"mjc:": MUJOCO, "newton:": NEWTON, "physx": PHYSX, "urdf:": OURS, "hymeko:": OURS}
+_SCHEMAS_OF_ENGINES = {"Mjc": MUJOCO, "Newton": NEWTON, "Physx": PHYSX}
 _MATERIALS = ("material:binding", "inputs:", "outputs:", "info:")
-_PHYSICS_TYPES = ("Physics", "Mjc", "Newton", "Physx")
+_PHYSICS_TYPES = ("Physics", "ExtendedPhysics")
 _MATERIAL_TYPES = ("Material", "Shader", "NodeGraph")
 _MOST_IN_TEXT = 64
-_HEADER = ("metersPerUnit", "kilogramsPerUnit", "upAxis", "defaultPrim")
+_HEADER = ("metersPerUnit", "kilogramsPerUnit", "timeCodesPerSecond", "upAxis", "defaultPrim")
 
 
 def split(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
@@ -46,6 +50,35 @@ def split(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
         _write_interface(layer, interface, f"./{folder}/{_CONTENTS}{suffix}")
     parts = {f"{folder}/{aspect}{suffixes[aspect]}": part for aspect, part in aspects.items()}
     return {"": interface, f"{folder}/{_CONTENTS}{suffix}": contents} | parts
+
+
+def split_by_concern(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
+    """The layers of a stage by file name; the one to open, under an empty name, has the others of this folder as sublayers.
+
+    Poses and shapes are the base, long arrays a crate file below it; each engine has a layer of its own above the neutral physics.
+
+    Source: REP 158 (draft of 2026), 1.2.1 and 1.4. Payloads hide no body and no joint (1.2.3), so that there are none.
+    """
+    parts = {concern: Sdf.Layer.CreateAnonymous(".usda") for concern in (*ASPECTS, *ENGINES)}
+    interface = Sdf.Layer.CreateAnonymous(".usda")
+    with Sdf.ChangeBlock():
+        for part in parts.values():
+            _copy_header(layer, part, _HEADER)
+        _copy_header(layer, interface, [name for name in layer.pseudoRoot.ListInfoKeys() if name != "primChildren"])
+        for spec in _prims(layer):
+            _divide(spec, parts)
+        for part in parts.values():
+            _lead_out(part, "../" * len(folder.split("/")))
+        for root in layer.rootPrims:
+            _write_root(root, interface)
+    files = {_BASE if concern == GEOMETRY else concern: part for concern, part in parts.items() if part.rootPrims}
+    interface.subLayerPaths = [f"./{folder}/{name}{suffix}" for name in reversed(files)]
+    aside = set_points_aside(files[_BASE], f"{_POINTS}.usdc") if _BASE in files and suffix == ".usda" else {}
+    return (
+        {"": interface}
+        | {f"{folder}/{name}{suffix}": part for name, part in files.items()}
+        | {f"{folder}/{n}": p for n, p in aside.items()}
+    )
 
 
 def _has_meshes(layer: Any) -> bool:
@@ -106,22 +139,31 @@ def _prims(layer: Any) -> Iterator[Any]:
 def _write_interface(layer: Any, interface: Any, payload: str) -> None:
     """A prim for each root, which holds its content as a payload."""
     for root in layer.rootPrims:
-        spec = Sdf.CreatePrimInLayer(interface, root.path)
-        spec.specifier = root.specifier
-        if root.typeName:
-            spec.typeName = root.typeName
-        for name in ("kind", "displayName"):
-            if root.HasInfo(name):
-                spec.SetInfo(name, root.GetInfo(name))
+        spec = _write_root(root, interface)
         spec.payloadList.prependedItems = [Sdf.Payload(payload, root.path)]
+
+
+def _write_root(root: Any, interface: Any) -> Any:
+    """What a root is, without its content."""
+    spec = Sdf.CreatePrimInLayer(interface, root.path)
+    spec.specifier = root.specifier
+    if root.typeName:
+        spec.typeName = root.typeName
+    for name in ("kind", "displayName", "assetInfo"):
+        if root.HasInfo(name):
+            spec.SetInfo(name, root.GetInfo(name))
+    return spec
 
 
 # ---- which layer has which opinion -----------------------------------------------------------------------------------------------
 
 
 def _divide(spec: Any, aspects: dict[str, Any]) -> None:
-    """Each property and schema of a prim into the layer that it belongs to; the prim is defined where its type belongs."""
-    home = _home(str(spec.typeName))
+    """Each property and schema of a prim into the layer that it belongs to; the prim is defined where its type belongs.
+
+    What belongs to an engine without a layer of its own is physics.
+    """
+    home = _or_physics(_home(str(spec.typeName)), aspects)
     parts = {home: Sdf.CreatePrimInLayer(aspects[home], spec.path)}
     parts[home].specifier = spec.specifier
     if spec.typeName:
@@ -130,13 +172,13 @@ def _divide(spec: Any, aspects: dict[str, Any]) -> None:
         if name not in ("specifier", "typeName", "apiSchemas", "primChildren", "properties"):
             parts[home].SetInfo(name, spec.GetInfo(name))
     for item in spec.properties:
-        aspect = _aspect(item.name, home)
+        aspect = _or_physics(_aspect(item.name, home), aspects)
         if aspect not in parts:
             parts[aspect] = Sdf.CreatePrimInLayer(aspects[aspect], spec.path)
         Sdf.CopySpec(spec.layer, item.path, aspects[aspect], item.path)
     schemas = spec.GetInfo("apiSchemas").GetAppliedItems() if spec.HasInfo("apiSchemas") else []
-    for aspect in ASPECTS:
-        own = [schema for schema in schemas if _schema_aspect(schema, home) == aspect]
+    for aspect in aspects:
+        own = [schema for schema in schemas if _or_physics(_schema_aspect(schema, home), aspects) == aspect]
         if own:
             there = parts.get(aspect) or Sdf.CreatePrimInLayer(aspects[aspect], spec.path)
             there.SetInfo("apiSchemas", Sdf.TokenListOp.Create(prependedItems=own))
@@ -151,19 +193,33 @@ def _lead_out(layer: Any, up: str) -> None:
                 item.default = Sdf.AssetPath(posixpath.normpath(f"{up}{path}"))
 
 
+def _or_physics(aspect: str, aspects: dict[str, Any]) -> str:
+    return aspect if aspect in aspects else PHYSICS
+
+
+def _of_engine(name: str, table: dict[str, str]) -> str | None:
+    return next((engine for prefix, engine in table.items() if name.startswith(prefix)), None)
+
+
 def _home(kind: str) -> str:
+    if engine := _of_engine(kind, _SCHEMAS_OF_ENGINES):
+        return engine
     if kind.startswith(_PHYSICS_TYPES):
         return PHYSICS
     return MATERIALS if kind in _MATERIAL_TYPES else GEOMETRY
 
 
 def _aspect(name: str, home: str) -> str:
+    if engine := _of_engine(name, _OF_ENGINES):
+        return engine
     if name.startswith(_PHYSICS):
         return PHYSICS
     return MATERIALS if name.startswith(_MATERIALS) else home
 
 
 def _schema_aspect(schema: str, home: str) -> str:
+    if engine := _of_engine(schema, _SCHEMAS_OF_ENGINES):
+        return engine
     if schema.startswith(_PHYSICS_TYPES):
         return PHYSICS
     return MATERIALS if schema.startswith("Material") else home

@@ -14,6 +14,7 @@ from pxr import Gf, Sdf, Tf, Vt
 
 from hymeko_x.formats import usd as words
 from hymeko_x.formats.usd import FAMILY
+from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.names import free_name
 from hymeko_x.ir.parts import DofKind, Joint
 
@@ -129,6 +130,11 @@ class UsdSheet(Struct):
     body_shapes: dict[Id, Id] = field(default_factory=dict)
     body_scales: dict[Id, Vec3] = field(default_factory=dict)
     triangles: dict[Id, Triangles | None] = field(default_factory=dict)
+
+    @property
+    def is_neutral(self) -> bool:
+        """Whether the stage follows REP 158, with every value in its neutral form."""
+        return self.mechanism.notation(ROOT, words.PROFILE) == words.REP_158
 
     # ---- prims -----------------------------------------------------------------------------------------------------------
 

@@ -58,6 +58,10 @@ POSE = Notation("usd.pose", _pose_text, _pose)
 """The notation of a body with the pose of its prim where that is not the pose that its joints give."""
 GROUND = (word("usd.body0"), word("usd.body1"))
 """The notations of a joint that keep the group that stood for the world on either side."""
+PROFILE = word("usd.profile")
+"""The notation of the mechanism with the name of the profile whose rules the stage follows."""
+REP_158 = "rep158"
+"""The profile of USD for ROS: a layer per concern, and every value in its neutral form."""
 ROOT_PRIM = word("usd.root")
 """The notation of the mechanism with the path of the prim that represents the robot."""
 
@@ -74,6 +78,8 @@ LIGHTS: Mapping[str, str] = MappingProxyType({"DistantLight": "directional", "Sp
 CONE = "ShapingAPI"
 SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 """The schemas of a prim that marks a place, MuJoCo's and Newton's."""
+MIMIC = "ExtendedPhysicsMimicAPI"
+"""The neutral schema of a coupling, incubated by REP 158."""
 APERTURE = 15.2908
 """The default vertical aperture of a camera, in mm as is its focal length."""
 # ---- single precision ----------------------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""Couplings of joints: NewtonMimicAPI, and the polynomials of MjcEqualityJointAPI."""
+"""Couplings of joints: NewtonMimicAPI, its neutral twin of REP 158, and the polynomials of MjcEqualityJointAPI."""
 
 from __future__ import annotations
 
@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 MIMIC = "NewtonMimicAPI"
 EQUALITY = "MjcEqualityJointAPI"
+_LEADER, _OFFSET, _FACTOR, _ENABLED = range(4)
+_NEWTON = ("newton:mimicJoint", "newton:mimicCoef0", "newton:mimicCoef1", "newton:mimicEnabled")
+_NEUTRAL = tuple(f"ext_physics:mimic:{name}" for name in ("joint", "offset", "multiplier", "enabled"))
+_DEFAULTS = (None, 0.0, 1.0, True)
 
 
 # ---- mimics --------------------------------------------------------------------------------------------------------------------
@@ -27,9 +31,9 @@ def read_mimic(prim: Prim, end: DofRef, ends: dict[str, DofRef], builder: UsdBui
     """This joint follows another one by NewtonMimicAPI, with the higher powers of MjcEqualityJointAPI.
 
     The constant is a coordinate of the follower, in degrees for a hinge; factors are dimensionless. Where Newton's names are
-    not there, MuJoCo's older ones count (radians).
+    not there, those of REP 158 count, and then MuJoCo's older ones (radians).
     """
-    by = next((name for name in ("newton:mimicJoint", "mjc:target") if prim.targets(name)), None)
+    by = next((name for name in (_NEWTON[_LEADER], _NEUTRAL[_LEADER], "mjc:target") if prim.targets(name)), None)
     leader = ends.get(prim.targets(by)[0]) if by is not None and _follows(prim) else None
     follower = builder.edges.get(end.joint)
     if by is None or leader is None or follower is None or not isinstance(follower.data, Joint):
@@ -37,30 +41,45 @@ def read_mimic(prim: Prim, end: DofRef, ends: dict[str, DofRef], builder: UsdBui
     dof = next((dof for dof in follower.data.dofs if dof.name == end.dof or not end.dof), None)
     if dof is None or dof.kind not in (DofKind.HINGE, DofKind.SLIDE):
         return
-    enabled = prim.value("newton:mimicEnabled")
-    builder.mark_read(prim, f"@{MIMIC}", by, "newton:mimicEnabled")
+    names = _NEUTRAL if by == _NEUTRAL[_LEADER] else _NEWTON
+    enabled = prim.value(names[_ENABLED])
+    if _are_equal(prim):
+        builder.mark_read(prim, f"@{words.MIMIC}", *_NEUTRAL)
+    builder.mark_read(prim, f"@{words.MIMIC if names is _NEUTRAL else MIMIC}", by, names[_ENABLED])
     coupling = builder.new_id(prim, "coupling", end.dof or end.joint.name)
     if by == "mjc:target":
         builder.note(coupling, words.EQUALITY, True)
-    arcs: tuple[RobotArc, ...] = (Arc(end.joint, 1, (1.0,), end.dof), Arc(leader.joint, -1, _polynomial(prim, dof, builder), leader.dof))
+    arcs: tuple[RobotArc, ...] = (
+        Arc(end.joint, 1, (1.0,), end.dof),
+        Arc(leader.joint, -1, _polynomial(prim, dof, names, builder), leader.dof),
+    )
     builder.edges[coupling] = Edge(Coupling(enabled is not False), arcs)
+
+
+def _are_equal(prim: Prim) -> bool:
+    """Whether the neutral schema has the same coupling as Newton's."""
+    if prim.targets(_NEWTON[_LEADER]) != prim.targets(_NEUTRAL[_LEADER]):
+        return False
+    both = [[prim.value(name) for name in names[_OFFSET:]] for names in (_NEWTON, _NEUTRAL)]
+    newton, neutral = ([default if value is None else value for value, default in zip(found, _DEFAULTS[1:], strict=True)] for found in both)
+    return newton == neutral
 
 
 def _follows(prim: Prim) -> bool:
     """Whether a schema makes the joint a follower; other schemas have a target, too."""
-    return any(schema in (MIMIC, EQUALITY) for schema in prim.schemas)
+    return any(schema in (MIMIC, words.MIMIC, EQUALITY) for schema in prim.schemas)
 
 
-def _polynomial(prim: Prim, dof: Dof, builder: UsdBuilder) -> tuple[float, ...]:
+def _polynomial(prim: Prim, dof: Dof, names: tuple[str, ...], builder: UsdBuilder) -> tuple[float, ...]:
     unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else builder.scene.metres
-    authored, factor = builder.get(prim, "newton:mimicCoef0"), builder.get(prim, "newton:mimicCoef1")
+    authored, factor = builder.get(prim, names[_OFFSET]), builder.get(prim, names[_FACTOR])
     older = builder.scene.metres if dof.kind is DofKind.SLIDE else 1.0
     constant = builder.number(prim, "mjc:coef0", 0.0) * older if authored is None else authored * unit
     factor = builder.number(prim, "mjc:coef1", 1.0) if factor is None else factor
     higher = [builder.number(prim, f"mjc:coef{power}", 0.0) for power in (2, 3, 4)] if EQUALITY in prim.schemas else []
     while higher and higher[-1] == 0.0:
         higher.pop()
-    if (higher or "newton:mimicCoef1" not in prim.types) and not _has_solver_parameters(prim):
+    if (higher or names[_FACTOR] not in prim.types) and not _has_solver_parameters(prim):
         builder.mark_read(prim, f"@{EQUALITY}")
     return (constant, factor, *higher)
 
