@@ -93,6 +93,25 @@ def give_inertials(mechanism: Mechanism, density: float, source: Source | None, 
         message = "its engine computes masses from shapes" if bare else "every body has an inertial"
         context.report.note(codes.FOR_TARGET, f"{context.reason}: {message}; nothing is changed", element="mechanism")
         return mechanism
+    return _weighed(mechanism, bare, density, source, context)
+
+
+def weigh_colliders(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Each body without an inertial gets that of its colliders with the density of water, as engines for USD compute it. Idempotent.
+
+    Source: UsdPhysics, Mass Properties: 1000 kg/m^3 where nothing else is known; so do Newton's readers of other formats.
+    """
+    if native_format(mechanism) is not None:
+        return mechanism
+    bare = [key for key, body in mechanism.vertices(Body) if body.inertial is None and _collides(mechanism, key)]
+    return _weighed(mechanism, bare, WATER, "collision", context) if bare else mechanism
+
+
+def _collides(mechanism: Mechanism, body: Id) -> bool:
+    return any(view.shape.role is not Role.VISUAL for view in mechanism.shapes.get(body, ()))
+
+
+def _weighed(mechanism: Mechanism, bare: list[Id], density: float, source: Source | None, context: Context) -> Mechanism:
     solids = Solids(mechanism, context, as_hull=source == "hull")
     found: dict[Id, Body] = {}
     for key in bare:

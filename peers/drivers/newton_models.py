@@ -9,7 +9,7 @@ import newton
 import numpy as np
 import warp
 from loop import answer_all
-from newton import JointType
+from newton import JointTargetMode, JointType
 from newton.solvers import SolverMuJoCo
 from newton.usd import SchemaResolverMjc, SchemaResolverNewton
 
@@ -78,6 +78,10 @@ def _joints(builder: Any) -> list[dict[str, Any]]:
                 "effort": [_limit(builder.joint_effort_limit[dof]) for dof in dofs],
                 "armature": [_finite(builder.joint_armature[dof]) for dof in dofs],
                 "friction": [_finite(builder.joint_friction[dof]) for dof in dofs],
+                "damping": [_finite(builder.joint_damping[dof]) for dof in dofs],
+                "stiffness of drive": [_finite(builder.joint_target_ke[dof]) for dof in dofs],
+                "damping of drive": [_finite(builder.joint_target_kd[dof]) for dof in dofs],
+                "mode of drive": [JointTargetMode(builder.joint_target_mode[dof]).name for dof in dofs],
             }
         )
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
 
 _MJC = ("armature", "damping", "frictionloss", "stiffness", "ref", "springref")
 _OF_COUPLINGS = ("newton:mimic", "mjc:coef", "mjc:target", "mjc:solimp", "mjc:solref")
+_PHYSX = MappingProxyType({"armature": "armature", "maxJointVelocity": "velocityLimit"})
+"""The values of PhysX that the IR can represent, each with its name in Newton's schema."""
+_UNLIMITED = 1e6
+"""PhysX' limit in degrees or units per second of a joint without a limit."""
 _NEWTON = ("armature", "damping", "friction", "velocityLimit")
 
 
@@ -77,7 +82,7 @@ def _mark_schemas(prim: Prim, builder: UsdBuilder) -> None:
     """A schema of which every value is typed needs no extra; one without values does."""
     read = builder.read_names.get(prim.path, set())
     own = [name for name in prim.properties if not name.startswith(_OF_COUPLINGS)]
-    for prefix, schema in (("mjc:", "MjcJointAPI"), ("newton:", "NewtonJointAPI")):
+    for prefix, schema in (("mjc:", "MjcJointAPI"), ("newton:", "NewtonJointAPI"), ("physxJoint:", "PhysxJointAPI")):
         authored = [name for name in own if name.startswith(prefix)]
         if authored and read.issuperset(authored):
             builder.mark_read(prim, f"@{schema}")
@@ -205,12 +210,13 @@ def _behaving(prim: Prim, dof: Dof, builder: UsdBuilder) -> Dof:
     angle = math.pi / 180.0 if turns else scene.metres
     mjc = {name: builder.number(prim, f"mjc:{name}", math.nan) for name in _MJC}
     newton = {name: builder.number(prim, f"newton:{name}", math.nan) for name in _NEWTON}
-    speed = newton["velocityLimit"] * angle
-    if math.isfinite(speed):
+    physx = {name: _of_physx(prim, name, newton[twin], builder) for name, twin in _PHYSX.items()}
+    speed = _first(newton["velocityLimit"], physx["maxJointVelocity"], math.inf) * angle
+    if math.isfinite(newton["velocityLimit"]):
         builder.mark_read(prim, "newton:velocityLimit")
     return replace(
         dof,
-        armature=_first(mjc["armature"] * inertia, newton["armature"] * inertia),
+        armature=_first(mjc["armature"] * inertia, newton["armature"] * inertia, physx["armature"] * inertia),
         damping=_first(mjc["damping"] * inertia, newton["damping"] * inertia * degree),
         friction=_first(mjc["frictionloss"] * effort, newton["friction"] * effort),
         stiffness=_first(mjc["stiffness"] * inertia),
@@ -218,6 +224,16 @@ def _behaving(prim: Prim, dof: Dof, builder: UsdBuilder) -> Dof:
         spring_ref=_first(mjc["springref"] * angle),
         limits=replace(dof.limits, velocity=speed if math.isfinite(speed) else None, effort=_effort(prim, effort, builder)),
     )
+
+
+def _of_physx(prim: Prim, name: str, twin: float, builder: UsdBuilder) -> float:
+    """A value of PhysxJointAPI, NaN where it has none; it stays an extra unless Newton's attribute, the twin, has the same value."""
+    value = prim.value(f"physxJoint:{name}")
+    if not isinstance(value, float) or not 0.0 < value < _UNLIMITED:
+        return math.nan
+    if words.single(value) == twin:
+        builder.mark_read(prim, f"physxJoint:{name}")
+    return words.single(value)
 
 
 def _effort(prim: Prim, unit: float, builder: UsdBuilder) -> float | None:
