@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from pxr import Vt
@@ -15,6 +16,8 @@ from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import Actuator, DofKind, Drive
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from hymeko_x.backends.usd.sheet import Prim, UsdSheet
     from hymeko_x.ir.mechanism import Id, RobotArc
     from hymeko_x.ir.parts import Dof, Parameters
@@ -24,6 +27,8 @@ if TYPE_CHECKING:
 
 SERVOS = ("position", "velocity")
 """The kinds of actuators that are drives on a joint."""
+_USUAL_GAINS: Mapping[str, Mapping[str, float]] = MappingProxyType({"position": {"kp": 1.0}, "velocity": {"kv": 1.0}})
+"""MuJoCo's gains where a file gives none; UsdPhysics has none then."""
 
 
 def write_drives(sheet: UsdSheet) -> None:
@@ -38,11 +43,17 @@ def write_drives(sheet: UsdSheet) -> None:
         driven = next((arc for arc in arcs if arc.sign < 0), None)
         actuator = sheet.mechanism.graph.vertices.get(source) if source is not None else None
         found = dof_of(sheet, driven) if driven is not None else None
-        if found is None or source is None or not isinstance(actuator, Actuator) or not _is_drive(sheet, source, actuator):
+        if (
+            found is None
+            or driven is None
+            or source is None
+            or not isinstance(actuator, Actuator)
+            or not _is_drive(sheet, source, actuator)
+        ):
             continue
         spec, axis, dof = found
         instance = axis or _instance(dof)
-        _write_drive(spec, instance, actuator, dof)
+        _write_drive(spec, instance, actuator, dof, (*numbers_weight(driven), 1.0)[0])
         limited.pop((spec.path, instance), None)
         if spec.path not in driven_prims:
             driven_prims.add(spec.path)
@@ -72,17 +83,18 @@ def _is_drive(sheet: UsdSheet, key: Id, actuator: Actuator) -> bool:
     return actuator.kind in SERVOS or (actuator.kind == "motor" and noted in joints.DRIVES)
 
 
-def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof) -> None:
+def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof, gear: float) -> None:
+    """The gains of a servo at its joint: one behind a gear acts there with the square of it, and its force with the gear."""
     unit = math.pi / 180.0 if dof.kind is DofKind.HINGE else 1.0
-    authored = dict(actuator.parameters)
+    authored = {**_USUAL_GAINS.get(actuator.kind, {}), **dict(actuator.parameters)}
     apply(spec, f"PhysicsDriveAPI:{instance}")
     for name, parameter in (("stiffness", "kp"), ("damping", "kv")):
         value = authored.get(parameter)
         if isinstance(value, int | float):
-            put(spec, f"drive:{instance}:physics:{name}", T.Float, value * unit)
+            put(spec, f"drive:{instance}:physics:{name}", T.Float, value * gear * gear * unit)
     most = authored.get("forcerange")
     if isinstance(most, tuple) and len(most) == 2:
-        put(spec, f"drive:{instance}:physics:maxForce", T.Float, max(map(abs, most)))
+        put(spec, f"drive:{instance}:physics:maxForce", T.Float, max(map(abs, most)) * abs(gear))
     elif (effort := dof.limits.effort or 0.0) > 0.0:
         put(spec, f"drive:{instance}:physics:maxForce", T.Float, effort)
 
