@@ -72,6 +72,8 @@ class Writing(TypedDict, total=False):
     """The density in kg/m^3 with which bodies without inertia get that of their shapes (None = 1000 where ``inertia_from`` is given)."""
     inertia_from: Literal["collision", "visual", "hull"] | None
     """The shapes that count for it (None = those that collide)."""
+    collision: Literal["hull", "decompose"] | None
+    """What replaces concave meshes that collide: their convex hulls, or convex parts (CoACD). It belongs to the robot from then on."""
     target: str | None
     """The program that the output is for, a row of `hymeko_x.targets`. What it expects belongs to the robot from then on."""
     sites: bool | None
@@ -208,6 +210,7 @@ def convert(
     target: str | None = None,
     density: float | None = None,
     inertia_from: Literal["collision", "visual", "hull"] | None = None,
+    collision: Literal["hull", "decompose"] | None = None,
     lenient: bool = False,
     **reading: Unpack[Reading],
 ) -> pipeline.Result:
@@ -217,13 +220,12 @@ def convert(
 
     Raises: Refusal when input or output has errors; then nothing was changed. ValueError for ``assets`` that do not fit to the path.
     """
-    report = Report()
-    given = _source(source, **reading)
+    report, given = Report(), _source(source, **reading)
     read_as = _input_format(given, from_format)
     format = formats.of_output(os.fspath(output), to_format)
     robot, passed = pipeline.read_for(format, given, read_as, report, lenient=lenient)
     options = Options(base, actuators, layout, nested, split, keep, lenient, Path(output).stem, "", target, density, inertia_from, sites)
-    options = replace(options, mesh_prefix=mesh_prefix, package_layout=package_layout)
+    options = replace(options, mesh_prefix=mesh_prefix, package_layout=package_layout, collision=collision)
     place, own = _place(output, assets, format), unchanged(given, read_as, format)
     delivery = Delivery(robot, format, options, given.files, place, os.fspath(output), own, passed)
     result = delivery.convert(report)
@@ -244,12 +246,13 @@ def update(
     target: str | None = None,
     density: float | None = None,
     inertia_from: Literal["collision", "visual", "hull"] | None = None,
+    collision: Literal["hull", "decompose"] | None = None,
     **reading: Unpack[Reading],
 ) -> Updated:
     """Bring the edits in ``edited``, which was once converted from ``original``, into the text of that, or into ``output``.
 
-    ``base``, ``actuators`` and ``target`` are those of the conversion, found out where they are not given, and so are ``density`` and
-    ``inertia_from``, which are not found out. With ``dry_run`` nothing is written.
+    ``base``, ``actuators`` and ``target`` are those of the conversion, found out where they are not given, and so are ``density``,
+    ``inertia_from`` and ``collision``, which are not found out. With ``dry_run`` nothing is written.
     The result has the edits, the differences of the texts, and the diagnostics.
 
     Raises: Refusal when a file cannot be read or written; then nothing was changed.
@@ -259,6 +262,7 @@ def update(
     given, changed = _source(original, **reading), _source(edited, **reading)
     report = Report()
     options = Options(base, actuators, beside=Path(edited).stem, target=target, density=density, inertia_from=inertia_from)
+    options = replace(options, collision=collision)
     found = updating.update(given, _input_format(given, from_format), changed, _input_format(changed, edited_format), options, report)
     if not dry_run:
         disk.write_files(found.files(given.name, None if output is None else os.fspath(output)))

@@ -25,6 +25,7 @@ OF_LIBRARIES: Mapping[str, str] = MappingProxyType(
         **{library: extra for row in formats.FORMATS for library, extra in row.libraries.items()},
         **dict.fromkeys(("casadi", "sympy"), "dynamics"),
         "argcomplete": "completion",
+        "coacd": "convex",
         "hypothesis": "testing",
         **dict.fromkeys(("imageio_ffmpeg", "resvg_py"), "draw"),
         "ray": "ray",

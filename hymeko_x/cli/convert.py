@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from hymeko_x import codes, disk, formats, pipeline, targets
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.inputs import inertia_arguments, input_arguments, lenient_argument, read_input
+from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input, shape_arguments
 from hymeko_x.cli.parser import count
 from hymeko_x.cli.report import one_line, report_arguments, show_report, written_line
 from hymeko_x.cli.terminal import is_coloured
@@ -176,7 +176,7 @@ def output_arguments(parser: argparse.ArgumentParser) -> None:
     """Options of every verb that writes a robot."""
     parser.add_argument("--base", choices=("fixed", "free"), help="what becomes of a base that the source leaves open")
     parser.add_argument("--actuators", choices=("none", "motor", "position", "velocity"), help="the actuators to write")
-    inertia_arguments(parser)
+    shape_arguments(parser)
     for_help = "the program that the output is for (`hymeko-x formats` lists them): what it expects is added, and reported"
     parser.add_argument("--for", dest="target", metavar="TARGET", help=for_help)
     where = "put meshes beside the output, refer to them where they are, or pack all into one archive (OUT.mjz, .zip, .usdz)"
@@ -213,7 +213,7 @@ def deliver(
         raise UsageError("standard output has nothing beside it: use --keep=inside, or -o FILE")
     layout = chosen.layout, chosen.nested, chosen.split
     options = Options(chosen.base, chosen.actuators, *layout, chosen.keep, chosen.lenient, Path(path).stem, target=chosen.target)
-    options = replace(options, density=chosen.density, inertia_from=chosen.inertia_from)
+    options = replace(options, density=chosen.density, inertia_from=chosen.inertia_from, collision=chosen.collision)
     options = replace(options, sites=chosen.sites, mesh_prefix=chosen.mesh_prefix, package_layout=chosen.package_layout)
     if path and (reason := reason_against(path, chosen.assets, output.format)):
         raise UsageError(reason)

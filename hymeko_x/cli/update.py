@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from hymeko_x import disk, formats
 from hymeko_x.cli import exits
 from hymeko_x.cli.exits import UsageError
-from hymeko_x.cli.inputs import inertia_arguments, input_arguments, source_of
+from hymeko_x.cli.inputs import input_arguments, shape_arguments, source_of
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.diagnostics import Report
 from hymeko_x.edits.updating import update
@@ -36,7 +36,7 @@ def update_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--edited-from", metavar="FORMAT", help="the format of EDITED, where suffix and content do not tell")
     parser.add_argument("--base", choices=("fixed", "free"), help="as in the conversion (default: found out)")
     parser.add_argument("--actuators", choices=("none", "motor", "position", "velocity"), help="as in the conversion (default: found out)")
-    inertia_arguments(parser)
+    shape_arguments(parser)
     parser.add_argument("--for", dest="target", metavar="TARGET", help="as in the conversion (default: found out)")
     parser.add_argument("--json", action="store_true", help="print edits, changed files and diagnostics as JSON")
     input_arguments(parser)
@@ -52,6 +52,7 @@ def run_update(chosen: argparse.Namespace) -> int:
     named = formats.by_name(chosen.edited_from) if chosen.edited_from else formats.of_input(edited.name, edited.data)
     original = replace(original, variants=dict(chosen.variant), arguments=dict(chosen.arg), environment=dict(chosen.env))
     options = Options(chosen.base, chosen.actuators, target=chosen.target, density=chosen.density, inertia_from=chosen.inertia_from)
+    options = replace(options, collision=chosen.collision)
     found = update(original, format, edited, named, options, report)
     files = found.files(chosen.original, chosen.output)
     if not chosen.dry_run:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.meshes.scene import read_scene
 from hymeko_x.meshes.stl import read_stl
 from hymeko_x.meshes.submesh import MOST_FACES, Appearance, ColouredMesh, MaterialEntry, MaterialGroup, Submesh, Unreadable
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from numpy.typing import NDArray
+
+    from hymeko_x.ir.parts import Mesh
+    from hymeko_x.source import Files
 
     Triangles = tuple[NDArray[np.float64], NDArray[Any]]
     """Points (n, 3) and triangles (m, 3) as rows of them."""
@@ -326,3 +330,16 @@ def _places(groups: list[MaterialGroup]) -> Triangles | tuple[None, None]:
             for group in groups
         ]
     )
+
+
+def triangles_of(mesh: Mesh, files: Files) -> Submesh | None:
+    """All triangles of a mesh, unscaled; None where its file is missing or unreadable, which the conversion reports as it places it."""
+    try:
+        if mesh.vertices:
+            return inline_part(mesh.vertices, mesh.faces)
+        path = files.find(mesh.uri or "")
+        if path is None:
+            return None
+        return read_whole(files.read(path), suffix_of(mesh.uri or ""), lambda name: files.read(files.find(name) or name))
+    except (Unreadable, OSError):
+        return None

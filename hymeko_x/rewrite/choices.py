@@ -16,6 +16,7 @@ from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Actuator, Coupling, Dof, DofKind, Drive, Joint
 from hymeko_x.ir.values import Z
 from hymeko_x.rewrite.actuators import MUJOCO_KINDS, without_actuators
+from hymeko_x.rewrite.collisions import make_collisions_convex
 from hymeko_x.rewrite.context import Context
 from hymeko_x.rewrite.densities import WATER, give_inertials
 from hymeko_x.rewrite.joints import full_name, legal_dof
@@ -41,6 +42,8 @@ def choose(mechanism: Mechanism, options: Options, report: Report, *, files: Fil
     if options.density is not None or options.inertia_from is not None:
         density = WATER if options.density is None else options.density
         mechanism = give_inertials(mechanism, density, options.inertia_from, Context(report, files, f"--density {density:g}"))
+    if options.collision is not None:
+        mechanism = make_collisions_convex(mechanism, options.collision, Context(report, files, f"--collision {options.collision}"))
     if options.base is not None:
         mechanism = _with_bases(mechanism, is_free=options.base == "free", report=report)
     if options.actuators == "position":

@@ -24,6 +24,7 @@ class Options(Struct, frozen=True):
     go into a file of their own. ``keep``: where what the format cannot represent is kept: ``beside`` the output, or ``inside`` it.
     ``lenient``: whether errors are passed over. ``target``: the name of the program that the output is for, a row of `targets`.
     ``density`` in kg/m^3 and ``inertia_from``: the inertials that bodies without one get, where one of the two is given.
+    ``collision``: what replaces concave meshes that collide: their convex hulls, or convex parts.
     ``sites``: whether frames on bodies are links of their own. ``mesh_prefix``: what stands before the paths of files beside the output;
     ``package://`` alone is the package in which the output lies.
     ``package_layout``: whether the output's folder is a model of Gazebo, which ``model://FOLDER`` finds.
@@ -46,6 +47,7 @@ class Options(Struct, frozen=True):
     sites: bool | None = None
     mesh_prefix: str | None = None
     package_layout: bool = False
+    collision: Literal["hull", "decompose"] | None = None
 
 
 def _write_nothing(mechanism: Mechanism) -> Package:

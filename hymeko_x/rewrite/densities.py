@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 from hymeko_x import codes
 from hymeko_x.diagnostics import counted, listed
 from hymeko_x.formats import native_format
-from hymeko_x.ir.mechanism import suffix_of
 from hymeko_x.ir.parts import Body, Inertial, Mesh, MeshShape, Role
 from hymeko_x.ir.values import ZERO, add, apply, rotate_tensor, scaled
 from hymeko_x.rewrite.inertia import of_point, solid_of_primitive
@@ -66,21 +65,11 @@ class Solids:
         return self._found[key]
 
     def _measured(self, mesh: Mesh) -> Solid | None:
-        from hymeko_x.meshes.reader import inline_part, read_whole
+        from hymeko_x.meshes.reader import triangles_of
         from hymeko_x.meshes.solids import solid_of
-        from hymeko_x.meshes.submesh import Unreadable
 
-        files = self.context.files
-        try:
-            if mesh.vertices:
-                return solid_of(inline_part(mesh.vertices, mesh.faces), mesh.scale, as_hull=self.as_hull)
-            path = files.find(mesh.uri or "")
-            if path is None:
-                return None
-            part = read_whole(files.read(path), suffix_of(mesh.uri or ""), lambda name: files.read(files.find(name) or name))
-        except (Unreadable, OSError):  # the conversion reports it where it places the file
-            return None
-        return solid_of(part, mesh.scale, as_hull=self.as_hull)
+        part = triangles_of(mesh, self.context.files)
+        return None if part is None else solid_of(part, mesh.scale, as_hull=self.as_hull)
 
 
 def give_inertials(mechanism: Mechanism, density: float, source: Source | None, context: Context) -> Mechanism:
