@@ -6,8 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats
-from hymeko_x.ir.mechanism import WORLD, Id, pose_weight
-from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Shape, Stance
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, pose_weight
+from hymeko_x.ir.parts import Body, DofKind, Joint, Mesh, Mount, Sense, Shape, Stance
 from hymeko_x.ir.values import X, Z, apply, compose, cross, inverse, rotate, rotation_angle
 from hymeko_x.rewrite.efforts import actuator_efforts
 from hymeko_x.rewrite.sites import is_link
@@ -37,12 +37,12 @@ def relevant(found: Iterable[Difference], before: Mechanism, after: Mechanism, t
 
     No loss is: another axis of a ball or a free joint, which has none; another mass or density of a shape without one, on the world or
     on a body whose mass and tensor are given; other frames of a joint that moves its body alike; an effort limit that is what the actuators
-    of the source can exert; a frame that is where the body of its name is; a pose that is a keyframe.
+    of the source can exert; a frame that is where the body of its name is; a pose that is a keyframe; a sensor or a camera in a fragment.
     What an author wrote counts, used or not.
     """
     alike: dict[Id, bool] = {}
     native = formats.native_format(before)
-    efforts, described = actuator_efforts(before), {*_links(before, after), *_keyframes(before, after)}
+    efforts, described = actuator_efforts(before), {*_links(before, after), *_keyframes(before, after), *_in_fragments(before, after)}
     weighed = native is None or native.shapes_have_weight is None or not formats.loaded(native.shapes_have_weight)(before)
     for difference in found:
         key = difference.element
@@ -91,6 +91,17 @@ def _keyframes(before: Mechanism, after: Mechanism) -> Iterator[Id]:
         pose = next((arc.target for arc in arcs if arc.sign > 0), None)
         if pose is not None and all(kept.get(pose.name, {}).get(arc.target) == arc.weight for arc in arcs if arc.sign == 0):
             yield from (key, pose)
+
+
+def _in_fragments(before: Mechanism, after: Mechanism) -> Iterator[Id]:
+    """The sensors and cameras, with their edges, that the other mechanism holds as texts in which a third format describes them."""
+    texts = [extra.text for extra in after.extras.get(ROOT, ())]
+    rows = [row.fragment_sensors for row in formats.FORMATS if row.fragment_sensors is not None]
+    names = frozenset(name for row in rows for name in formats.loaded(row)(texts)) if texts else frozenset()
+    for key in before.graph.vertices if names else ():
+        if key.kind in ("camera", "sensor") and key.name in names:
+            yield key
+            yield from (edge for edge, data, _ in before.graph.edges_at(key) if isinstance(data.data, Mount | Sense))
 
 
 def _is_effort_of_actuators(

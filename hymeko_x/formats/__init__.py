@@ -201,6 +201,7 @@ SDF = Format(
     roots=("sdf",),
     layout_options=frozenset({"package_layout"}),
     fragments="hymeko_x.backends.sdf.fragments:fragments_of",
+    fragment_sensors="hymeko_x.formats.sdf.fragments:sensor_names",
     outline="hymeko_x.xml.outline:outline",
     keeps_package_uris=True,
     joints_share_names=True,

@@ -5,11 +5,12 @@ Source: libsdformat's reader of such files. An element for which they have no ow
 
 from __future__ import annotations
 
+import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterable, Mapping
 
 TAG = "gazebo"
 
@@ -45,3 +46,10 @@ OF_MODEL = frozenset(("static", "self_collide", "allow_auto_disable", "enable_wi
 """The children of <model>; other elements of a fragment without a link are those of older programs, and SDF has none of them."""
 OBEYED = ("preserveFixedJoint", "disableFixedJointLumping")
 """They keep fixed joints, which always stay here."""
+
+_SENSOR = re.compile(r"""<sensor\b[^>]*?\bname=["']([^"']*)["']""")
+
+
+def sensor_names(texts: Iterable[str]) -> frozenset[str]:
+    """The names of the sensors in fragments."""
+    return frozenset(name for text in texts if text.startswith(f"<{TAG}") for name in _SENSOR.findall(text))
