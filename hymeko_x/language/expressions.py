@@ -21,7 +21,6 @@ from hymeko_x.language.syntax import (
     Import,
     Item,
     Node,
-    Ref,
     Stereotype,
     Using,
     Value,
@@ -144,7 +143,7 @@ def _filled_node(node: Node, environment: Environment, file: str) -> Node:
     """The node; expressions of an array that use the number of its elements wait for that."""
     inner = environment
     if node.size is not None:
-        node = node._replace(size=fill_value(node.size, environment, node, file))  # type: ignore[arg-type]
+        node = node._replace(size=fill_value(node.size, environment, node, file))
         inner = {**environment, INDEX: _LATER}
     items = tuple(fill(item, inner, file) for item in node.items)
     types = tuple(_filled_arguments(stereotype, inner, node, file) for stereotype in node.stereotypes)
@@ -233,6 +232,6 @@ def _calculates(item: Item | Value | None) -> bool:
             return _calculates(item.weight) or any(map(_calculates, item.items))
         case Node():
             return any(map(_calculates, item.items)) or any(kind.arguments for kind in item.stereotypes)
-        case float() | str() | None | Import() | Using() | Constant() | Comment() | Ref():
-            return False
-    return any(map(_calculates, item))
+        case tuple():
+            return any(map(_calculates, item))
+    return False

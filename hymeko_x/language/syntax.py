@@ -1,11 +1,14 @@
 """The syntax tree of the HyMeKo language: the items of a text before their meaning is known.
 
-Plain named tuples, because a large robot has many of them. Lines and columns are one-based.
+Lines and columns are one-based.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple, TypeGuard
+from typing import TYPE_CHECKING, Any, Self, TypeGuard
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from hymeko_x.diagnostics import Origin
 
@@ -19,7 +22,15 @@ class QuotedName(str):
     __slots__ = ()
 
 
-class Ref(NamedTuple):
+class Syntax(Struct, frozen=True, gc=False):
+    """A piece of syntax. The collector of cycles need not look at it: a tree has none."""
+
+    def _replace(self, **changes: Any) -> Self:
+        """A copy with other values, as named tuples have it."""
+        return replace(self, **changes)
+
+
+class Ref(Syntax, frozen=True, gc=False):
     """A reference by path, with the direction it was written with: ``X``, ``- Z``, ``-> leg.foot``."""
 
     path: tuple[str, ...]
@@ -32,38 +43,38 @@ class Ref(NamedTuple):
         return ".".join(self.path)
 
 
-class Quantity(NamedTuple):
+class Quantity(Syntax, frozen=True, gc=False):
     """A number with a unit: ``90deg``."""
 
     number: float
     unit: str
 
 
-class Expression(NamedTuple):
+class Expression(Syntax, frozen=True, gc=False):
     """The text between ``${`` and ``}``."""
 
     text: str
 
 
-class Query(NamedTuple):
+class Query(Syntax, frozen=True, gc=False):
     """``<?>``: a value that is left open."""
 
 
-class Parameter(NamedTuple):
+class Parameter(Syntax, frozen=True, gc=False):
     """A template parameter; default None = required."""
 
     name: str
     default: Value | None = None
 
 
-class Stereotype(NamedTuple):
+class Stereotype(Syntax, frozen=True, gc=False):
     """A type behind the colon, with arguments when it is a template."""
 
     ref: Ref
     arguments: tuple[tuple[str, Value], ...] | None = None
 
 
-class Node(NamedTuple):
+class Node(Syntax, frozen=True, gc=False):
     """A vertex, an edge, or a definition: ``name (parameters) : stereotypes use scope { items }``.
 
     ``edge`` is empty for a vertex, else the word that makes it an edge (``@``, ``rel``, ... or a quoted edge type).
@@ -83,7 +94,7 @@ class Node(NamedTuple):
     size: tuple[Value, ...] | None = None
 
 
-class Field(NamedTuple):
+class Field(Syntax, frozen=True, gc=False):
     """``name value``, ``name = value``, or a bare ``name`` (value None)."""
 
     name: str
@@ -93,7 +104,7 @@ class Field(NamedTuple):
     column: int = 0
 
 
-class ArcItem(NamedTuple):
+class ArcItem(Syntax, frozen=True, gc=False):
     """``[weight] role direction target { items }``. In a vertex's body this is a field that holds a reference."""
 
     ref: Ref
@@ -104,7 +115,7 @@ class ArcItem(NamedTuple):
     column: int = 0
 
 
-class Import(NamedTuple):
+class Import(Syntax, frozen=True, gc=False):
     """``import "path" as alias``."""
 
     path: str
@@ -113,7 +124,7 @@ class Import(NamedTuple):
     column: int = 0
 
 
-class Using(NamedTuple):
+class Using(Syntax, frozen=True, gc=False):
     """``using a.b as c``: a name that stands for a path."""
 
     ref: Ref
@@ -122,7 +133,7 @@ class Using(NamedTuple):
     column: int = 0
 
 
-class Constant(NamedTuple):
+class Constant(Syntax, frozen=True, gc=False):
     """``const K = 2 * L;``: a name for a number, the text of an expression."""
 
     name: str
@@ -131,7 +142,7 @@ class Constant(NamedTuple):
     column: int = 0
 
 
-class Comment(NamedTuple):
+class Comment(Syntax, frozen=True, gc=False):
     """A comment that stands between the items of the root or of the text itself; deeper ones are not kept."""
 
     text: str
@@ -144,7 +155,7 @@ Value = float | str | Ref | Quantity | Expression | Query | tuple["Value", ...]
 Item = Node | Field | ArcItem | Import | Using | Constant | Comment
 
 
-class Document(NamedTuple):
+class Document(Syntax, frozen=True, gc=False):
     """A whole text: the items at top level. ``header`` is the legacy ``[ name ]``."""
 
     items: tuple[Item, ...]
