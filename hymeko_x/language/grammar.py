@@ -20,7 +20,11 @@ TOKENS = re.compile(
 
 def grammar_text() -> str:
     """The grammar, as lark reads it."""
-    return files("hymeko_x.language").joinpath("hymeko.lark").read_text(encoding="utf-8")
+    return _text("hymeko.lark")
+
+
+def _text(name: str) -> str:
+    return files("hymeko_x.language").joinpath(name).read_text(encoding="utf-8")
 
 
 def tables_text() -> str:
@@ -29,7 +33,8 @@ def tables_text() -> str:
     from lark.grammar import Rule
     from lark.lexer import TerminalDef
 
-    lark = Lark(grammar_text(), parser="lalr", maybe_placeholders=False)
+    statements = _text("statements.lark")
+    lark = Lark(grammar_text() + statements, parser="lalr", maybe_placeholders=False)
     data, memo = lark.memo_serialize([TerminalDef, Rule])
     machine = data["parser"]["parser"]
     rules = sorted((item for item in memo.items() if item[1]["__type__"] == "Rule"), key=lambda item: _rule_order(item[1]))
@@ -46,6 +51,7 @@ def tables_text() -> str:
         "end": renumbered[machine["end_states"]["start"]],
         "ignored": [_pattern(item) for item in _terminals(memo, ignored=True, data=data)],
         "terminals": [[item["name"], _pattern(item)] for item in _terminals(memo, ignored=False, data=data)],
+        "statements": re.findall(r"^([A-Z_]+)\.\d+:", statements, re.MULTILINE),
         "opening": _only_at_start(states, start),
         "keywords": {item["pattern"]["value"]: item["name"] for item in _all_terminals(memo) if _is_keyword(item)},
         "rules": [_rule(rule) for _, rule in rules],

@@ -90,72 +90,115 @@ class Machine:
             state.update({kind: states[action] if action >= 0 else reductions[-1 - action] for kind, action in row.items()})
         handing_on = {item for item in reductions if item.size == _ENTRY and item.pick is None and not item.origin.startswith("_")}
         _skip_handing_on(states, {item for item in handing_on if self._rules[item.number] not in names})
+        _grow_in_place(states)
         self._start, self._end = states[tables["start"]], states[tables["end"]]
         self._keywords: dict[str, str] = tables["keywords"]
         opening = set(tables["opening"])
-        ignored = f"(?:{'|'.join(_atomic(pattern) for pattern in tables['ignored'])})*+"
+        comment, space = tables["ignored"]
+        ignored = f"(?:{space})?+(?:(?:{comment})(?:{space})?+)*+"
         words = [["KEYWORD", rf"(?:{'|'.join(self._keywords)})\b"]]
+        statements = [item for item in tables["terminals"] if item[0] in tables["statements"]]
+        terminals = [item for item in tables["terminals"] if item not in statements]
+        self._statements = {name for name, _ in statements}
         self._skip = re.compile(ignored)
-        self._token = re.compile(ignored + _alternatives([*words, *(item for item in tables["terminals"] if item[0] not in opening)]))
-        self._first = re.compile(ignored + _alternatives([*words, *tables["terminals"]]))
+        inner = [*words, *(item for item in terminals if item[0] not in opening)]
+        self._token = re.compile(_alternatives(inner) + ignored)
+        self._statement = re.compile(_alternatives([*statements, *inner]) + ignored)
+        self._first = re.compile(_alternatives([*words, *terminals]) + ignored)
 
     def run(self, text: str, terminals: Mapping[str, Convert], actions: Mapping[str, Reduce], gaps: list[Gap]) -> Any:
         """The value of the start rule for a text.
 
         ``terminals`` turn the text and offset of a token into a value, ``actions`` the children of a rule and the offset of
-        its first character. ``gaps`` collects the gaps between tokens at the outermost levels that are longer than one character.
+        its first character. Statements are taken whole where the terminals have them. ``gaps`` collects the gaps between tokens at the
+        outermost levels that are longer than one character.
 
         Raises: ParseError, or TooDeep.
         """
         make = [_maker(name, actions) for name in self._rules]
         stack: list[Any] = [self._start, None, 0]  # state, value, offset; and again
-        for kind, word, start in self._tokens(text, gaps):
-            action = stack[-3].get(kind)
-            if action is None:
-                kind = self._kind(kind, word, stack[-3], start)
-                action = stack[-3][kind]
-            while type(action) is _Reduction:
-                size, origin, number, pick = action
-                children, first = (stack[1 - size :: 3], stack[2 - size]) if size else ([], start)
-                if size:
-                    del stack[-size:]
-                if pick is not None:
-                    children = pick(children)
-                state = stack[-3][origin]
-                stack += (state, make[number](children, first), first)
-                action = state.get(kind)
-            if action is None:
-                if kind == "$END" and stack[-3] is self._end:
-                    break
-                raise ParseError(start)
-            convert = terminals.get(kind)
-            stack += (action, word if convert is None else convert(word, start), start)
+        pattern = self._statement if self._statements <= terminals.keys() else self._token
+        for kind, word, start in self._tokens(text, pattern, gaps):
+            if not self._take(stack, make, terminals, kind, word, start):
+                for part in self._parts(text, start, start + len(word)):
+                    self._take(stack, make, terminals, *part)
         return stack[-2]
 
-    def _tokens(self, text: str, gaps: list[Gap]) -> Iterator[tuple[str, str, int]]:
+    def _take(self, stack: list[Any], make: list[Reduce], terminals: Mapping[str, Convert], kind: str, word: str, start: int) -> bool:
+        """Reduce what ends before the token and put the token on the stack.
+
+        False for a statement that cannot stand there as a whole: its tokens may. What was reduced is right for its first token as well,
+        since every state that goes on with a statement goes on with that token.
+        """
+        action = stack[-3].get(kind)
+        if action is None and kind not in self._statements:
+            kind = self._kind(kind, word, stack[-3], start)
+            action = stack[-3][kind]
+        while type(action) is _Reduction:
+            size, origin, number, pick = action
+            children, first = (stack[1 - size :: 3], stack[2 - size]) if size else ([], start)
+            if size:
+                del stack[-size:]
+            if pick is not None:
+                children = pick(children)
+            value = make[number](children, first)
+            state = stack[-3]
+            following = state[origin]
+            if following is _GROW:
+                stack[-2].append(value)
+            else:
+                stack += (following, value, first)
+                state = following
+            action = state.get(kind)
+        if action is None:
+            if kind in self._statements:
+                return False
+            if kind == "$END" and stack[-3] is self._end:
+                return True
+            raise ParseError(start)
+        convert = terminals.get(kind)
+        value = word if convert is None else convert(word, start)
+        if action is _GROW:
+            stack[-2].append(value)
+        else:
+            stack += (action, value, start)
+        return True
+
+    def _tokens(self, text: str, pattern: re.Pattern[str], gaps: list[Gap]) -> Iterator[tuple[str, str, int]]:
         """The tokens with the terminal and the offset of each; the last one is the end of the text."""
-        next_token = self._token.match
-        match = self._first.match(text, 0)
-        position = depth = 0
+        depth, position = 0, self._first_place(text)
+        if position > 1:
+            gaps.append((0, position, 0))
+        match = self._first.match(text, position)
         while match is not None:
-            kind = match.lastgroup or ""
-            word = match[kind]
-            before, position = position, match.end()
-            start = position - len(word)
-            if start - before > 1 and depth <= GAP_DEPTH:
-                gaps.append((before, start, depth))
-            if word in _DEPTH:
-                depth += _DEPTH[word]
+            start, kind = position, match.lastgroup or ""
+            end, position = match.end(kind), match.end()
+            word = text[start:end]
+            if word[-1] == "{" or word in _DEPTH:
+                depth += _DEPTH.get(word, 1)
                 if depth > MAX_DEPTH:
-                    raise TooDeep(start)
+                    raise TooDeep(end - 1)
+            if position - end > 1 and depth <= GAP_DEPTH:
+                gaps.append((end, position, depth))
             yield kind, word, start
-            match = next_token(text, position)
-        skipped = self._skip.match(text, position)
-        end = position if skipped is None else skipped.end()
-        if end != len(text):
-            raise ParseError(end)
-        gaps.append((position, end, depth))
-        yield "$END", "", end
+            match = pattern.match(text, position)
+        if position != len(text):
+            raise ParseError(position)
+        yield "$END", "", position
+
+    def _first_place(self, text: str) -> int:
+        """The offset of the first token."""
+        skipped = self._skip.match(text)
+        return 0 if skipped is None else skipped.end()
+
+    def _parts(self, text: str, position: int, end: int) -> Iterator[tuple[str, str, int]]:
+        """The tokens of a statement."""
+        while position < end:
+            match = self._token.match(text, position)
+            assert match is not None
+            kind = match.lastgroup or ""
+            yield kind, text[position : match.end(kind)], position
+            position = match.end()
 
     def _kind(self, kind: str, word: str, state: _State, start: int) -> str:
         """A keyword is one only where the grammar has room for it, and a name elsewhere."""
@@ -179,6 +222,24 @@ def _skip_handing_on(states: list[_State], handing_on: set[_Reduction]) -> None:
             while type(target) is dict and id(target) in only:
                 target = state[only[id(target)]]
             state[kind] = target
+
+
+_GROW = "grow"
+"""The action of a symbol that makes the sequence before it longer by one item."""
+
+
+def _grow_in_place(states: list[_State]) -> None:
+    """Give symbols whose only use is to go on with a sequence that action, instead of a state that awaits the next token."""
+    only = {}
+    for state in states:
+        first, *others = [*state.values()] or [None]
+        if type(first) is _Reduction and first.pick is _grow and all(action is first for action in others):
+            only[id(state)] = first.origin
+    for origin in set(only.values()):
+        for sequence in {id(s[origin]): s[origin] for s in states if origin in s}.values():
+            for kind, target in sequence.items():
+                if type(target) is dict and only.get(id(target)) == origin:
+                    sequence[kind] = _GROW
 
 
 def _maker(name: str, actions: Mapping[str, Reduce]) -> Reduce:
@@ -223,7 +284,7 @@ def _collect(children: list[Any], symbols: tuple[int, ...]) -> list[Any]:
 
 
 def _alternatives(terminals: list[list[str]]) -> str:
-    return "(?:" + "|".join(f"(?P<{name}>{_uncaptured(pattern)})" for name, pattern in terminals) + ")"
+    return "(?:" + "|".join(f"(?:{_uncaptured(pattern)})(?P<{name}>)" for name, pattern in terminals) + ")"
 
 
 def _uncaptured(pattern: str) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import sys
 from bisect import bisect_left
 from functools import cache
 from types import MappingProxyType
@@ -18,30 +17,25 @@ from hymeko_x.language.syntax import (
     Comment,
     Constant,
     Document,
-    Expression,
     Field,
     Import,
     Item,
     Node,
     Parameter,
-    Quantity,
-    Query,
     QuotedName,
     Ref,
     Stereotype,
     Using,
     Value,
 )
+from hymeko_x.language.terminals import TERMINALS, Malformed, statements
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Mapping
 
-    from hymeko_x.language.machine import Convert, Gap, Reduce
+    from hymeko_x.language.machine import Gap, Reduce
 
-_QUANTITY = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
-_ESCAPE = re.compile(r"\\(u[0-9a-fA-F]{4}|U[0-9a-fA-F]{8}|.)", re.DOTALL)
 _COMMENT = re.compile(r"#[^\n]*|//[^\n]*|/\*[\s\S]*?\*/")
-_ESCAPED = {"n": "\n", "t": "\t", "r": "\r", "0": "\0"}
 
 
 def parse(text: str, name: str = "<text>") -> Document:
@@ -52,41 +46,16 @@ def parse(text: str, name: str = "<text>") -> Document:
     lines = Lines(text)
     gaps: list[Gap] = []
     try:
-        document = machine().run(text, _TERMINALS, {**_ACTIONS, **_item_actions(lines.place)}, gaps)
+        document = machine().run(text, {**TERMINALS, **statements(lines.place)}, {**_ACTIONS, **_item_actions(lines.place)}, gaps)
     except TooDeep as error:
         line, column = lines.place(error.offset)
         raise refuse(codes.TOO_LARGE, f"brackets are nested more than {MAX_DEPTH} levels deep", Origin(name, line, column)) from error
-    except _Malformed as error:
+    except Malformed as error:
         line, column = lines.place(error.offset)
         raise refuse(codes.SYNTAX, str(error), Origin(name, line, column), excerpt=excerpt(text, line, column, 1)) from error
     except ParseError as error:
         raise explain_syntax_error(text, name) from error
     return _weave_comments(document, text, gaps, lines)
-
-
-class _Malformed(Exception):
-    """A token that the lexer accepts and that has no value."""
-
-    def __init__(self, offset: int, message: str) -> None:
-        super().__init__(message)
-        self.offset = offset
-
-
-def _unescape(text: str, offset: int) -> str:
-    """The characters behind the escapes of a quoted string or name: \\n, \\t, \\r, \\0, \\uXXXX, and any character itself."""
-    if "\\" not in text:
-        return text
-
-    def plain(match: re.Match[str]) -> str:
-        word = match[1]
-        if len(word) == 1:
-            return _ESCAPED.get(word, word)
-        number = int(word[1:], 16)
-        if number > sys.maxunicode or 0xD800 <= number < 0xE000:
-            raise _Malformed(offset, f"'{match[0]}' is not a character")
-        return chr(number)
-
-    return _ESCAPE.sub(plain, text)
 
 
 class _Block(tuple[Item, ...]):
@@ -125,55 +94,6 @@ class _Signature(NamedTuple):
     parameters: tuple[Parameter, ...] | None
     stereotypes: tuple[Stereotype, ...]
     uses: tuple[Ref, ...]
-
-
-# ---- terminals -----------------------------------------------------------------------------------------------------------
-
-
-def _quantity(text: str, offset: int) -> Quantity:
-    match = _QUANTITY.fullmatch(text)
-    assert match is not None, text
-    return Quantity(float(match[1]), match[2])
-
-
-def _numbers(text: str, offset: int) -> tuple[float, ...]:
-    try:
-        return tuple(map(float, text[1:-1].replace(",", " ").split()))
-    except ValueError as error:
-        raise _malformed_number(text, offset) from error
-
-
-def _matrix(text: str, offset: int) -> tuple[tuple[float, ...], ...]:
-    rows = text[1 : text.rindex("]")].replace("[", "").replace(",", " ").split("]")[:-1]
-    try:
-        return tuple(tuple(map(float, row.split())) for row in rows)
-    except ValueError as error:
-        raise _malformed_number(text, offset) from error
-
-
-def _malformed_number(text: str, offset: int) -> _Malformed:
-    """The error of a list of numbers, at the first word that is no number."""
-    for match in re.finditer(r"[^\s,\[\]]+", text):
-        try:
-            float(match[0])
-        except ValueError:
-            return _Malformed(offset + match.start(), f"'{match[0]}' is not a number; expected numbers such as 1, -0.5 or 1e-3")
-    return _Malformed(offset, "this is not a list of numbers")
-
-
-_TERMINALS: Mapping[str, Convert] = MappingProxyType(
-    {
-        "NUMBER": lambda text, _: float(text),
-        "QUANTITY": _quantity,
-        "STRING": lambda text, offset: text[3:-3] if text.startswith('"""') else _unescape(text[1:-1], offset),
-        "EXPRESSION": lambda text, _: Expression(text[2 if text[0] == "$" else 1 : -1].strip()),
-        "QUERY": lambda text, _: Query(),
-        "NUMBERS": _numbers,
-        "MATRIX": _matrix,
-        "NAME": lambda text, offset: QuotedName(_unescape(text[1:-1], offset)) if text[0] == "`" else text,
-    }
-)
-"""The value of a token, from its text and offset; other tokens are their text."""
 
 
 # ---- rules ---------------------------------------------------------------------------------------------------------------
@@ -282,6 +202,7 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
         "tagged_node": lambda parts, offset: node("", [parts[0], parts[-1]], offset),
         "group": lambda parts, _: _Group(parts),
         "group_arc": items.group_arc,
+        "headed_node": _headed_node,
         "node": lambda parts, offset: node("", parts, offset),
         "edge": lambda parts, offset: node(parts[0], parts[1:], offset),
         "changed_node": lambda parts, offset: changed("", parts, offset),
@@ -295,6 +216,11 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
         "quoted_arc": lambda parts, offset: arc("", None, [_quoted_ref(*parts)], offset),
         "legacy_edge": lambda parts, offset: arc(parts[0], None, [_quoted_ref(*parts[1:])], offset),
     }
+
+
+def _headed_node(parts: list[Any], _: int) -> Node:
+    name, edge, types, line, column = parts[0]
+    return Node(name, tuple(_ungrouped(parts[1:])), types, None, (), edge, line, column)
 
 
 @cache

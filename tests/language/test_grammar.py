@@ -82,6 +82,29 @@ def test_lark_and_the_machine_accept_the_same_damaged_files(lark: Lark, path: Pa
         assert _agree(lark, mutated), mutated
 
 
+@pytest.mark.parametrize(
+    ("text", "same"),
+    [
+        ("post [4] { a 1 }", "post [4] /* four */ { a 1 }"),
+        ("a { x=b.c }", "a { x=b /* */ .c }"),
+        ("a { x=b y [1 2] z 'w' v=-1 }", "a { x = b, y = [1 2] z 'w' v /* */ -1 }"),
+        ("@e : b { [0 0 1] + c - d.e }", "@ e:b{[0 0 1]+c-d . e}"),
+        ("@e { mimic - a [1] role + b { x 1 } + c }", "@e { mimic -a, [1]role +b{x 1}+c}"),
+        ("a : b(h=1 k=c) { use { } }", "a:b(h = 1,k = c){use{}}"),
+        ("t(h=0.5 k=x) : link { as 1 }", "t ( h = 0.5 k = x ):link{as 1}"),
+        ("a : t, b { }", "a : t,b{}"),
+        ("a { urdf { g(r=x) { m 1 } } }", "a { urdf { g ( r=x ) {m 1}}}"),
+        ("a use s { x 1 }", "a use s{x 1}"),
+        ("a { (+ b [1 2], - c) }", "a{(+b [1 2],-c)}"),
+        ("a { x inf y=nan }", "a { x=inf y nan }"),
+    ],
+)
+def test_statements_mean_the_same_whole_and_in_parts(lark: Lark, text: str, same: str) -> None:
+    first, second = (re.sub(r"//[^\n]*|\s", "", print_document(parse(written))) for written in (text, same))
+    assert first == second
+    assert _accepts(lark, text)
+
+
 def _words(text: str) -> list[str]:
     """Roughly the tokens of a text, without its comments."""
     pieces = [match[0] for match in re.finditer(TOKENS.pattern + r"|[^\s{}()\[\],:=]+|[,:=]", text)]
