@@ -25,6 +25,20 @@ def telling_words(name: str, plain: Collection[str] = ()) -> list[str]:
     return [word for word in words_of(name) if len(word) > 2 and word.lower() not in _PLAIN and word not in plain]
 
 
+_LEFT = frozenset(["left", "l", "fl", "rl", "hl", "bl", "ml", "lf", "lr", "lh", "lb", "lm"])
+_RIGHT = frozenset(["right", "r", "fr", "rr", "hr", "br", "mr", "rf", "rh", "rb", "rm"])
+
+
+def side(names: Iterable[str]) -> str:
+    """The side on which all of these are, by a word of their names: ``left`` or ``right``; empty where that is not known."""
+    sides = {next((here for word in words_of(name) if (here := _side(word.lower()))), "") for name in names}
+    return sides.pop() if len(sides) == 1 else ""
+
+
+def _side(word: str) -> str:
+    return "left" if word in _LEFT else "right" if word in _RIGHT else ""
+
+
 def common_words(names: Sequence[str]) -> str:
     """The words that all names share, in the order of the first: ``hip_joint`` of ``left_hip_joint`` and ``right_hip_joint``."""
     split = [words_of(name) for name in names]

@@ -158,7 +158,9 @@ def _assembled(pieces: Sequence[Piece], given: Given) -> list[Item]:
     taken: set[str] = set()
     defined, placed = templates(pieces, taken)
     blocks = [*(node.items for node in defined), *(() if isinstance(piece, Instance) else piece.items for piece in placed)]
-    items = with_stereotypes([item for block in blocks for item in block], taken, given)
+    homes = ["" if isinstance(piece, Node | Instance) else piece.home for piece in placed]
+    owners = [home for block, home in zip(blocks, [*("" for _ in defined), *homes], strict=True) for _ in block]
+    items = with_stereotypes([item for block in blocks for item in block], taken, given, owners)
     first = len(items) - sum(map(len, blocks))
     found = items[:first]
     for block, piece in zip(blocks, (*defined, *placed), strict=True):

@@ -44,7 +44,7 @@ class Element(Struct):
     """An element that may get a stereotype: where it stands, its units in order, and the units of its stereotypes.
 
     ``owner`` is the name of the element, of a shape that of its body; ``types`` are what the element is made from;
-    ``of_class`` are the units of the default class among those.
+    ``of_class`` are the units of the default class among those; ``home`` is the assembly that it stands in.
     """
 
     path: tuple[int, ...]
@@ -60,6 +60,7 @@ class Element(Struct):
 
     types: tuple[Stereotype, ...] = ()
     of_class: dict[str, Unit] = field(default_factory=dict)
+    home: str = ""
 
     def __post_init__(self) -> None:
         self.types = self.node.stereotypes

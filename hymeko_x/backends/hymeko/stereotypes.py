@@ -8,7 +8,6 @@ joint. Reading merges the fields again, in the same order.
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
@@ -17,15 +16,15 @@ from msgspec import Struct
 from hymeko_x.backends.hymeko.assemblies import take_name
 from hymeko_x.backends.hymeko.classes import apply_classes, in_reading_order, shortened, unmarked
 from hymeko_x.backends.hymeko.elements import AGAIN, Element, Unit, by_item, elements, group, is_open
+from hymeko_x.backends.hymeko.naming import names as best_names
 from hymeko_x.backends.hymeko.values import value_of
 from hymeko_x.factor.sets import candidates
-from hymeko_x.factor.words import common_words, meaning
 from hymeko_x.formats.hymeko import RESERVED
-from hymeko_x.language.syntax import Field, Item, Node, Ref, Stereotype
+from hymeko_x.language.syntax import Field, Item, Node, Stereotype
 from hymeko_x.language.templates import standard_templates
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from hymeko_x.factor.sets import Pair
     from hymeko_x.language.classes import Given
@@ -34,28 +33,10 @@ _LEAST = 12
 """Letters that a stereotype must save to be worth a name."""
 _WORTH = 1.1
 """How much longer a text with the default classes as stereotypes may be: it says a class once."""
+_NAME = 6
+"""Letters of a name, as far as they count against a stereotype."""
 _MOST = 32
 """Stereotypes of one kind of element."""
-_NAMES = {
-    "visual": "look",
-    "collision": "hull",
-    "shape": "solid",
-    "@": "axle",
-    "": "part",
-    "motor": "act",
-    "servo": "act",
-    "actuator": "act",
-    "drive": "gear",
-    "material": "paint",
-    "frame": "mark",
-    "sensor": "probe",
-    "tendon": "cable",
-    "texture": "image",
-    "prismatic": "slider",
-    "fixed": "mount",
-    "dof": "turn",
-}
-"""The name of a stereotype whose elements have no common words in their names, by the type of the elements."""
 
 
 class _Definition(Struct):
@@ -66,15 +47,17 @@ class _Definition(Struct):
     base: tuple[Stereotype, ...]
 
 
-def with_stereotypes(items: Sequence[Item], taken: Iterable[str] = (), given: Given | None = None) -> list[Item]:
+def with_stereotypes(items: Sequence[Item], taken: Iterable[str] = (), given: Given | None = None, homes: Sequence[str] = ()) -> list[Item]:
     """The items of a robot behind the stereotypes that several of them share. ``taken`` are names of other templates.
 
-    ``given``: default classes that are stereotypes of the text, with what each gives.
+    ``given``: default classes that are stereotypes of the text, with what each gives; ``homes``: the assembly of each item, as far as it
+    has one, which is a part of the names of what is in it.
     """
     items, classes = unmarked(items)
     names = {*standard_templates(), *RESERVED, *taken, *(given or ()), *_names_of_elements(items)}
     groups: dict[tuple[str, str], list[Element]] = {}
     for element in elements(items):
+        element.home = homes[element.path[0]] if homes else ""
         groups.setdefault(group(element), []).append(element)
     definitions: list[_Definition] = []
     changed: dict[tuple[int, ...], Node] = {}
@@ -91,7 +74,7 @@ def _shortest(
     """The stereotypes of one group and its elements with them: with default classes as stereotypes, or without, whichever is shorter."""
     ways: list[tuple[int, set[str], list[_Definition], list[Element]]] = []
     for wanted in (given, {}) if given else ({},):
-        found = [Element(element.path, element.owner, element.node, element.units) for element in members]
+        found = [Element(old.path, old.owner, old.node, old.units, home=old.home) for old in members]
         apply_classes(found, classes, wanted)
         if wanted and not any(element.of_class for element in found):
             continue
@@ -207,7 +190,7 @@ def _splits_repeated(element: Element, given: Mapping[str, Unit], differing: lis
 
 def _saving(kind: str, units: list[Unit], members: list[Element]) -> int:
     """Letters that a stereotype saves, its definition and its name counted."""
-    name = len(next(_names(kind, units, members))) + 1
+    name = min(len(next(best_names(kind, units, members))), _NAME) + 1
     texts = {unit.slot: unit.text for unit in units}
     saved = 0
     for member in members:
@@ -222,33 +205,8 @@ def _saving(kind: str, units: list[Unit], members: list[Element]) -> int:
 
 def _free_name(kind: str, units: list[Unit], members: list[Element], taken: set[str]) -> str:
     """The first of the names that is free, which is taken then; the last of them with a number where none is."""
-    wanted = [*_names(kind, units, members)]
+    wanted = [*best_names(kind, units, members)]
     return take_name(next((name for name in wanted if name not in taken), wanted[-1]), taken)
-
-
-def _names(kind: str, units: list[Unit], members: list[Element]) -> Iterator[str]:
-    """The default class, what the elements are by their names, the material or the mesh that they have, or a word for their type."""
-    given = {unit.slot: name for unit in units if isinstance(unit.item, Field) and (name := _word(unit.item.value))}
-    if "class" in given:
-        yield given["class"]
-    owners = [member.owner for member in members]
-    plain = _NAMES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
-    own = meaning(owners)
-    is_inside = len(members[0].path) > 1
-    yield from filter(_WORD.fullmatch, (own, f"{own}_{plain}") if is_inside else (common_words(owners), own))
-    yield from (given[slot] for slot in ("material", "mesh") if _WORD.fullmatch(given.get(slot, "")))
-    yield plain
-
-
-def _word(value: object) -> str:
-    """The name that a field gives: a word or a text; empty for another value."""
-    if isinstance(value, Ref):
-        return value.path[-1]
-    return value if isinstance(value, str) else ""
-
-
-_WORD = re.compile(r"[A-Za-z]\w{1,23}")
-"""Words that make a good name."""
 
 
 # ---- applying ------------------------------------------------------------------------------------------------------------

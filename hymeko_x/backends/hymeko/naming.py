@@ -1,0 +1,107 @@
+"""Names of stereotypes: what their elements are by their own names, and on which side; else their type, and what they give."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from typing import TYPE_CHECKING
+
+from hymeko_x.factor.words import common_words, meaning, side, telling_words
+from hymeko_x.ir.values import number_text
+from hymeko_x.language.syntax import Field, Ref, is_list
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from hymeko_x.backends.hymeko.elements import Element, Unit
+    from hymeko_x.language.syntax import Value
+
+_TYPES = {
+    "visual": "visual",
+    "collision": "collision",
+    "shape": "solid",
+    "@": "axle",
+    "": "part",
+    "motor": "drive",
+    "servo": "drive",
+    "actuator": "drive",
+    "material": "paint",
+    "frame": "mark",
+    "sensor": "probe",
+    "tendon": "cable",
+    "texture": "image",
+    "prismatic": "slider",
+    "fixed": "mount",
+    "dof": "turn",
+}
+"""What a stereotype is called, alone or behind other words, by the type of its elements."""
+_BEHIND = {"": "body", "@": "axis", "visual": "look", "collision": "hull"}
+"""What stands behind other words instead, where that is shorter or not the word of a kind."""
+_EFFORTS = ("effort", "forcerange", "ctrlrange")
+_ROTATIONS = {"X": "roll", "Y": "pitch", "Z": "yaw"}
+_SHORT = 12
+"""Letters of a name that is not too long to be used many times."""
+_WORD = re.compile(r"[A-Za-z]\w{1,23}")
+"""Words that make a good name."""
+
+
+def names(kind: str, units: Sequence[Unit], members: Sequence[Element]) -> Iterator[str]:
+    """Names for a stereotype with these units, the best first. The last one is the word for the type of its elements."""
+    given = {unit.slot: name for unit in units if isinstance(unit.item, Field) and (name := _word(unit.item.value))}
+    plain = _TYPES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
+    behind = _BEHIND.get(kind, plain.removesuffix("_kind"))
+    found = [given.get("class", "")]
+    if len(units) == 1:
+        found += [given.get("material", ""), given.get("mesh", "")]
+    is_inside = len(members[0].path) > 1
+    found += _by_owners(members, behind, is_inside=is_inside, sides=kind != "dof")
+    found += [given.get("material", ""), given.get("mesh", "")]
+    yield from sorted(filter(_WORD.fullmatch, found), key=lambda name: len(name) > _SHORT)
+    yield plain
+    if not is_inside or kind == "dof":
+        yield from filter(_WORD.fullmatch, _by_values(units, plain))
+    yield plain
+
+
+def _by_owners(members: Sequence[Element], behind: str, *, is_inside: bool, sides: bool) -> Iterator[str]:
+    """Names from those of the elements, of shapes those of their bodies: what all of them share, or most."""
+    owners = [member.owner for member in members]
+    own = meaning(owners)
+    where = side(f"{member.home}_{member.owner}" for member in members) if sides else ""
+    if not is_inside:
+        yield common_words(owners)
+    yield own
+    if own:
+        yield from ([f"{where}_{own}"] if where else [])
+        yield f"{own}_{behind}"
+        yield from ([f"{where}_{own}_{behind}"] if where else [])
+    counts = Counter(word for owner in owners for word in dict.fromkeys(telling_words(owner)))
+    most = max(counts, key=lambda word: counts[word], default="")
+    if 2 * counts[most] > len(owners):
+        yield from (most, f"{most}_{behind}")
+
+
+def _by_values(units: Iterable[Unit], plain: str) -> Iterator[str]:
+    """Names from what moves: the greatest effort, or the axis."""
+    values = {unit.slot: unit.item.value for unit in units if isinstance(unit.item, Field)}
+    for slot in _EFFORTS:
+        most = _greatest(values.get(slot))
+        if most is not None and most == int(most):
+            yield f"{plain}_{number_text(most)}"
+    axis = values.get("axis")
+    if isinstance(axis, Ref):
+        yield _ROTATIONS.get(axis.path[-1], "")
+
+
+def _greatest(value: Value | None) -> float | None:
+    """The number, or that of a range about zero."""
+    if is_list(value) and len(value) == 2 and isinstance(value[0], float) and isinstance(value[1], float) and value[0] == -value[1]:
+        return value[1]
+    return value if isinstance(value, float) else None
+
+
+def _word(value: object) -> str:
+    """The name that a field gives: a word or a text; empty for another value."""
+    if isinstance(value, Ref):
+        return value.path[-1]
+    return value if isinstance(value, str) else ""
