@@ -6,6 +6,7 @@ Source: tinyobjloader 2, exportGroupsToShape (the built-in ear clipping); MuJoCo
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,17 +14,25 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+MOST_CORNERS = 100
+"""MuJoCo leaves polygons with more corners out."""
+_LARGE = re.compile(rb"^[ \t]*f(?:[ \t]+[^\s]+){%d}" % (MOST_CORNERS + 1), re.MULTILINE)
 _TRIANGLE, _QUADRILATERAL = 3, 4
 _LEAST_CORNER = np.finfo(np.float32).eps
 
 Point = tuple[np.float32, np.float32]
 
 
+def leaves_polygons_out(data: bytes) -> bool:
+    """Whether an OBJ file has polygons that MuJoCo leaves out."""
+    return _LARGE.search(data) is not None
+
+
 def cut(points: NDArray[np.float32], sizes: NDArray[Any], corners: NDArray[Any]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """The triangles of polygons: places in ``corners`` (n, 3), and for each triangle the number of its polygon.
 
     ``points`` is (m, 3), ``sizes`` the number of corners of each polygon, ``corners`` the rows of ``points`` of all. Polygons of fewer
-    than three corners have none.
+    than three corners have none, nor have those of more than 100, as in MuJoCo.
     """
     starts = np.cumsum(sizes) - sizes
     tables, owners = [], []
@@ -32,7 +41,7 @@ def cut(points: NDArray[np.float32], sizes: NDArray[Any], corners: NDArray[Any])
         places = cutter(points, starts[numbers], corners)
         tables.append(places)
         owners.append(np.repeat(numbers, len(places) // max(len(numbers), 1)))
-    for number in np.flatnonzero(sizes > _QUADRILATERAL).tolist():
+    for number in np.flatnonzero((sizes > _QUADRILATERAL) & (sizes <= MOST_CORNERS)).tolist():
         start, size = int(starts[number]), int(sizes[number])
         ears = _ears(points[corners[start : start + size]])
         tables.append(np.array(ears, dtype=np.intp).reshape(-1, 3) + start)

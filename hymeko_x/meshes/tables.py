@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from hymeko_x.meshes.numerals import numbers_in
-from hymeko_x.meshes.polygons import cut
+from hymeko_x.meshes.polygons import MOST_CORNERS, cut, leaves_polygons_out
 from hymeko_x.meshes.stl import read_stl
 from hymeko_x.meshes.submesh import MOST_FACES, Submesh, Unreadable, fans
 from hymeko_x.meshes.weld import joined
@@ -59,6 +59,8 @@ def read_otherwise(data: bytes, suffix: str) -> tuple[Submesh, str] | None:
     part = read_mesh(data, suffix)
     if part is not None and lines.has_more:
         return part, "has several objects, of which MuJoCo reads the first"
+    if part is not None and leaves_polygons_out(data):
+        return part, f"has polygons of more than {MOST_CORNERS} corners, which MuJoCo leaves out"
     if part is not None and not _are_flat_and_convex(lines, part.points):
         return part, "has polygons that are bent or concave; they are cut as MuJoCo cuts them"
     return None

@@ -22,6 +22,11 @@ def refused(suffix: str, data: bytes) -> str | None:
             return "is STL as text or with a wrong length; MuJoCo reads only exact binary STL"
         if stl_faces(data) > MOST_STL_FACES:
             return f"has {stl_faces(data)} triangles, and MuJoCo reads STL only up to {MOST_STL_FACES}"
+    if suffix == ".obj":
+        from hymeko_x.meshes.polygons import MOST_CORNERS, leaves_polygons_out
+
+        if leaves_polygons_out(data):
+            return f"has polygons of more than {MOST_CORNERS} corners, and MuJoCo leaves them out"
     return None
 
 
@@ -36,7 +41,7 @@ def mended(suffix: str, data: bytes) -> tuple[str, bytes]:
     from hymeko_x.meshes.stl import stl_bytes
 
     part = read_whole(data, suffix, _nothing_beside)
-    return (suffix, stl_bytes(part)) if len(part.faces) <= MOST_STL_FACES else (".obj", obj_bytes(part))
+    return (suffix, stl_bytes(part)) if suffix == ".stl" and len(part.faces) <= MOST_STL_FACES else (".obj", obj_bytes(part))
 
 
 def _nothing_beside(name: str) -> bytes:
