@@ -27,3 +27,24 @@ def test_a_bare_name_is_that_of_a_model_in_the_resource_path(tmp_path: Path) -> 
     (folder / "model.sdf").write_text('<sdf version="1.9"><model name="p"><link name="l"/></model></sdf>', "utf-8")
     (tmp_path / "w.sdf").write_text('<sdf version="1.9"><world name="w"><include><uri>part</uri></include></world></sdf>', "utf-8")
     assert hx.load(tmp_path / "w.sdf", search_path=(tmp_path / "models",)).name == "p"
+
+
+STATIC = """<sdf version="1.9"><model name="m"><static>true</static><link name="a"/><link name="b"/>
+<joint name="j" type="revolute"><parent>a</parent><child>b</child><axis><xyz>0 0 1</xyz></axis></joint></model></sdf>"""
+
+
+def test_a_joint_of_a_static_model_is_fixed_in_other_formats() -> None:
+    robot = hx.loads(STATIC, "sdf")
+    assert canonical(hx.dumps(robot, "sdf").encode()) == canonical(STATIC.encode())
+    report = hx.Report()
+    assert "<joint" not in hx.dumps(robot, "mjcf", report=report)
+    assert "joint 'j' is in a static model, in which nothing moves; it is written as fixed" in [diagnostic.message for diagnostic in report]
+    assert 'type="fixed"' in hx.dumps(robot, "urdf")
+
+
+def test_a_joint_of_a_nested_model_is_as_static_as_the_models_around_it() -> None:
+    inner = STATIC.removeprefix('<sdf version="1.9">').removesuffix("</sdf>")
+    moving, around = inner.replace("<static>true</static>", ""), '<sdf version="1.9"><model name="n">{}<link name="l"/>{}</model></sdf>'
+    assert "<joint" not in hx.dumps(hx.loads(around.format("", inner), "sdf"), "mjcf").replace("<freejoint", "")
+    assert "<joint" not in hx.dumps(hx.loads(around.format("<static>1</static>", moving), "sdf"), "mjcf")
+    assert "<joint" in hx.dumps(hx.loads(around.format("", moving), "sdf"), "mjcf")

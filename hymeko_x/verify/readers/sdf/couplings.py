@@ -110,7 +110,7 @@ def _axis(axis: ElementTree.Element | None, joint: ElementTree.Element, model: K
     own = joint.get("name", "")
     name = xyz.get("expressed_in") or (own if plant.HasFrameNamed(own) else _text(joint, "child", "world"))
     frame = plant.GetFrameByName("__model__" if _text(axis, "use_parent_model_frame", "0") in ("1", "true") else name)
-    number = next(i for i, body in enumerate(model.bodies) if i == WORLD or body.name == str(frame.body().name()))
+    number = next((i for i, body in enumerate(model.bodies) if i and body.name == str(frame.body().name())), WORLD)
     direction = np.array(frame.GetFixedPoseInBodyFrame().rotation().matrix()) @ [float(word) for word in (xyz.text or "").split()]
     return _in_world(model, number, direction / np.linalg.norm(direction))
 
