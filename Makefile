@@ -56,7 +56,7 @@ coverage: $(STAMP)
 
 bench: $(STAMP)
 	@$(BIN)/python -m peers || echo "what could not be installed has no figures"
-	@for name in parse load load_mjcf growth size residue speed whole usd meshes contest; do $(BIN)/python -m benchmarks.$$name || failed=1; done; exit $${failed:-0}
+	@for name in parse load load_mjcf growth size residue speed sdf whole usd meshes contest; do $(BIN)/python -m benchmarks.$$name || failed=1; done; exit $${failed:-0}
 
 docs: $(STAMP)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --quiet

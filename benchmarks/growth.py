@@ -89,6 +89,11 @@ def _from_urdf(target: str) -> Callable[[str], Work]:
     return lambda urdf: lambda: hx.dumps(hx.loads(urdf, "urdf"), target)
 
 
+def _from_sdf(urdf: str) -> Work:
+    text = hx.dumps(hx.loads(urdf, "urdf"), "sdf")
+    return lambda: hx.dumps(hx.loads(text, "sdf"), "urdf")
+
+
 def _to_urdf(urdf: str) -> Work:
     mjcf = hx.dumps(hx.loads(urdf, "urdf"), "mjcf")
     return lambda: hx.dumps(hx.loads(mjcf, "mjcf"), "urdf")
@@ -128,6 +133,8 @@ WAYS: Mapping[str, Callable[[str], Work]] = {
     "HyMeKo printed": _print,
     "HyMeKo parsed": _parse,
     "URDF -> USD": _from_urdf("usd"),
+    "URDF -> SDF": _from_urdf("sdf"),
+    "SDF -> URDF": _from_sdf,
 }
 YARDSTICKS: Mapping[str, Callable[[str], Work]] = {"lxml reads the URDF": _xml, "MuJoCo, URDF -> MJCF": _mujoco}
 

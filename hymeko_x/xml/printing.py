@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _INDENTS = tuple("  " * depth for depth in range(41))
 """Elements in more than 40 others are not indented further, so that the text stays linear in their number."""
 _STEP = re.compile(rf"{NAME}(?:\[[1-9]\d*\])?|@{NAME}|text\(\)")
+_PLAIN = re.compile(r"<([A-Za-z_][\w.-]*+)(?:/>|>[\w .,+\-/()\n]*+</\1>)", re.ASCII)
+"""An element with a plain text and nothing else, which needs no parser."""
 _NAMESPACE = re.compile(r"xmlns(?::[^\W\d][\w.-]*)?")
 
 
@@ -50,8 +52,12 @@ class Tag:
         """The child that a path's step (``joint``, ``joint[2]``) leads to; made when it is not there."""
         name, _, number = step.partition("[")
         wanted = int(number.rstrip("]")) if number else 1
-        found = [child for child in self.children if isinstance(child, Tag) and child.name == name]
-        return found[wanted - 1] if wanted <= len(found) else self.add(name)
+        for child in self.children:
+            if isinstance(child, Tag) and child.name == name:
+                wanted -= 1
+                if not wanted:
+                    return child
+        return self.add(name)
 
 
 def put_back(tag: Tag, extras: Iterable[Extra], declared: Mapping[str, str]) -> None:
@@ -86,6 +92,8 @@ def foreign_text(extra: Extra, declared: Mapping[str, str]) -> str:
         return comment_markup(extra.text)
     if extra.path in (PRECEDING, FOLLOWING) and not extra.text.startswith("<?"):
         raise _not_xml(extra, "outside the root there are only comments and instructions")
+    if _PLAIN.fullmatch(extra.text) is not None:
+        return extra.text
     spaces = attributes_text({name: uri for name, uri in declared.items() if _NAMESPACE.fullmatch(name)})
     try:
         around = parse_text(f"<x{spaces}>{extra.text}</x>", namespaces=True)

@@ -47,6 +47,8 @@ def unescaped(text: str) -> str:
 
 def attributes_text(attributes: Mapping[str, str | None]) -> str:
     """Attributes as they stand in a start tag, each with a blank before it; None is not written."""
+    if not attributes:
+        return ""
     parts = [f' {name}="{value}"' for name, value in attributes.items() if value is not None]
     text = "".join(parts)
     if _SPECIAL_IN_TAG.search(text) is None and text.count('"') == 2 * len(parts):
