@@ -104,10 +104,10 @@ def _converted(robot: Robot, target: formats.Format, look: Look, studio: Studio)
     """A robot as its conversion into a format has it, read from that file alone."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"robot{target.suffixes[0]}"
-        api.dump(robot, file, target.name, assets="copy", lenient=True)
+        api.dump(robot, file, target.name, assets=None if target.holds_files else "copy", lenient=True)
         again = api.open(file, target.name, lenient=True)
         again = Robot(again.mechanism, ManyFiles((again.files, robot.files)))  # files of packages stay where they are
-        return open_studio(again, str(file) if is_drawn(target) else None, look, studio.corners)
+        return open_studio(again, str(file) if is_drawn(target) else None, look, studio)
 
 
 def apart(path: str, pictures: Path | None) -> Drawn:

@@ -39,13 +39,14 @@ class Pair(Struct, frozen=True, eq=False):
 
 
 def pair(a: Subject, b: Subject, look: Look) -> Pair:
-    """Both robots in the poses in which their files place the bodies; light, ground and camera are those that fit the first one.
+    """The first robot in the pose in which its file places the bodies, the second one with its joints there; light, ground and camera are
+    those that fit the first one.
 
     Raises: Refusal as :class:`hymeko_x.draw.render.Studio`.
     """
     look = replace(look, is_authored=True)
     studio = open_studio(a.robot, a.path, look)
-    return compared(studio.still(), open_studio(b.robot, b.path, look, studio.corners).still())
+    return compared(studio.still(), open_studio(b.robot, b.path, look, studio).still())
 
 
 def compared(before: Picture, after: Picture) -> Pair:

@@ -56,12 +56,12 @@ class Look(Struct, frozen=True):
 class Studio:
     """A robot that MuJoCo has compiled, in a scene with light and ground.
 
-    ``corners`` are those of the scene and of the picture; None: those of the robot itself.
+    ``like``: for a comparison with that one: in its scene, by its camera, and with the joints where they are in it.
 
     Raises: Refusal HX302 when MuJoCo refuses the robot, HX501 when nothing is visible, HX502 when this machine cannot draw.
     """
 
-    def __init__(self, spec: Any, name: str, look: Look, corners: Corners | None = None) -> None:
+    def __init__(self, spec: Any, name: str, look: Look, like: Studio | None = None) -> None:
         import mujoco
 
         self._name = name
@@ -70,7 +70,9 @@ class Studio:
         self.data = mujoco.MjData(self.model)
         self._place(look.pose)
         self._groups = _groups(self.model, collision=look.collision)
-        self.corners = corners or self._own_corners()
+        if like is not None:
+            self._take_joints_of(like)
+        self.corners = self._own_corners() if like is None else like.corners
         if look.is_authored:
             _remove_surroundings(spec)
         self.model = _compiled(_with_scene(spec, self.model, self.corners, look), name)
@@ -150,6 +152,20 @@ class Studio:
             raise refuse(codes.UNDEFINED_REFERENCE, f"{self._name} has no pose '{wanted}'", hint=f"keyframes: {known}; or a file NAME.json")
         mujoco.mj_forward(self.model, self.data)
 
+    def _take_joints_of(self, other: Studio) -> None:
+        """Move each joint with one dof to where it is in another robot: formats differ in the positions in which they place bodies."""
+        import mujoco
+
+        scalar = (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)
+        theirs = {
+            other.model.joint(joint).name: joint for joint, kind in enumerate(other.model.jnt_type) if mujoco.mjtJoint(kind) in scalar
+        }
+        for joint in range(self.model.njnt):
+            same = theirs.get(self.model.joint(joint).name)
+            if same is not None and self.model.jnt_type[joint] == other.model.jnt_type[same]:
+                self.data.qpos[self.model.jnt_qposadr[joint]] = other.data.qpos[other.model.jnt_qposadr[same]]
+        mujoco.mj_forward(self.model, self.data)
+
     def _take_positions(self, positions: Mapping[str, float], file: str) -> None:
         import mujoco
 
@@ -165,12 +181,12 @@ def is_drawn(format: Format) -> bool:
     return "mujoco" in format.memory
 
 
-def open_studio(robot: Mechanism | Holder, path: str | None, look: Look, corners: Corners | None = None) -> Studio:
+def open_studio(robot: Mechanism | Holder, path: str | None, look: Look, like: Studio | None = None) -> Studio:
     """The scene of a robot. ``path`` is its file where MuJoCo reads that format itself; other formats go through our own writer.
 
     A holder that has ``files`` finds its meshes and images itself; those of a mechanism are looked for beside the file that it was read
     from.
-    ``corners`` as for :class:`Studio`.
+    ``like`` as for :class:`Studio`.
 
     Raises: Refusal as :class:`Studio`.
     """
@@ -179,14 +195,14 @@ def open_studio(robot: Mechanism | Holder, path: str | None, look: Look, corners
 
     if path is not None:
         try:
-            return Studio(mujoco.MjSpec.from_file(path), path, look, corners)
+            return Studio(mujoco.MjSpec.from_file(path), path, look, like)
         except ValueError as error:
             raise refuse(codes.ENGINE_REFUSED, f"MuJoCo refuses it: {_first_line(error)}", Origin(path)) from error
     row = next(row for row in formats.FORMATS if is_drawn(row))
     with TemporaryDirectory(prefix="hymeko-x-") as folder:
         file = Path(folder) / f"robot{row.suffixes[0]}"
         api.dump(robot, file, row.name)
-        return Studio(mujoco.MjSpec.from_file(str(file)), mechanism_of(robot).name, look, corners)
+        return Studio(mujoco.MjSpec.from_file(str(file)), mechanism_of(robot).name, look, like)
 
 
 def _compiled(spec: Any, name: str) -> mujoco.MjModel:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import mujoco
+import numpy as np
+
 import hymeko_x as hx
 
 ARM = """<mujoco model="arm">
@@ -88,3 +91,29 @@ def hand() -> hx.Robot:
 
 def claw() -> hx.Robot:
     return hx.Robot(hx.loads(URDF_HAND, "urdf"))
+
+
+_FILES = ("paths", "npaths", "nbuffer", "names_map")
+
+
+def check_same_model(ours: mujoco.MjModel, theirs: mujoco.MjModel, *, in_order: bool = True) -> None:
+    """Each number and each array of two compiled models is the same, but for names, paths of files, and if so the order of meshes."""
+    order = () if in_order else ("mesh_", "bvh_", "name_mesh", "geom_dataid")
+    compared = 0
+    for name in dir(theirs):
+        if name.startswith(("_", *order)) or name.endswith("pathadr") or name in _FILES:
+            continue
+        expected, found = getattr(theirs, name), getattr(ours, name)
+        if isinstance(expected, np.ndarray):
+            assert found.shape == expected.shape, name
+            assert np.allclose(found, expected, atol=1e-12, rtol=1e-12), name
+            compared += 1
+        elif isinstance(expected, int):
+            assert found == expected, name
+    assert compared > 300
+    assert meshes_of_geoms(ours) == meshes_of_geoms(theirs)
+
+
+def meshes_of_geoms(model: mujoco.MjModel) -> list[str]:
+    is_mesh = model.geom_type == int(mujoco.mjtGeom.mjGEOM_MESH)
+    return [model.mesh(number).name for number in model.geom_dataid[is_mesh]]
