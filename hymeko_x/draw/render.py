@@ -72,7 +72,7 @@ class Studio:
         self._groups = _groups(self.model, collision=look.collision)
         if like is not None:
             self._take_joints_of(like)
-        self.corners = self._own_corners() if like is None else like.corners
+        self.corners: Corners = self._own_corners() if like is None else like.corners
         if look.is_authored:
             _remove_surroundings(spec)
         self.model = _compiled(_with_scene(spec, self.model, self.corners, look), name)

@@ -13,6 +13,7 @@ import pytest
 
 import hymeko_x as hx
 from hymeko_x.corpus import catalog
+from hymeko_x.ir.parts import DofKind
 from tests.robot.robots import check_same_model
 
 ARMS = (
@@ -85,7 +86,7 @@ def test_a_hand_on_an_arm_loads_in_every_engine_and_moves_as_its_parts(
     tip = list(host.bodies)[-1]
     whole = host.attach(part, at=tip, prefix=PREFIX)
 
-    scalar = [name for name, joint in whole.joints.items() if len(joint.dofs) == 1]
+    scalar = [name for name, joint in whole.joints.items() if [dof.kind for dof in joint.dofs] in ([DofKind.HINGE], [DofKind.SLIDE])]
     q = {name: 0.05 + 0.3 * math.sin(number) for number, name in enumerate(scalar)}
     own = {name: value for name, value in q.items() if not name.startswith(PREFIX)}
     poses, before = matrices(whole.fk(q)), matrices(host.fk(own))
