@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 import tomllib
@@ -35,6 +36,14 @@ def test_the_console_script_and_the_typing_marker_are_declared() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
     assert project["project"]["scripts"] == {"hymeko-x": "hymeko_x.cli:main"}
     assert (ROOT / "hymeko_x/py.typed").exists()
+
+
+def test_the_version_is_the_same_everywhere_and_that_of_the_tag() -> None:
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["version"]
+    assert f"version: {version}\n" in (ROOT / "CITATION.cff").read_text("utf-8")
+    done = subprocess.run(["git", "tag", "--points-at", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False)
+    tags = [tag for tag in done.stdout.split() if re.fullmatch(r"v\d+\.\d+\.\d+", tag)]
+    assert tags in ([], [f"v{version}"]), "the tag of a release is its version; a clone without tags has none to compare"
 
 
 def test_the_ci_runs_what_the_makefile_calls_test() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 import subprocess
 import sys
@@ -28,6 +29,29 @@ def test_the_site_is_built_without_a_warning_and_loads_nothing_from_elsewhere(tm
     assert [code for code in CODES if f"{code}: " not in diagnostics] == []
     assert [name for name in hymeko_x.__all__ if f'id="hymeko_x.{name}"' not in pages["api/index.html"]] == []
     assert (tmp_path / "search/search_index.json").stat().st_size > 100_000
+
+
+def undocumented(path: Path) -> list[str]:
+    """The public classes, functions and methods of a module that have no docstring, and the module itself."""
+    text = path.read_text("utf-8")
+    tree = ast.parse(text)
+    nodes: list[tuple[str, ast.Module | ast.ClassDef]] = [("", tree)]
+    found = [str(path)] if text and ast.get_docstring(tree) is None else []
+    for prefix, node in nodes:
+        for child in node.body:
+            if not isinstance(child, ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) or child.name.startswith("_"):
+                continue
+            if isinstance(child, ast.ClassDef):
+                nodes.append((f"{child.name}.", child))
+            elif any(ast.unparse(mark).endswith(("overload", ".setter")) for mark in child.decorator_list):
+                continue
+            if ast.get_docstring(child) is None:
+                found.append(f"{path}:{child.lineno} {prefix}{child.name}")
+    return found
+
+
+def test_everything_public_in_the_code_has_a_docstring() -> None:
+    assert [line for path in sorted((ROOT / "hymeko_x").rglob("*.py")) for line in undocumented(path)] == []
 
 
 def test_every_public_name_has_a_docstring() -> None:

@@ -59,6 +59,7 @@ def layout_of(network: Network) -> Layout:
 
 
 def variable(network: Network, key: Id, quantity: str, value: float = 0.0, rate_of: str = "") -> Variable:
+    """A quantity (position, velocity, acceleration) of a mass or a branch, with its unit and its letter."""
     unit = getattr(UNITS[network.domains[key]], quantity)
     letter = {"position": "x", "velocity": r"\dot x", "acceleration": r"\ddot x"}[quantity]
     if network.domains[key] == "rotation":
@@ -67,6 +68,7 @@ def variable(network: Network, key: Id, quantity: str, value: float = 0.0, rate_
 
 
 def tex(key: Id) -> str:
+    """The name of an element as an upright index in LaTeX."""
     name = key.name.replace("_", r"\_")
     return rf"\mathrm{{{name}}}"
 

@@ -232,6 +232,7 @@ def identifier(text: str) -> str:
 
 
 def free_name(wishes: list[str], taken: Container[str]) -> str:
+    """The first wish that is not taken, else the last one with the first free number from 2 on."""
     for wish in wishes:
         if wish not in taken:
             return wish

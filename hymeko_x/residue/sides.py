@@ -159,6 +159,7 @@ _NEAR = 20
 
 
 def with_sides(mechanism: Mechanism, residue: Residue, image: Mechanism) -> Mechanism:
+    """The mechanism with the residue's side tables: notations, origins, extras and layout."""
     sides = residue.sides
     there = {ROOT, *mechanism.graph.vertices, *mechanism.graph.edges}
     noted = image.notations.items()

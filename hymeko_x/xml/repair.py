@@ -124,6 +124,7 @@ _OTHER_BLANKS = re.compile(r"""("[^"]*"|'[^']*')|[\xa0\u2000-\u200b\u202f\u205f\
 
 
 def decoded(data: bytes) -> tuple[str, str]:
+    """The text of a file, and a note about its encoding; no note where the encoding is the declared one."""
     for mark, name in ((codecs.BOM_UTF8, "utf-8"), (codecs.BOM_UTF16_LE, "utf-16-le"), (codecs.BOM_UTF16_BE, "utf-16-be")):
         if data.startswith(mark):
             return data[len(mark) :].decode(name, "replace"), ""

@@ -248,6 +248,7 @@ POSE_NAMES = ("pos", "quat", "euler", "axisangle", "xyaxes", "zaxis")
 
 
 def seen_pose(attributes: Mapping[str, str], settings: Settings) -> Any:
+    """The numbers of a pose as they are written, to compare two notations of one pose."""
     if "fromto" in attributes:
         return plain(attributes, ("fromto",))
     turn = plain(attributes, TURNS)
@@ -312,6 +313,8 @@ def text(name: str) -> Group:
 
 
 def seen_numbers(name: str, default: float | None) -> Callable[[Mapping[str, str], Settings], Any]:
+    """A function that gives the numbers of an attribute as they are written, or the default as one number."""
+
     def seen(attributes: Mapping[str, str], settings: Settings) -> Any:
         found = attributes.get(name)
         return ((default,) if default is not None else None) if found is None else read_numbers(found)

@@ -42,6 +42,7 @@ _TURNING = (None, "hinge", "ball")
 
 
 def read_kind(attributes: Mapping[str, str], settings: Settings) -> DofKind:
+    """The kind of dof of a <joint>. Raises: BadAttribute for an unknown type."""
     word = attributes.get("type", "hinge")
     if word not in DOF_KINDS:
         raise BadAttribute("type", f"one of {', '.join(DOF_KINDS)}")

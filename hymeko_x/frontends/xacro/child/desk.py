@@ -110,6 +110,7 @@ class Output(io.TextIOBase):
         self._line = ""
 
     def write(self, text: str) -> int:
+        """Report each whole line of a text, but for those that only name places; the number of letters."""
         *lines, self._line = (self._line + text).split("\n")
         for line in lines:
             if line.strip() and not line.startswith(self._PLACES):

@@ -46,10 +46,12 @@ class PlacingBuilder(expatbuilder.ExpatBuilderNS):
         self._file = file
 
     def install(self, parser: Any) -> None:
+        """Attach the handlers to a parser of expat."""
         super().install(parser)
         parser.EntityDeclHandler = self._refuse_entity
 
     def start_element_handler(self, name: str, attributes: list[str]) -> None:
+        """Begin an element, and note its file and line."""
         around = self.curNode
         super().start_element_handler(name, attributes)
         self.curNode.setUserData(PLACE, Place(self._file, self.getParser().CurrentLineNumber, _macro_around(around)), KEEP_PLACE)
