@@ -118,9 +118,13 @@ def _pairs(values: Mapping[str, float]) -> str:
 def _symbolic_page(dynamics: Multibody) -> Page:
     names = {f"{variable.name}": variable for variable in dynamics.system.states}
     found = dynamics.symbolic()
-    blocks = (Block("M", found.mass), Block("h", found.bias), Block("g", found.gravity))
+    blocks: tuple[Block, ...] = (Block("M", found.mass), Block("h", found.bias), Block("g", found.gravity))
     variables = {"states": tuple(names.values()), "inputs": dynamics.system.inputs}
-    return Page(dynamics.tree.name, "second-order", "M(q) v' + h(q, v) = tau, h(q, 0) = g(q)", variables, blocks, {})
+    formula = "M(q) v' + h(q, v) = tau, h(q, 0) = g(q)"
+    if dynamics.closures:
+        formula = "M(q) v' + h(q, v) = tau + J(q)' f, phi(q) = 0, J = dphi/dq, h(q, 0) = g(q)"
+        blocks = (*blocks, *[Block(name, value) for name, value in zip(("phi", "J"), dynamics.symbolic_loops(), strict=True)])
+    return Page(dynamics.tree.name, "second-order", formula, variables, blocks, {})
 
 
 def _lumped_page(dynamics: Lumped, form: str, *, symbolic: bool) -> Page:

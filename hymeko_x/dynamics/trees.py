@@ -137,6 +137,18 @@ class Trees(Struct, frozen=True, dict=True):
         rows = (mass_matrix(constants, q), [[x] for x in bias], [[x] for x in gravity])
         return Formulas(tuple(q), tuple(v), *(sympy.Matrix(found).applyfunc(sympy.trigsimp) for found in rows))
 
+    def symbolic_loops(self) -> tuple[Any, Any]:
+        """The closure phi(q) and its Jacobian J(q) over all coordinates as formulas, without rows that are zero everywhere."""
+        import sympy
+
+        constants = Constants(self.tree, symbols(), self.gravity)
+        q = [sympy.Symbol(f"q{k}", real=True) for k in range(1, self.tree.nq + 1)]
+        closed = closing(self.closures, constants, q, [0] * self.tree.nv)
+        rows = [(gap, row) for gap, row in zip(closed.gap, closed.slope, strict=True) if any(entry != 0 for entry in row)]
+        phi = sympy.Matrix(len(rows), 1, [gap for gap, _ in rows])
+        slope = sympy.Matrix(len(rows), self.tree.nv, [entry for _, row in rows for entry in row])
+        return phi.applyfunc(sympy.trigsimp), slope.applyfunc(sympy.trigsimp)
+
     @cached_property
     def graph(self) -> Any:
         """The casadi function (x, u) -> x', with derivatives of any order and generated C."""

@@ -8,6 +8,7 @@ import mujoco
 import numpy as np
 import pinocchio as pin
 import pytest
+import sympy
 
 import hymeko_x as hx
 from hymeko_x.diagnostics import Refusal
@@ -136,6 +137,18 @@ def test_a_simulation_keeps_the_loops_closed(found: Multibody) -> None:
     assert np.abs(response.states[-1] - response.states[0]).max() > 0.05
     for row in response.states:
         assert np.abs(found.closed_at(row[: found.tree.nq])[0]).max() < 1e-7
+
+
+def test_the_formulas_of_a_loop_have_their_jacobian() -> None:
+    """Of a linkage in a plane two rows: what is across the plane is closed everywhere."""
+    found = hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko"))
+    phi, slope = found.symbolic_loops()
+    q = sympy.symbols("q1:4", real=True)
+    assert phi.shape == (2, 1)
+    there = dict(zip(q, (0.3, -0.8, 1.1), strict=True))
+    ours, theirs = (np.array(matrix.subs(there).tolist(), dtype=float) for matrix in (slope, phi.jacobian(q)))
+    np.testing.assert_allclose(ours, theirs, atol=1e-12)
+    assert np.abs(ours).max() > 0.1
 
 
 def test_a_loop_that_cannot_be_closed_is_refused_with_its_name() -> None:
