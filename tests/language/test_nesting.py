@@ -56,6 +56,12 @@ def test_a_block_of_a_block_is_vertices_and_edges_and_the_edges_that_tell_so() -
     }
 
 
+def test_a_type_among_the_values_of_inner_data_comes_back() -> None:
+    graph = read('g : graph { sensors { eye { type "camera" rate 30 } @e { type "link" + eye } } ear { type "microphone" } }')
+    assert graph.vertex(vertex("sensors.eye"), parts.Datum) == parts.Datum((("type", "camera"), ("rate", 30.0)))
+    assert hx.loads(hx.dumps(graph, "hymeko"), "hymeko") == graph
+
+
 def test_edges_stand_inside_of_edges_and_weights_have_any_shape() -> None:
     graph = read("g : graph { a {} @e { [[1 2] [3 [4 5]]] + a @inner { [0.5 0.7] - a } } }").graph
     outer, inner = Id("relation", "e"), Id("relation", "e.inner")

@@ -76,8 +76,10 @@ class HymekoSheet(Struct, frozen=True):
         if notations:
             items.extend(written_items(notations, flags=key.kind not in NAMED_AFTER_ID))
         items.extend(foreign_items(self.mechanism.extras.get(key, ()), deep=key in self.nesting.outer))
-        path, items = _typed(kind, items)
-        stereotypes = (Stereotype(Ref(path)),) if kind else ()
+        stereotypes: tuple[Stereotype, ...] = ()
+        if kind:
+            path, items = _typed(kind, items)
+            stereotypes = (Stereotype(Ref(path)),)
         own = self.nesting.name(key)
         name = own if key == WORLD else name_of(own.removeprefix(f"{self.inside}_" if self.inside else ""))
         return Node(name, tuple(items), stereotypes, edge="@" if edge else "")
