@@ -91,6 +91,8 @@ def _refused(prim: Prim, why: str, builder: UsdBuilder) -> tuple[None, None]:
 def _shared_mesh(
     prim: Prim, vertices: NDArray[Any], faces: NDArray[Any], places: TextureCoordinates, scale: Vec3, builder: UsdBuilder
 ) -> Id:
+    from hymeko_x.meshes.submesh import indices
+
     about = tuple(f"{factor:.12g}" for factor in scale)  # computed from the prim's ancestors: its last bits are rounding errors
     authored = repr((about, places) if places[0] else about)
     content = hashlib.sha256(vertices.tobytes() + b"|" + faces.tobytes() + authored.encode()).hexdigest()
@@ -99,7 +101,7 @@ def _shared_mesh(
         return known
     key = builder.new_id(prim, "mesh", prim.name)
     builder.meshes[content] = key
-    builder.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), tuple(faces.ravel().tolist()), *places)
+    builder.vertices[key] = Mesh(None, scale, None, tuple(vertices.ravel().tolist()), indices(faces), *places)
     return key
 
 
