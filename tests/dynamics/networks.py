@@ -11,6 +11,8 @@ import hymeko_x as hx
 from hymeko_x.ir import lumped
 from hymeko_x.networks.network import Network
 
+TURNING = ("inertia", "kg*m^2", "Nm/rad", "rad")
+
 
 class Case(Struct):
     """A network as HyMeKo text, and the initial state of its masses."""
@@ -24,14 +26,15 @@ def random_network(seed: int) -> Case:
     """Up to six masses on a ground and between each other, with springs, dampers, levers, edges of several ends, rest lengths."""
     rng = random.Random(seed)
     count = rng.randint(1, 6)
+    mass, inertia, stiff, length = TURNING if seed % 3 == 0 else ("mass", "kg", "N/m", "m")
     lines = ["ground : ground {}"]
-    lines += [f"m{i} : mass {{ mass {rng.uniform(0.5, 4):.3f} }}" for i in range(count)]
+    lines += [f"m{i} : {mass} {{ mass {rng.uniform(0.5, 4):.3f}{inertia} }}" for i in range(count)]
     for number in range(count + rng.randint(0, 3)):
         ends = rng.sample(range(count), min(count, rng.choice([1, 1, 2, 2, 3])))
         if number < count:
             ends = list(dict.fromkeys([number, *ends[:2]]))
         arcs = " ".join(f"[{rng.choice([1, 1, 1, 0.5, 2])}] {'-' if i == 0 else rng.choice('+-')} m{end}" for i, end in enumerate(ends))
-        lines.append(f"s{number} : spring {{ stiffness {rng.uniform(5, 80):.3f} rest {rng.choice([0, 0, 0.1])} }}")
+        lines.append(f"s{number} : spring {{ stiffness {rng.uniform(5, 80):.3f}{stiff} rest {rng.choice([0, 0, 0.1])}{length} }}")
         lines.append(f"d{number} : damper {{ damping {rng.uniform(0, 2):.3f} }}")
         lines.append(f"@e{number} : constitutive {{ + ground {arcs} ~ s{number}" + (f" ~ d{number} }}" if rng.random() < 0.8 else " }"))
     text = "net : robot {\n" + "\n".join(lines) + "\n}\n"

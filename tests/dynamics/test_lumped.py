@@ -6,10 +6,12 @@ import re
 from pathlib import Path
 
 import control
+import hypothesis
 import mujoco
 import numpy as np
 import pytest
 import sympy
+from hypothesis import strategies as st
 from scipy.linalg import expm
 from scipy.signal import lsim
 
@@ -87,6 +89,8 @@ def test_a_jump_of_the_road_kicks_the_mass_through_the_damper(car: hx.dynamics.L
 def _compare(seed: int) -> None:
     case = random_network(seed)
     found = hx.dynamics(load(case.text))
+    unit = "rad" if seed % 3 == 0 else "m"
+    assert [variable.unit for variable in found.system.states] == [unit] * len(case.positions) + [f"{unit}/s"] * len(case.positions)
     form = found.second_order()
     m, c, k = (np.array(matrix.tolist(), dtype=float) for matrix in (form.M, form.C, form.K))
     for matrix in (m, c, k):
@@ -116,9 +120,10 @@ def test_a_random_network_moves_as_in_mujoco_and_by_the_matrix_exponential(seed:
 
 
 @pytest.mark.full
-def test_a_thousand_random_networks_do() -> None:
-    for seed in range(1000):
-        _compare(seed)
+@hypothesis.settings(max_examples=1000, deadline=None)
+@hypothesis.given(st.integers(0, 2**32))
+def test_a_thousand_random_networks_do(seed: int) -> None:
+    _compare(seed)
 
 
 @pytest.mark.parametrize("seed", range(5))
