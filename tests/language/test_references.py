@@ -65,8 +65,8 @@ def test_a_robot_has_its_numbers_from_a_vertex_of_data() -> None:
         ("a { v=b.v } b { v=a.v }", "2:5: error[HX067]: the value of 'b.v' leads back to itself: b.v -> a.v -> b.v"),
         ("a { v=a.v }", "2:5: error[HX067]: the value of 'a.v' leads back to itself: a.v -> a.v"),
         ("a { v [a.v] }", "2:5: error[HX067]: the value of 'a.v' leads back to itself: a.v -> a.v"),
-        ("a { v 1 } b { w=a.x }", "2:15: error[HX040]: 'a.x' is not defined; expected a element"),
-        ("a { v 1 } b { w -> c }", "2:15: error[HX040]: 'c' is not defined; expected a element"),
+        ("a { v 1 } b { w=a.x }", "2:15: error[HX040]: 'a.x' is not defined; expected an element"),
+        ("a { v 1 } b { w -> c }", "2:15: error[HX040]: 'c' is not defined; expected an element"),
         ("a { v 1 } @e { [a.x] + a }", "2:16: error[HX040]: 'a.x' is no value; expected a field, such as element.field"),
     ],
 )

@@ -112,7 +112,7 @@ class HymekoBuilder(Builder):
             self._check_roots(ref, scope, kinds, item)
             raise refuse(
                 codes.UNDEFINED_REFERENCE,
-                f"'{ref.dotted}' is not defined; expected a {' or '.join(kinds or ('element',))}",
+                f"'{ref.dotted}' is not defined; expected {_listed(kinds or ('element',))}",
                 self.reader.origin(item),
                 hint=self.near(ref.path[-1], kinds),
             )
@@ -202,6 +202,11 @@ class HymekoBuilder(Builder):
         if len(flat) != len(item.weight):
             raise self.reader.refuse(item, f"the weight of the arc to '{item.ref.dotted}' is a list of numbers")
         return self.reader.numbers(item.weight, "", item)
+
+
+def _listed(kinds: tuple[str, ...]) -> str:
+    """The kinds with their article: ``an actuator or sensor``."""
+    return f"{'an' if kinds[0][0] in 'aeiou' else 'a'} {' or '.join(kinds)}"
 
 
 def without_implied(mechanism: Mechanism, implied: set[Id]) -> Mechanism:
