@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from benchmarks import renders
-from hymeko_x import codes
+from hymeko_x import api, codes
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.draw.pair import Subject, pair
 from hymeko_x.draw.render import Look, choose_backend
@@ -105,3 +105,14 @@ def test_real_robots_have_their_pictures_in_every_format() -> None:
     found = [renders.apart(path, None) for path in robots]
     assert [renders.line(one) for one in found if renders.unknown(one)] == []
     assert any(one.changed for one in found)
+
+
+def test_a_joint_with_a_reference_is_drawn_where_it_is_in_the_first_robot(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_text(
+        '<mujoco><worldbody><body name="b" pos="0 0 0.5"><joint name="up" type="slide" axis="0 0 1" ref="0.5"/>'
+        '<geom type="box" size="0.1 0.2 0.1" mass="1" rgba="0.8 0.1 0.1 1"/></body></worldbody></mujoco>'
+    )
+    robot = api.open(tmp_path / "a.xml")
+    api.dump(robot, tmp_path / "a.urdf", "urdf")
+    other = api.open(tmp_path / "a.urdf")
+    assert pair(Subject(robot, str(tmp_path / "a.xml")), Subject(other, None), LOOK).changed < renders.CHANGED
