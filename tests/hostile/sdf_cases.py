@@ -28,12 +28,6 @@ def _world() -> bytes:
     return f'<sdf version="1.9"><world name="w">{inside}</world></sdf>'.encode()
 
 
-def _doubling() -> dict[str, str]:
-    """Twenty files, each of which includes the next one twice."""
-    files = {f"{n}.sdf": model("".join(include(f"{n + 1}.sdf") for _ in range(2))) for n in range(20)}
-    return {**files, "20.sdf": model("")}
-
-
 def _confined(title: str, uri: str, *codes: str) -> Case:
     return Case(title, {"r.sdf": model(include(uri)), "../model.sdf": model("")}, ("info", "r.sdf", *CONFINED), 1, codes)
 
@@ -48,7 +42,6 @@ _JOINT = f'<link name="lN"/><joint name="jN" type="revolute"><parent>lN</parent>
 INCLUDES = (
     reading("SDF that includes itself: r.sdf", model(include("r.sdf")), "HX043"),
     reading("two models that include each other: r.sdf", model(include("b.sdf")), "HX043", **{"b.sdf": model(include("r.sdf"))}),
-    Case("a million models by twenty files", _doubling(), ("info", "0.sdf"), 1, ("HX007",), 90.0),
     reading("a model of the network: r.sdf", model(include("https://localhost:1/a")), "HX053"),
     reading("five thousand models that are not there: r.sdf", lambda: model(include("x") * MANY).encode(), "HX053", seconds=60.0),
     reading("a model that is no XML: r.sdf", model(include("b.sdf")), "HX053", **{"b.sdf": "\0" * 1000}),

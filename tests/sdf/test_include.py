@@ -57,3 +57,14 @@ def test_frames_in_a_circle_are_reported(tmp_path: Path) -> None:
     circle = '<link name="x"><pose relative_to="y"/></link><link name="y"><pose relative_to="x"/></link>'
     _, codes = load(tmp_path, circle)
     assert codes == ["HX043"]
+
+
+def test_files_that_include_each_other_twice_end_at_the_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("hymeko_x.frontends.sdf.include.MOST_FILES", 50)
+    for number in range(20):
+        inside = f"<include><uri>{number + 1}.sdf</uri></include>" * 2
+        (tmp_path / f"{number}.sdf").write_text(f'<sdf version="1.9"><model name="m"><link name="l"/>{inside}</model></sdf>', "utf-8")
+    (tmp_path / "20.sdf").write_text('<sdf version="1.9"><model name="m"><link name="l"/></model></sdf>', "utf-8")
+    report = Report()
+    hx.load(tmp_path / "0.sdf", report=report, lenient=True)
+    assert "HX007" in [diagnostic.code.id for diagnostic in report]
