@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
@@ -14,6 +15,10 @@ from hymeko_x import codes
 from hymeko_x.corpus import cache, catalog
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.draw.render import choose_backend
+from tests.unread import Unread
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 choose_backend()  # MuJoCo decides how it draws when it is imported, by whichever test that is
 
@@ -31,6 +36,22 @@ def pytest_configure() -> None:
     """Draw the same examples whatever was imported before: Hypothesis also draws the constants that it finds in imported modules."""
     if PROFILE == "same":
         pytest.MonkeyPatch().setattr(providers, "_get_local_constants", Constants)
+
+
+UNREAD = Unread()
+UNREAD.install()
+
+
+@pytest.fixture(autouse=True)
+def _no_unexpected_diagnostics(request: pytest.FixtureRequest) -> Iterator[None]:
+    """A test fails when a warning or an error stays unread, unless it has the mark ``unread("HX101")`` for that code, or for all."""
+    UNREAD.take()
+    yield
+    found = UNREAD.take()
+    marks = list(request.node.iter_markers("unread"))
+    allowed = {code for mark in marks for code in mark.args}
+    if not any(not mark.args for mark in marks):
+        assert [str(item) for item in found if item.code.id not in allowed] == []
 
 
 @pytest.fixture(scope="session")

@@ -81,6 +81,7 @@ OPTIONS = st.builds(Options, st.sampled_from([None, "fixed", "free"]), st.sample
 
 @settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 @given(mechanisms(), OPTIONS)
+@pytest.mark.unread("HX101")
 def test_legalizing_twice_is_legalizing_once(mechanism: Mechanism, options: Options) -> None:
     legal(mechanism, options)
 
@@ -152,6 +153,7 @@ def test_an_open_base_floats_where_the_user_wants_it() -> None:
     assert said == []
 
 
+@pytest.mark.unread("HX101")
 def test_a_base_that_the_source_fixes_does_not_float_and_that_is_said() -> None:
     _, said = legal(with_world_link(None), Options(base="free"))
     assert said == ["warning HX101 body 'b0' does not float: joint 'stand' fixes it to the world"]

@@ -89,6 +89,7 @@ def test_the_tensors_of_the_published_listing_are_written() -> None:
     assert [d.message for d in report] == ["body 'base' has a mass and no inertia tensor; that of its geometry is written"]
 
 
+@pytest.mark.unread("HX045")
 def test_what_urdf_leaves_out_stays_out() -> None:
     shape = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
     text = f'<robot name="r"><link name="a"><inertial><mass value="2"/></inertial>{shape}</link></robot>'

@@ -10,6 +10,7 @@ import pytest
 from hymeko_x.diagnostics import Refusal
 from tests.urdf.samples import LIMIT, TWO_LINKS, again, joint, load, robot, said, visual
 
+pytestmark = pytest.mark.unread  # one test reads what each input reports; the others look at the robot
 LINK = '<link name="a"/>'
 THREE_LINKS = f'{TWO_LINKS}<link name="c"/>'
 SPHERE = '<geometry><sphere radius="1"/></geometry>'

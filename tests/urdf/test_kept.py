@@ -49,6 +49,7 @@ def test_a_foreign_element_carries_the_namespaces_it_needs_and_the_root_is_not_r
     assert load(again(source)) == load(source)
 
 
+@pytest.mark.unread("HX045")
 def test_comments_before_and_after_the_robot_are_kept() -> None:
     source = f"<!-- one -->\n<!-- two -->\n{robot('')}\n<!-- three -->"
     assert extras(source) == [("preceding", "one"), ("preceding", "two"), ("following", "three")]
@@ -70,18 +71,21 @@ def test_comments_before_and_after_the_robot_are_kept() -> None:
         (TWO_LINKS + joint('<axis xyz="0 0 1" rpy="0 0 0"/>' + LIMIT), J, "axis/@rpy", "0 0 0"),
     ],
 )
+@pytest.mark.unread("HX045")
 def test_what_the_reader_does_not_use_belongs_to_the_element_it_stands_in(body: str, key: Id, path: str, text: str) -> None:
     source = robot(body)
     assert (path, text) in extras(source, key)
     assert load(dump(load(source))) == load(source)
 
 
+@pytest.mark.unread("HX020")
 def test_a_number_that_cannot_be_read_is_written_back_as_it_was() -> None:
     source = robot(TWO_LINKS + joint('<origin xyz="1 2" rpy="0 0 1"/>', "fixed"))
     assert extras(source, J) == [("origin/@xyz", "1 2")]
     assert '<origin xyz="1 2" rpy="0 0 1"/>' in again(source)
 
 
+@pytest.mark.unread("HX045", "HX047")
 def test_the_second_of_two_equal_elements_stays_the_second() -> None:
     source = robot('<link name="a"><inertial><mass value="1"/></inertial><inertial><mass value="2"/></inertial></link>')
     assert extras(source, A) == [("", '<inertial><mass value="2"/></inertial>')]
@@ -90,6 +94,7 @@ def test_the_second_of_two_equal_elements_stays_the_second() -> None:
     assert load(written) == load(source)
 
 
+@pytest.mark.unread("HX047")
 def test_the_first_of_two_axes_counts_also_after_writing_them_in_another_order() -> None:
     ends = '<parent link="a"/><child link="b"/>'
     source = robot(f'{TWO_LINKS}<joint name="j" type="continuous"><axis xyz="0 0 1"/><axis xyz="0 1 0"/>{ends}</joint>')
@@ -97,6 +102,7 @@ def test_the_first_of_two_axes_counts_also_after_writing_them_in_another_order()
     assert load(again(source)) == load(source)
 
 
+@pytest.mark.unread("HX045")
 def test_a_joint_without_a_child_is_kept_outside_of_the_tree() -> None:
     source = robot('<link name="a"/><joint name="j" type="fixed"><parent link="a"/></joint>')
     assert extras(source) == [("", '<joint name="j" type="fixed"><parent link="a"/></joint>')]
@@ -124,6 +130,7 @@ def test_what_few_fixed_joints_say_in_vain_stays_theirs() -> None:
     assert list(mechanism.extras) == [Id("joint", "b"), Id("joint", "c")]
 
 
+@pytest.mark.unread("HX045")
 def test_what_the_author_wrote_in_vain_is_written_again() -> None:
     body = (
         '<link name="a"><inertial><origin xyz="0 0 0"/><mass value="1"/></inertial>'
@@ -171,6 +178,7 @@ def test_materials_are_defined_where_their_author_defined_them(at_robot: str, us
     assert written == '<?xml version="1.0"?>' + source.replace("\n", "")
 
 
+@pytest.mark.unread("HX046")
 def test_a_material_that_is_defined_twice_with_other_looks_keeps_both_looks() -> None:
     blue = RED.replace("1 0 0 1", "0 0 1 1")
     source = robot(f'{RED}<link name="a"><visual>{SPHERE}{USE}</visual><visual>{SPHERE}{blue}</visual></link>')
