@@ -87,6 +87,11 @@ BAD_LIMIT = Code(
     "limits contradict each other",
     "The lower limit is above the upper one, or an effort or velocity limit is negative. The numbers are kept as they are; readers disagree on what they mean.",
 )
+CONTRADICTION = Code(
+    "HX029",
+    "two attributes contradict each other",
+    "Both give the same quantity, and their values differ by more than their precision. The message says which one counts; where an edit changed the other one, it has no effect.",
+)
 
 # ---- HX04x: structure ------------------------------------------------------------------------------------------------
 UNDEFINED_REFERENCE = Code(

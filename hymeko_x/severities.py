@@ -110,6 +110,7 @@ WARNINGS: Mapping[Code, str] = {
     codes.DUPLICATE_NAME: "both definitions are the same",
     codes.LEFTOVER_TEMPLATE: "a name is a name, and those that refer to it have the same text",
     codes.UNKNOWN_WORD: "the format ignores the element, or has a default for the word",
+    codes.CONTRADICTION: "the one counts that the engines prefer; programs that know only the other one see another robot",
     codes.BAD_LIMIT: "the numbers are kept as they were written; `check` calls them wrong",
     codes.UNDEFINED_REFERENCE: "a mimic or an actuator without its target has no effect in any reader, and a parent 'world' is the world",
     codes.SEVERAL_ROOTS: "each tree is kept as it was written, and many formats allow several",

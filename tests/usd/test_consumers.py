@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from pxr import Usd
 
+import hymeko_x as hx
 from hymeko_x import codes
 from hymeko_x.compare.diff import diff
-from hymeko_x.diagnostics import Report
+from hymeko_x.diagnostics import Report, Severity
 from hymeko_x.frontends import urdf
 from hymeko_x.ir.mechanism import Mechanism
 from hymeko_x.source import Source
@@ -57,6 +59,19 @@ def test_a_rod_has_its_moments_and_newtons_tensor(tmp_path: Path) -> None:
     body = stage.GetPrimAtPath("/hand/a")
     assert sorted(body.GetAttribute("physics:diagonalInertia").Get()) == [0.0, 1.0, 1.0]
     assert list(body.GetAttribute("newton:inertia").Get()) == [1.0, 1.0, 0.0, 0.0, 0.0, 0.0]
+
+
+def test_moments_that_contradict_newtons_tensor_are_reported(tmp_path: Path) -> None:
+    text = hx.dumps(hand(), "usd")
+    assert text.count("float3 physics:diagonalInertia = (") >= 1
+    edited = re.sub(r"physics:diagonalInertia = \([^)]*\)", "physics:diagonalInertia = (7, 8, 9)", text, count=1)
+    report = Report()
+    robot = hx.loads(edited, "usd", report=report)
+    found = [str(item) for item in report if item.severity is Severity.WARNING]
+    assert [line for line in found if "HX029" not in line] == []
+    assert len(found) == 1
+    assert "newton:inertia is not the tensor of physics:diagonalInertia and physics:principalAxes; newton:inertia counts" in found[0]
+    assert diff(hx.loads(text, "usd"), robot) == ()
 
 
 def test_every_prim_has_a_type(tmp_path: Path) -> None:

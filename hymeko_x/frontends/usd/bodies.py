@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from msgspec import Struct
 from msgspec.structs import replace
 
+from hymeko_x import codes
 from hymeko_x.formats import usd as words
 from hymeko_x.frontends.usd.materials import bound_to
 from hymeko_x.frontends.usd.transforms import numbers_of, rotation_of
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 BODY = "PhysicsRigidBodyAPI"
 MASS = "PhysicsMassAPI"
 _DENSITY = 1000.0
+_SINGLE = 1e-5
+"""Of the largest moment: tensors of numbers in single precision that differ by less are the same."""
 
 
 class ReadShape(NamedTuple):
@@ -98,14 +101,33 @@ def _tensor(prim: Prim, com: Vec3, unit: float, builder: UsdBuilder) -> tuple[Te
     if full is not None and len(full) == 6:
         builder.mark_read(prim, "@NewtonMassAPI")
         xx, yy, zz, xy, xz, yz = (value * unit for value in numbers_of(full))
+        _compare_tensors(prim, (xx, yy, zz, xy, xz, yz), _of_moments(diagonal, axes, unit), builder)
         return (xx, yy, zz, xy, xz, yz), None
     if diagonal is None or not any(diagonal):
         return None, None
-    principal: Tensor = (diagonal[0] * unit, diagonal[1] * unit, diagonal[2] * unit, 0.0, 0.0, 0.0)
     quat = rotation_of(axes) if axes is not None else NO_ROTATION
+    principal = _of_moments(diagonal, None, unit)
     if quat == NO_ROTATION:
         return principal, None
     return rotate_tensor(quat, principal), InertialWritten(Pose(com, quat), principal)
+
+
+def _of_moments(diagonal: Any, axes: Any, unit: float) -> Tensor:
+    """The tensor in body axes of principal moments; zeros where there are none."""
+    if diagonal is None:
+        return (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    principal: Tensor = (diagonal[0] * unit, diagonal[1] * unit, diagonal[2] * unit, 0.0, 0.0, 0.0)
+    return principal if axes is None else rotate_tensor(rotation_of(axes), principal)
+
+
+def _compare_tensors(prim: Prim, full: Tensor, of_moments: Tensor, builder: UsdBuilder) -> None:
+    """Warn where the two notations of a tensor differ by more than single precision."""
+    largest = max(map(abs, full))
+    if any(of_moments) and any(abs(a - b) > _SINGLE * largest for a, b in zip(full, of_moments, strict=True)):
+        message = (
+            "newton:inertia is not the tensor of physics:diagonalInertia and physics:principalAxes; newton:inertia counts, as in Newton"
+        )
+        builder.warn(prim, codes.CONTRADICTION, message)
 
 
 def _solid(read: ReadShape, density: float, builder: UsdBuilder) -> Solid | None:
