@@ -12,7 +12,7 @@ from hymeko_x.formats import sdf as sdf_words
 from hymeko_x.formats.sdf import fragments as words
 from hymeko_x.formats.sdf.values import NUMBER
 from hymeko_x.ir.mechanism import ROOT, WORLD
-from hymeko_x.ir.parts import Body, Camera, Light, Loop, Role
+from hymeko_x.ir.parts import Body, Light, Loop, Role
 from hymeko_x.xml.parse import parse_text
 from hymeko_x.xml.printing import Tag, markup, put_back, ready
 from hymeko_x.xml.text import escaped
@@ -28,22 +28,15 @@ _MODEL_PATHS = ("model", "world/model")
 
 
 def fragments_of(mechanism: Mechanism) -> list[str]:
-    """The <gazebo> elements of a robot that came from SDF: of links, of joints, and of the model; the cameras on links of others."""
+    """The <gazebo> elements of a robot that came from SDF: of links, of joints, and of the model. Empty for others."""
     sheet = SdfSheet(mechanism, "")
     if not sheet.from_sdf:
-        return _cameras(sheet)
+        return []
     bodies = [(key, list(_of_link(key, sheet))) for key, _ in mechanism.vertices(Body)]
     joints = [(view.id, list(_of_joint(view.id, sheet))) for view in mechanism.joints.values() if not sheet.is_implied(view)]
     found = [_fragment({"reference": key.name}, children) for key, children in (*bodies, *joints) if children]
     found += [_fragment({}, [child]) for child in _of_model(sheet)]
     return found
-
-
-def _cameras(sheet: SdfSheet) -> list[str]:
-    """A fragment for each camera on a link."""
-    graph = sheet.mechanism.graph
-    views = [view for views in sheet.mechanism.mounts.values() for view in views if isinstance(graph.vertices.get(view.thing), Camera)]
-    return [_fragment({"reference": view.body.name}, [sensor_tag(view, "", view.body, sheet)]) for view in views if view.body != WORLD]
 
 
 def _fragment(attributes: dict[str, str], children: Sequence[Tag | str]) -> str:
