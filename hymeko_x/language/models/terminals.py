@@ -55,8 +55,8 @@ PLAIN: Mapping[str, str] = MappingProxyType(
     }
 )
 """Instead of the terminals of these names."""
-DROPPED = frozenset({"NUMBERS", "MATRIX", "QUOTED_REF", "LEGACY_HEADER", "CONSTANT", "USING", "SEMICOLON"})
-"""Lists are the rule `vector`; the others are forms that no text is printed in."""
+DROPPED = frozenset({"NUMBERS", "MATRIX", "QUOTED_REF", "LEGACY_HEADER", "CONSTANT", "USING", "SEMICOLON", "group"})
+"""Lists are the rule `vector`; the others, the group of arcs among them, are forms that no text is printed in."""
 
 _COMMENT = r"//[^\n]*\n|/\*(?:[^*]|\*+[^*/])*\*+/"
 _BLANK = r"[ \t\r\n]"
