@@ -69,7 +69,8 @@ def tokens(text: str) -> list[str]:
 def _token_pattern() -> re.Pattern[str]:
     tables = json.loads(files("hymeko_x.language").joinpath("tables.json").read_text(encoding="utf-8"))
     comment, space = tables["ignored"]
-    terminals = "|".join(f"(?:{pattern})" for name, pattern in tables["terminals"] if name not in tables["opening"])
+    left_out = {*tables["opening"], *tables["statements"]}
+    terminals = "|".join(f"(?:{pattern})" for name, pattern in tables["terminals"] if name not in left_out)
     return re.compile(f"(?P<space>{space})|(?P<comment>{comment})|(?P<token>{terminals}|.)", re.DOTALL)
 
 

@@ -110,13 +110,13 @@ class _Statements:
     def field(self, text: str, offset: int) -> Field:
         match = _FIELD.match(text)
         assert match is not None, text
-        name, equal, value = match.groups()
+        name, value = match.groups()
         line, column = self._place(offset)
         convert = _BY_FIRST_LETTER.get(value[0])
         if convert is not None:
             return Field(name, convert(value, offset + len(text) - len(value)), "", line, column)
-        is_word = equal and value.isidentifier() and value not in ("inf", "nan")
-        return Field(name, Ref((value,)) if is_word else float(value), "", line, column)
+        is_number = value[0].isdecimal() or value[0] in "+-." or value in ("inf", "nan")
+        return Field(name, float(value) if is_number else Ref((value,)), "", line, column)
 
     def arc(self, text: str, offset: int) -> ArcItem:
         weight, bracket, end = text.rpartition("]")
@@ -133,7 +133,7 @@ class _Statements:
         return (name, edge, (Stereotype(Ref((kind,))),) if kind else (), *self._place(offset))
 
 
-_FIELD = re.compile(r"(\w+)\s*(=?)\s*(.*)", re.DOTALL)
+_FIELD = re.compile(r"(\w+)\s*=?\s*(.*)", re.DOTALL)
 _ARC = re.compile(r"\s*(\W+?)\s*(\w+)")
 _HEAD = re.compile(r"(@?)(\w+)(?:\s*:\s*(\w+))?")
 _BY_FIRST_LETTER: Mapping[str, Convert] = MappingProxyType({'"': _string, "'": _string, "[": _list_value})
