@@ -190,6 +190,7 @@ def test_what_our_own_reader_refuses_is_a_bug_and_not_written(folder: Path, monk
         ("warning", False, True, exits.FAIL_ON),
     ],
 )
+@pytest.mark.unread("HX044")
 def test_fail_on_stops_at_its_level_and_at_worse(
     limit: str, warned: bool, lost: bool, expected: int, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -150,6 +150,7 @@ SOURCES = {
 
 @pytest.mark.parametrize("target", ["urdf", "mjcf", "usd", "hymeko", "xacro"])
 @pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.unread("HX201", "HX302")
 def test_files_that_vanish_between_finding_and_reading_are_a_diagnostic(source: str, target: str, tmp_path: Path) -> None:
     for name in ("a.stl", "t.png", "b.usda", "b.xacro", "b.hymeko"):
         (tmp_path / name).write_bytes(b"x")

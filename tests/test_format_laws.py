@@ -30,6 +30,7 @@ OPTIONS = st.builds(
 @pytest.mark.parametrize("format", ["mjcf", "urdf", "usd", "xacro"])
 @SOME
 @given(mechanism=mechanisms(), options=OPTIONS)
+@pytest.mark.unread("HX101", "HX102", "HX103", "HX104")
 def test_what_is_legal_stays_as_it_is(format: str, mechanism: Mechanism, options: Options) -> None:
     try:
         legal = legalize(choose(mechanism, options, Report()), format, Report())

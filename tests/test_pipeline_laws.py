@@ -53,6 +53,7 @@ def turned(mechanism: Mechanism) -> Mechanism:
 @pytest.mark.parametrize("format", EVERY)
 @FEW
 @given(mechanism=urdf_mechanisms())
+@pytest.mark.unread  # generated or damaged input: any
 def test_the_order_of_elements_does_not_matter(format: str, mechanism: Mechanism) -> None:
     there, turned_there = (_without_numbers(through(robot, format)) for robot in (mechanism, turned(mechanism)))
     assert differences(there, turned_there) == []
@@ -73,6 +74,7 @@ def _without_numbers(mechanism: Mechanism) -> Mechanism:
 @pytest.mark.parametrize("format", EVERY)
 @FEW
 @given(mechanism=urdf_mechanisms())
+@pytest.mark.unread  # generated or damaged input: any
 def test_converting_what_was_renamed_is_renaming_what_was_converted(format: str, mechanism: Mechanism) -> None:
     names = {key: Id(key.kind, f"new name of {key.name}") for key, _ in mechanism.vertices(parts.Body)}
     names |= {key: Id(key.kind, f"new name of {key.name}") for key in mechanism.joints}
@@ -106,6 +108,7 @@ def _without_dof_names(part: parts.EdgePart) -> parts.EdgePart:
 @pytest.mark.parametrize("format", FORMATS)
 @FEW
 @given(data=st.data())
+@pytest.mark.unread  # generated or damaged input: any
 def test_a_second_way_through_a_format_changes_nothing_more(format: str, data: st.DataObject) -> None:
     mechanism = data.draw(mechanisms(PLAIN if format == "usd" else TREES))
     assume(any(True for _ in mechanism.vertices(parts.Body)))  # what was written without a body is read as an error
@@ -116,6 +119,7 @@ def test_a_second_way_through_a_format_changes_nothing_more(format: str, data: s
 @pytest.mark.parametrize("format", FORMATS)
 @FEW
 @given(mechanism=urdf_mechanisms(), data=st.data())
+@pytest.mark.unread  # generated or damaged input: any
 def test_what_is_taken_out_of_the_result_is_in_the_ledger(format: str, mechanism: Mechanism, data: st.DataObject) -> None:
     """A backend that loses a body, planted here, cannot hide."""
     found = formats.by_name(format)

@@ -134,6 +134,7 @@ def test_all_errors_are_in_the_message_of_the_exception() -> None:
 
 
 @pytest.mark.parametrize("text", [WRONG[:-20], WRONG.replace("</link>", "").replace("/><link", "><link"), "<robot name='r'"])
+@pytest.mark.unread("HX005", "HX010")
 def test_xml_that_is_cut_off_or_not_well_formed_is_an_error(text: str) -> None:
     with pytest.raises(Refusal) as caught:
         hx.loads(text.replace("revolut", "fixed"), "urdf")
@@ -141,6 +142,7 @@ def test_xml_that_is_cut_off_or_not_well_formed_is_an_error(text: str) -> None:
 
 
 @pytest.mark.parametrize("blank", ["\xa0", "\u202f", "\u2003", "\xa0\xa0 "])
+@pytest.mark.unread("HX005")
 def test_no_break_spaces_between_attributes_are_white_space_with_a_warning(blank: str) -> None:
     clean = '<robot name="r"><link name="a b"><visual><geometry><sphere radius="0.1" /></geometry></visual></link ></robot>'
     report = Report()
@@ -151,6 +153,7 @@ def test_no_break_spaces_between_attributes_are_white_space_with_a_warning(blank
     ]
 
 
+@pytest.mark.unread("HX005")
 def test_a_no_break_space_within_a_name_stays() -> None:
     [body] = hx.loads('<robot name="r"><link\xa0name="a\xa0b"/></robot>', "urdf").roots
     assert body.name == "a\xa0b"

@@ -55,3 +55,7 @@ def _is_read_by(frame: FrameType | None) -> bool:
             return True
         frame = frame.f_back
     return frame is not None and frame.f_code.co_filename.startswith(_READERS)
+
+
+UNREAD = Unread()
+"""The one for all tests: a module of tests may be imported under two names, this one is not."""

@@ -209,7 +209,7 @@ def rpy_of(value: Pose) -> Vec3:
 
 
 def rpy_from_quat(quat: Quat) -> Vec3:
-    """Fixed-axis roll, pitch, yaw in rad of a unit quaternion (w, x, y, z)."""
+    """Fixed-axis roll, pitch, yaw in rad of a unit quaternion (w, x, y, z). The pitch is within pi/2, but for a rotation about y alone."""
     if quat == NO_ROTATION:
         return ZERO
     w, x, y, z = quat

@@ -31,6 +31,7 @@ def test_what_an_engine_cannot_be_told_is_refused(
     assert f"{option[0]} changes nothing here: the files are read by the formats' own engines" in capsys.readouterr().err
 
 
+@pytest.mark.unread("HX059")
 def test_a_round_trip_reads_the_file_with_its_arguments(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["roundtrip", "r.urdf.xacro", "--through", "mjcf", "--arg", "mass=7", "--json"]) == exits.DONE
     assert [leg["differences"] for leg in json.loads(capsys.readouterr().out)["legs"]] == [0, 0]

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -11,7 +14,7 @@ from hymeko_x.corpus.cases import Case
 from hymeko_x.corpus.plan import Limits, Plan
 from hymeko_x.corpus.rows import Leg, Outcome
 from hymeko_x.corpus.supervise import Processes, preloaded, supervise
-from tests.corpus.naughty import misbehave, note_modules
+from tests.corpus.naughty import misbehave
 
 PLAN = Plan((("urdf", "hymeko"), ("urdf", "mjcf")), limits=Limits(seconds=5.0, bytes=3 * 2**30))
 
@@ -74,7 +77,17 @@ def test_a_worker_that_somebody_kills_does_its_file_again(tmp_path: Path) -> Non
 
 @pytest.mark.skipif("forkserver" not in multiprocessing.get_all_start_methods(), reason="processes cannot be forked from a server here")
 def test_a_process_begins_with_the_heavy_libraries_loaded(tmp_path: Path) -> None:
-    case = Case("p", str(tmp_path), "any.urdf", "urdf")
-    assert Processes().run(note_modules, case, PLAN, "", str(tmp_path), ()) is None
+    """In a program of its own: one server forks for a whole program, and another test's may be there already."""
+    program = f"""
+from pathlib import Path
+from tests.corpus.naughty import note_modules
+from tests.corpus.test_supervise import PLAN, Case, Processes
+if __name__ == "__main__":
+    folder = {str(tmp_path)!r}
+    Processes().run(note_modules, Case("p", folder, "any.urdf", "urdf"), PLAN, "", folder, ())
+"""
+    (tmp_path / "program.py").write_text(program)
+    root = str(Path(__file__).parents[2])
+    subprocess.run([sys.executable, tmp_path / "program.py"], check=True, env={**os.environ, "PYTHONPATH": root})
     at_hand = set((tmp_path / "modules").read_text().split())
     assert {"mujoco", "numpy", "pinocchio", "pxr", "trimesh", *preloaded()} - at_hand == set()

@@ -177,6 +177,7 @@ def test_a_planted_error_is_red_and_named(open_session: Callable[..., object], t
     assert colours["base"] != [(214, 39, 40)]
 
 
+@pytest.mark.unread("HX005", "HX010")
 def test_a_file_that_changes_is_read_again_within_two_seconds(open_session: Callable[..., object], tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(ARM)
     session = open_session("arm.urdf")
@@ -197,6 +198,7 @@ def test_a_file_that_changes_is_read_again_within_two_seconds(open_session: Call
         session.stop()
 
 
+@pytest.mark.unread("HX010")
 def test_a_file_that_a_browser_sends_is_compared_with_the_first_robot(open_session: Callable[..., object], tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(ARM)
     session = open_session("arm.urdf")
@@ -299,6 +301,7 @@ def test_what_cannot_be_served_is_an_error(tmp_path: Path, monkeypatch: pytest.M
     assert "cannot be served" in capsys.readouterr().err
 
 
+@pytest.mark.unread("HX010")
 def test_a_file_with_errors_is_refused_at_first(open_session: Callable[..., object], tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text("<robot")
     with pytest.raises(Refusal):

@@ -36,6 +36,7 @@ def close(ours: np.ndarray, theirs: np.ndarray, tolerance: float) -> None:
 
 
 @pytest.mark.robots("urdf", every=6)
+@pytest.mark.unread("HX005", "HX040")
 def test_a_urdf_moves_as_in_pinocchio(robot: Path) -> None:
     found = of(robot)
     try:

@@ -76,6 +76,7 @@ def test_an_option_that_changes_the_robot_gives_a_new_text(tmp_path: Path) -> No
 
 
 @pytest.mark.robots("urdf", "mjcf", "xacro", "usd", every=12)
+@pytest.mark.unread("HX005", "HX040", "HX052")
 def test_a_real_robot_keeps_its_bytes(robot: Path) -> None:
     source = disk.open_source(str(robot))
     format = formats.of_input(source.name, source.data)

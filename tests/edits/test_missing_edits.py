@@ -46,6 +46,7 @@ def updated(folder: Path, name: str, *changes: tuple[str, str]) -> tuple[list[st
         ("r.urdf", '"shin"', "shape 'leg/visual' name: 'shin' -> 'other'"),
     ],
 )
+@pytest.mark.unread("HX023", "HX101")
 def test_a_new_name_of_what_only_the_converted_file_has_is_reported(name: str, old: str, words: str, tmp_path: Path) -> None:
     new = '"other"' if old.startswith('"') else "other"
     edits, warnings = updated(tmp_path, name, (old, new))
@@ -53,6 +54,7 @@ def test_a_new_name_of_what_only_the_converted_file_has_is_reported(name: str, o
     assert warnings[0] == f"the edit did not arrive: {words}"
 
 
+@pytest.mark.unread("HX101")
 def test_it_is_reported_beside_an_edit_that_arrives(tmp_path: Path) -> None:
     edits, warnings = updated(tmp_path, "r.urdf", ('"world"', '"other"'), ('"ankle"', '"heel"'))
     assert [edit for edit in edits if "heel" in edit]

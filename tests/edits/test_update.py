@@ -120,6 +120,7 @@ def test_a_body_that_is_removed_leaves_nothing_behind(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.unread("HX104")
 def test_a_value_of_a_default_class_becomes_one_of_the_joint(tmp_path: Path) -> None:
     pattern = r'(<joint name="left_hip_y".*?upper=)"[^"]*"'
     after = edited(MJCF, "urdf", (pattern, r'\1"1.5"'), tmp_path, "mjcf")
@@ -173,6 +174,7 @@ def test_an_included_file_gets_the_edits_of_what_stands_in_it(tmp_path: Path) ->
     assert (tmp_path / "parts/arm.xml").read_text() == part.replace('"2.0"', '"3"')
 
 
+@pytest.mark.unread("HX103")
 def test_options_of_the_conversion_are_found_out(tmp_path: Path) -> None:
     original, there = tmp_path / "arm.urdf", tmp_path / "there.xml"
     original.write_text(ARM)
@@ -272,6 +274,7 @@ WHEEL = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
 """
 
 
+@pytest.mark.unread("HX103")
 def test_a_literal_of_xacro_is_edited_in_the_file_where_it_stands(tmp_path: Path) -> None:
     wheel = tmp_path / "wheel.xacro"
     wheel.write_text(WHEEL)
@@ -342,6 +345,7 @@ HYMEKO_OF_UPPER = HYMEKO.replace("  link :", "  upper :").replace("- link", "- u
 
 @pytest.mark.parametrize("target", ADDED)
 @pytest.mark.parametrize(("source", "text"), [("urdf", ARM), ("sdf", SDF), ("hymeko", HYMEKO_OF_UPPER), ("usd", "")])
+@pytest.mark.unread("HX023")
 def test_after_an_update_with_an_addition_there_is_nothing_to_update(source: str, text: str, target: str, tmp_path: Path) -> None:
     if source == target:
         pytest.skip("the same format")
@@ -391,6 +395,7 @@ def test_a_body_of_mjcf_that_had_no_name_gets_one(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("target", ["there.urdf", "there.sdf", "there.xml", "there.usda"])
 @pytest.mark.parametrize("base", ["fixed", "free"])
+@pytest.mark.unread("HX103")
 def test_a_base_that_was_asked_for_is_no_edit(target: str, base: Literal["fixed", "free"], tmp_path: Path) -> None:
     original = tmp_path / "arm.urdf"
     original.write_text(ARM)

@@ -34,6 +34,7 @@ CASES = {"hymeko": 400, "urdf": 800, "mjcf": 400, "usd": 100, "sdf": 400, "xacro
 
 
 @pytest.mark.parametrize("path", FOUND, ids=lambda path: path.name)
+@pytest.mark.unread  # generated or damaged input: any
 def test_what_was_found_once_stays_found(path: Path) -> None:
     assert run(path.suffix[1:], path.read_bytes()) is None
     assert _refused(path.suffix[1:], path.read_bytes()) == REFUSED.get(path.name)
@@ -49,6 +50,7 @@ def _refused(format: str, data: bytes) -> str | None:
 
 
 @pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.unread  # generated or damaged input: any
 def test_damaged_texts_are_a_mechanism_or_a_diagnostic(format: str) -> None:
     warm_up(format)
     findings = {number: run(format, data_of(format, number)) for number in range(CASES[format])}
@@ -56,6 +58,7 @@ def test_damaged_texts_are_a_mechanism_or_a_diagnostic(format: str) -> None:
 
 
 @pytest.mark.parametrize("format", ["hymeko", "urdf", "mjcf", "usd", "sdf", "xacro"])
+@pytest.mark.unread  # generated or damaged input: any
 def test_seeds_are_read_without_damage(format: str) -> None:
     assert {text: code for text in (*small_seeds(format), *seeds(format)) if (code := _refused(format, text))} == {}
 

@@ -44,6 +44,7 @@ def test_the_right_answer_passes_everything(format: str) -> None:
 
 
 @pytest.mark.parametrize("fault", [*STRUCTURE[1:], *NUMBERS])
+@pytest.mark.unread("HX045", "HX314", "HX317", "HX318")
 def test_the_verifier_finds_every_fault(fault: str) -> None:
     robot = _with_fault(hx.load(SCARA), fault, random.Random(1))
     assert robot != hx.load(SCARA)
@@ -54,6 +55,7 @@ def test_the_verifier_finds_every_fault(fault: str) -> None:
     assert step.is_complete == (fault in NUMBERS or fault == "no link")
 
 
+@pytest.mark.unread("HX005", "HX010")
 def test_a_file_that_breaks_off_fails_everything() -> None:
     step = judged(task(), right()[:900], 1)
     assert (step.is_complete, step.is_same) == (False, False)
@@ -92,6 +94,7 @@ def test_the_first_fence_is_the_file() -> None:
     assert file_in("<robot/>") == "<robot/>\n"
 
 
+@pytest.mark.unread("HX045")
 def test_faults_come_at_the_rate_of_the_paper() -> None:
     model = Faulty(hx.load(SCARA), formats.by_name("urdf"), 0.18, random.Random(3))
     expected = right()
@@ -102,6 +105,7 @@ def test_faults_come_at_the_rate_of_the_paper() -> None:
 # ---- the verb --------------------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.unread("HX005", "HX010")
 def test_a_run_of_faults_prints_the_table_and_logs_each_step(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["generate", str(SCARA), "--to", "urdf", "--with", "faults:1", "--runs", "8", "--log", "log.jsonl", "--result", "out.urdf"]
     assert main(words) == exits.DONE

@@ -86,6 +86,7 @@ def test_our_robots_are_exact_and_valid(path: Path) -> None:
 
 
 @pytest.mark.robots("urdf", "mjcf", "usd", "xacro", "sdf", every=40)
+@pytest.mark.unread("HX040")
 def test_real_robots_are_exact(robot: Path) -> None:
     check_exact(hx.load(robot, lenient=True))
 
@@ -164,6 +165,7 @@ def test_a_document_that_is_nested_too_deep_is_refused() -> None:
     assert "error[HX007]: the values are nested too deep" in message
 
 
+@pytest.mark.unread  # generated or damaged input: any
 def test_random_changes_cost_one_diagnostic_or_none() -> None:
     """Whatever a document holds, it is converted, or refused with a reason that is not a bug of ours."""
     chance = random.Random(0)

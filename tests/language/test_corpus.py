@@ -93,6 +93,7 @@ def test_listing_5_is_a_mass_on_spring_and_damper() -> None:
 
 
 @pytest.mark.parametrize("name", ["simple_robot", "scara_robot"])
+@pytest.mark.unread("HX103")
 def test_the_robots_among_the_listings_move_as_the_paper_says(name: str, tmp_path: Path) -> None:
     robot = load(LISTINGS / f"{name}.hymeko")
     model, data = compiled(robot, tmp_path)
@@ -116,6 +117,7 @@ def test_a_robot_is_read_in_silence_and_its_text_says_the_same_again(path: Path)
 
 
 @pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.stem)
+@pytest.mark.unread("HX101", "HX103")
 def test_pinocchio_and_mujoco_see_the_same_robot_after_export(path: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     robot = load(path)
     hx.dump(robot, tmp_path / "robot.urdf", packages={"robots": path.parent})

@@ -40,6 +40,7 @@ ROBOT = (
         "values { body { of [a] inertial [source none file] } }",
     ],
 )
+@pytest.mark.unread("HX107")
 def test_a_residue_that_holds_something_else_is_left_out(content: str) -> None:
     report = Report()
     robot = hx.loads(ROBOT.format(content), "urdf", report=report)

@@ -37,6 +37,7 @@ EXAMPLES = re.findall(r"```hymeko\n(.*?)```", LANGUAGE, re.DOTALL)
 
 
 @pytest.mark.parametrize("text", EXAMPLES, ids=lambda text: re.search(r"\w+(?= .*\{)", text)[0])  # type: ignore[index]
+@pytest.mark.unread("HX201")
 def test_an_example_is_read_in_silence_and_round_trips(text: str) -> None:
     report = Report()
     robot = read(Source("example.hymeko", text.encode()), report).mechanism

@@ -166,6 +166,7 @@ def test_mimic_is_an_equality_that_holds_in_simulation() -> None:
 
 
 @pytest.mark.parametrize("leader", ["fixed", "nobody"])
+@pytest.mark.unread("HX040")
 def test_mimic_of_a_fixed_or_absent_joint_compiles_without_an_equality(leader: str) -> None:
     links = [link("a"), link("b"), link("c")]
     mimic = f'<mimic joint="{leader}" multiplier="2"/>'
@@ -244,6 +245,7 @@ def test_materials_are_shared_and_unnamed_ones_are_the_shapes_own_colour() -> No
 
 
 @pytest.mark.parametrize(("scale", "factors"), [("2", (2.0, 2.0, 2.0)), ("-1 1 1", (-1.0, 1.0, 1.0)), ("0.001 0.001 0.001", (0.001,) * 3)])
+@pytest.mark.unread("HX020")
 def test_meshes_keep_their_scale_and_mirror(scale: str, factors: tuple[float, ...]) -> None:
     done = convert_text(robot(link("a", visual(mesh("package://p/a.stl", scale)))), {"package://p/a.stl": STL})
     model = done.model()

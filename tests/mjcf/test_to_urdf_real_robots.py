@@ -30,6 +30,7 @@ def assert_same_in_urdf(robot: Path, folder: Path, *, meshes: bool) -> None:
 
 
 @pytest.mark.parametrize("robot", FEW, ids=lambda file: file.id, indirect=True)
+@pytest.mark.unread("HX040", "HX104")
 def test_a_real_robot_is_the_same_in_urdf(robot: Path, tmp_path: Path) -> None:
     assert_same_in_urdf(robot, tmp_path, meshes=True)
 

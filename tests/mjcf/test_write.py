@@ -174,6 +174,7 @@ def motion(dof: Dof, coordinate: float) -> Pose:
 
 @settings(max_examples=150, deadline=None)
 @given(POSES, POSES, st.lists(DOFS, min_size=1, max_size=6), st.lists(LENGTH, min_size=6, max_size=6))
+@pytest.mark.unread("HX102")
 def test_bodies_move_as_the_formula_of_the_ir_says(above: Pose, below: Pose, dofs: list[Dof], q: list[float]) -> None:
     mechanism = chain(Joint(tuple(dofs)))
     edges = {joint("j1"): joint_edge(Joint(tuple(dofs)), body("b0"), body("b1"), above, below)}
@@ -265,6 +266,7 @@ COMPONENT = st.floats(-1.0, 1.0)
 
 @settings(max_examples=400, deadline=None)
 @given(st.tuples(*[COMPONENT] * 6), st.sampled_from([1.0, 1e-3, 1e-6, 1e-9, 1e-12]))
+@pytest.mark.unread("HX103")
 def test_every_tensor_compiles_after_repair(tensor: tuple[float, ...], size: float) -> None:
     xx, yy, zz, xy, xz, yz = (size * value for value in tensor)
     compiled(chain(hinge(axis=Z), inertial=Inertial(1.0, (0.0, 0.0, 0.0), (xx, yy, zz, xy, xz, yz))))
@@ -405,6 +407,7 @@ def test_a_chain_of_many_bodies_is_printed_without_recursion() -> None:
     assert SOLID.mass is not None
 
 
+@pytest.mark.unread("HX061", "HX201")
 def test_a_layer_without_a_texture_says_nothing() -> None:
     text = "r : robot { steel : material {} weave : texture {} b { shape { box [1 1 1], -> steel } } @layered : layer { - steel } }"
     robot = hx.loads(text, "hymeko")

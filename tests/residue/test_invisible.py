@@ -22,6 +22,7 @@ EVERY = 4
 
 
 @pytest.mark.parametrize(("text", "own", "target"), SAMPLES)
+@pytest.mark.unread("HX204")
 def test_other_readers_see_the_same(
     text: str, own: str, target: str, tmp_path: Path, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:

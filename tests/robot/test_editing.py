@@ -41,6 +41,7 @@ def test_an_edit_gives_a_new_robot_and_leaves_the_old_one() -> None:
     assert model.site("flange").pos.tolist() == [0, 0, 0.25]
 
 
+@pytest.mark.unread("HX104")
 def test_what_is_added_is_there_in_mujoco() -> None:
     with arm().edit() as e:
         e.add_body(

@@ -53,6 +53,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
+@pytest.mark.unread("HX028", "HX101")
 def test_drake_sees_the_same_robot(case: str, tmp_path: Path) -> None:
     pytest.importorskip("pydrake")
     name, text, expected = CASES[case]
@@ -62,6 +63,7 @@ def test_drake_sees_the_same_robot(case: str, tmp_path: Path) -> None:
     assert verdict.verdict == expected, [*verdict.failed, *verdict.limits, verdict.reason]
 
 
+@pytest.mark.unread("HX101")
 def test_a_size_of_zero_is_very_small() -> None:
     """Source: libsdformat, Sphere.cc: a radius that is not above zero becomes 1."""
     point = '<robot name="m"><link name="a"><visual><geometry><sphere radius="0"/></geometry></visual></link></robot>'

@@ -79,6 +79,7 @@ def test_another_ratio_is_written_in_its_place_and_another_relation_as_a_mimic()
         (gearbox("<parent>wheel</parent><child>arm</child>"), "<parent> or <gearbox_reference_body> names no link"),
     ],
 )
+@pytest.mark.unread("HX045")
 def test_one_that_is_no_relation_of_two_hinges_is_kept_as_written(text: str, problem: str) -> None:
     report = Report()
     robot = hx.loads(text, "sdf", report=report)

@@ -96,6 +96,7 @@ RULES = {
 
 
 @pytest.mark.parametrize("rule", RULES)
+@pytest.mark.unread("HX010")
 def test_it_is_reported(rule: str) -> None:
     text, code = RULES[rule]
     report = Report()

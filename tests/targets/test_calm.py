@@ -52,6 +52,7 @@ def speed_of(robot: Path, root: Path, folder: Path) -> tuple[float, bool]:
 
 
 @pytest.mark.parametrize("file", FEW, ids=lambda file: file.id)
+@pytest.mark.unread("HX103")
 def test_a_real_robot_is_calm(file: DevelopmentFile, real_robot: RealRobots, tmp_path: Path) -> None:
     root = real_robot.package(file.package)
     assert speed_of(root / file.path, root, tmp_path)[0] < CALM

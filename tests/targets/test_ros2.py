@@ -277,6 +277,7 @@ def test_the_srdf_beside_a_urdf_is_read_with_it_and_one_line_says_so(urdf: Path,
 
 
 @pytest.mark.parametrize("damage", ["<robot", "<other/>"])
+@pytest.mark.unread("HX010")
 def test_an_srdf_that_cannot_be_read_is_left_out_with_a_warning(damage: str, urdf: Path) -> None:
     urdf.with_suffix(".srdf").write_text(damage, "utf-8")
     report = Report()

@@ -416,24 +416,28 @@ def ours(message: str) -> str:
 
 
 @pytest.mark.parametrize("case", REPORTED)
+@pytest.mark.unread("HX005", "HX010")
 def test_bad_input_is_reported_with_its_place_and_what_is_done(case: str) -> None:
     text, expected = REPORTED[case]
     assert [ours(message) for message in said(text)] == expected
 
 
 @pytest.mark.parametrize("case", REPORTED)
+@pytest.mark.unread  # generated or damaged input: any
 def test_bad_input_is_the_same_robot_after_writing_it(case: str) -> None:
     text, _ = REPORTED[case]
     assert load(again(text)) == load(text)
 
 
 @pytest.mark.parametrize("case", REPORTED)
+@pytest.mark.unread  # generated or damaged input: any
 def test_what_is_written_is_well_formed(case: str) -> None:
     text, _ = REPORTED[case]
     assert not [message for message in said(again(text)) if "HX005" in message]
 
 
 @pytest.mark.parametrize("case", REFUSED)
+@pytest.mark.unread("HX005")
 def test_hopeless_input_is_refused(case: str) -> None:
     text, expected = REFUSED[case]
     with pytest.raises(Refusal) as refusal:

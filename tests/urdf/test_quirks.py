@@ -48,6 +48,7 @@ def test_off_diagonal_inertia_and_the_inertial_of_the_root_are_kept() -> None:
 
 
 @pytest.mark.parametrize("name", ["a.b", "a/b", "a b", "7dof", "world", "a:b", " a", "a#2", "sĥerical", "${ns}a", "&lt;a&gt;&amp;&quot;"])
+@pytest.mark.unread("HX024")
 def test_any_string_is_a_name_and_comes_back_as_it_is(name: str) -> None:
     source = robot(f'<link name="{name}"/><link name="b"/>{joint(LIMIT, parent=name)}', f' name="{name}"')
     mechanism = load(source)
@@ -67,18 +68,21 @@ def test_a_link_and_a_joint_may_share_a_name() -> None:
     assert set(load(source).graph.edges) == {Id("joint", "a")}
 
 
+@pytest.mark.unread("HX040")
 def test_mimic_of_an_absent_joint_is_kept_as_it_was() -> None:
     source = robot(TWO_LINKS + joint(LIMIT + '<mimic joint="gone" multiplier="2.0"/>'))
     assert '<mimic joint="gone" multiplier="2.0"/>' in again(source)
     assert [extra.text for extra in load(source).extras[J]] == ['<mimic joint="gone" multiplier="2.0"/>']
 
 
+@pytest.mark.unread("HX040")
 def test_mimic_of_a_fixed_joint_is_kept_as_it_was() -> None:
     body = TWO_LINKS + '<link name="c"/>' + joint(LIMIT + '<mimic joint="k"/>') + joint("", "fixed", name="k", child="c")
     assert '<mimic joint="k"/>' in again(robot(body))
     assert [extra.text for extra in load(robot(body)).extras[J]] == ['<mimic joint="k"/>']
 
 
+@pytest.mark.unread("HX040")
 def test_a_fixed_joint_that_mimics_keeps_its_mimic() -> None:
     body = TWO_LINKS + '<link name="c"/>' + joint('<mimic joint="k" offset="0.0"/>', "fixed") + joint(LIMIT, name="k", child="c")
     assert '<mimic joint="k" offset="0.0"/>' in again(robot(body))
@@ -90,6 +94,7 @@ def test_xmlns_xacro_in_a_plain_urdf_is_kept_and_says_nothing() -> None:
     assert '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">' in again(source)
 
 
+@pytest.mark.unread("HX020")
 def test_a_mesh_scale_of_one_number_scales_alike_in_all_directions() -> None:
     mechanism = load(robot(visual('<geometry><mesh filename="m.stl" scale="0.001"/></geometry>')))
     assert mechanism.vertex(Id("mesh", "m"), Mesh).scale == (0.001, 0.001, 0.001)
@@ -113,6 +118,7 @@ def test_uris_of_meshes_and_textures_are_kept_letter_by_letter() -> None:
 
 
 @pytest.mark.parametrize("name", ["", ' name=""'])
+@pytest.mark.unread("HX022", "HX042")
 def test_the_colour_of_an_unnamed_material_is_the_colour_of_the_shape(name: str) -> None:
     material = f'<material{name}><color rgba="0.1 0.2 0.3 1"/></material>'
     mechanism = load(robot(visual(SPHERE + material) + visual(SPHERE + material.replace("0.1", "0.5")).replace('"a"', '"b"')))
@@ -165,12 +171,14 @@ def test_an_axis_that_is_not_quite_unit_is_normalised_and_written_as_it_was() ->
     assert '<axis xyz="0 0.70710678 0.70710678"/>' in again(source)
 
 
+@pytest.mark.unread("HX026")
 def test_a_zero_axis_is_read_as_x_and_written_as_it_was() -> None:
     source = robot(TWO_LINKS + joint(f'<axis xyz="0 0 0"/>{LIMIT}'))
     assert load(source).joints[J].joint.dofs[0].axis == (1.0, 0.0, 0.0)
     assert '<axis xyz="0 0 0"/>' in again(source)
 
 
+@pytest.mark.unread("HX044")
 def test_a_joint_without_limits_is_unlimited_and_written_so_that_urdfdom_accepts_it() -> None:
     source = robot(TWO_LINKS + joint("", "prismatic"))
     limit = '<limit lower="-1e9" upper="1e9" effort="1e9" velocity="1e9"/>'
@@ -191,6 +199,7 @@ def test_the_limits_of_a_continuous_joint_are_kept_and_mean_nothing() -> None:
     assert tags(again(source))["robot/joint/limit@lower"] == 1
 
 
+@pytest.mark.unread("HX045")
 def test_an_empty_geometry_stays_empty() -> None:
     source = robot(visual("<geometry/>"))
     assert load(source).shapes[A][0].shape.geometry == NoShape()

@@ -58,6 +58,7 @@ def test_sizes_and_axis_of_a_primitive(tmp_path: Path) -> None:
     assert shapes == [Capsule(0.08, 0.4), Box((2.0, 4.0, 6.0))]
 
 
+@pytest.mark.unread("HX027")
 def test_an_axis_that_is_none_is_reported_and_kept(tmp_path: Path) -> None:
     report = Report()
     text = robot(body("a", '    def Capsule "c"\n    {\n        uniform token axis = "sideways"\n    }\n'))

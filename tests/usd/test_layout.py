@@ -122,6 +122,7 @@ LONG = """robot : robot {
 """
 
 
+@pytest.mark.unread("HX061")
 def test_prims_keep_their_order_where_only_some_have_long_arrays(tmp_path: Path) -> None:
     points = " ".join(f"{number} {number * number} {number % 7}" for number in range(90))
     faces = " ".join(f"{number} {number + 1} {number + 2}" for number in range(88))

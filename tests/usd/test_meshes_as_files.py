@@ -87,6 +87,7 @@ def test_a_point_that_is_not_as_it_was_is_a_loss(tmp_path: Path, monkeypatch: py
     assert {(loss.element, loss.field) for loss in result.losses or () if loss.element == "mesh 'ball'"} >= {("mesh 'ball'", "vertices")}
 
 
+@pytest.mark.unread("HX204")
 def test_on_standard_output_a_model_stands_alone(tmp_path: Path) -> None:
     text = hx.dumps(hx.load(stage(tmp_path / "home")), "mjcf", keep="inside")
     assert "ball" in text

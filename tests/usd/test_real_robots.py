@@ -25,6 +25,7 @@ def assert_same_in_usd(robot: Path, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("robot", [file for file in FILES if Path(file.path).name in FEW], ids=lambda file: file.id, indirect=True)
+@pytest.mark.unread("HX028")
 def test_a_real_robot_is_the_same_in_usd(robot: Path, tmp_path: Path) -> None:
     assert_same_in_usd(robot, tmp_path)
 

@@ -160,6 +160,7 @@ def test_a_family_that_covers_the_mesh_is_still_called_a_partition(tmp_path: Pat
         ((subset("1", "nothing"),), "rel material:binding = </robot/nothing>", None),
     ],
 )
+@pytest.mark.unread("HX203")
 def test_what_is_no_subset_that_shows_a_material_is_kept_as_written(subsets: tuple[str, ...], kept: str, said: str | None) -> None:
     report = Report()
     robot = read_text(stage(*subsets), report)
@@ -300,6 +301,7 @@ BROKEN = """r : robot {
 
 
 @pytest.mark.parametrize("format", ["urdf", "xacro", "mjcf", "usd"])
+@pytest.mark.unread("HX203", "HX204")
 def test_subsets_of_what_is_not_there_are_carried(format: str) -> None:
     robot = hx.loads(BROKEN, "hymeko")
     assert hx.diff(robot, hx.loads(hx.dumps(robot, format, keep="inside"), format)) == ()

@@ -312,6 +312,7 @@ def test_a_path_is_read_as_the_schema_says(tendon: str, arcs: tuple[RobotArc, ..
         ('token mjc:type = "other"; rel mjc:path = </r/j>', "is neither fixed nor spatial"),
     ],
 )
+@pytest.mark.unread("HX040")
 def test_a_tendon_without_a_valid_path_is_reported_and_kept(tendon: str, why: str, tmp_path: Path) -> None:
     report = Report()
     source = stage(f"{tendon}; double mjc:stiffness = 3")

@@ -94,6 +94,7 @@ WRONG = ("int {} = 3", "float {} = 3", "int[] {} = [3]", "point3f[] {} = [(0, 0,
 
 @pytest.mark.parametrize("wrong", WRONG)
 @pytest.mark.parametrize("place", range(len(TRIANGLE)), ids=[line.split()[1] for line in TRIANGLE])
+@pytest.mark.unread("HX009", "HX203")
 def test_rows_of_another_type_are_kept_and_not_used(place: int, wrong: str) -> None:
     lines = list(TRIANGLE)
     lines[place] = wrong.format(lines[place].split()[1])

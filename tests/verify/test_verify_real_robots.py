@@ -33,12 +33,14 @@ def assert_same_in_mjcf(robot: Path, folder: Path, *, meshes: bool) -> None:
 
 
 @pytest.mark.parametrize("robot", FEW, ids=lambda file: file.id, indirect=True)
+@pytest.mark.unread("HX101", "HX103")
 def test_a_real_robot_is_the_same_in_mjcf(robot: Path, tmp_path: Path) -> None:
     assert_same_in_mjcf(robot, tmp_path, meshes=True)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("robot", MORE, ids=lambda file: file.id, indirect=True)
+@pytest.mark.unread("HX005", "HX040", "HX101", "HX103")
 def test_more_real_robots_are_the_same_in_mjcf(robot: Path, tmp_path: Path) -> None:
     assert_same_in_mjcf(robot, tmp_path, meshes=False)
 

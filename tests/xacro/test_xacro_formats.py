@@ -42,6 +42,7 @@ def assert_same_there_and_back(robot: Path, suffix: str, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("robot", OTHERS, ids=lambda file: file.id, indirect=True)
+@pytest.mark.unread("HX052")
 def test_xacro_that_is_written_again_expands_to_what_the_source_expands_to(robot: Path) -> None:
     mechanism = read(disk.open_source(str(robot)), Report()).mechanism
     assert diff(mechanism, read(Source("again.xacro", check(mechanism).encode()), Report()).mechanism) == ()
@@ -49,6 +50,7 @@ def test_xacro_that_is_written_again_expands_to_what_the_source_expands_to(robot
 
 @pytest.mark.parametrize("suffix", TARGETS)
 @pytest.mark.parametrize("robot", FEW, ids=lambda file: file.id, indirect=True)
+@pytest.mark.unread("HX103")
 def test_a_real_robot_is_the_same_in_every_format_and_back(robot: Path, suffix: str, tmp_path: Path) -> None:
     assert_same_there_and_back(robot, suffix, tmp_path)
 

@@ -51,6 +51,7 @@ def test_an_element_comes_from_its_line_in_the_macro_or_the_included_file(folder
     assert mechanism.stereotypes == {body("left_leg"): ("leg",), joint("left_hip"): ("leg",)}
 
 
+@pytest.mark.unread("HX020", "HX023", "HX042")
 def test_what_is_said_of_the_urdf_points_at_the_xacro_file(folder: Folder) -> None:
     inertia = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
     said = folder.said(
@@ -80,6 +81,7 @@ def refused(source: Source) -> Refusal:
     return refusal.value
 
 
+@pytest.mark.unread("HX042")
 def test_places_survive_dynamic_names_conditions_and_recursion(folder: Folder) -> None:
     mechanism = folder.read(
         '<xacro:macro name="row" params="n">\n  <xacro:element xacro:name="link" name="l${n}"/>\n  <xacro:if value="${n > 1}">\n'
@@ -159,6 +161,7 @@ def test_a_missing_file_is_named_where_it_is_asked_for(folder: Folder) -> None:
     )
 
 
+@pytest.mark.unread("HX042")
 def test_an_optional_include_may_be_missing_and_a_pattern_names_several_files(folder: Folder) -> None:
     for name in ("b", "a", ".hidden"):
         folder.put(f"parts/{name}.xacro", robot_with(f'<link name="{name}"/>'))
@@ -191,6 +194,7 @@ def test_a_failure_shows_how_xacro_got_there(folder: Folder) -> None:
     assert said.excerpt == (f"  from {place}:6: <xacro:hand>", f"  from {place}:8: <xacro:arm>")
 
 
+@pytest.mark.unread("HX045")
 def test_warnings_of_xacro_and_messages_of_the_file_are_said_once_each(folder: Folder) -> None:
     assert folder.said(
         '<link name="a">\n  <visual name="${xacro.warning(\'old\')}">${xacro.message("hi")}</visual>\n</link>\n'
@@ -216,6 +220,7 @@ def test_what_is_no_urdf_is_refused_by_name(text: str, found: str) -> None:
     assert (refusal.diagnostic.code, refusal.diagnostic.message) == (codes.NOT_URDF, f"the file expands to {found}")
 
 
+@pytest.mark.unread("HX045")
 def test_a_library_of_macros_is_no_robot(folder: Folder) -> None:
     assert folder.said('<xacro:macro name="leg"><link name="a"/></xacro:macro>')[0] == "r.xacro: warning[HX055]: the expansion has no links"
 

@@ -83,12 +83,14 @@ def members(text: bytes) -> list[object]:
 
 
 @pytest.mark.robots("xacro")
+@pytest.mark.unread("HX052")
 def test_a_real_robot_expands_as_xacro_itself_does(robot: Path, corpus_root: Path) -> None:
     library = Library(corpus_root / "corpus" / robot.relative_to(corpus_root / "corpus").parts[0])
     assert canonical(expand(disk.open_source(str(robot)), Report()).text) == canonical(library.expand(robot))
 
 
 @pytest.mark.robots("xacro")
+@pytest.mark.unread("HX052")
 def test_the_urdf_of_a_real_robot_is_its_expansion(robot: Path) -> None:
     """Element for element, as far as URDF has a meaning: the URDF backend has one order for what is in a link or joint."""
     source = disk.open_source(str(robot))
@@ -98,6 +100,7 @@ def test_the_urdf_of_a_real_robot_is_its_expansion(robot: Path) -> None:
 
 
 @pytest.mark.robots("xacro")
+@pytest.mark.unread("HX052", "HX103", "HX201")
 def test_a_real_robot_converts_to_hymeko_urdf_and_mjcf(robot: Path) -> None:
     source = disk.open_source(str(robot))
     mechanism = read(source, Report()).mechanism
@@ -108,6 +111,7 @@ def test_a_real_robot_converts_to_hymeko_urdf_and_mjcf(robot: Path) -> None:
 
 
 @pytest.mark.robots("xacro")
+@pytest.mark.unread("HX052")
 def test_every_element_of_a_real_robot_stands_where_its_file_says(robot: Path) -> None:
     """Each link and joint is written on its line: the line begins the tag, in whichever file it is."""
     mechanism = read(disk.open_source(str(robot)), Report()).mechanism

@@ -75,6 +75,7 @@ LEG = """<link name="{0}_hip"><inertial><mass value="1.5"/>
 PAIR = robot('<!-- the base -->\n<link name="base"/>' + LEG.format("left", "") + LEG.format("right", "-"))
 
 
+@pytest.mark.unread("HX040")
 def test_left_and_right_are_calls_of_one_macro() -> None:
     text = check(load(PAIR))
     calls = re.findall(r"<xacro:.*/>", text)
@@ -83,6 +84,7 @@ def test_left_and_right_are_calls_of_one_macro() -> None:
     assert 'ixy="${side*2.5}e-5"' in text
 
 
+@pytest.mark.unread("HX040")
 def test_comments_stay_and_headings_go() -> None:
     back = read(Source("r.xacro", backend.write(load(PAIR), Options(), Report()).main), Report()).mechanism
     assert diff(load(PAIR), back) == ()
@@ -115,6 +117,7 @@ ODD = (
 @pytest.mark.parametrize(
     "text", [*ODD, "", " ", "a b", "<&>", "${", "$", "a\nb", "\t", "^|a", "a:=b", "１", "0x1", "1.", ".5", "-0", "None", "__import__('os')"]
 )
+@pytest.mark.unread("HX005", "HX010")
 def test_every_text_comes_back_as_a_text_that_varies_and_one_that_does_not(text: str) -> None:
     said = etree.Element("x", a=text, b="the same in all of them, and long enough")
     quoted = etree.tostring(said).decode()
@@ -137,22 +140,26 @@ def test_whatever_urdf_can_say_expands_to_it(mechanism: Mechanism) -> None:
 
 @given(mechanisms(), st.builds(Options, st.sampled_from([None, "fixed", "free"]), st.sampled_from([None, "motor", "position"])))
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@pytest.mark.unread("HX101", "HX102")
 def test_every_legal_mechanism_expands_to_its_urdf(mechanism: Mechanism, options: Options) -> None:
     check(legalize(choose(replace(mechanism, extras={}), options, Report()), "xacro", Report()))
 
 
 @pytest.mark.parametrize("declared", ["", ' xmlns:xacro="http://ros.org/wiki/xacro"'])
+@pytest.mark.unread("HX040")
 def test_the_ledger_of_a_conversion_to_xacro_is_empty(declared: str) -> None:
     mechanism = load(PAIR.replace("<robot", f"<robot{declared}"))
     assert pipeline.convert(mechanism, formats.by_name("xacro"), Options(), Source("", b"").files, Report()).losses == ()
 
 
 @pytest.mark.robots("urdf")
+@pytest.mark.unread("HX005", "HX028", "HX040", "HX046")
 def test_the_xacro_of_a_real_robot_expands_to_its_urdf(robot: Path) -> None:
     check(load(robot.read_bytes()))
 
 
 @pytest.mark.robots("xacro")
+@pytest.mark.unread("HX052")
 def test_xacro_through_a_mechanism_and_back_is_the_expansion_of_the_source(robot: Path) -> None:
     source = disk.open_source(str(robot))
     mechanism = read(source, Report()).mechanism
@@ -161,6 +168,7 @@ def test_xacro_through_a_mechanism_and_back_is_the_expansion_of_the_source(robot
 
 
 @pytest.mark.robots("xacro")
+@pytest.mark.unread("HX052")
 def test_macros_in_a_file_of_their_own_expand_to_the_same(robot: Path, tmp_path: Path) -> None:
     source = disk.open_source(str(robot))
     mechanism = read(source, Report()).mechanism
@@ -211,6 +219,7 @@ LIMBED = (
 """Legs, fingers, wheels or rotors several times."""
 
 
+@pytest.mark.unread("HX040")
 def test_macros_in_a_file_of_their_own(tmp_path: Path) -> None:
     """What they say may have a prefix that the robot declares."""
     pair = PAIR.replace('<robot name="r"', '<robot name="r" xmlns:sensor="http://sensor"').replace(
