@@ -33,6 +33,7 @@ def test_a_stage_that_ends_too_early_is_refused(format: str, part: float) -> Non
     assert outcome(data[: int(len(data) * part)], f"robot.{format}".replace(".usd", ".usda", format == "usd")) == codes.CANNOT_READ.id
 
 
+@pytest.mark.unread
 def test_a_stage_with_flipped_bits_is_read_or_refused() -> None:
     whole, dice = written(arm(), "usdc"), random.Random(0)
     for _ in range(25):
