@@ -46,7 +46,8 @@ def is_archive(path: str) -> bool:
 
 def inside(path: Path) -> Inside | None:
     """The archive on the disk through which a path leads, and the name in it; None where there is none."""
-    if not any(is_archive(part) for part in path.parts[:-1]):
+    text = str(path).lower()
+    if not any(suffix in text for suffix in formats.archive_suffixes()):
         return None
     above = next((folder for folder in path.parents if is_archive(folder.name) and folder.is_file()), None)
     return None if above is None else Inside(str(above), os.path.normpath(path.relative_to(above)).replace(os.sep, "/"))

@@ -178,8 +178,11 @@ def _assembled(pieces: Sequence[Piece], given: Given) -> list[Item]:
 def _behind_classes(items: list[Item]) -> list[Item]:
     """The items with the stereotypes and templates behind the default classes that they may refine."""
     last = max((place for place, item in enumerate(items) if is_class(item)), default=-1)
-    moved = [item for item in items[: last + 1] if isinstance(item, Node) and item.parameters is not None and not is_class(item)]
-    return [*(item for item in items[: last + 1] if item not in moved), *moved, *items[last + 1 :]] if moved else items
+
+    def is_moved(item: Item) -> bool:
+        return isinstance(item, Node) and item.parameters is not None and not is_class(item)
+
+    return [*sorted(items[: last + 1], key=is_moved), *items[last + 1 :]]
 
 
 def _rows(sheet: HymekoSheet) -> list[Row]:

@@ -54,16 +54,13 @@ def apply_classes(elements: Iterable[Element], classes: Mapping[Path, Field], gi
         units = _units(given[name].get(kind_of(element.node, _bases(element.node)), ()))
         if not mark.type:
             units.append(Unit("class", print_item(mark), mark))
-        saved = sum(unit.cost for unit in units if unit.slot in element.units and element.units[unit.slot].text == unit.text)
-        if saved <= len(name) + 1 or not all(unit.slot in element.units for unit in units):
+        texts = {unit.slot: unit.text for unit in units}
+        saved = sum(unit.cost for slot, unit in element.units.items() if texts.get(slot) == unit.text)
+        if saved <= len(name) + 1 or not texts.keys() <= element.units.keys():
             continue
-        own = [slot for slot in element.units if slot not in {unit.slot for unit in units} or not _is_equal(element, slot, units)]
-        if not is_open(group(element)[0]) or in_reading_order(own, (unit.slot for unit in units)) == list(element.units):
+        own = [slot for slot, unit in element.units.items() if texts.get(slot) != unit.text]
+        if not is_open(group(element)[0]) or in_reading_order(own, texts) == list(element.units):
             element.give_class(name if name.isidentifier() else QuotedName(name), units)
-
-
-def _is_equal(element: Element, slot: str, units: list[Unit]) -> bool:
-    return any(unit.slot == slot and unit.text == element.units[slot].text for unit in units)
 
 
 def in_reading_order(own: Iterable[str], of_class: Iterable[str]) -> list[str]:

@@ -41,9 +41,8 @@ def write_mimics(sheet: UsdSheet) -> None:
         spec, weight = found.spec, found.weight
         if sheet.mechanism.notation(found.key, words.EQUALITY) is None:
             leader, native = _first_leader(found, followers)
-            _write_mimic(spec, leader.path, found.dof, native, found.coupling.active)
-            if sheet.is_neutral:
-                _write_neutral(spec, leader.path, found.dof, native, found.coupling.active)
+            for names in (words.NEWTON_MIMIC, words.NEUTRAL_MIMIC) if sheet.is_neutral else (words.NEWTON_MIMIC,):
+                _write_mimic(names, spec, leader.path, found.dof, native, found.coupling.active)
             _write_powers(spec, weight, 2)
         else:
             apply(spec, "MjcEqualityJointAPI")
@@ -77,25 +76,14 @@ def _first_leader(found: _Follower, followers: dict[Any, _Follower]) -> tuple[Pr
     return (leader, weight) if leader.path not in passed else (found.leader, found.weight)
 
 
-def _write_mimic(spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is_active: bool) -> None:
-    apply(spec, "NewtonMimicAPI")
-    point(spec, "newton:mimicJoint", leader)
+def _write_mimic(names: words.Mimic, spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is_active: bool) -> None:
+    apply(spec, names.schema)
+    point(spec, names.leader, leader)
     constant = weight[0] if weight else 0.0
-    put(spec, "newton:mimicCoef0", T.Float, math.degrees(constant) if dof.kind is DofKind.HINGE else constant)
-    put(spec, "newton:mimicCoef1", T.Float, weight[1] if len(weight) > 1 else 0.0)
+    put(spec, names.offset, T.Float, math.degrees(constant) if dof.kind is DofKind.HINGE else constant)
+    put(spec, names.factor, T.Float, weight[1] if len(weight) > 1 else 0.0)
     if not is_active:
-        put(spec, "newton:mimicEnabled", T.Bool, False)
-
-
-def _write_neutral(spec: Any, leader: Any, dof: Dof, weight: tuple[float, ...], is_active: bool) -> None:
-    """The same in the schema of no engine. Source: `ExtendedPhysicsMimicAPI` of `ros-simulation/openusd-schemas`."""
-    apply(spec, words.MIMIC)
-    point(spec, "ext_physics:mimic:joint", leader)
-    constant = weight[0] if weight else 0.0
-    put(spec, "ext_physics:mimic:offset", T.Float, math.degrees(constant) if dof.kind is DofKind.HINGE else constant)
-    put(spec, "ext_physics:mimic:multiplier", T.Float, weight[1] if len(weight) > 1 else 0.0)
-    if not is_active:
-        put(spec, "ext_physics:mimic:enabled", T.Bool, False)
+        put(spec, names.enabled, T.Bool, False)
 
 
 def _write_powers(spec: Any, weight: tuple[float, ...], first: int) -> None:

@@ -35,16 +35,10 @@ _HEADER = ("metersPerUnit", "kilogramsPerUnit", "timeCodesPerSecond", "upAxis", 
 
 def split(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
     """The layers of a stage by file name; the interface, under an empty name, refers to the others in this folder."""
-    aspects = {aspect: Sdf.Layer.CreateAnonymous(".usda") for aspect in ASPECTS}
-    contents, interface = Sdf.Layer.CreateAnonymous(".usda"), Sdf.Layer.CreateAnonymous(".usda")
     with Sdf.ChangeBlock():
-        for part in (*aspects.values(), contents):
-            _copy_header(layer, part, _HEADER)
-        _copy_header(layer, interface, [name for name in layer.pseudoRoot.ListInfoKeys() if name != "primChildren"])
-        for spec in _prims(layer):
-            _divide(spec, aspects)
-        for part in aspects.values():
-            _lead_out(part, "../" * len(folder.split("/")))
+        aspects, interface = _divided(layer, ASPECTS, folder)
+        contents = Sdf.Layer.CreateAnonymous(".usda")
+        _copy_header(layer, contents, _HEADER)
         suffixes = dict.fromkeys(ASPECTS, suffix) | ({GEOMETRY: ".usdc"} if _has_meshes(layer) else {})
         contents.subLayerPaths = [f"./{aspect}{suffixes[aspect]}" for aspect in reversed(ASPECTS)]
         _write_interface(layer, interface, f"./{folder}/{_CONTENTS}{suffix}")
@@ -59,16 +53,8 @@ def split_by_concern(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
 
     Source: REP 158 (draft of 2026), 1.2.1 and 1.4. Payloads hide no body and no joint (1.2.3), so that there are none.
     """
-    parts = {concern: Sdf.Layer.CreateAnonymous(".usda") for concern in (*ASPECTS, *ENGINES)}
-    interface = Sdf.Layer.CreateAnonymous(".usda")
     with Sdf.ChangeBlock():
-        for part in parts.values():
-            _copy_header(layer, part, _HEADER)
-        _copy_header(layer, interface, [name for name in layer.pseudoRoot.ListInfoKeys() if name != "primChildren"])
-        for spec in _prims(layer):
-            _divide(spec, parts)
-        for part in parts.values():
-            _lead_out(part, "../" * len(folder.split("/")))
+        parts, interface = _divided(layer, (*ASPECTS, *ENGINES), folder)
         for root in layer.rootPrims:
             _write_root(root, interface)
     files = {_BASE if concern == GEOMETRY else concern: part for concern, part in parts.items() if part.rootPrims}
@@ -79,6 +65,20 @@ def split_by_concern(layer: Any, folder: str, suffix: str) -> dict[str, Any]:
         | {f"{folder}/{name}{suffix}": part for name, part in files.items()}
         | {f"{folder}/{n}": p for n, p in aside.items()}
     )
+
+
+def _divided(layer: Any, concerns: tuple[str, ...], folder: str) -> tuple[dict[str, Any], Any]:
+    """The content of a stage as one layer for each concern, for files in this folder, and the interface, which has no prims yet."""
+    parts = {concern: Sdf.Layer.CreateAnonymous(".usda") for concern in concerns}
+    interface = Sdf.Layer.CreateAnonymous(".usda")
+    for part in parts.values():
+        _copy_header(layer, part, _HEADER)
+    _copy_header(layer, interface, [name for name in layer.pseudoRoot.ListInfoKeys() if name != "primChildren"])
+    for spec in _prims(layer):
+        _divide(spec, parts)
+    for part in parts.values():
+        _lead_out(part, "../" * len(folder.split("/")))
+    return parts, interface
 
 
 def _has_meshes(layer: Any) -> bool:

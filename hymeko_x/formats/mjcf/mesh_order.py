@@ -90,7 +90,7 @@ def _in_runs(base: list[Id], names: Sequence[str]) -> list[Id] | None:
     """The base in runs that begin with these names, in their order; None where there is no such mesh."""
     if not names:
         return base
-    starts = {name: place for place, name in ((place, key.name) for place, key in enumerate(base)) if name in names}
+    starts = {key.name: place for place, key in enumerate(base) if key.name in names}
     if len(starts) != len(names) or 0 not in starts.values():
         return None
     ends = dict(zip(sorted(starts.values()), [*sorted(starts.values())[1:], len(base)], strict=True))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import struct
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from hymeko_x.ir import values
 from hymeko_x.ir.notations import Notation, flag, word, words
@@ -78,8 +78,21 @@ LIGHTS: Mapping[str, str] = MappingProxyType({"DistantLight": "directional", "Sp
 CONE = "ShapingAPI"
 SITES = ("MjcSiteAPI", "NewtonSiteAPI")
 """The schemas of a prim that marks a place, MuJoCo's and Newton's."""
-MIMIC = "ExtendedPhysicsMimicAPI"
-"""The neutral schema of a coupling, incubated by REP 158."""
+
+
+class Mimic(NamedTuple):
+    """A schema by which a joint follows another one, and the names of its attributes."""
+
+    schema: str
+    leader: str
+    offset: str
+    factor: str
+    enabled: str
+
+
+NEWTON_MIMIC = Mimic("NewtonMimicAPI", "newton:mimicJoint", "newton:mimicCoef0", "newton:mimicCoef1", "newton:mimicEnabled")
+NEUTRAL_MIMIC = Mimic("ExtendedPhysicsMimicAPI", *(f"ext_physics:mimic:{name}" for name in ("joint", "offset", "multiplier", "enabled")))
+"""The same in the schema of no engine, incubated by REP 158. Source: ``ros-simulation/openusd-schemas``."""
 APERTURE = 15.2908
 """The default vertical aperture of a camera, in mm as is its focal length."""
 # ---- single precision ----------------------------------------------------------------------------------------------------
