@@ -20,9 +20,9 @@ _NAMES = re.compile(r"(?<![\w.])[^\W\d]\w*")
 def with_constants(items: tuple[Item, ...], file: str) -> tuple[Item, ...]:
     """The items of a text without its constants, and with numbers in their place.
 
-    Raises: Refusal (HX064) for a constant without a value, HX067 for constants in a circle.
+    Raises: Refusal (HX023) for two constants of one name, HX064 for a constant without a value, HX067 for constants in a circle.
     """
-    found = {constant.name: constant for constant in _constants(items)}
+    found = _by_name(_constants(items), file)
     if not found:
         return items
     numbers: dict[str, float | str] = {}
@@ -35,6 +35,16 @@ def _constants(items: tuple[Item, ...]) -> list[Constant]:
     """Those that stand in the text itself, and in its outermost blocks."""
     blocks = [items, *(item.items for item in items if isinstance(item, Node))]
     return [item for block in blocks for item in block if isinstance(item, Constant)]
+
+
+def _by_name(constants: list[Constant], file: str) -> dict[str, Constant]:
+    found: dict[str, Constant] = {}
+    for constant in constants:
+        first = found.setdefault(constant.name, constant)
+        if first is not constant:
+            message = f"the constant '{constant.name}' is defined twice; the first definition is in line {first.line}"
+            raise refuse(codes.DUPLICATE_NAME, message, origin_of(constant, file), hint="give one of them another name")
+    return found
 
 
 def _in_order(found: Mapping[str, Constant], file: str) -> list[str]:

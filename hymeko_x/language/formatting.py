@@ -309,5 +309,5 @@ def _is_tight(tokens: Sequence[Token], number: int) -> bool:
     if previous.kind == "LESSTHAN" or token.kind == "MORETHAN":
         return True
     if token.text == "(":
-        return True
+        return not token.begins_item
     return previous.kind in _SIGNS and number > 1 and tokens[number - 2].text == "="

@@ -23,6 +23,9 @@ MAX_DEPTH = 200
 GAP_DEPTH = 2
 """Gaps between tokens are collected outside of all brackets, and inside this many."""
 
+_CALCULATION = "EXPRESSION"
+"""A calculation in parentheses is several tokens where only a group of arcs may stand: ``(name - target)``."""
+
 _DEPTH = {"{": 1, "[": 1, "(": 1, "}": -1, "]": -1, ")": -1}
 
 
@@ -100,9 +103,11 @@ class Machine:
         statements = [item for item in tables["terminals"] if item[0] in tables["statements"]]
         terminals = [item for item in tables["terminals"] if item not in statements]
         self._statements = {name for name, _ in statements}
+        self._divisible = {*self._statements, _CALCULATION}
         self._skip = re.compile(ignored)
         inner = [*words, *(item for item in terminals if item[0] not in opening)]
         self._token = re.compile(_alternatives(inner) + ignored)
+        self._part = re.compile(_alternatives([item for item in inner if item[0] != _CALCULATION]) + ignored)
         self._statement = re.compile(_alternatives([*statements, *inner]) + ignored)
         self._first = re.compile(_alternatives([*words, *terminals]) + ignored)
 
@@ -127,11 +132,11 @@ class Machine:
     def _take(self, stack: list[Any], make: list[Reduce], terminals: Mapping[str, Convert], kind: str, word: str, start: int) -> bool:
         """Reduce what ends before the token and put the token on the stack.
 
-        False for a statement that cannot stand there as a whole: its tokens may. What was reduced is right for its first token as well,
-        since every state that goes on with a statement goes on with that token.
+        False for a statement or a calculation that cannot stand there as a whole: its tokens may. What was reduced is right for its first
+        token as well, since every state that goes on with a statement goes on with that token.
         """
         action = stack[-3].get(kind)
-        if action is None and kind not in self._statements:
+        if action is None and kind not in self._divisible:
             kind = self._kind(kind, word, stack[-3], start)
             action = stack[-3][kind]
         while type(action) is _Reduction:
@@ -151,7 +156,7 @@ class Machine:
                 state = following
             action = state.get(kind)
         if action is None:
-            if kind in self._statements:
+            if kind in self._divisible:
                 return False
             if kind == "$END" and stack[-3] is self._end:
                 return True
@@ -192,9 +197,9 @@ class Machine:
         return 0 if skipped is None else skipped.end()
 
     def _parts(self, text: str, position: int, end: int) -> Iterator[tuple[str, str, int]]:
-        """The tokens of a statement."""
+        """The tokens of a statement, or of what looks like a calculation."""
         while position < end:
-            match = self._token.match(text, position)
+            match = self._part.match(text, position)
             assert match is not None
             kind = match.lastgroup or ""
             yield kind, text[position : match.end(kind)], position

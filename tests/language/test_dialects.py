@@ -186,6 +186,8 @@ def test_the_other_formats_are_the_same_as_well(folder: Path, name: str, suffix:
         ("a { x 1; y [1, 2]; }", "a { x 1 y [1 2] }"),
         ("@e { (+ a, - b [0.5], ~ c); }", "@e { + a [0.5] - b ~ c }"),
         ("@e { (role + a [1 2],) ; }", "@e { [1 2] role + a }"),
+        ("@e { (role - a) }", "@e { role - a }"),
+        ("@e { x (2 - 1); (role -a); (+b); (b + a) }", "@e { x (2 - 1), role - a, + b, b + a }"),
         ('@"m.hymeko";', 'import "m.hymeko"'),
         ('@"m.hymeko" as m;', 'import "m.hymeko" as m'),
         ("a : + <isa> b {}", "a : + b {}"),

@@ -90,6 +90,7 @@ LAYOUTS = {
     ),
     "a { x [1 2\n 3 4\n] }": "a {\n  x [1 2\n    3 4\n  ]\n}\n",
     "a {\n\n\n  b {}\n\n\n  c {}\n\n}": "a {\n  b {}\n\n  c {}\n}\n",
+    "@e{(a - b),(+ c)x(1 + 2)}": "@e { (a - b), (+ c) x (1 + 2) }\n",
     'f : r { e1 : - @>"n1" c : <string> <?> }': 'f : r { e1 : - @>"n1" c : <string> <?> }\n',
     "": "",
 }
