@@ -10,7 +10,7 @@ from msgspec import Struct
 from msgspec.structs import replace
 
 from hymeko_x import codes, formats, targets
-from hymeko_x.assets.pack import GAZEBO_MODEL, ROS_PACKAGE, pack, with_prefix, with_stand_ins
+from hymeko_x.assets.pack import GAZEBO_MODEL, ROS_PACKAGE, pack, unloaded, with_prefix, with_stand_ins
 from hymeko_x.assets.shelf import Shelf, safe_name
 from hymeko_x.collector import uncollected
 from hymeko_x.compare.geometry import with_points_of_files
@@ -268,6 +268,7 @@ def _placed_and_printed(legal: Mechanism, format: Format, options: Options, file
     placed, new, copies = pack(legal, format, files, shelf, report, layout=layout if prefix else None)
     placed = with_prefix(placed, prefix, {*new, *copies}) if prefix else placed
     package = replace(writer(format)(placed, options, report), prefix=prefix)
+    placed = unloaded(placed)
     if package.enclose is not None and (new or copies):
         return _Printed(package.enclose({**new, **dict(_contents(copies, files))}), placed, bool(options.within))
     package = replace(package, files={**package.files, **new}, copies={**package.copies, **copies})

@@ -147,6 +147,12 @@ def with_prefix(mechanism: Mechanism, prefix: str, paths: Set[str]) -> Mechanism
     return mechanism.with_graph(mechanism.graph.replace(vertices=changed)) if changed else mechanism
 
 
+def unloaded(mechanism: Mechanism) -> Mechanism:
+    """The mechanism without the triangles of its mesh files, which only the writer needs."""
+    plain = {key: Mesh(mesh.uri, mesh.scale, mesh.name) for key, mesh in mechanism.vertices(Mesh) if type(mesh) is not Mesh}
+    return mechanism.with_graph(mechanism.graph.replace(vertices=plain)) if plain else mechanism
+
+
 def new_uri(uri: str, folder: str, shelf: Shelf, files: Files, keep: Keep) -> str | None:
     """The uri to write, or None when there is no such file. A package's that stays is not looked for, but for an archive.
 

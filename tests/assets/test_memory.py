@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-BOUND = {"urdf": 1.0, "sdf": 1.0, "xml": 1.0, "mjz": 4.0, "usda": 5.0}
+BOUND = {"urdf": 1.0, "sdf": 1.0, "xml": 1.0, "mjz": 4.0, "usda": 4.0, "usdz": 4.0}
 """How many times the size of the set; a stage holds the points itself, and is read back and compared."""
 CHILD = """
 import resource, sys, hymeko_x as hx

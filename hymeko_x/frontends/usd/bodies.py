@@ -34,12 +34,12 @@ _SINGLE = 1e-5
 
 
 class ReadShape(NamedTuple):
-    """A shape that was read: its prim, part, pose in the body, and for a mesh its points (n, 3) in the shape's frame."""
+    """A shape that was read: its prim, part, pose in the body, and for a mesh the scale of its points, which the prim holds."""
 
     prim: Prim
     shape: Shape
     pose: Pose
-    points: NDArray[Any] | None
+    scale: Vec3 | None
 
 
 def read_body(prim: Prim, builder: UsdBuilder) -> None:
@@ -135,7 +135,7 @@ def _solid(read: ReadShape, density: float, builder: UsdBuilder) -> Solid | None
     prim = read.prim
     if read.shape.role is Role.VISUAL:
         return None
-    unit = solid_of(read.shape.geometry, read.pose, read.points)
+    unit = solid_of(read.shape.geometry, read.pose, _points(read))
     if unit is None:
         return None
     mass = _plain(prim, "physics:mass") * builder.scene.kilograms
@@ -144,6 +144,16 @@ def _solid(read: ReadShape, density: float, builder: UsdBuilder) -> Solid | None
     per_volume = builder.scene.kilograms / builder.scene.metres**3
     own = _plain(prim, "physics:density") * per_volume
     return unit.times(own or density or _material_density(prim, builder) * per_volume or _DENSITY)
+
+
+def _points(read: ReadShape) -> NDArray[Any] | None:
+    """The points of a mesh (n, 3) in the shape's frame; None for other shapes."""
+    if read.scale is None:
+        return None
+    import numpy as np
+
+    points = np.asarray(read.prim.value("points"), dtype=np.float64)
+    return points * np.asarray(read.scale, dtype=np.float64)
 
 
 def _material_density(prim: Prim, builder: UsdBuilder) -> float:

@@ -25,23 +25,21 @@ _OF_NORMALS = frozenset(("typeName", "variability", "custom", "default", "interp
 # ---- meshes --------------------------------------------------------------------------------------------------------------------
 
 
-def read_mesh(prim: Prim, builder: UsdBuilder, scale: Vec3) -> tuple[NDArray[Any] | None, Id | None]:
-    """The points of a mesh prim in metres with the mesh's id. Equal meshes at equal scale share one; polygons become fans."""
+def read_mesh(prim: Prim, builder: UsdBuilder, scale: Vec3) -> Id | None:
+    """The id of the mesh of a mesh prim; None where the prim is damaged. Equal meshes at equal scale share one; polygons become fans."""
     import numpy as np
 
     from hymeko_x.meshes.submesh import fans
 
-    points, counts, indices = (prim.value(name) for name in ("points", "faceVertexCounts", "faceVertexIndices"))
-    if points is None or counts is None or indices is None:
-        return _refused(prim, "has no points or no faces", builder)
-    vertices = np.asarray(points, dtype=np.float64).reshape(-1, 3)
-    sizes, corners = np.asarray(counts, dtype=np.int64), np.asarray(indices, dtype=np.int64)
-    if sizes.size and (sizes.min() < 0 or sizes.sum() != corners.size):
-        return _refused(prim, "has another number of corners than its counts add up to", builder)
-    if corners.size and (corners.min() < 0 or corners.max() >= len(vertices)):
-        return _refused(prim, "has a face with a point that does not exist", builder)
-    if not np.isfinite(vertices).all():
-        return _refused(prim, "has points that are not finite", builder)
+    arrays = [prim.value(name) for name in ("points", "faceVertexCounts", "faceVertexIndices")]
+    points, sizes, corners = (np.asarray([] if array is None else array) for array in arrays)
+    vertices = points.astype(np.float64).reshape(-1, 3)
+    sizes, corners = sizes.astype(np.int64), corners.astype(np.int64)
+    damage = "has no points or no faces" if any(array is None for array in arrays) else _damage(vertices, sizes, corners)
+    if damage:
+        message = f"mesh '{prim.path}' {damage}; it is kept as written"
+        builder.report.error(codes.ASSET_UNREADABLE, message, builder.origin, element=prim.path)
+        return None
     faces = fans(sizes, corners)
     if not prim.is_animated("points"):
         builder.mark_read(prim, "points")
@@ -50,8 +48,18 @@ def read_mesh(prim: Prim, builder: UsdBuilder, scale: Vec3) -> tuple[NDArray[Any
         builder.mark_read(prim, "subdivisionScheme")
     if (sizes == 3).all():
         builder.mark_read(prim, "faceVertexCounts", "faceVertexIndices")
-    key = _shared_mesh(prim, vertices, faces, read_places(prim, sizes, corners), scale, builder)
-    return vertices * np.asarray(scale), key
+    return _shared_mesh(prim, vertices, faces, read_places(prim, sizes, corners), scale, builder)
+
+
+def _damage(vertices: NDArray[Any], sizes: NDArray[Any], corners: NDArray[Any]) -> str:
+    """Why polygons cannot be read; empty where they can."""
+    import numpy as np
+
+    if sizes.size and (sizes.min() < 0 or sizes.sum() != corners.size):
+        return "has another number of corners than its counts add up to"
+    if corners.size and (corners.min() < 0 or corners.max() >= len(vertices)):
+        return "has a face with a point that does not exist"
+    return "" if np.isfinite(vertices).all() else "has points that are not finite"
 
 
 def _take_mesh_extent(prim: Prim, vertices: NDArray[Any], builder: UsdBuilder) -> None:
@@ -80,12 +88,6 @@ def read_normals(prim: Prim, builder: UsdBuilder) -> bool:
         return False
     builder.mark_read(prim, "normals")
     return True
-
-
-def _refused(prim: Prim, why: str, builder: UsdBuilder) -> tuple[None, None]:
-    message = f"mesh '{prim.path}' {why}; it is kept as written"
-    builder.report.error(codes.ASSET_UNREADABLE, message, builder.origin, element=prim.path)
-    return None, None
 
 
 def _shared_mesh(

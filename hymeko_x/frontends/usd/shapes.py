@@ -40,10 +40,10 @@ def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
     found = body_at(prim, builder)
     body, owner = found if found is not None else (None, WORLD)
     at = builder.transforms.seen_from(prim, body)
-    pose, points, mesh, authored = IDENTITY if prim is body else at.pose, None, None, None
+    pose, mesh, authored = IDENTITY if prim is body else at.pose, None, None
     geometry: Geometry = MeshShape()
     if prim.kind == "Mesh" and not _is_ball(prim, builder):
-        points, mesh = read_mesh(prim, builder, at.scale)
+        mesh = read_mesh(prim, builder, at.scale)
         if mesh is None:
             return None
     else:
@@ -60,14 +60,14 @@ def read_shape(prim: Prim, builder: UsdBuilder) -> tuple[Id, ReadShape] | None:
     key = builder.new_id(prim, "shape")
     if authored is not None and authored != gprims.default_gprim(geometry, role):
         builder.note(key, gprims.GPRIM, authored)
-    if points is not None and read_normals(prim, builder):
+    if mesh is not None and read_normals(prim, builder):
         builder.note(key, words.NORMALS, True)
-    if points is not None and read_st_as_written(prim, builder):
+    if mesh is not None and read_st_as_written(prim, builder):
         builder.note(key, words.TEXCOORDS, True)
     builder.edges[key] = shape_edge(shape, owner, pose, mesh, bound_material(prim, builder))
-    if points is not None:
+    if mesh is not None:
         read_subsets(prim, key, builder)
-    return owner, ReadShape(prim, shape, pose, points)
+    return owner, ReadShape(prim, shape, pose, None if mesh is None else at.scale)
 
 
 # ---- primitives ------------------------------------------------------------------------------------------------------------------
