@@ -212,6 +212,7 @@ SDF = Format(
     colour="#17becf",
     tokens=_XML_TOKENS,
     reference="hymeko_x.verify.readers.sdf",
+    crashing_engine="pydrake",
     libraries=MappingProxyType({"pydrake": "sdf"}),
     comment=_XML_COMMENT,
 )

@@ -144,6 +144,8 @@ class Format(Struct, frozen=True):
     # ---- what the verifier asks
     reference: str | None = None
     """The module with ``read(path, places)`` that loads a file with the engine whose reading is authoritative."""
+    crashing_engine: str | None = None
+    """The library of that engine, where some files make it crash: it runs in a process of its own."""
     libraries: Mapping[str, str] = field(default_factory=dict)
     """The libraries that its reader, its writer and its reference reader import, with the extra of the distribution that brings each."""
     memory: Mapping[str, str] = field(default_factory=dict)

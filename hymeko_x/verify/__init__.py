@@ -106,7 +106,8 @@ def model_of(
         from hymeko_x.verify.readers.hymeko import from_mechanism
 
         return from_mechanism(mechanism_of(robot))
-    from hymeko_x.verify.readers import Lookup, read
+    from hymeko_x.verify.readers import read
+    from hymeko_x.verify.readers.lookup import Lookup
 
     folders = {name: Path(folder) for name, folder in (packages or {}).items()}
     return read(Path(robot), Lookup(folders, search_path, arguments or {}, variants or {}))

@@ -6,6 +6,7 @@ import pytest
 
 from hymeko_x import formats, pipeline
 from hymeko_x.diagnostics import Report
+from hymeko_x.ir.parts import Body
 from hymeko_x.rewrite import Options
 from hymeko_x.source import NoFiles, Source
 from tests.pace import assert_at_most
@@ -55,3 +56,12 @@ CASES = {
 def test_time_grows_with_the_file(case: str) -> None:
     small, large = CASES[case](400), CASES[case](1600)
     assert_at_most(1.7, lambda: _again(large), lambda: _again(small), 4)
+
+
+def test_densities_without_end_make_no_inertial() -> None:
+    collision = '<collision name="c"><density>1e308</density><geometry><box><size>1 2 3</size></box></geometry></collision>'
+    report = Report()
+    text = _model(f'<link name="a"><inertial auto="true"/>{collision}</link>')
+    mechanism = pipeline.read(Source("a.sdf", text.encode()), formats.SDF, report, lenient=True)
+    assert [body.inertial for _, body in mechanism.vertices(Body)] == [None]
+    assert report.diagnostics[0].message == "link 'a': the inertial of its collisions is not finite; it is left unspecified"

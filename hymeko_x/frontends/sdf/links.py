@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 from hymeko_x import codes
@@ -88,6 +89,9 @@ def _inertial_of_collisions(link: Node, key: Id, density: float, builder: SdfBui
     ]
     found = inertial_of_solids(views, density)
     if found is None or found.mass is None or found.tensor is None:
+        return None
+    if not all(map(math.isfinite, (found.mass, *found.com, *found.tensor))):
+        builder.error(codes.BAD_NUMBER, link, f"{link.subject}: the inertial of its collisions is not finite; it is left unspecified")
         return None
     node = next(child for child in link.children if child.tag == "inertial")
     mass = read_numbers(next((child.text or "" for child in node.children if child.tag == "mass"), ""))

@@ -9,41 +9,24 @@ import contextlib
 import os
 import sys
 import tempfile
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from msgspec import Struct, field
-
 from hymeko_x import codes, formats
 from hymeko_x.assets import archives
-from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.diagnostics import Origin, refuse
 from hymeko_x.extras import install_command
+from hymeko_x.verify.readers import apart
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping
+    from collections.abc import Callable, Iterator
 
-    from hymeko_x.source import Files
+    from hymeko_x.formats import Format
     from hymeko_x.verify.model import KinematicModel
+    from hymeko_x.verify.readers.lookup import Lookup
 
 _HEAD = 65536  # bytes of a file in which its root element is searched
-
-
-class Lookup(Struct, frozen=True):
-    """Where a robot's files are, and which of its choices are meant.
-
-    ``packages`` are the user's own NAME=DIR, ``search_path`` the folders of further packages, ``arguments`` those of a file with macros,
-    ``variants`` the selected variant of each variant set.
-    """
-
-    packages: Mapping[str, Path] = field(default_factory=dict)
-    search_path: tuple[Path, ...] = ()
-    arguments: Mapping[str, str] = field(default_factory=dict)
-    variants: Mapping[str, str] = field(default_factory=dict)
-
-    def files(self, folder: Path) -> Files:
-        """The files that a robot in this folder may refer to."""
-        return DiskFiles(folder, self.packages, self.search_path)
 
 
 def read(path: Path, lookup: Lookup) -> KinematicModel:
@@ -63,7 +46,7 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
     if format.reference is None:
         raise refuse(codes.ENGINE_MISSING, f"{format.name} has no reference reader", Origin(str(path)))
     try:
-        found: KinematicModel = formats.loaded(format.reference).read(path, lookup)
+        return _read_with(format, format.reference, path, lookup)
     except ModuleNotFoundError as error:
         engine = (error.name or "").partition(".")[0]
         extra = format.libraries.get(engine)
@@ -71,7 +54,16 @@ def read(path: Path, lookup: Lookup) -> KinematicModel:
             raise
         message = f"{format.name} is verified with {engine}, which is not installed"
         raise refuse(codes.ENGINE_MISSING, message, Origin(str(path)), hint=install_command(extra)) from error
-    return found
+
+
+def _read_with(format: Format, reader: str, path: Path, lookup: Lookup) -> KinematicModel:
+    """The robot in a file, by the reader of its format. Raises: ModuleNotFoundError."""
+    if format.crashing_engine is None:
+        found: KinematicModel = formats.loaded(reader).read(path, lookup)
+        return found
+    if find_spec(format.crashing_engine) is None:
+        raise ModuleNotFoundError(name=format.crashing_engine)
+    return apart.read(reader, format.crashing_engine, path, lookup)
 
 
 def _read_inside(within: archives.Inside, lookup: Lookup) -> KinematicModel:

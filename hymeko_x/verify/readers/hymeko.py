@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.values import Pose, Vec3
-    from hymeko_x.verify.readers import Lookup
+    from hymeko_x.verify.readers.lookup import Lookup
 
     Placed = Mapping[Id, tuple[int, Array]]
     Parameter = float | str | tuple[float, ...] | None

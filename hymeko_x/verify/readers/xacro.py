@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from hymeko_x.verify.model import KinematicModel
-    from hymeko_x.verify.readers import Lookup
+    from hymeko_x.verify.readers.lookup import Lookup
 
 
 def read(path: Path, lookup: Lookup) -> KinematicModel:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-    from hymeko_x.verify.readers import Lookup
+    from hymeko_x.verify.readers.lookup import Lookup
 
 FEATURES = frozenset(Feature) - {Feature.VELOCITY_LIMITS, Feature.FIXED_JOINT_NAMES}
 

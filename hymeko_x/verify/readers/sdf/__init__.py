@@ -42,14 +42,15 @@ from hymeko_x.verify.model import (
     world_body,
 )
 from hymeko_x.verify.readers import native_output
-from hymeko_x.verify.readers.sdf.couplings import gearboxes, mimics, readable_text, root_of
+from hymeko_x.verify.readers.sdf.couplings import gearboxes, mimics
 from hymeko_x.verify.readers.sdf.stand_ins import without_stand_ins
+from hymeko_x.verify.readers.sdf.text import PLANE, readable_text, root_of
 from hymeko_x.verify.spatial import frame_with_z, shifted_tensor
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from hymeko_x.verify.readers import Lookup
+    from hymeko_x.verify.readers.lookup import Lookup
 
 FEATURES = frozenset({Feature.VELOCITY_LIMITS, Feature.DAMPING, Feature.FIXED_JOINT_NAMES, Feature.LOOPS, Feature.POSITION_LIMITS})
 _SHAPES = frozenset({Feature.VISUALS, Feature.COLLISIONS})
@@ -245,7 +246,9 @@ def _shapes(plant: Any, scene: Any | None, index: int) -> Iterator[Shape]:
         for geometry in scene.GetGeometries(frame, kind):
             word, size, mesh = _geometry(scene.GetShape(geometry))
             pose = np.array(scene.GetPoseInFrame(geometry).GetAsMatrix4())
-            yield Shape(word, role, pose, size, str(scene.GetName(geometry)).rpartition("::")[2], mesh)
+            name = str(scene.GetName(geometry)).rpartition("::")[2]
+            is_contact = role is Role.COLLISION or name.startswith(PLANE)
+            yield Shape(word, Role.COLLISION if is_contact else role, pose, size, name.removeprefix(PLANE), mesh)
 
 
 def _geometry(shape: Any) -> tuple[str, tuple[float, ...], MeshFile | None]:

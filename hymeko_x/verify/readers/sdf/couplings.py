@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING, Any
-from xml.etree import ElementTree
 
 import numpy as np
 
@@ -12,23 +10,12 @@ from hymeko_x.verify.model import WORLD, Array, Coupling, Kind
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
+    from xml.etree import ElementTree
 
     from hymeko_x.verify.model import KinematicModel
 
-_FOLDER = re.compile(r"(model|package)://[^/]+")
 _MIMIC = (("multiplier", "1"), ("offset", "0"), ("reference", "0"))
-_FRAMES_SINCE = 1.7
-"""The version from which on a model may have frames of its own."""
 _PARALLEL = 1e-6
-
-
-def root_of(path: Path) -> ElementTree.Element | None:
-    """The root element of a file; None for one that is no XML, which libsdformat refuses."""
-    try:
-        return ElementTree.parse(path).getroot()
-    except (ElementTree.ParseError, ValueError):
-        return None
 
 
 # ---- mimic joints --------------------------------------------------------------------------------------------------------
@@ -47,37 +34,6 @@ def mimics(root: ElementTree.Element, model: KinematicModel) -> Iterator[Couplin
 
 
 # ---- gearboxes -----------------------------------------------------------------------------------------------------------
-
-
-def readable_text(path: Path) -> str | None:
-    """The file as Drake reads it, with absolute paths; None where it reads the file as it is.
-
-    A gearbox is a frame, and a model that is included by the name of its folder has a slash behind that name.
-    """
-    root = root_of(path)
-    folders = [] if root is None else [uri for uri in root.iterfind(".//include/uri") if _FOLDER.fullmatch((uri.text or "").strip())]
-    if root is None or not (folders or any(joint.get("type") == "gearbox" for joint in root.iter("joint"))):
-        return None
-    for uri in folders:
-        uri.text = f"{(uri.text or '').strip()}/"
-    for model in root.iter("model"):
-        for place, joint in enumerate(list(model)):
-            if joint.tag == "joint" and joint.get("type") == "gearbox":
-                model[place] = _frame(joint, float(root.get("version", "0")))
-    for uri in root.iter("uri"):
-        name = (uri.text or "").strip()
-        if "://" not in name and (path.parent / name).exists():
-            uri.text = str((path.parent / name).resolve())
-    return ElementTree.tostring(root, encoding="unicode")
-
-
-def _frame(joint: ElementTree.Element, version: float) -> Any:
-    """The frame of a joint as a frame, which is given in the child as well; a comment in old files, which have no frames."""
-    if version < _FRAMES_SINCE:
-        return ElementTree.Comment("gearbox")
-    frame = ElementTree.Element("frame", {"name": joint.get("name", ""), "attached_to": (joint.findtext("child") or "").strip()})
-    frame.extend(joint.findall("pose"))
-    return frame
 
 
 def gearboxes(root: ElementTree.Element, model: KinematicModel, plant: Any) -> Iterator[Coupling]:

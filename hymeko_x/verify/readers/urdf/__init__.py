@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
-    from hymeko_x.verify.readers import Lookup
+    from hymeko_x.verify.readers.lookup import Lookup
 
     Inertia = tuple[float, Array, Array]
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from hymeko_x.source import Files
-    from hymeko_x.verify.readers import Lookup
+    from hymeko_x.verify.readers.lookup import Lookup
 
 _MOVING = ("revolute", "continuous", "prismatic")
 

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
     from pathlib import Path
 
-    from hymeko_x.verify.readers import Lookup
+    from hymeko_x.verify.readers.lookup import Lookup
 
 FEATURES = frozenset(
     {
