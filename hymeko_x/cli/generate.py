@@ -45,7 +45,7 @@ def generate_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_generate(chosen: argparse.Namespace) -> int:
     """Print the table; exit 4 when a run does not end with the same robot."""
-    from hymeko_x.generate.loop import file_in, generate
+    from hymeko_x.generate.loop import generate
 
     task = _task(chosen)
     model = _model(chosen, task)
@@ -60,15 +60,15 @@ def run_generate(chosen: argparse.Namespace) -> int:
     print("\n".join(table(runs)))
     last = runs[-1][-1]
     if chosen.result and last.is_same:
-        disk.write_files({chosen.result: file_in(last.answer).encode()})
+        disk.write_files({chosen.result: last.text.encode()})
     for fault in last.faults:
         print(f"  {fault}", file=sys.stderr)
     return exits.DONE if all(steps[-1].is_same for steps in runs) else exits.DIFFERENT
 
 
 def table(runs: list[list[Step]]) -> list[str]:
-    """How many first answers pass each test, and how many runs end with the same robot."""
-    first = [steps[0] for steps in runs]
+    """How many first answers pass each test as they are, and how many runs end with the same robot."""
+    first = [steps[0] for steps in runs if not steps[0].repairs]
     rows = (
         ("valid by the paper's checks", sum(step.is_complete for step in first)),
         ("with the numbers of links and joints", sum(step.is_complete and step.has_counts for step in first)),

@@ -1,4 +1,4 @@
-"""The loop: ask, check, verify, tell what is wrong, ask again. Each step is a record."""
+"""The loop: ask, mend, check, verify, report the faults, ask again. Each step is a record."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from msgspec import Struct
 
 from hymeko_x.api import loads
 from hymeko_x.diagnostics import Refusal, Report
+from hymeko_x.formats import OWN
 from hymeko_x.generate.prompts import feedback, first_prompt
+from hymeko_x.generate.repair import Repair, repair
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.source import NO_FILES
@@ -50,7 +52,10 @@ def counts_of(robot: Mechanism) -> tuple[int, int]:
 
 
 class Step(Struct, frozen=True):
-    """One answer: whether it passed the paper's checks, has the right numbers of elements, and is the same robot; and what is wrong."""
+    """One answer: whether it passed the paper's checks, has the right numbers of elements, and is the same robot; and its faults.
+
+    ``text`` is the file in it after its ``repairs``, of which each was an error that needed no model.
+    """
 
     attempt: int
     is_complete: bool
@@ -58,6 +63,8 @@ class Step(Struct, frozen=True):
     is_same: bool
     faults: tuple[str, ...]
     answer: str
+    text: str
+    repairs: tuple[str, ...] = ()
 
 
 def generate(task: Task, model: Model, tries: int) -> list[Step]:
@@ -69,7 +76,7 @@ def generate(task: Task, model: Model, tries: int) -> list[Step]:
         answer = model(messages)
         step = judged(task, answer, len(steps) + 1)
         steps.append(step)
-        messages += [{"role": "assistant", "content": answer}, {"role": "user", "content": feedback([*step.faults])}]
+        messages += [{"role": "assistant", "content": answer}, {"role": "user", "content": feedback([*step.repairs, *step.faults])}]
     return steps
 
 
@@ -81,18 +88,19 @@ def file_in(answer: str) -> str:
 
 def judged(task: Task, answer: str, attempt: int) -> Step:
     """An answer with its faults. What cannot be read fails everything, and what fails one check is still asked the next."""
-    text = file_in(answer)
+    mended = repair(file_in(answer)) if task.format is OWN else Repair(file_in(answer))
+    text = mended.text
     try:
         robot = loads(text, task.format.name)
     except Refusal as refusal:
-        return Step(attempt, False, False, False, tuple(str(one) for one in refusal.diagnostics), answer)
+        return Step(attempt, False, False, False, tuple(str(one) for one in refusal.diagnostics), answer, text, mended.changes)
     report = Report()
     validate(robot, NO_FILES, report, [Profile.COMPLETE])
     complete = [str(one) for one in report.errors()]
     numbers = zip(("links", "joints"), counts_of(robot), task.counts, strict=True)
     counts = [f"there are {found} {word}, expected {expected}" for word, found, expected in numbers if found != expected]
     different = list(_differences(task, text))
-    return Step(attempt, not complete, not counts, not different, (*complete, *counts, *different), answer)
+    return Step(attempt, not complete, not counts, not different, (*complete, *counts, *different), answer, text, mended.changes)
 
 
 def _differences(task: Task, text: str) -> Iterator[str]:

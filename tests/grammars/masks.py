@@ -1,4 +1,4 @@
-"""llguidance with a small vocabulary: whether a grammar accepts a text, and random walks over what it allows."""
+"""llguidance and xgrammar with a small vocabulary: whether a grammar accepts a text, and random walks over what it allows."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ import ast
 import random
 import re
 from functools import cache
+from typing import Any, Protocol
 
 import llguidance
 import llguidance.numpy
 import numpy as np
 
-from hymeko_x.language.models.printing import gbnf
+from hymeko_x.language.models.printing import PRINTERS, gbnf
 from hymeko_x.language.models.printing import llguidance as for_llguidance
 
 _SIGNS = '{ } [ ] ( ) : = , + - -> <- <> ~ @ |> *|> <<copy>> <?> ${ " \' ` \\ \\" // /* */ * / # < > . % """'
@@ -74,31 +75,78 @@ def fault(name: str) -> str:
     return llguidance.LLMatcher.validate_grammar(grammar(name), _tokenizer())
 
 
+class _Matcher(Protocol):
+    """A text of a grammar as far as it is written."""
+
+    def allowed(self) -> list[int]:
+        """The tokens that may follow."""
+
+    def take(self, token: int) -> bool:
+        """Whether a token may follow; the text goes on with it."""
+
+
+class _ByLlguidance:
+    def __init__(self, name: str) -> None:
+        self.matcher = llguidance.LLMatcher(_tokenizer(), grammar(name), log_level=0)
+        assert not self.matcher.is_error(), self.matcher.get_error()
+        self.mask = llguidance.numpy.allocate_token_bitmask(1, END + 1)
+
+    def allowed(self) -> list[int]:
+        llguidance.numpy.fill_next_token_bitmask(self.matcher, self.mask, 0)
+        return _numbers(self.mask)
+
+    def take(self, token: int) -> bool:
+        return self.matcher.try_consume_tokens([token]) == 1
+
+
+class _ByXgrammar:
+    def __init__(self) -> None:
+        import xgrammar  # its torch is too large for every machine
+
+        self.matcher = xgrammar.GrammarMatcher(_for_xgrammar())
+        self.mask = xgrammar.allocate_token_bitmask(1, END + 1)
+
+    def allowed(self) -> list[int]:
+        self.matcher.fill_next_token_bitmask(self.mask)
+        return _numbers(self.mask.numpy())
+
+    def take(self, token: int) -> bool:
+        return bool(self.matcher.accept_token(token))
+
+
+def _numbers(mask: np.ndarray) -> list[int]:
+    found: list[int] = np.nonzero(np.unpackbits(mask.view(np.uint8), bitorder="little")[: END + 1])[0].tolist()
+    return found
+
+
+@cache
+def _for_xgrammar() -> Any:
+    import xgrammar
+
+    vocabulary = xgrammar.TokenizerInfo([*_Vocabulary.tokens], vocab_type=xgrammar.VocabType.RAW, vocab_size=END + 1, stop_token_ids=[END])
+    return xgrammar.GrammarCompiler(vocabulary, max_threads=1).compile_grammar(PRINTERS["xgrammar"]())
+
+
 def accepts(name: str, text: str) -> bool:
     """Whether a text is one of the grammar."""
     matcher = _matcher(name)
-    letters = list(text.encode())
-    return bool(matcher.try_consume_tokens(letters) == len(letters) and matcher.is_accepting())
+    return all(map(matcher.take, text.encode())) and END in matcher.allowed()
 
 
-def _matcher(name: str) -> llguidance.LLMatcher:
-    matcher = llguidance.LLMatcher(_tokenizer(), grammar(name), log_level=0)
-    assert not matcher.is_error(), matcher.get_error()
-    return matcher
+def _matcher(name: str) -> _Matcher:
+    return _ByXgrammar() if name == "xgrammar" else _ByLlguidance(name)
 
 
 def walk(name: str, seed: int, *, length: int = 40, most: int = 400) -> str | None:
     """A random text of the grammar: so many tokens as chance will have it, and then those that end it; None where they do not."""
     chance, matcher = random.Random(seed), _matcher(name)
-    mask = llguidance.numpy.allocate_token_bitmask(1, END + 1)
     text = bytearray()
     for step in range(most):
-        llguidance.numpy.fill_next_token_bitmask(matcher, mask, 0)
-        allowed = np.nonzero(np.unpackbits(mask.view(np.uint8), bitorder="little")[: END + 1])[0].tolist()
+        allowed = matcher.allowed()
         if not allowed or (END in allowed and (step >= length or allowed == [END])):
             return bytes(text).decode()
         token = _closing(allowed, step) if step >= length or _is_cut(text) else _random(allowed, chance)
-        matcher.consume_token(token)
+        assert matcher.take(token)
         text += _Vocabulary.tokens[token]
     return None
 
