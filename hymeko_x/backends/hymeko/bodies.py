@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.hymeko.extras import foreign_items, verbatim
 from hymeko_x.backends.hymeko.parts import word_fields
 from hymeko_x.backends.hymeko.sheet import written_items
-from hymeko_x.backends.hymeko.values import pose_value
+from hymeko_x.backends.hymeko.values import pose_value, value_of
 from hymeko_x.formats.hymeko import SHAPE_ROLES, SHAPE_WORDS, SOLIDS
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
@@ -90,7 +90,9 @@ def _shape_items(sheet: HymekoSheet, view: ShapeView) -> list[Item]:
         items.append(_place(view.pose, sheet.angles))
     if view.material is not None:
         items.append(_material(sheet, view.material))
-    items.extend(word_fields(view.shape, SHAPE_WORDS, sheet.angles))
+    after = (view.mesh or view.body).name
+    fields = word_fields(view.shape, SHAPE_WORDS, sheet.angles)
+    items.extend(Field("name") if item.name == "name" and view.shape.name == after else item for item in fields)
     return items
 
 
@@ -136,7 +138,7 @@ def _mesh(sheet: HymekoSheet, view: ShapeView) -> list[Item]:
         scale: Value = x if x == y == z else mesh.scale
         items.append(Field("scale", scale))
     if view.mesh in sheet.given_names:
-        items.append(Field("mesh_id", view.mesh.name))
+        items.append(Field("mesh_id", value_of(view.mesh.name)))
     return items
 
 

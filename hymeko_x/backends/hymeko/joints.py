@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.backends.hymeko.parts import limit_items, word_fields
 from hymeko_x.backends.hymeko.values import pose_value
 from hymeko_x.formats import hymeko as words
+from hymeko_x.formats.hymeko.references import child_names
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import Id, numbers_weight
@@ -30,7 +31,7 @@ def joint_items(sheet: HymekoSheet, key: Id) -> tuple[str, list[Item]]:
     view = sheet.mechanism.joints[key]
     items: list[Item] = [_end(sheet, view.parent, "+", view.parent_pose, "")]
     framed = not identical(view.child_pose, IDENTITY)
-    if framed or view.child != Id("body", key.name):  # a joint without a child leads to the body of its name
+    if framed or view.child != _implied_child(sheet, key):
         items.append(_end(sheet, view.child, "-", view.child_pose, "at" if framed else ""))
     dofs = view.joint.dofs
     kind = words.JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
@@ -40,6 +41,12 @@ def joint_items(sheet: HymekoSheet, key: Id) -> tuple[str, list[Item]]:
         items.extend(item for dof in dofs for item in _dof_items(dof, sheet.angles))
     items.extend(_mimic(sheet, arc) for arc in sheet.mimics.get(Id("coupling", key.name), ()))
     return kind, items
+
+
+def _implied_child(sheet: HymekoSheet, key: Id) -> Id | None:
+    """The body that a joint without a child leads to."""
+    name = next((name for name in child_names(key.name) if "body" in sheet.names.get(name, ())), None)
+    return None if name is None else Id("body", name)
 
 
 def _end(sheet: HymekoSheet, body: Id, direction: str, pose: Pose, role: str) -> ArcItem:

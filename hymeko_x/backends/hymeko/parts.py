@@ -19,6 +19,7 @@ from hymeko_x.formats.hymeko import (
     attached_key,
 )
 from hymeko_x.formats.hymeko.nesting import BLOCK_SETTINGS
+from hymeko_x.formats.hymeko.references import attached_kinds
 from hymeko_x.ir import parts
 from hymeko_x.ir.graph import Arc
 from hymeko_x.language.syntax import Field, Item, QuotedName
@@ -36,7 +37,7 @@ _SPANS = frozenset({"limit", "limits", "range"}) | {word.word for word in LIMIT_
 def part_items(sheet: HymekoSheet, key: Id, part: parts.VertexPart | parts.EdgePart, arcs: tuple[RobotArc, ...]) -> list[Item]:
     """The block of an element that its words describe completely."""
     words = PARTS[key.kind]
-    items: list[Item] = [sheet.arc(key.kind, arc) for arc in arcs] or _attached_items(sheet, key)
+    items: list[Item] = [sheet.arc(key.kind, arc) for arc in arcs] or _attached_items(sheet, key, part)
     fields = word_fields(part, words.words, sheet.angles)
     if isinstance(part, parts.Mesh | parts.Texture) and part.uri is not None:
         fields = [item._replace(value=sheet.short_uri(part.uri)) if item.name == "file" else item for item in fields]
@@ -52,12 +53,13 @@ def part_items(sheet: HymekoSheet, key: Id, part: parts.VertexPart | parts.EdgeP
     return items
 
 
-def _attached_items(sheet: HymekoSheet, key: Id) -> list[Item]:
+def _attached_items(sheet: HymekoSheet, key: Id, part: parts.VertexPart | parts.EdgePart) -> list[Item]:
     """The arcs of the edge that attaches a vertex, and the texture of a material."""
     arcs = sheet.attached.get(key, ())
     if key.kind == "material":
         return [Field(TEXTURE, sheet.ref(arc.target, ("texture",))) for arc in arcs]
-    return [sheet.arc(ATTACHED[key.kind], arc) for arc in arcs]
+    kind = part.kind if isinstance(part, parts.Sensor) else ""
+    return [sheet.arc(ATTACHED[key.kind], arc, attached_kinds(key.kind, kind)) for arc in arcs]
 
 
 def _named(items: list[Field], key: Id) -> list[Field]:

@@ -128,14 +128,14 @@ class HymekoSheet(Struct, frozen=True):
         """A file's uri behind the common prefix, where it has it."""
         return f"~/{uri.removeprefix(self.files)}" if self.files and uri.startswith(self.files) else uri
 
-    def arc(self, kind: str, arc: RobotArc) -> ArcItem:
-        """An arc of an edge of this kind."""
+    def arc(self, kind: str, arc: RobotArc, kinds: tuple[str, ...] | None = None) -> ArcItem:
+        """An arc of an edge of this kind. ``kinds``: what it may lead to, the likeliest first."""
         weight: tuple[Value, ...] | None = None
         if isinstance(arc.weight, Pose):
             weight = pose_value(arc.weight, self.angles)
         elif arc.weight is not None:
             weight = tuple([part if isinstance(part, str) else value_of(part) for part in arc.weight])
-        return ArcItem(self.ref(arc.target, TARGETS[kind], _DIRECTIONS[arc.sign]), arc.role, weight)
+        return ArcItem(self.ref(arc.target, TARGETS[kind] if kinds is None else kinds, _DIRECTIONS[arc.sign]), arc.role, weight)
 
 
 def defaults_of(part: type) -> dict[str, object]:

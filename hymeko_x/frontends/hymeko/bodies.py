@@ -183,10 +183,20 @@ def _read_shape(builder: HymekoBuilder, body: Id, item: Item, place: Pose, scope
     pose = _shape_pose(block, place)
     geometry, mesh = _geometry(builder, block, key, scope, pose)
     material = _material(builder, block, key, scope)
-    shape = parts.Shape(geometry, role, **block.take_words(SHAPE_WORDS))  # type: ignore[arg-type]
+    named = _named_after(mesh or body, block)
+    shape = parts.Shape(geometry, role, **named, **block.take_words(SHAPE_WORDS))  # type: ignore[arg-type]
     builder.edges[key] = shape_edge(shape, body, pose, mesh, material)
     block.rest(str(key))
     builder.keep(key, block)
+
+
+def _named_after(key: Id, block: Block) -> dict[str, object]:
+    """The name of a shape with the word ``name`` alone: that of its mesh, or of its body where it has none."""
+    item = block.fields.get("name")
+    if item is None or item.value is not None:
+        return {}
+    block.take("name")
+    return {"name": key.name}
 
 
 def _shape_pose(block: Block, place: Pose) -> Pose:

@@ -185,9 +185,9 @@ class HymekoBuilder(Builder):
         """The uri of a file: behind the mechanism's ``files`` prefix where it begins with ``~/``."""
         return self.files + uri[2:] if self.files and uri.startswith("~/") else uri
 
-    def arc(self, kind: str, item: ArcItem, scope: Scope) -> RobotArc:
-        """An arc of an edge of this kind, with its weight read as the kind wants it."""
-        target = self.target(item.ref, scope, TARGETS[kind], item)
+    def arc(self, kind: str, item: ArcItem, scope: Scope, kinds: tuple[str, ...] | None = None) -> RobotArc:
+        """An arc of an edge of this kind, with its weight. ``kinds``: what it may lead to, the likeliest first."""
+        target = self.target(item.ref, scope, TARGETS[kind] if kinds is None else kinds, item)
         return Arc(target, sign_of(item), self._weight(kind, item), item.role)
 
     def _weight(self, kind: str, item: ArcItem) -> Weight | None:

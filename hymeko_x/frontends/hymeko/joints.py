@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import hymeko as words
+from hymeko_x.formats.hymeko.references import child_names
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.builder import sign_of
 from hymeko_x.frontends.hymeko.lumped import take_compliant, with_compliance
@@ -45,8 +46,8 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
     typed = _type_of(block)
     mimic = _take_all(block, "mimic")
     axis_arc = _take_axis_arc(builder, block, scope)
-    if _has_own_child(builder, key, block):
-        block.arcs.append(ArcItem(Ref(("body", key.name), "-"), line=element.node.line, column=element.node.column))
+    if (child_name := _implied_child(builder, key, block)) is not None:
+        block.arcs.append(ArcItem(Ref(("body", child_name), "-"), line=element.node.line, column=element.node.column))
     compliant = take_compliant(builder, block, scope)
     parent, child = _ends(builder, key, block, element.node)
     pose, child_pose = _poses(builder.reader, parent, child, key)
@@ -76,11 +77,11 @@ def _type_of(block: Block) -> str | None:
     return moves
 
 
-def _has_own_child(builder: HymekoBuilder, key: Id, block: Block) -> bool:
-    """Whether a joint names no child, and there is a body of its name."""
-    return "body" in builder.kinds.get(key.name, ()) and not any(
-        sign_of(arc) < 0 and arc.role not in ("mimic", "axis") for arc in block.arcs
-    )
+def _implied_child(builder: HymekoBuilder, key: Id, block: Block) -> str | None:
+    """The body that a joint leads to by its own name; None where it names its child, or there is no such body."""
+    if any(sign_of(arc) < 0 and arc.role not in ("mimic", "axis") for arc in block.arcs):
+        return None
+    return next((name for name in child_names(key.name) if "body" in builder.kinds.get(name, ())), None)
 
 
 def _take_all(block: Block, role: str) -> list[ArcItem]:

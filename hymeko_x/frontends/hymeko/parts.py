@@ -8,6 +8,7 @@ from msgspec.structs import fields
 
 from hymeko_x.formats.hymeko import ALIASES, ATTACHED, LUMPED_UNITS, NAMED_AFTER_ID, PARTS, TARGETS, TEXTURE, attached_edge, attached_key
 from hymeko_x.formats.hymeko.nesting import OUTER
+from hymeko_x.formats.hymeko.references import attached_kinds
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.joints import read_dofs, read_limits
 from hymeko_x.frontends.hymeko.lumped import set_domain
@@ -31,10 +32,10 @@ def read_part(builder: HymekoBuilder, key: Id, element: Element) -> None:
     Raises: Refusal (HX062) for a part without a field that it needs, HX040 for references.
     """
     words = PARTS[key.kind]
-    attached = _attached_arcs(builder, key, element)
     block = Block(_renamed(element.node.items, key.kind), builder.reader, open=words.open)
     block.take("kind")
     values = block.take_words(words.words)
+    attached = _attached_arcs(builder, key, element, str(values.get("kind", "")))
     if key.kind in NAMED_AFTER_ID:
         if not block.unnamed:
             values.setdefault("name", key.name)
@@ -125,14 +126,15 @@ def _is_texture(kind: str, item: Item) -> bool:
     return kind == "material" and is_field(item, (TEXTURE,))
 
 
-def _attached_arcs(builder: HymekoBuilder, key: Id, element: Element) -> tuple[RobotArc, ...]:
+def _attached_arcs(builder: HymekoBuilder, key: Id, element: Element, type: str) -> tuple[RobotArc, ...]:
+    """The arcs in the block of a vertex, of this type where its kind has types."""
     edge = attached_key(key)
     arcs: list[RobotArc] = []
     if edge is None:
         return ()
     for item in element.node.items:
         if isinstance(item, ArcItem):
-            arcs.append(builder.arc(edge.kind, item, element.scope))
+            arcs.append(builder.arc(edge.kind, item, element.scope, attached_kinds(key.kind, type)))
         elif _is_texture(key.kind, item) and isinstance(item, Field):
             if not isinstance(item.value, Ref):
                 raise builder.reader.refuse(item, "'texture' takes a reference: texture=grid")
