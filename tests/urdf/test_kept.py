@@ -138,7 +138,7 @@ def test_what_the_author_wrote_in_vain_is_written_again() -> None:
         '<link name="b"/>' + joint('<origin xyz="0 0 0"/><dynamics damping="0.0" friction="0"/>' + LIMIT)
     )
     mechanism = load(robot(body, ' name="r" version="1.0"'))
-    style = "dynamics inertial joint scale version visual"
+    style = "dynamics inertial joint no-axis no-inertial-rpy no-joint-rpy scale version visual"
     assert mechanism.notations.get(ROOT, {}).get("urdf.style") == style
     written = dump(mechanism)
     assert written.count("<origin ") == 3
@@ -153,6 +153,50 @@ def test_what_the_author_left_out_is_left_out() -> None:
     assert "origin" not in written
     assert "dynamics" not in written
     assert "scale" not in written
+
+
+MOVED = '<origin xyz="0 0 1"/>'
+DRIVEN = '<dynamics damping="1"/>'
+ONE_OF_TWO = [
+    ('<origin xyz="0 0 0" rpy="0 0 0"/>', ""),
+    (MOVED, '<origin xyz="0 0 1" rpy="0 0 0"/>'),
+    ('<origin rpy="0 0 1"/>', '<origin xyz="0 0 0" rpy="0 0 1"/>'),
+    ('<axis xyz="1 0 0"/>', ""),
+    ('<dynamics damping="0" friction="0"/>', ""),
+    (DRIVEN, '<dynamics damping="1" friction="0"/>'),
+    ('<dynamics friction="1"/>', '<dynamics damping="0" friction="1"/>'),
+]
+
+
+def assert_comes_again(source: str) -> None:
+    assert again(source).replace("\n", "").replace("  ", "") == '<?xml version="1.0"?>' + source.replace("\n", "")
+
+
+@pytest.mark.parametrize(("one", "other"), ONE_OF_TWO)
+@pytest.mark.parametrize("places", ["b", "cde", "bde"])
+def test_each_joint_has_the_default_values_that_its_author_wrote(one: str, other: str, places: str) -> None:
+    links = "".join(f'<link name="{name}"/>' for name in "abcde")
+    ends = '<parent link="a"/><child link="{0}"/>'
+    tags = [[one, other][name in places] for name in "bcde"]
+    before, after = (0, 1) if "origin" in one else (1, 0)
+    joints = [
+        f'<joint name="{name}" type="continuous">{tag * after}{ends.format(name)}{tag * before}</joint>'
+        for name, tag in zip("bcde", tags, strict=True)
+    ]
+    assert_comes_again(robot(links + "".join(joints)))
+
+
+def test_each_shape_and_limit_has_the_default_values_that_its_author_wrote() -> None:
+    mesh = '<visual>{0}<geometry><mesh filename="m.stl"{1}/></geometry></visual>'
+    both, none = mesh.format('<origin xyz="0 0 0" rpy="0 0 0"/>', ' scale="1 1 1"'), mesh.format("", "")
+    limits = ('<limit upper="1" effort="1" velocity="1"/>', '<limit lower="0" upper="1" effort="1" velocity="1"/>')
+    mimics = ('<mimic joint="b"/>', '<mimic joint="b" multiplier="1" offset="0"/>', '<mimic joint="b" multiplier="2"/>')
+    joints = "".join(
+        f'<joint name="{name}" type="prismatic"><parent link="a"/><child link="{name}"/><axis xyz="0 0 1"/>{limits[at % 2]}{mimic}</joint>'
+        for at, (name, mimic) in enumerate(zip("bcde", ("", *mimics), strict=True))
+    )
+    links = "".join(f'<link name="{name}"/>' for name in "bcde")
+    assert_comes_again(robot(f'<link name="a">{both}{none}{none}</link>{links}{joints}'))
 
 
 SPHERE = '<geometry><sphere radius="1"/></geometry>'

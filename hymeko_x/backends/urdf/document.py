@@ -10,7 +10,7 @@ from hymeko_x.backends.urdf.links import link_tag
 from hymeko_x.backends.urdf.sheet import UrdfSheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.urdf.notations import STYLE, Defined, Explicit, Style
+from hymeko_x.formats.urdf.notations import STYLE, VERSION, Defined, Style
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Actuator, Body, Drive, Joint, Material
 from hymeko_x.xml.printing import Tag, foreign_text, put_back
@@ -57,7 +57,7 @@ def residue_elements(text: str, *, readable: bool = True) -> list[str]:
 
 def _root_tag(mechanism: Mechanism) -> Tag:
     root = Tag("robot", {"name": mechanism.name})
-    if Explicit.VERSION in (mechanism.notation(ROOT, STYLE) or Style()).explicit:
+    if VERSION in (mechanism.notation(ROOT, STYLE) or Style()).habits:
         root.attributes["version"] = "1.0"
     own = [extra for extra in mechanism.extras.get(ROOT, ()) if extra.format == words.FORMAT and extra.path.startswith("@")]
     put_back(root, own, {})

@@ -8,10 +8,9 @@ from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
-from hymeko_x.formats.urdf.notations import Explicit
 from hymeko_x.ir.mechanism import numbers_weight
 from hymeko_x.ir.parts import DofKind, Joint
-from hymeko_x.ir.values import IDENTITY, number_text, numbers_text, plane_axes, said_numbers, unit
+from hymeko_x.ir.values import IDENTITY, X, number_text, numbers_text, plane_axes, said_numbers, unit
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
@@ -28,11 +27,11 @@ def joint_tag(key: Id, sheet: UrdfSheet) -> Tag:
     view = sheet.mechanism.joints[key]
     word = _type(view, sheet)
     tag = Tag("joint", {"name": key.name, "type": word})
-    sheet.add_origin(tag, view.parent_pose, always=Explicit.JOINT_ORIGIN in sheet.explicit)
+    sheet.add_origin(tag, key, view.parent_pose)
     tag.add("parent", link=view.parent.name)
     tag.add("child", link=view.child.name)
     if view.joint.dofs:
-        _add_dofs(tag, view.joint.dofs, word, sheet)
+        _add_dofs(tag, key, view.joint.dofs, word, sheet)
     else:
         tag.children += [text for name, text in sheet.usual_if_fixed if not sheet.has_own(key, name)]
     _add_mimic(tag, key, sheet)
@@ -64,19 +63,28 @@ def _is_standard(joint: Joint) -> bool:
     return len(joint.dofs) < 3 or tuple(dof.axis for dof in joint.dofs[:2]) == plane_axes(joint.dofs[2].axis)
 
 
-def _add_dofs(tag: Tag, dofs: tuple[Dof, ...], word: str, sheet: UrdfSheet) -> None:
+def _add_dofs(tag: Tag, key: Id, dofs: tuple[Dof, ...], word: str, sheet: UrdfSheet) -> None:
     dof = dofs[-1]
-    if dof.kind in (DofKind.HINGE, DofKind.SLIDE):
+    if dof.kind in (DofKind.HINGE, DofKind.SLIDE) and not (_written_axis(dof) == X and sheet.has_habit(key, notations.NO_AXIS)):
         tag.add("axis", xyz=numbers_text(_written_axis(dof)))
     if len(dofs) > 1:
         return
     if dof.calibration is not None:
         _add_calibration(tag, dof.calibration)
-    if dof.kind in (DofKind.HINGE, DofKind.SLIDE) and (dof.damping or dof.friction or Explicit.DYNAMICS in sheet.explicit):
-        tag.add("dynamics", damping=number_text(dof.damping), friction=number_text(dof.friction))
-    _add_limits(tag, dof.limits, bounded=words.JOINT_TYPES[word].bounded)
+    if dof.kind in (DofKind.HINGE, DofKind.SLIDE) and (dof.damping or dof.friction or sheet.has_habit(key, notations.DYNAMICS)):
+        tag.add("dynamics", **_unusual(key, {"damping": (dof.damping, 0.0), "friction": (dof.friction, 0.0)}, sheet))
+    _add_limits(tag, key, dof.limits, sheet, bounded=words.JOINT_TYPES[word].bounded)
     if dof.safety is not None:
-        _add_safety(tag, dof.safety)
+        _add_safety(tag, key, dof.safety, sheet)
+
+
+def _unusual(key: Id, numbers: dict[str, tuple[float, float]], sheet: UrdfSheet) -> dict[str, str]:
+    """Attributes with these numbers, without those that have their default value and were left out."""
+    return {
+        name: number_text(value)
+        for name, (value, default) in numbers.items()
+        if value != default or not sheet.has_habit(key, notations.without(name))
+    }
 
 
 def _written_axis(dof: Dof) -> tuple[float, ...]:
@@ -87,7 +95,7 @@ def _written_axis(dof: Dof) -> tuple[float, ...]:
     return dof.written.numbers if unit((x, y, z)) == dof.axis else dof.axis
 
 
-def _add_limits(tag: Tag, limits: Limits, *, bounded: bool) -> None:
+def _add_limits(tag: Tag, key: Id, limits: Limits, sheet: UrdfSheet, *, bounded: bool) -> None:
     """<limit>, with a number that is none where URDF requires one (:data:`hymeko_x.formats.urdf.NO_LIMIT`)."""
     none: dict[str, str] = {"lower": f"-{words.NO_LIMIT_TEXT}", "upper": words.NO_LIMIT_TEXT} if bounded else {}
     if bounded or limits.effort is not None or limits.velocity is not None:
@@ -95,18 +103,19 @@ def _add_limits(tag: Tag, limits: Limits, *, bounded: bool) -> None:
     values = {name: getattr(limits, name) for name in words.LIMITS if bounded or name not in ("lower", "upper")}
     given = said_numbers({name: value for name, value in values.items() if value is not None})
     attributes = {name: given.get(name, none.get(name)) for name in words.LIMITS}
+    left_out = {name for name in ("lower", "upper") if values.get(name) == 0.0 and sheet.has_habit(key, notations.without(name))}
     if given or none:
-        tag.add("limit", **{name: text for name, text in attributes.items() if text is not None})
+        tag.add("limit", **{name: text for name, text in attributes.items() if text is not None and name not in left_out})
 
 
-def _add_safety(tag: Tag, safety: Safety) -> None:
-    tag.add(
-        "safety_controller",
-        soft_lower_limit=number_text(safety.soft_lower),
-        soft_upper_limit=number_text(safety.soft_upper),
-        k_position=number_text(safety.k_position),
-        k_velocity=number_text(safety.k_velocity),
-    )
+def _add_safety(tag: Tag, key: Id, safety: Safety, sheet: UrdfSheet) -> None:
+    numbers = {
+        "soft_lower_limit": (safety.soft_lower, 0.0),
+        "soft_upper_limit": (safety.soft_upper, 0.0),
+        "k_position": (safety.k_position, 0.0),
+        "k_velocity": (safety.k_velocity, 0.0),
+    }
+    tag.add("safety_controller", **_unusual(key, numbers, sheet))
 
 
 def _add_calibration(tag: Tag, calibration: Calibration) -> None:
@@ -119,4 +128,4 @@ def _add_mimic(tag: Tag, key: Id, sheet: UrdfSheet) -> None:
     if leader is None:
         return
     offset, multiplier = (*numbers_weight(leader), 0.0, 0.0)[:2]
-    tag.add("mimic", joint=leader.target.name, multiplier=number_text(multiplier), offset=number_text(offset))
+    tag.add("mimic", joint=leader.target.name, **_unusual(key, {"multiplier": (multiplier, 1.0), "offset": (offset, 0.0)}, sheet))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.urdf.notations import Explicit
+from hymeko_x.formats.urdf.notations import SCALE
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Mesh, MeshShape, NoShape, Sphere
 from hymeko_x.ir.values import Pose, number_text, numbers_text, rotate_tensor, said_numbers
 from hymeko_x.xml.printing import Tag
@@ -18,15 +18,13 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import Inertial
     from hymeko_x.ir.values import Tensor
 
-_ORIGIN_STYLES = {"visual": Explicit.VISUAL_ORIGIN, "collision": Explicit.COLLISION_ORIGIN}
-
 
 def link_tag(key: Id, sheet: UrdfSheet) -> Tag:
     """The <link> of a body."""
     tag = Tag("link", {"name": key.name})
     inertial = sheet.mechanism.vertex(key, Body).inertial
     if inertial is not None:
-        _add_inertial(tag, inertial, sheet)
+        _add_inertial(tag, key, inertial, sheet)
     shapes = sheet.mechanism.shapes.get(key, ())
     for name, role in words.ROLES.items():
         for view in shapes:
@@ -35,10 +33,10 @@ def link_tag(key: Id, sheet: UrdfSheet) -> Tag:
     return tag
 
 
-def _add_inertial(link: Tag, inertial: Inertial, sheet: UrdfSheet) -> None:
+def _add_inertial(link: Tag, key: Id, inertial: Inertial, sheet: UrdfSheet) -> None:
     tag = link.add("inertial")
     frame, tensor = _as_written(inertial)
-    sheet.add_origin(tag, frame, always=Explicit.INERTIAL_ORIGIN in sheet.explicit)
+    sheet.add_origin(tag, key, frame)
     if inertial.mass is not None:
         tag.add("mass", value=number_text(inertial.mass))
     if tensor is not None:
@@ -58,7 +56,7 @@ def _add_shape(link: Tag, name: str, view: ShapeView, sheet: UrdfSheet) -> None:
     tag = link.add(name)
     if view.shape.name is not None:
         tag.attributes["name"] = view.shape.name
-    sheet.add_origin(tag, view.pose, always=_ORIGIN_STYLES[name] in sheet.explicit)
+    sheet.add_origin(tag, view.id, view.pose)
     _add_geometry(tag.add("geometry"), view, sheet)
     sheet.materials.add_to_shape(tag, view)
     sheet.put_back(tag, view.id)
@@ -92,5 +90,5 @@ def _add_mesh(tag: Tag, view: ShapeView, sheet: UrdfSheet) -> None:
     uri = sheet.uri(view.mesh)
     if uri is not None:
         child.attributes["filename"] = uri
-    if mesh.scale != (1.0, 1.0, 1.0) or Explicit.SCALE in sheet.explicit:
+    if mesh.scale != (1.0, 1.0, 1.0) or sheet.has_habit(view.id, SCALE):
         child.attributes["scale"] = numbers_text(mesh.scale)

@@ -8,7 +8,7 @@ from hymeko_x import codes
 from hymeko_x.backends.urdf.gazebo import write_gazebo_fragments
 from hymeko_x.backends.urdf.srdf import as_virtual_joint
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.urdf.notations import STYLE, TYPE, VIRTUAL, Explicit, Style
+from hymeko_x.formats.urdf.notations import CAPSULE, STYLE, TYPE, VIRTUAL, Style
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Capsule, Dof, DofKind, Ellipsoid, Plane
 from hymeko_x.ir.values import IDENTITY, plane_axes
@@ -47,7 +47,7 @@ def _is_joint(view: JointView, mechanism: Mechanism) -> bool:
 
 def approximate_primitives(mechanism: Mechanism, context: Context) -> Mechanism:
     """Ellipsoids, planes, and capsules, unless the URDF file that the mechanism came from has <capsule>, are approximated."""
-    keeps_capsules = Explicit.CAPSULE in (mechanism.notation(ROOT, STYLE) or Style()).explicit
+    keeps_capsules = CAPSULE in (mechanism.notation(ROOT, STYLE) or Style()).habits
     return approximate_shapes(mechanism, context, (Ellipsoid, Plane) if keeps_capsules else (Ellipsoid, Plane, Capsule))
 
 

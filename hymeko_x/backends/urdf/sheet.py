@@ -13,7 +13,7 @@ from hymeko_x.formats.urdf import notations
 from hymeko_x.formats.urdf.notations import Style
 from hymeko_x.ir.mechanism import ROOT, numbers_weight
 from hymeko_x.ir.parts import Coupling, Mesh
-from hymeko_x.ir.values import IDENTITY, numbers_text, rpy_of
+from hymeko_x.ir.values import NO_ROTATION, ZERO, numbers_text, rpy_of
 from hymeko_x.xml.printing import put_back
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ class UrdfSheet:
         self.within = within
         self._prefix = f"{prefix}/" if prefix else ""
         style = mechanism.notation(ROOT, notations.STYLE) or Style()
-        self.explicit = style.explicit
+        self._habits = style.habits
         self.materials = Materials(mechanism, lambda key: self.choice(key, notations.DEFINED))
         self._usual = dict(style.usual)
 
@@ -48,6 +48,10 @@ class UrdfSheet:
             return own
         usual: Any = choice.read(self._usual.get(choice.name.removeprefix("urdf."), "")) or notations.USUAL[choice]
         return cast("E", usual)
+
+    def has_habit(self, key: Id, habit: str) -> bool:
+        """Whether an element with a default value is written by a habit: that of its file, unless it differs."""
+        return (habit in self._habits) != (habit in (self.mechanism.notation(key, notations.OTHERWISE) or ()))
 
     @cached_property
     def usual_if_fixed(self) -> tuple[tuple[str, str], ...]:
@@ -86,7 +90,14 @@ class UrdfSheet:
         start = re.compile(rf"<{re.escape(tag)}[\s/>]")
         return any(extra.path == "" and start.match(extra.text) for extra in self.mechanism.extras.get(key, ()))
 
-    def add_origin(self, tag: Tag, pose: Pose, *, always: bool) -> None:
-        """Add <origin>: position in m and roll, pitch, yaw in rad, as written where they were written so."""
-        if always or pose.written is not None or pose != IDENTITY:
-            tag.add("origin", xyz=numbers_text(pose.xyz), rpy=numbers_text(rpy_of(pose)))
+    def add_origin(self, tag: Tag, key: Id, pose: Pose) -> None:
+        """Add <origin> to a tag of an element: position in m and roll, pitch, yaw in rad, as written where they were written so."""
+        is_written, no_xyz, no_rpy = notations.origin_habits(tag.name)
+        is_turned = pose.written is not None or pose.quat != NO_ROTATION
+        if not is_turned and pose.xyz == ZERO and not self.has_habit(key, is_written):
+            return
+        origin = tag.add("origin")
+        if pose.xyz != ZERO or not self.has_habit(key, no_xyz):
+            origin.attributes["xyz"] = numbers_text(pose.xyz)
+        if is_turned or not self.has_habit(key, no_rpy):
+            origin.attributes["rpy"] = numbers_text(rpy_of(pose))

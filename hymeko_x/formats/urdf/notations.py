@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
 
-from hymeko_x.ir.notations import Notation, choice, flag, word
+from hymeko_x.ir.notations import Notation, choice, flag, word, words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -57,38 +57,46 @@ USUAL: Mapping[Notation[Any], Enum] = MappingProxyType(
 """The choices that most elements of a file make alike, with the usual one of files in general."""
 
 
-class Explicit(Enum):
-    """What an author wrote although it could be left out; the writer then writes it everywhere."""
+CAPSULE, VERSION = "capsule", "version"
+"""Habits of a file: it has <capsule>; its <robot> has version="1.0"."""
+DYNAMICS, SCALE, NO_AXIS = "dynamics", "scale", "no-axis"
+"""Habits of joints and shapes: zeros and ones are written; the axis x is left out."""
 
-    JOINT_ORIGIN = "joint"
-    VISUAL_ORIGIN = "visual"
-    COLLISION_ORIGIN = "collision"
-    INERTIAL_ORIGIN = "inertial"
-    CAPSULE = "capsule"
-    DYNAMICS = "dynamics"
-    SCALE = "scale"
-    VERSION = "version"
+
+def origin_habits(tag: str) -> tuple[str, str, str]:
+    """The habits of <origin> in such an element: it is written where it is the identity; its zero xyz, or rpy, is left out."""
+    return tag, f"no-{tag}-xyz", f"no-{tag}-rpy"
+
+
+def without(attribute: str) -> str:
+    """The habit of leaving out an attribute with its default value."""
+    return f"no-{attribute}"
 
 
 class Style(Struct, frozen=True):
-    """What holds for a whole file: what it writes explicitly, and its usual choices where they are not those of :data:`USUAL`."""
+    """What holds for a whole file: its habits with default values, and its usual choices where they are not those of :data:`USUAL`.
 
-    explicit: frozenset[Explicit] = frozenset()
+    A habit is what most elements with a default value do, where it is not what the writer does for new ones.
+    """
+
+    habits: frozenset[str] = frozenset()
     usual: tuple[tuple[str, str], ...] = ()
 
 
 def _style_text(style: Style) -> str:
-    return " ".join(sorted([*(word.value for word in style.explicit), *(f"{name}={value}" for name, value in style.usual)]))
+    return " ".join(sorted([*style.habits, *(f"{name}={value}" for name, value in style.usual)]))
 
 
 def _style(text: str) -> Style:
-    known = {member.value: member for member in Explicit}
-    usual = [item.partition("=")[::2] for item in text.split() if "=" in item]
-    return Style(frozenset(known[item] for item in text.split() if item in known), tuple(usual))
+    items = text.split()
+    usual = [item.partition("=")[::2] for item in items if "=" in item]
+    return Style(frozenset(item for item in items if "=" not in item), tuple(usual))
 
 
 STYLE = Notation("urdf.style", _style_text, _style)
 """Mechanism: the style of the file."""
+OTHERWISE = words("urdf.otherwise")
+"""Body, joint, shape: the habits in which it differs from its file."""
 
 _ELEMENT = re.compile(r"<([\w:.-]+)[^>]*/>")
 FIXED = Notation[tuple[tuple[str, str], ...]](

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes, formats
 from hymeko_x.diagnostics import refuse
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.urdf.notations import Explicit
+from hymeko_x.formats.urdf.notations import VERSION
 from hymeko_x.frontends.urdf.builder import UrdfBuilder
 from hymeko_x.frontends.urdf.joints import read_joints
 from hymeko_x.frontends.urdf.links import read_link
@@ -91,7 +91,7 @@ def _read_version(root: Node, builder: UrdfBuilder) -> None:
         return
     if version == "1.0":
         root.take("version")
-        builder.explicit.add(Explicit.VERSION)
+        builder.follow(ROOT, VERSION, follows=True)
     builder.version = version
 
 

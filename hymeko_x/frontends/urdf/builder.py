@@ -13,12 +13,11 @@ from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
 from hymeko_x.ir.builder import Builder
 from hymeko_x.ir.mechanism import ROOT, Provenance
-from hymeko_x.ir.values import IDENTITY, ZERO, Pose, pose, pose_from_rpy
+from hymeko_x.ir.values import IDENTITY, NO_ROTATION, ZERO, Pose, pose, pose_from_rpy
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Code, Origin, Report
-    from hymeko_x.formats.urdf.notations import Explicit
     from hymeko_x.ir.mechanism import Extra, Id, Mechanism
     from hymeko_x.ir.notations import Notation
     from hymeko_x.ir.parts import Rgba
@@ -59,7 +58,7 @@ class UrdfBuilder(Builder):
     actuators: dict[str, Id] = field(default_factory=dict)
     drives: dict[str, Id] = field(default_factory=dict)
     choices: dict[Notation[Any], dict[Id, Enum]] = field(default_factory=dict)
-    explicit: set[Explicit] = field(default_factory=set)
+    habits: dict[str, tuple[list[Id], list[Id]]] = field(default_factory=dict)
     usual: dict[Notation[Any], Enum] = field(default_factory=dict)
     version: str = "1.0"
 
@@ -90,6 +89,21 @@ class UrdfBuilder(Builder):
                 if value != usual:
                     self.note(key, choice, value)
 
+    def follow(self, key: Id, habit: str, *, follows: bool) -> None:
+        """Keep whether an element with a default value follows a habit."""
+        self.habits.setdefault(habit, ([], []))[follows].append(key)
+
+    def _settle_habits(self) -> frozenset[str]:
+        """The habits that most elements follow; those that do otherwise get a note."""
+        found = frozenset(habit for habit, (others, followers) in self.habits.items() if len(followers) > len(others))
+        otherwise: dict[Id, list[str]] = {}
+        for habit, sides in self.habits.items():
+            for key in sides[habit not in found]:
+                otherwise.setdefault(key, []).append(habit)
+        for key, habits in otherwise.items():
+            self.note(key, notations.OTHERWISE, tuple(sorted(habits)))
+        return found
+
     def close(self, node: Node) -> None:
         """Collect what is unread in a top-level element, and report children that it may have only once."""
         for member in self.unread.close(node):
@@ -102,9 +116,10 @@ class UrdfBuilder(Builder):
     def finish(self, name: str, around: list[Extra], file: str) -> Mechanism:
         """The finished mechanism; ``around`` are the extras from before and after the root element, and ``file`` is its name."""
         self._settle_choices()
-        if self.explicit or self.usual:
+        habits = self._settle_habits()
+        if habits or self.usual:
             usual = tuple((choice.name.removeprefix("urdf."), str(value.value)) for choice, value in self.usual.items())
-            self.note(ROOT, notations.STYLE, notations.Style(frozenset(self.explicit), usual))
+            self.note(ROOT, notations.STYLE, notations.Style(habits, usual))
         for key, extras in self.unread.finish().items():
             self.add_extras(key, *extras)
         self.add_extras(ROOT, *around)
@@ -130,19 +145,25 @@ def take_name(node: Node, kind: str, known: dict[str, Id], builder: UrdfBuilder)
 # ---- poses -------------------------------------------------------------------------------------------------------------------
 
 
-def read_origin(node: Node, explicit: Explicit, builder: UrdfBuilder, *, turned: bool = True) -> Pose:
-    """The pose of a node's <origin>: position in m, fixed-axis roll-pitch-yaw in rad; the identity without one.
+def read_origin(node: Node, key: Id, builder: UrdfBuilder, *, turned: bool = True) -> Pose:
+    """The pose of the <origin> in a node of an element: position in m, fixed-axis roll-pitch-yaw in rad; the identity without one.
 
     ``turned`` false: there is nothing that could be turned, so that the angles stay as written.
     """
-    origin = node.take_child("origin")
+    origin, (is_written, no_xyz, no_rpy) = node.take_child("origin"), notations.origin_habits(node.tag)
     if origin is None:
+        builder.follow(key, is_written, follows=False)
         return IDENTITY
+    missing = {name for name in ("xyz", "rpy") if name not in origin.attributes}
     xyz = _take_vector(origin, "xyz", builder)
     unturned = not turned and read_numbers(origin.attributes.get("rpy", "")) != ZERO
     found = Pose(xyz) if unturned else _turned(origin, xyz, builder)
-    if found.xyz == ZERO and found.written is None:
-        builder.explicit.add(explicit)
+    if found == IDENTITY and found.written is None:
+        builder.follow(key, is_written, follows=True)
+    if found.xyz == ZERO:
+        builder.follow(key, no_xyz, follows="xyz" in missing)
+    if found.quat == NO_ROTATION and found.written is None:
+        builder.follow(key, no_rpy, follows="rpy" in missing)
     return found
 
 

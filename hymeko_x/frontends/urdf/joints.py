@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
 from hymeko_x.formats.urdf import notations
-from hymeko_x.formats.urdf.notations import Explicit
 from hymeko_x.frontends.urdf.builder import read_origin, shortened, take_name, take_number, take_numbers
 from hymeko_x.ir.mechanism import ROOT, WORLD, coupling_edge, joint_edge
 from hymeko_x.ir.parts import UNLIMITED, Body, Calibration, Dof, DofKind, Joint, Limits, Safety
@@ -50,8 +49,8 @@ def _read_joint(node: Node, builder: UrdfBuilder) -> Joint:
     key = take_name(node, "joint", builder.joints, builder)
     parent, child = _read_end(node, "parent", builder), _read_end(node, "child", builder)
     word = _read_type(node, builder)
-    pose = read_origin(node, Explicit.JOINT_ORIGIN, builder)
-    joint = Joint(_read_dofs(node, word, builder))
+    pose = read_origin(node, key, builder)
+    joint = Joint(_read_dofs(node, key, word, builder))
     if word != words.default_type(joint):
         builder.note(key, notations.TYPE, word)
     builder.edges[key] = joint_edge(joint, parent, child, pose)
@@ -105,38 +104,39 @@ def _read_type(node: Node, builder: UrdfBuilder) -> str:
 # ---- dofs --------------------------------------------------------------------------------------------------------------------
 
 
-def _read_dofs(node: Node, word: str, builder: UrdfBuilder) -> tuple[Dof, ...]:
+def _read_dofs(node: Node, key: Id, word: str, builder: UrdfBuilder) -> tuple[Dof, ...]:
     """The dofs of a joint. Elements without a meaning for its type (the axis of a fixed joint) become extras."""
     kinds = words.JOINT_TYPES[word].dofs
     if kinds in _SINGLE:
-        return (_read_dof(node, kinds[0], words.JOINT_TYPES[word], builder),)
+        return (_read_dof(node, key, kinds[0], words.JOINT_TYPES[word], builder),)
     if word == "planar":
-        normal, written = _read_axis(node, builder)
+        normal, written = _read_axis(node, key, builder)
         x, y = plane_axes(normal)
         return (Dof(DofKind.SLIDE, x), Dof(DofKind.SLIDE, y), Dof(DofKind.HINGE, normal, written=written))
     return tuple(Dof(kind) for kind in kinds)
 
 
-def _read_dof(node: Node, kind: DofKind, known: JointType, builder: UrdfBuilder) -> Dof:
-    axis, written = _read_axis(node, builder)
-    limits = _read_limits(node, builder) if known.bounded else _read_open_limits(node, builder)
-    damping, friction = _read_dynamics(node, builder)
+def _read_dof(node: Node, key: Id, kind: DofKind, known: JointType, builder: UrdfBuilder) -> Dof:
+    axis, written = _read_axis(node, key, builder)
+    limits = _read_limits(node, key, builder) if known.bounded else _read_open_limits(node, builder)
+    damping, friction = _read_dynamics(node, key, builder)
     return Dof(
         kind,
         axis,
         limits,
         damping,
         friction,
-        safety=_read_safety(node, builder),
+        safety=_read_safety(node, key, builder),
         calibration=_read_calibration(node, builder),
         written=written,
     )
 
 
-def _read_axis(joint: Node, builder: UrdfBuilder) -> tuple[Vec3, Written | None]:
+def _read_axis(joint: Node, key: Id, builder: UrdfBuilder) -> tuple[Vec3, Written | None]:
     """The unit axis in the joint frame, and the numbers as written where they are others."""
     node = joint.take_child("axis")
     if node is None:
+        builder.follow(key, notations.NO_AXIS, follows=True)
         return X, None
     text = node.attributes.get("xyz", "1 0 0")
     if _has_no_direction(text):
@@ -148,6 +148,8 @@ def _read_axis(joint: Node, builder: UrdfBuilder) -> tuple[Vec3, Written | None]
     x, y, z = numbers = take_numbers(node, "xyz", 3, builder, instead="1 0 0 is used") or X
     axis = unit((x, y, z))
     if axis == (x, y, z):
+        if axis == X:
+            builder.follow(key, notations.NO_AXIS, follows=False)
         return axis, None
     message = f"{joint.subject}: the axis was normalised; its numbers are kept for writing URDF again"
     builder.report.note(codes.NOT_UNIT, message, node.origin, element=joint.element)
@@ -160,25 +162,31 @@ def _has_no_direction(text: str) -> bool:
     return bool(numbers) and not 1e-300 <= math.hypot(*(numbers or ())) < math.inf
 
 
-def _read_dynamics(joint: Node, builder: UrdfBuilder) -> tuple[float, float]:
+def _read_dynamics(joint: Node, key: Id, builder: UrdfBuilder) -> tuple[float, float]:
     node = joint.take_child("dynamics")
     if node is None:
+        builder.follow(key, notations.DYNAMICS, follows=False)
         return 0.0, 0.0
-    damping, friction = (_or_zero(node, name, builder) for name in ("damping", "friction"))
+    damping, friction = (_usually(0.0, node, name, key, builder) for name in ("damping", "friction"))
     if damping == friction == 0.0:
-        builder.explicit.add(Explicit.DYNAMICS)
+        builder.follow(key, notations.DYNAMICS, follows=True)
     return damping, friction
 
 
-def _or_zero(node: Node, name: str, builder: UrdfBuilder) -> float:
-    value = take_number(node, name, builder, instead="0 is used")
-    return 0.0 if value is None else value
+def _usually(default: float, node: Node, name: str, key: Id, builder: UrdfBuilder) -> float:
+    """The number of an attribute, its default value where it is missing or bad."""
+    is_missing = name not in node.attributes
+    found = take_number(node, name, builder, instead=f"{default:g} is used")
+    value = default if found is None else found
+    if value == default:
+        builder.follow(key, notations.without(name), follows=is_missing)
+    return value
 
 
 # ---- limits ------------------------------------------------------------------------------------------------------------------
 
 
-def _read_limits(joint: Node, builder: UrdfBuilder) -> Limits:
+def _read_limits(joint: Node, key: Id, builder: UrdfBuilder) -> Limits:
     """The limits of a joint for which URDF requires them. Without lower or upper they are 0, by the standard."""
     node = joint.take_child("limit")
     if node is None:
@@ -188,7 +196,7 @@ def _read_limits(joint: Node, builder: UrdfBuilder) -> Limits:
         builder.warn(codes.MISSING_LIMIT, joint, message)
         return UNLIMITED
     missing = [name for name in ("effort", "velocity") if name not in node.attributes]
-    limits = _rates(node, _bound(node, "lower", builder), _bound(node, "upper", builder), builder)
+    limits = _rates(node, _bound(node, "lower", key, builder), _bound(node, "upper", key, builder), builder)
     _check_limits(joint, node, limits, missing, builder)
     return limits
 
@@ -204,8 +212,12 @@ def _read_open_limits(joint: Node, builder: UrdfBuilder) -> Limits:
     return limits
 
 
-def _bound(node: Node, name: str, builder: UrdfBuilder) -> float | None:
-    return _rate(node, name, builder) if name in node.attributes else 0.0
+def _bound(node: Node, name: str, key: Id, builder: UrdfBuilder) -> float | None:
+    is_missing = name not in node.attributes
+    value = 0.0 if is_missing else _rate(node, name, builder)
+    if value == 0.0:
+        builder.follow(key, notations.without(name), follows=is_missing)
+    return value
 
 
 def _rates(node: Node, lower: float | None, upper: float | None, builder: UrdfBuilder) -> Limits:
@@ -232,7 +244,7 @@ def _check_limits(joint: Node, node: Node, limits: Limits, missing: list[str], b
 # ---- safety and calibration ------------------------------------------------------------------------------------------------------
 
 
-def _read_safety(joint: Node, builder: UrdfBuilder) -> Safety | None:
+def _read_safety(joint: Node, key: Id, builder: UrdfBuilder) -> Safety | None:
     node = joint.take_child("safety_controller")
     if node is None:
         return None
@@ -240,7 +252,7 @@ def _read_safety(joint: Node, builder: UrdfBuilder) -> Safety | None:
     if "k_velocity" not in node.attributes:
         message = f"{joint.subject}: <safety_controller> has no k_velocity; 0 is used"
         builder.warn(codes.MISSING_ATTRIBUTE, node, message)
-    return Safety(*(_or_zero(node, name, builder) for name in names))
+    return Safety(*(_usually(0.0, node, name, key, builder) for name in names))
 
 
 def _read_calibration(joint: Node, builder: UrdfBuilder) -> Calibration | None:
@@ -271,8 +283,7 @@ def _read_mimic(joint: Node, builder: UrdfBuilder) -> None:
         joint.leave(node)
         return
     node.take("joint")
-    multiplier = take_number(node, "multiplier", builder, instead="1 is used")
-    coefficients = (_or_zero(node, "offset", builder), 1.0 if multiplier is None else multiplier)
+    coefficients = (_usually(0.0, node, "offset", joint.owner, builder), _usually(1.0, node, "multiplier", joint.owner, builder))
     key = builder.names.take("coupling", joint.owner.name)
     builder.edges[key] = coupling_edge(joint.owner, ((leader, coefficients),))
     builder.origins[key] = node.origin

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 
 from hymeko_x import codes
 from hymeko_x.formats import urdf as words
-from hymeko_x.formats.urdf.notations import Explicit
+from hymeko_x.formats.urdf import notations
 from hymeko_x.frontends.urdf.builder import read_origin, take_name, take_number, take_numbers
 from hymeko_x.frontends.urdf.materials import read_shape_material
-from hymeko_x.ir.mechanism import file_stem, shape_edge
+from hymeko_x.ir.mechanism import ROOT, file_stem, shape_edge
 from hymeko_x.ir.notations import WITHOUT_TENSOR
 from hymeko_x.ir.parts import Body, Box, Capsule, Cylinder, Inertial, InertialWritten, Mesh, MeshShape, NoShape, Shape, Sphere
 from hymeko_x.ir.values import rotate_tensor
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from hymeko_x.ir.values import Tensor, Vec3
     from hymeko_x.xml.tree import Node
 
-_ORIGIN_STYLES = {"visual": Explicit.VISUAL_ORIGIN, "collision": Explicit.COLLISION_ORIGIN}
 _NO_GEOMETRY = "the shape has no geometry"
 _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
@@ -33,7 +32,7 @@ _TENSOR = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 def read_link(node: Node, builder: UrdfBuilder) -> None:
     """Add a link with its shapes: visuals first, then collisions, each in their order."""
     key = take_name(node, "body", builder.links, builder)
-    inertial = _read_inertial(node, builder)
+    inertial = _read_inertial(node, key, builder)
     builder.vertices[key] = Body(inertial)
     if inertial is not None and inertial.tensor is None:
         builder.note(key, WITHOUT_TENSOR, True)
@@ -46,8 +45,8 @@ def read_link(node: Node, builder: UrdfBuilder) -> None:
 def _read_shape(node: Node, role: Role, body: Id, builder: UrdfBuilder) -> None:
     key = builder.own(node, "shape", f"{body.name}/{node.tag}")
     name = node.take("name")
-    pose = read_origin(node, _ORIGIN_STYLES[node.tag], builder)
-    geometry, mesh = _read_geometry(node, builder)
+    pose = read_origin(node, key, builder)
+    geometry, mesh = _read_geometry(node, key, builder)
     rgba, material = read_shape_material(node, builder)
     builder.edges[key] = shape_edge(Shape(geometry, role, name, rgba), body, pose, mesh, material)
 
@@ -55,14 +54,14 @@ def _read_shape(node: Node, role: Role, body: Id, builder: UrdfBuilder) -> None:
 # ---- inertia -------------------------------------------------------------------------------------------------------------------
 
 
-def _read_inertial(link: Node, builder: UrdfBuilder) -> Inertial | None:
+def _read_inertial(link: Node, key: Id, builder: UrdfBuilder) -> Inertial | None:
     """Mass, centre of mass and tensor, turned from the axes of its <origin> into those of the body; None without one."""
     node = link.take_child("inertial")
     if node is None:
         return None
     mass = _read_mass(node, builder)
     tensor = _read_tensor(node, builder)
-    frame = read_origin(node, Explicit.INERTIAL_ORIGIN, builder, turned=tensor is not None)
+    frame = read_origin(node, key, builder, turned=tensor is not None)
     if frame.written is None or tensor is None:
         return Inertial(mass, frame.xyz, tensor)
     return Inertial(mass, frame.xyz, rotate_tensor(frame.quat, tensor), InertialWritten(frame, tensor))
@@ -104,7 +103,7 @@ def _warn_missing(node: Node, missing: str, instead: str, builder: UrdfBuilder) 
 # ---- geometry ----------------------------------------------------------------------------------------------------------------
 
 
-def _read_geometry(shape: Node, builder: UrdfBuilder) -> tuple[Geometry, Id | None]:
+def _read_geometry(shape: Node, key: Id, builder: UrdfBuilder) -> tuple[Geometry, Id | None]:
     """The geometry of a visual or collision, and its mesh. An unknown one is no shape, and an extra."""
     node = shape.take_child("geometry")
     if node is None:
@@ -120,7 +119,7 @@ def _read_geometry(shape: Node, builder: UrdfBuilder) -> tuple[Geometry, Id | No
         message = f"{node.subject}: <geometry> contains more than one shape; the first one counts, the others are kept as written"
         builder.warn(codes.REPEATED, node, message)
     if found.tag == "mesh":
-        return MeshShape(), _read_mesh(found, builder)
+        return MeshShape(), _read_mesh(found, key, builder)
     geometry = _READERS[found.tag](found, builder)
     if geometry is None:
         node.leave(found)
@@ -156,7 +155,7 @@ def _read_cylinder(node: Node, builder: UrdfBuilder) -> Geometry | None:
 
 def _read_capsule(node: Node, builder: UrdfBuilder) -> Geometry | None:
     radius, length = _sized(node, "radius", 1, builder), _sized(node, "length", 1, builder)
-    builder.explicit.add(Explicit.CAPSULE)
+    builder.follow(ROOT, notations.CAPSULE, follows=True)
     return None if radius is None or length is None else Capsule(radius[0], length[0])
 
 
@@ -178,14 +177,14 @@ _GEOMETRIES = ("mesh", *_READERS)
 # ---- meshes ----------------------------------------------------------------------------------------------------------------------
 
 
-def _read_mesh(node: Node, builder: UrdfBuilder) -> Id:
+def _read_mesh(node: Node, shape: Id, builder: UrdfBuilder) -> Id:
     """The mesh vertex of a file and scale; shapes that use the same ones share it."""
     uri = node.take("filename")
     if uri is None:
         message = f"{node.subject}: <mesh> has no filename; it stays empty"
         builder.warn(codes.MISSING_ATTRIBUTE, node, message)
         uri = ""
-    scale = _read_scale(node, builder)
+    scale = _read_scale(node, shape, builder)
     known = builder.meshes.get((uri, scale))
     if known is not None:
         return known
@@ -196,7 +195,7 @@ def _read_mesh(node: Node, builder: UrdfBuilder) -> Id:
     return key
 
 
-def _read_scale(node: Node, builder: UrdfBuilder) -> Vec3:
+def _read_scale(node: Node, shape: Id, builder: UrdfBuilder) -> Vec3:
     one = read_numbers(node.attributes.get("scale", ""))
     if one is not None and len(one) == 1:
         node.take("scale")
@@ -204,7 +203,7 @@ def _read_scale(node: Node, builder: UrdfBuilder) -> Vec3:
         builder.warn(codes.BAD_NUMBER, node, message)
         return (one[0], one[0], one[0])
     found = take_numbers(node, "scale", 3, builder, instead="1 1 1 is used")
-    if found == (1.0, 1.0, 1.0):
-        builder.explicit.add(Explicit.SCALE)
     x, y, z = found or (1.0, 1.0, 1.0)
+    if (x, y, z) == (1.0, 1.0, 1.0):
+        builder.follow(shape, notations.SCALE, follows=found is not None)
     return (x, y, z)
