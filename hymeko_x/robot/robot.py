@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from msgspec.structs import replace
+
 from hymeko_x import formats
 from hymeko_x.ir.parts import Body
+from hymeko_x.ir.tensor import from_tensor, to_tensor
 from hymeko_x.ir.values import IDENTITY
 from hymeko_x.joining import with_names
 from hymeko_x.robot import memory, text
@@ -21,7 +24,9 @@ from hymeko_x.robot.varying import vary
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from hymeko_x.ir.parts import Joint
+    from hymeko_x.ir.ids import Id
+    from hymeko_x.ir.parts import EdgePart, Joint, VertexPart
+    from hymeko_x.ir.tensor import Tensor
     from hymeko_x.ir.values import Pose, Vec3
     from hymeko_x.robot.element import Element
     from hymeko_x.robot.kinematics import Coordinates
@@ -167,6 +172,14 @@ class Robot(RobotData):
     def to_networkx(self) -> Any:
         """The hypergraph as a bipartite ``networkx.MultiDiGraph``: a node per vertex and per edge, an arrow per arc."""
         return memory.as_networkx(self.mechanism)
+
+    def to_tensor(self) -> Tensor[Id, VertexPart, EdgePart]:
+        """The arcs of the hypergraph with their weights as one sparse tensor, (elements, edges, places, components)."""
+        return to_tensor(self.mechanism.graph)
+
+    def with_tensor(self, tensor: Tensor[Id, VertexPart, EdgePart]) -> Robot:
+        """The robot with the graph of a tensor: the arcs and weights that its array has now."""
+        return self.changed(replace(self.mechanism, graph=from_tensor(tensor)))
 
 
 _FREEDOMS = {"ball": 3, "free": 6}
