@@ -15,6 +15,7 @@ from hymeko_x.backends.hymeko.extras import foreign_items, is_standing, sound_co
 from hymeko_x.backends.hymeko.joints import dof_node, joint_items, mimic_arcs
 from hymeko_x.backends.hymeko.nesting import name_of, nesting_of
 from hymeko_x.backends.hymeko.parts import attached_arcs, part_items
+from hymeko_x.backends.hymeko.sharing import shared_joints
 from hymeko_x.backends.hymeko.sheet import HymekoSheet, written_items
 from hymeko_x.backends.hymeko.stereotypes import with_stereotypes
 from hymeko_x.backends.hymeko.values import ExplicitAngles, shortest_angles
@@ -64,16 +65,18 @@ def document(mechanism: Mechanism, *, flat: bool = False) -> Document:
     root = mechanism.notation(ROOT, ROOT_NAME)
     name = root if root is not None else mechanism.name
     around = None if flat or plain else _classes(mechanism)
+    mimics = mimic_arcs(mechanism)
     sheet = HymekoSheet(
         mechanism,
         "" if flat else files_prefix(mechanism),
         inline,
         given_names(mechanism, inline),
-        mimic_arcs(mechanism),
+        mimics,
         attached_arcs(mechanism),
         ExplicitAngles() if flat else shortest_angles(mechanism),
         nesting=nesting_of(mechanism, name),
         around=around,
+        shared={} if flat else shared_joints(mechanism, mimics),
     )
     items = _settings(sheet, plain)
     items += [item for row in _rows(sheet) for item in _texts({"": sheet}, row, {})] if plain or flat else _grouped(sheet)
@@ -198,7 +201,7 @@ def _rows(sheet: HymekoSheet) -> list[Row]:
             place += not here[-1].path
         rows.extend([here] if here else [])
         rows.append(key)
-        place += 2 if key in sheet.attached else 1
+        place += 2 if key in sheet.attached else 1 + len(sheet.shared.get(key, ()))
     return [*rows, queue[::-1]] if queue else rows
 
 
@@ -234,7 +237,7 @@ def _order(sheet: HymekoSheet) -> list[Id]:
 
 
 def _stands_alone(sheet: HymekoSheet, key: Id) -> bool:
-    if key in sheet.inline or key.kind in _INLINE_EDGES or key in sheet.mimics or key in sheet.attached_edges:
+    if key in sheet.inline or key.kind in _INLINE_EDGES or key in sheet.mimics or key in sheet.attached_edges or key in sheet.followers:
         return False
     if key in sheet.nesting.outer or key in sheet.nesting.edges:
         return False

@@ -5,9 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hymeko_x.backends.hymeko.parts import limit_items, word_fields
+from hymeko_x.backends.hymeko.sharing import ratio_of
 from hymeko_x.backends.hymeko.values import pose_value
 from hymeko_x.formats import hymeko as words
 from hymeko_x.formats.hymeko.references import child_names
+from hymeko_x.formats.hymeko.sharing import RATIO
 from hymeko_x.ir import parts
 from hymeko_x.ir.fields import identical
 from hymeko_x.ir.mechanism import Id, numbers_weight
@@ -20,6 +22,7 @@ if TYPE_CHECKING:
     from hymeko_x.backends.hymeko.sheet import HymekoSheet
     from hymeko_x.backends.hymeko.values import Angles
     from hymeko_x.ir.mechanism import Mechanism, RobotArc
+    from hymeko_x.ir.views import JointView
 
 _BODIES = words.TARGETS["joint"]
 _SHORT_AXES = {str(direction): (name, "") for name, direction in words.AXES.items() if len(name) == 1}
@@ -30,9 +33,11 @@ def joint_items(sheet: HymekoSheet, key: Id) -> tuple[str, list[Item]]:
     """The type's name (empty for a hinge) and the block of a joint: ends, dofs, what it follows."""
     view = sheet.mechanism.joints[key]
     items: list[Item] = [_end(sheet, view.parent, "+", view.parent_pose, "")]
+    followers = sheet.shared.get(key, ())
     framed = not identical(view.child_pose, IDENTITY)
-    if framed or view.child != _implied_child(sheet, key):
+    if framed or followers or view.child != _implied_child(sheet, key):
         items.append(_end(sheet, view.child, "-", view.child_pose, "at" if framed else ""))
+    items.extend(_follower(sheet, view.parent_pose, sheet.mechanism.joints[follower]) for follower in followers)
     dofs = view.joint.dofs
     kind = words.JOINT_TYPES.get(tuple(dof.kind for dof in dofs), "compound")
     if kind == "compound":
@@ -52,6 +57,17 @@ def _implied_child(sheet: HymekoSheet, key: Id) -> Id | None:
 def _end(sheet: HymekoSheet, body: Id, direction: str, pose: Pose, role: str) -> ArcItem:
     weight = None if identical(pose, IDENTITY) else pose_value(pose, sheet.angles)
     return ArcItem(sheet.ref(body, _BODIES, direction), role, weight)
+
+
+def _follower(sheet: HymekoSheet, shared: Pose, view: JointView) -> ArcItem:
+    """The arc to the child of a joint that stands in the edge of the one that it follows; ``shared`` is that one's pose."""
+    ratio = ratio_of(sheet.mimics, view.id)
+    block = () if ratio == 1.0 else (Field(RATIO, ratio),)
+    framed = not identical(view.child_pose, IDENTITY)
+    arc = _end(sheet, view.child, "-", view.child_pose, "at" if framed else "")
+    if not framed and not identical(view.parent_pose, shared):
+        arc = arc._replace(weight=pose_value(view.parent_pose, sheet.angles))
+    return arc._replace(items=block)
 
 
 def _mimic(sheet: HymekoSheet, arc: RobotArc) -> ArcItem:

@@ -33,7 +33,8 @@ class HymekoSheet(Struct, frozen=True):
 
     ``files``: the prefix that files have in common; ``inline``: meshes and colours that are defined where a shape uses them, with the
     first shape that does; ``given_names``: those among them that have an id there; ``mimics``: couplings in the block of the joint
-    that follows; ``attached``: arcs of mounts, drives and the like in the block of the vertex that they attach; ``angles``: the unit
+    that follows; ``shared``: joints that stand in the edge of the one that they follow, by that one; ``attached``: arcs of mounts,
+    drives and the like in the block of the vertex that they attach; ``angles``: the unit
     of plain angles; ``homes``: the assemblies of elements, by the elements' names, and ``inside``: the one that is being printed;
     ``nesting``: what stands in the blocks of data, and ``within``: the element whose block is being printed;
     ``around``: the class in force at joints, shapes and frames, where classes are stereotypes of this text;
@@ -52,15 +53,18 @@ class HymekoSheet(Struct, frozen=True):
     nesting: Nesting = Nesting()
     within: Id | None = None
     around: Mapping[Id, str] | None = None
+    shared: Mapping[Id, tuple[Id, ...]] = field(default_factory=dict)
     clashes: set[str] = field(default_factory=set)
     names: dict[str, list[str]] = field(default_factory=dict)
 
     attached_edges: set[Id] = field(default_factory=set)
+    followers: set[Id] = field(default_factory=set)
 
     def __post_init__(self) -> None:
         if self.names:
             return  # a copy for another assembly
         graph = self.mechanism.graph
+        self.followers.update(*self.shared.values())
         self.attached_edges.update(key for vertex in self.attached if (key := attached_key(vertex)) is not None)
         for key in (*graph.vertices, *graph.edges):
             self.names.setdefault(key.name, []).append(key.kind)

@@ -28,6 +28,7 @@ from hymeko_x.frontends.hymeko.nesting import declare_inside
 from hymeko_x.frontends.hymeko.parts import has_attached, read_part
 from hymeko_x.frontends.hymeko.published import with_named_fields
 from hymeko_x.frontends.hymeko.references import resolve_values
+from hymeko_x.frontends.hymeko.sharing import with_followers
 from hymeko_x.frontends.hymeko.values import ValueReader, read_units
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import ROOT, WORLD, Extra, Id, Provenance
@@ -90,6 +91,7 @@ def _read_expanded(expanded: Expanded, builder: HymekoBuilder, instances: dict[i
     if kinds and OUTER.issuperset(kinds) and "robot" not in expanded.types:
         expanded, elements = _with_units_as_data(expanded)
         kinds = infer_kinds(expanded, elements)
+    expanded, kinds = with_followers(expanded, elements, kinds, builder.reader)
     _read_root(builder, expanded, kinds, instances)
     builder.source = take_provenance(builder.notations, FOREIGN, Provenance("hymeko", file=builder.reader.file))
     declared = resolve_values(builder, _declare(builder, expanded, kinds, instances), expanded.items)

@@ -13,6 +13,7 @@ from hymeko_x.formats.hymeko.references import child_names
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.builder import sign_of
 from hymeko_x.frontends.hymeko.lumped import take_compliant, with_compliance
+from hymeko_x.frontends.hymeko.sharing import FOLLOWS, follow
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import coupling_edge, joint_edge
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Vec3, Written, numbers_text, rotate, scaled, unit
@@ -44,7 +45,7 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
     scope = element.scope
     block.take("kind"), block.take("moves")
     typed = _type_of(block)
-    mimic = _take_all(block, "mimic")
+    mimic, shared = _take_all(block, "mimic"), _take_all(block, FOLLOWS)
     axis_arc = _take_axis_arc(builder, block, scope)
     if (child_name := _implied_child(builder, key, block)) is not None:
         block.arcs.append(ArcItem(Ref(("body", child_name), "-"), line=element.node.line, column=element.node.column))
@@ -56,6 +57,8 @@ def read_joint(builder: HymekoBuilder, key: Id, element: Element, moves: str | N
     target = builder.target(child.ref, scope, _BODIES, child)
     dofs = _dofs(builder, block, scope, words.ROLE_MOVES.get(child.role.upper()) or typed or moves, axis_arc)
     dofs = with_compliance(builder, key, compliant, dofs)
+    for leader in shared:
+        dofs = follow(builder, key, leader, dofs, scope)
     builder.edges[key] = joint_edge(parts.Joint(dofs), builder.target(parent.ref, scope, _BODIES, parent), target, pose, child_pose)
     if mimic:
         targets = [builder.target(arc.ref, scope, words.TARGETS["coupling"], arc) for arc in mimic]
@@ -97,8 +100,11 @@ def _ends(builder: HymekoBuilder, key: Id, block: Block, item: Item) -> tuple[Ar
     if not parents and len(children) == 2 and all(arc.ref.direction == "->" for arc in children):
         parents = [children.pop(0)]  # as published: the first of two heads is the parent
     if len(parents) != 1 or len(children) != 1:
-        message = f"{key} has {len(parents)} parents and {len(children)} children; a joint joins one '+ parent' and one '- child'"
-        raise refuse(codes.MISSING_PART, message, builder.reader.origin(item), element=str(key), hint=_end_hint(block))
+        message = (
+            f"{key} has {len(parents)} parents and {len(children)} children; a joint joins one '+ parent' and one '- child' or several"
+        )
+        hint = _end_hint(block) if len(parents) < 2 else "a second parent closes a loop: @name : connect, weld or loop { ~ one ~ other }"
+        raise refuse(codes.MISSING_PART, message, builder.reader.origin(item), element=str(key), hint=hint)
     for arc in (*parents, *children):
         block.arcs.remove(arc)
     return parents[0], children[0]

@@ -1,0 +1,63 @@
+"""Joints of several bodies as one edge of HyMeKo text (:mod:`hymeko_x.formats.hymeko.sharing`)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x.formats.hymeko.sharing import follower_dof, follower_name
+from hymeko_x.ir import parts
+from hymeko_x.ir.fields import identical
+from hymeko_x.ir.mechanism import Id, numbers_weight
+from hymeko_x.ir.values import IDENTITY
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from hymeko_x.ir.mechanism import Mechanism, RobotArc
+
+
+def shared_joints(mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]]) -> Mapping[Id, tuple[Id, ...]]:
+    """The joints in whose edge the children of others stand, with those others: named after it, behind it, and exactly following it."""
+    found: dict[Id, tuple[Id, ...]] = {}
+    following = dict(zip(mechanism.layout, mechanism.layout[1:], strict=False))
+    for coupling in mimics:
+        leader = Id("joint", coupling.name.removesuffix("_2"))
+        if leader.name != coupling.name and leader in mechanism.joints and leader not in found:
+            followers = tuple(_followers(mechanism, mimics, leader, following))
+            found.update({leader: followers} if followers else {})
+    return found
+
+
+def ratio_of(mimics: Mapping[Id, tuple[RobotArc, ...]], follower: Id) -> float:
+    """The factor by which a joint follows its only leader."""
+    return numbers_weight(mimics[Id("coupling", follower.name)][0])[1]
+
+
+def _followers(mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]], leader: Id, following: Mapping[Id, Id]) -> Iterator[Id]:
+    last, number = leader, 2
+    while (key := Id("joint", follower_name(leader.name, number))) in mechanism.joints and following.get(last) == key:
+        if not (_follows(mechanism, mimics.get(Id("coupling", key.name), ()), leader) and _is_alike(mechanism, mimics, leader, key)):
+            return
+        yield key
+        last, number = key, number + 1
+
+
+def _follows(mechanism: Mechanism, leaders: tuple[RobotArc, ...], leader: Id) -> bool:
+    """Whether a joint follows this one alone, by a factor."""
+    if len(leaders) != 1 or leaders[0].target != leader:
+        return False
+    coefficients = numbers_weight(leaders[0])
+    return len(coefficients) == 2 and str(coefficients[0]) == "0.0" and coefficients[1] not in (0.0, float("inf"), float("-inf"))
+
+
+def _is_alike(mechanism: Mechanism, mimics: Mapping[Id, tuple[RobotArc, ...]], leader: Id, key: Id) -> bool:
+    """Whether the edge of the first joint says everything about the other one but its child, its pose and its ratio."""
+    first, other = mechanism.joints[leader], mechanism.joints[key]
+    if key in mechanism.extras or key in mechanism.notations or len(mechanism.graph.incidence.get(key, ())) != 1:
+        return False
+    if mechanism.stereotypes.get(key) != mechanism.stereotypes.get(leader) or first.parent != other.parent or len(first.joint.dofs) != 1:
+        return False
+    if not identical(other.child_pose, IDENTITY) and not identical(other.parent_pose, first.parent_pose):
+        return False
+    expected = parts.Joint((follower_dof(first.joint.dofs[0], ratio_of(mimics, key)),))
+    return identical(expected, other.joint)
