@@ -5,7 +5,7 @@ BIN := .venv/bin
 STAMP := .venv/.installed
 JOBS ?= 2
 
-.PHONY: demo docs test test-full test-format coverage lint types pytest bench peers fuzz corpus clean help
+.PHONY: demo docs test test-full test-format coverage lint types pytest bench peers fuzz corpus vsix clean help
 
 help:
 	@echo "make demo   install into .venv, convert a real humanoid, show the result"
@@ -18,6 +18,7 @@ help:
 	@echo "make peers  other people's programs, each into .peers/, and the tests that compare with them"
 	@echo "make fuzz   damage texts of every format and read them; PROFILE=ci (minutes) or nightly (hours)"
 	@echo "make corpus every robot of the catalogue through every format, verified; renews corpus/results and its pages"
+	@echo "make vsix   the extension for VS Code, by npm: editors/vscode/hymeko-x.vsix"
 	@echo "make clean  remove .venv and everything that was built"
 
 $(STAMP): pyproject.toml
@@ -80,5 +81,10 @@ corpus: $(STAMP)
 	$(BIN)/hymeko-x corpus run --verify --resume --jobs $(JOBS) -o corpus-run
 	$(BIN)/hymeko-x corpus stats corpus-run -o corpus/results --page README.md --page docs/results.md --page docs/losses.md --page docs/scale.md
 
+vsix:
+	@command -v npm >/dev/null || { echo "npm is not on the path; it comes with Node.js 20 or newer"; exit 1; }
+	cp LICENSE editors/vscode/
+	cd editors/vscode && npm install --no-audit --no-fund --no-package-lock --ignore-scripts && npm run package
+
 clean:
-	rm -rf .venv .peers build dist demo .mypy_cache .pytest_cache .ruff_cache
+	rm -rf .venv .peers build dist demo editors/vscode/node_modules editors/vscode/dist editors/vscode/*.vsix .mypy_cache .pytest_cache .ruff_cache
