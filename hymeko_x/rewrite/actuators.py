@@ -32,7 +32,7 @@ MUJOCO_KINDS = frozenset(
 
 
 def drop_foreign_actuators(mechanism: Mechanism, _context: Context) -> Mechanism:
-    """Actuators of kinds that MJCF has no element for are left out: the transmissions of URDF."""
+    """Actuators of kinds that MJCF has no element for are left out: the transmissions that are no commands of one joint."""
     return without_actuators(mechanism, [key for key, actuator in mechanism.vertices(Actuator) if actuator.kind not in MUJOCO_KINDS])
 
 

@@ -22,7 +22,7 @@ from hymeko_x.rewrite.densities import WATER, give_inertials
 from hymeko_x.rewrite.joints import full_name, legal_dof
 from hymeko_x.rewrite.roots import stands_for_world, with_world
 from hymeko_x.rewrite.rotors import give_light_dofs_rotors
-from hymeko_x.rewrite.servos import SAG, gains, loads
+from hymeko_x.rewrite.servos import SAG, loads, parameters_of
 from hymeko_x.rewrite.sites import make_frames_links
 from hymeko_x.source import NO_FILES
 
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
     from hymeko_x.diagnostics import Report
     from hymeko_x.ir.mechanism import JointView, Mechanism, RobotEdge
-    from hymeko_x.ir.parts import Parameters
     from hymeko_x.rewrite.context import Options
     from hymeko_x.rewrite.servos import Load
     from hymeko_x.source import Files
@@ -92,16 +91,12 @@ def _report_fixed_bases(mechanism: Mechanism, worlds: set[Id], report: Report) -
 
 # ---- actuators ---------------------------------------------------------------------------------------------------------------
 
-_STIFFNESS = 100.0
-"""Position gain in Nm/rad or N/m of a joint without effort limit."""
-_FULL_EFFORT_AT = 0.1
-"""The error (rad or m; for velocities a part of the limit) at which a servo asks for all of the effort limit."""
 _DRIVEN = frozenset({DofKind.HINGE, DofKind.SLIDE, DofKind.SCREW})
 
 
 def with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanism:
-    """One actuator of a kind for every driven dof instead of those that a simulation would have; transmissions stay."""
-    present = {key: actuator for key, actuator in mechanism.vertices(Actuator) if actuator.kind in MUJOCO_KINDS}
+    """One actuator of a kind for every driven dof instead of those that a simulation would have; only ``none`` leaves no transmissions."""
+    present = {key: actuator for key, actuator in mechanism.vertices(Actuator) if kind == "none" or actuator.kind in MUJOCO_KINDS}
     bare = without_actuators(mechanism, list(present))
     names = names_in_use(bare)
     vertices: dict[Id, Actuator] = {}
@@ -110,7 +105,7 @@ def with_actuators(mechanism: Mechanism, kind: str, report: Report) -> Mechanism
     for view, number, dof in _driven_dofs(bare) if kind != "none" else ():
         name = full_name(view, number)
         key = names.take("actuator", f"{name}_{kind}" if Id("actuator", name) in bare.graph.vertices else name)
-        vertices[key] = Actuator(kind, _parameters(kind, dof, carried.get((view.id, number))))
+        vertices[key] = Actuator(kind, parameters_of(kind, dof, carried.get((view.id, number))))
         role = "" if len(view.joint.dofs) == 1 else dof.name or str(number)
         edges[names.take("drive", key.name)] = Edge(Drive(), (Arc(key, 1), Arc(view.id, -1, None, role)))
     if present == vertices:
@@ -149,28 +144,3 @@ def _driven_dofs(mechanism: Mechanism) -> Iterator[tuple[JointView, int, Dof]]:
         for number, dof in enumerate(view.joint.dofs):
             if dof.kind in _DRIVEN and (view.id, number) not in followers:
                 yield view, number, legal_dof(dof, [])
-
-
-def _parameters(kind: str, dof: Dof, load: Load | None) -> Parameters:
-    """Control ranges from the limits; gains that carry the load where it is known, else so that a small error asks for all effort."""
-    limits = dof.limits
-    match kind:
-        case "position":
-            damping = ("dampratio", 1.0)
-            gain = limits.effort / _FULL_EFFORT_AT if limits.effort else _STIFFNESS
-            if load is not None and load.inertia > 0.0:
-                gain, kv = (_rounded(value) for value in gains(load, limits.effort))
-                damping = ("kv", kv)
-            reach = ((limits.lower, limits.upper),) if limits.lower is not None and limits.upper is not None else ()
-            return (("kp", gain), damping, *(("ctrlrange", span) for span in reach))
-        case "velocity":
-            speed = limits.velocity or 0.0
-            gain = limits.effort / (_FULL_EFFORT_AT * (speed or 1.0)) if limits.effort else _STIFFNESS * _FULL_EFFORT_AT
-            return (("kv", gain), *((("ctrlrange", (-speed, speed)),) if speed else ()))
-        case _:
-            return (("ctrlrange", (-limits.effort, limits.effort)),) if limits.effort else ()
-
-
-def _rounded(value: float) -> float:
-    """A gain with the three digits that a person would write."""
-    return float(f"{value:.3g}")

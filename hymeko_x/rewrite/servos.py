@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from hymeko_x.ir.mechanism import Id, JointView, Mechanism, RobotArc
-    from hymeko_x.ir.parts import Dof
+    from hymeko_x.ir.parts import Dof, Parameters
 
 GRAVITY = 9.81
 """In m/s^2."""
@@ -23,6 +23,11 @@ SAG = 0.01
 """How far, in rad or m, gravity may pull a servo from its target in the worst direction."""
 LEAST_FREQUENCY = 20.0
 """The least natural frequency of a servo in rad/s, so that one without a load is at its target within half a second."""
+
+_STIFFNESS = 100.0
+"""Position gain in Nm/rad or N/m of a joint without effort limit."""
+_FULL_EFFORT_AT = 0.1
+"""The error (rad or m; for velocities a part of the limit) at which a servo asks for all of the effort limit."""
 
 
 class Load(NamedTuple):
@@ -60,6 +65,31 @@ def gains(load: Load, effort: float | None) -> tuple[float, float]:
     if effort:
         stiffness = min(stiffness, effort / SAG)
     return stiffness, 2.0 * math.sqrt(stiffness * load.inertia)
+
+
+def parameters_of(kind: str, dof: Dof, load: Load | None) -> Parameters:
+    """Control ranges from the limits; gains that carry the load where it is known, else so that a small error asks for all effort."""
+    limits = dof.limits
+    match kind:
+        case "position":
+            damping = ("dampratio", 1.0)
+            gain = limits.effort / _FULL_EFFORT_AT if limits.effort else _STIFFNESS
+            if load is not None and load.inertia > 0.0:
+                gain, kv = (_rounded(value) for value in gains(load, limits.effort))
+                damping = ("kv", kv)
+            reach = ((limits.lower, limits.upper),) if limits.lower is not None and limits.upper is not None else ()
+            return (("kp", gain), damping, *(("ctrlrange", span) for span in reach))
+        case "velocity":
+            speed = limits.velocity or 0.0
+            gain = limits.effort / (_FULL_EFFORT_AT * (speed or 1.0)) if limits.effort else _STIFFNESS * _FULL_EFFORT_AT
+            return (("kv", gain), *((("ctrlrange", (-speed, speed)),) if speed else ()))
+        case _:
+            return (("ctrlrange", (-limits.effort, limits.effort)),) if limits.effort else ()
+
+
+def _rounded(value: float) -> float:
+    """A gain with the three digits that a person would write."""
+    return float(f"{value:.3g}")
 
 
 def loads(mechanism: Mechanism) -> dict[tuple[Id, int], Load]:

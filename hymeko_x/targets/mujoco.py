@@ -40,8 +40,8 @@ def name_home(mechanism: Mechanism, context: Context) -> Mechanism:
     for view in legal.joints.values():
         if view.joint.dofs and all(dof.kind not in (DofKind.BALL, DofKind.FREE) for dof in view.joint.dofs):
             numbers["qpos", view.id] = tuple(places[view.id, number] for number in range(len(view.joint.dofs)))
-    for key, target in _servos(legal):
-        numbers["ctrl", key] = (places[target],)
+    for key, target, gear in _servos(legal):
+        numbers["ctrl", key] = (places[target] * gear,)
     keyed = with_keys(legal, [Key({"name": "home"}, numbers)])
     context.report.note(codes.FOR_TARGET, f"{context.reason}: keyframe 'home' is written", element="mechanism")
     extras = {key: found for key, found in {**mechanism.extras, ROOT: keyed.extras[ROOT]}.items() if found}
@@ -60,15 +60,15 @@ def _at_home(mechanism: Mechanism) -> dict[tuple[Id, int], float]:
     return places
 
 
-def _servos(mechanism: Mechanism) -> list[tuple[Id, tuple[Id, int]]]:
-    """Each position servo with the dof that it drives."""
+def _servos(mechanism: Mechanism) -> list[tuple[Id, tuple[Id, int], float]]:
+    """Each position servo with the dof that it drives, and its gear."""
     found = []
     for _, _, arcs in mechanism.edges(Drive):
         joints = [arc for arc in arcs if arc.sign < 0 and arc.target in mechanism.joints]
         for arc in arcs:
             part = mechanism.graph.vertices.get(arc.target)
             if arc.sign > 0 and joints and isinstance(part, Actuator) and part.kind == "position":
-                found.append((arc.target, dof_of(mechanism, joints[0])))
+                found.append((arc.target, dof_of(mechanism, joints[0]), (*numbers_weight(joints[0]), 1.0)[0]))
     return found
 
 

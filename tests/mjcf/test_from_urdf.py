@@ -199,14 +199,16 @@ def test_a_floating_base_is_free_and_its_links_keep_their_names() -> None:
     assert (model.nq, model.jnt_type[0], model.body("a").parentid[0]) == (8, mujoco.mjtJoint.mjJNT_FREE, 0)
 
 
-def test_transmissions_become_no_actuators_unless_asked_for() -> None:
+def test_transmissions_are_what_their_interfaces_name_unless_others_are_asked_for() -> None:
     transmission = (
         '<transmission name="t"><type>transmission_interface/SimpleTransmission</type>'
         '<joint name="1"><hardwareInterface>EffortJointInterface</hardwareInterface></joint>'
         '<actuator name="m"><mechanicalReduction>50</mechanicalReduction></actuator></transmission>'
     )
     text = robot(link("a"), link("b"), joint("1", "a", "b"), transmission)
-    assert convert_text(text).model().nu == 0
+    model = convert_text(text).model()
+    assert (model.actuator("m").gear[0], list(model.actuator_ctrlrange[0])) == (50.0, [-0.2, 0.2])
+    assert convert_text(text, options=Options("fixed", "none")).model().nu == 0
     model = convert_text(text, options=Options("fixed", "position")).model()
     assert (model.nu, list(model.actuator_ctrlrange[0]), model.actuator_gainprm[0, 0]) == (1, [-1.0, 1.0], 400.0)
 

@@ -13,6 +13,7 @@ from lxml import etree
 
 import hymeko_x as hx
 from hymeko_x.diagnostics import Report
+from hymeko_x.ir.parts import Actuator
 
 ARM = """
 <mujoco model="arm">
@@ -151,11 +152,11 @@ def test_the_world_comes_first_and_ros2_control_last(tmp_path: Path) -> None:
     assert elements[-1] == ("ros2_control", "arm")
 
 
-def test_an_interface_of_which_nothing_is_known_is_no_actuator() -> None:
+def test_an_interface_without_a_type_is_a_command_of_unknown_gains() -> None:
     text = '<ros2_control name="s" type="system"><joint name="j"><command_interface name="position"/></joint></ros2_control>'
     joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
     robot = hx.loads(f'<robot name="r"><link name="a"/><link name="b"/>{joint}{text}</robot>', "urdf")
-    assert [key for key in robot.graph.vertices if key.kind == "actuator"] == []
+    assert [(key.name, part) for key, part in robot.vertices(Actuator)] == [("j", Actuator("transmission"))]
 
 
 @pytest.mark.parametrize("text", [FIXED, FLOATING])

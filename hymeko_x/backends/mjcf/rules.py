@@ -33,6 +33,7 @@ from hymeko_x.rewrite.names import make_names_usable, name_assets_once
 from hymeko_x.rewrite.roots import put_world_link_into_world, report_open_bases
 from hymeko_x.rewrite.shapes import drop_empty_shapes, keep_planes_static, make_sizes_positive, name_shapes_once
 from hymeko_x.rewrite.subsets import split_subsets
+from hymeko_x.rewrite.transmissions import drive_by_transmissions
 from hymeko_x.xml.text import unescaped
 
 if TYPE_CHECKING:
@@ -45,6 +46,12 @@ if TYPE_CHECKING:
 def write_poses_as_keyframes(mechanism: Mechanism, _context: Context) -> Mechanism:
     """Named poses are keyframes."""
     return with_poses(mechanism)
+
+
+def _drive_by_transmissions(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Transmissions are actuators; as many are servos, the integrator is one that keeps them calm."""
+    driven = drive_by_transmissions(mechanism, context)
+    return driven if driven is mechanism else integrate_implicitly(driven, replace(context, reason="transmissions"))
 
 
 RULES: tuple[Rule, ...] = (
@@ -72,6 +79,7 @@ RULES: tuple[Rule, ...] = (
     make_sizes_positive,
     name_shapes_once,
     name_wrapped_shapes,
+    _drive_by_transmissions,
     drop_foreign_actuators,
     drop_idle_actuators,
     write_poses_as_keyframes,

@@ -22,6 +22,7 @@ from hymeko_x.rewrite import legalize
 from hymeko_x.rewrite.actuators import MUJOCO_KINDS
 from hymeko_x.rewrite.choices import with_actuators
 from hymeko_x.rewrite.servos import dof_of, loads
+from hymeko_x.rewrite.transmissions import drive_by_transmissions
 from hymeko_x.xml.printing import Tag, ready
 from hymeko_x.xml.text import escaped
 
@@ -50,7 +51,7 @@ def control_joints(mechanism: Mechanism, context: Context) -> Mechanism:
     if any(_CONTROLS_ALL.search(text) for text in own):
         return mechanism
     done = {name for text in own for name in _NAMED.findall(text)}
-    legal = legalize(mechanism, words.FORMAT, Report())
+    legal = drive_by_transmissions(legalize(mechanism, words.FORMAT, Report()), context)
     if not any(part.kind in MUJOCO_KINDS for _, part in legal.vertices(Actuator)):
         legal = with_actuators(legal, "position", context.report)
     plugins, left = _plugins(legal)

@@ -10,6 +10,7 @@ from hymeko_x.backends.urdf.links import link_tag
 from hymeko_x.backends.urdf.sheet import UrdfSheet
 from hymeko_x.backends.urdf.transmissions import transmission_tag
 from hymeko_x.formats import urdf as words
+from hymeko_x.formats.urdf import ros2_control
 from hymeko_x.formats.urdf.notations import STYLE, VERSION, Defined, Style
 from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Actuator, Body, Drive, Joint, Material
@@ -140,10 +141,12 @@ def _tree(sheet: UrdfSheet) -> list[Id]:
 
 
 def _transmissions(sheet: UrdfSheet) -> list[Id]:
-    """The drives that are transmissions; URDF cannot represent other actuators."""
+    """The drives that are transmissions; URDF cannot represent other actuators. Those of <ros2_control> stand there."""
     vertices = sheet.mechanism.graph.vertices
     found = []
-    for key, _, arcs in sheet.mechanism.edges(Drive):
+    for key, drive, arcs in sheet.mechanism.edges(Drive):
+        if drive.kind == ros2_control.TAG:
+            continue
         driving = [vertices.get(arc.target) for arc in arcs if arc.sign > 0]
         if all(isinstance(part, Actuator) and part.kind == "transmission" for part in driving):
             found.append(key)

@@ -13,6 +13,7 @@ from hymeko_x.ir.parts import Contact, Loop
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
 from hymeko_x.rewrite.shapes import drop_unused_assets
+from hymeko_x.rewrite.transmissions import drive_by_transmissions
 
 if TYPE_CHECKING:
     from hymeko_x.ir.mechanism import Extra, Mechanism
@@ -55,6 +56,7 @@ RULES: tuple[Rule, ...] = (
     make_names_usable,
     expand_screws,
     drop_loops_without_bodies,
+    drive_by_transmissions,
     drop_stale_groups,
     drop_unused_assets,
 )

@@ -1,8 +1,8 @@
 """The words of <ros2_control> that its reader and its writer share.
 
 Each command interface of a joint is an actuator. What it is for MuJoCo stands in parameters of the interface, which ros2_control hands to
-the hardware's plugin and reads no further; so a robot comes back with the same actuators. An interface without them belongs to a controller
-that nothing is known of, and is no actuator.
+the hardware's plugin and reads no further; so a robot comes back with the same actuators. Interfaces without them are commands that the
+hardware takes, as a transmission has them: which gains a controller has is not known.
 
 Source: ros2_control, hardware_interface/src/component_parser.cpp.
 """
@@ -20,6 +20,10 @@ PLUGIN = "mock_components/GenericSystem"
 """The hardware that ros2_control itself brings: it follows every command, until the robot's own plugin stands here."""
 NAME, TYPE, GEAR = "actuator", "actuator_type", "gear"
 """Parameters of an interface: name and type of the actuator, and its gear."""
+COMMAND = "command_interface"
+"""The parameters of a drive that are the command interfaces of its joint, in their order."""
+REDUCTIONS = ("mechanical_reduction", "mechanicalReduction")
+"""Below a joint of a <transmission> of a system: its reduction, in the words of ROS 2 and of ROS 1."""
 POSITION, VELOCITY, EFFORT = "position", "velocity", "effort"
 INTERFACES: Mapping[str, str] = MappingProxyType(
     {"position": POSITION, "velocity": VELOCITY, "intvelocity": VELOCITY, "motor": EFFORT, "general": EFFORT, "dcmotor": EFFORT}

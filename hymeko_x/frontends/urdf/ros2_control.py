@@ -10,6 +10,8 @@ from hymeko_x.ir.parts import Actuator, Drive
 from hymeko_x.xml.tree import read_numbers
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from hymeko_x.frontends.urdf.builder import UrdfBuilder
     from hymeko_x.ir.mechanism import RobotArc
     from hymeko_x.ir.parts import Parameters
@@ -17,18 +19,42 @@ if TYPE_CHECKING:
 
 
 def read_ros2_control(root: Node, builder: UrdfBuilder) -> None:
-    """Add an actuator for each command interface that says which one it is."""
+    """Add an actuator for each command interface that says which one it is, and one for all others of a joint together."""
     for system in (node for node in root.children if node.tag == words.TAG):
+        gears = dict(_gears(system))
         for joint in (node for node in system.children if node.tag == "joint"):
-            for interface in (node for node in joint.children if node.tag == "command_interface"):
-                _read_interface(interface, joint.attributes.get("name", ""), builder)
+            name, interfaces = joint.attributes.get("name", ""), [node for node in joint.children if node.tag == "command_interface"]
+            plain = [node for node in interfaces if not _read_interface(node, name, builder)]
+            if len(plain) == len(interfaces) > 0 and name in builder.joints:
+                _read_commands(plain, name, gears.get(name, ("", None)), builder)
 
 
-def _read_interface(node: Node, joint: str, builder: UrdfBuilder) -> None:
-    texts = {child.attributes.get("name", ""): (child.text or "").strip() for child in node.children if child.tag == "param"}
+def _gears(system: Node) -> Iterator[tuple[str, tuple[str, float | None]]]:
+    """Of each joint with a simple transmission in this system: the name of its actuator, and the reduction."""
+    for transmission in (node for node in system.children if node.tag == "transmission"):
+        joints, actuators = ([node for node in transmission.children if node.tag == tag] for tag in ("joint", "actuator"))
+        if len(joints) == len(actuators) == 1:
+            texts = [child.text or "" for child in joints[0].children if child.tag in words.REDUCTIONS]
+            numbers = read_numbers(texts[0]) if texts else None
+            yield joints[0].attributes.get("name", ""), (actuators[0].attributes.get("name", ""), numbers[0] if numbers else None)
+
+
+def _read_commands(interfaces: list[Node], joint: str, gear: tuple[str, float | None], builder: UrdfBuilder) -> None:
+    """The commands that the hardware takes for a joint, the first one with its parameters."""
+    name, reduction = gear
+    key = builder.fresh("actuator", name or joint, interfaces[0].origin)
+    builder.vertices[key] = Actuator("transmission", _parameters(_texts(interfaces[0])))
+    commands = tuple((words.COMMAND, node.attributes.get("name", "")) for node in interfaces)
+    arcs: tuple[RobotArc, ...] = Arc(key, 1), Arc(builder.joints[joint], -1, None if reduction is None else (reduction,))
+    builder.edges[builder.names.take("drive", key.name)] = Edge(Drive(words.TAG, commands), arcs)
+
+
+def _read_interface(node: Node, joint: str, builder: UrdfBuilder) -> bool:
+    """Add the actuator of an interface that says which one it is; whether it does."""
+    texts = _texts(node)
     kind = texts.pop(words.TYPE, "")
     if not kind or joint not in builder.joints:
-        return
+        return bool(kind)
     key = builder.fresh("actuator", texts.pop(words.NAME, "") or joint, node.origin)
     gear = read_numbers(texts.pop(words.GEAR, ""))
     for name in ("min", "max"):
@@ -36,6 +62,11 @@ def _read_interface(node: Node, joint: str, builder: UrdfBuilder) -> None:
     builder.vertices[key] = Actuator(kind, _parameters(texts))
     arcs: tuple[RobotArc, ...] = Arc(key, 1), Arc(builder.joints[joint], -1, gear or None)
     builder.edges[builder.names.take("drive", key.name)] = Edge(Drive(), arcs)
+    return True
+
+
+def _texts(node: Node) -> dict[str, str]:
+    return {child.attributes.get("name", ""): (child.text or "").strip() for child in node.children if child.tag == "param"}
 
 
 def _parameters(texts: dict[str, str]) -> Parameters:
