@@ -12,7 +12,6 @@ from hymeko_x.diagnostics import Report
 from hymeko_x.formats.hymeko import (
     ALIASES,
     AXES,
-    BASE_UNITS,
     CALIBRATION_WORDS,
     DOF_WORDS,
     LIMIT_WORDS,
@@ -22,6 +21,7 @@ from hymeko_x.formats.hymeko import (
     SAFETY_WORDS,
     SHAPE_WORDS,
 )
+from hymeko_x.formats.hymeko.units import BASE_UNITS
 from hymeko_x.frontends.hymeko import read
 from hymeko_x.ir.mechanism import KINDS
 from hymeko_x.language.expansion import MAX_ITEMS

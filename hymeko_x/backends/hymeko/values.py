@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from msgspec import Struct
 
-from hymeko_x.formats.hymeko import TURNING, unit_factor
+from hymeko_x.formats.hymeko import TURNING
+from hymeko_x.formats.hymeko.units import unit_factor
 from hymeko_x.ir import parts
 from hymeko_x.ir.values import NO_ROTATION, Pose, number_text
 from hymeko_x.language.syntax import Quantity, Query, Ref

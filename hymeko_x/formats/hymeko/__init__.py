@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-import re
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -48,6 +46,11 @@ def _numbers(words: str) -> tuple[Word, ...]:
     return tuple(map(_number, words.split()))
 
 
+def _forces(words: str) -> tuple[Word, ...]:
+    """Numbers whose dimension has the name of the word (:mod:`hymeko_x.formats.hymeko.units`)."""
+    return tuple(_number(word, word) for word in words.split())
+
+
 def _motions(words: str) -> tuple[Word, ...]:
     """Numbers along a dof: dimension ``motion`` is an angle for dofs that turn and a length for dofs that slide."""
     return tuple(_number(word, "motion") for word in words.split())
@@ -89,7 +92,7 @@ PARTS: Mapping[str, PartWords] = MappingProxyType(
         "coupling": PartWords(parts.Coupling, (_ACTIVE,)),
         "loop": PartWords(parts.Loop, (_TYPE, _ACTIVE), open=True),
         "tendon": PartWords(
-            parts.Tendon, (_TYPE, *_numbers("damping stiffness friction armature"), _number("width", "length"), _RGBA), open=True
+            parts.Tendon, (_TYPE, *_forces("damping stiffness friction armature"), _number("width", "length"), _RGBA), open=True
         ),
         "drive": PartWords(parts.Drive, (_TYPE,), open=True),
         "sense": PartWords(parts.Sense, ()),
@@ -158,13 +161,13 @@ ALIASES: Mapping[str, Mapping[str, str]] = MappingProxyType(
 )
 """Other words for fields, from the published examples; read, never printed."""
 
-LIMIT_WORDS = (*_motions("lower upper velocity"), _number("effort"), *_motions("acceleration jerk"))
+LIMIT_WORDS = (*_motions("lower upper velocity"), *_forces("effort"), *_motions("acceleration jerk"))
 """Bounds of a dof."""
 
 DOF_WORDS = (
-    *_numbers("damping friction stiffness"),
+    *_forces("damping friction stiffness"),
     _number("spring_ref", "motion"),
-    _number("armature"),
+    *_forces("armature"),
     _number("ref", "motion"),
     Word("anchor", "anchor", "vec3", "length"),
     _number("pitch", "length"),
@@ -173,7 +176,7 @@ DOF_WORDS = (
 SAFETY_WORDS = (*_numbers("k_velocity k_position"), *_motions("soft_lower soft_upper"))
 CALIBRATION_WORDS = _motions("rising falling reference")
 
-SHAPE_WORDS = (_NAME, _RGBA, _MASS, _number("density"), Word("friction", "friction", "numbers"))
+SHAPE_WORDS = (_NAME, _RGBA, _MASS, *_forces("density"), Word("friction", "friction", "numbers"))
 
 SHAPE_ROLES: Mapping[parts.Role, str] = MappingProxyType(
     {parts.Role.VISUAL: "visual", parts.Role.COLLISION: "collision", parts.Role.BOTH: "shape"}
@@ -317,75 +320,3 @@ def attached_edge(vertex: Id, arcs: tuple[RobotArc, ...]) -> RobotEdge:
             return Edge(parts.Joint(()), (*arcs, Arc(vertex, -1)))
         case _:
             return Edge(parts.Mount(), (*arcs, Arc(vertex, -1)))
-
-
-# ---- units -------------------------------------------------------------------------------------------------------------
-
-_LENGTH = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "um": 1e-6, "µm": 1e-6, "in": 0.0254, "ft": 0.3048}
-_ANGLE = {"rad": 1.0, "deg": math.pi / 180.0, "°": math.pi / 180.0, "rev": 2.0 * math.pi, "mrad": 1e-3}
-_MASSES = {"kg": 1.0, "g": 1e-3, "mg": 1e-6, "t": 1e3, "lb": 0.45359237}
-_TIME = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0, "h": 3600.0}
-_FORCE = {"N": 1.0, "kN": 1e3, "mN": 1e-3}
-_OTHER = {"Hz": 1.0, "kHz": 1e3, "rpm": 2.0 * math.pi / 60.0, "Nm": 1.0, "Nmm": 1e-3, "Pa": 1.0, "kPa": 1e3, "MPa": 1e6}
-_OTHER |= {"W": 1.0, "V": 1.0, "A": 1.0, "%": 1e-2}
-
-BASE_UNITS: Mapping[str, Mapping[str, float]] = MappingProxyType({"length": _LENGTH, "angle": _ANGLE, "mass": _MASSES, "time": _TIME})
-"""The dimensions that a `units { }` block may set, and their units."""
-
-_FACTORS = {**_LENGTH, **_ANGLE, **_MASSES, **_TIME, **_FORCE, **_OTHER}
-
-
-def unit_factor(unit: str) -> float | None:
-    """The SI value of one ``unit`` (``deg``, ``rad/s``, ``kg*m^2``, ``Nm``), or None when it is not known."""
-    if unit in _FACTORS:
-        return _FACTORS[unit]
-    factor = 1.0
-    sign = 1
-    for part in unit.replace("/", " / ").replace("*", " ").replace("·", " ").replace("-", " ").split():
-        if part == "/":
-            sign = -1
-            continue
-        name, _, power = part.partition("^")
-        if name not in _FACTORS or not (power.isdecimal() or not power):
-            return None
-        factor *= _FACTORS[name] ** (sign * int(power or "1"))
-        sign = 1
-    return factor
-
-
-_EXPONENTS: Mapping[str, tuple[int, int, int, int]] = MappingProxyType(
-    {
-        **dict.fromkeys(_LENGTH, (1, 0, 0, 0)),
-        **dict.fromkeys(_MASSES, (0, 1, 0, 0)),
-        **dict.fromkeys(_TIME, (0, 0, 1, 0)),
-        **dict.fromkeys(_ANGLE, (0, 0, 0, 1)),
-        **dict.fromkeys(_FORCE, (1, 1, -2, 0)),
-        **dict.fromkeys(("Nm", "Nmm"), (2, 1, -2, 0)),
-        **dict.fromkeys(("Hz", "kHz"), (0, 0, -1, 0)),
-        "rpm": (0, 0, -1, 1),
-    }
-)
-"""The exponents of length, mass, time and angle in the mechanical units."""
-
-
-def unit_exponents(unit: str) -> tuple[int, int, int, int] | None:
-    """The exponents of length, mass, time and angle in a unit: (0, 1, -2, 0) for ``N/m``. None where it is not mechanical."""
-    total = [0, 0, 0, 0]
-    sign = 1
-    for part in unit.replace("/", " / ").replace("*", " ").replace("·", " ").replace("-", " ").split():
-        if part == "/":
-            sign = -1
-            continue
-        name, _, power = part.partition("^")
-        if name not in _EXPONENTS:
-            return None
-        total = [old + sign * int(power or "1") * new for old, new in zip(total, _EXPONENTS[name], strict=True)]
-        sign = 1
-    length, mass, time, angle = total
-    return (length, mass, time, angle)
-
-
-def unit_dimension(unit: str) -> str:
-    """The dimension of the first factor of a unit (``rad/s``: angle), or nothing when that is none of the base dimensions."""
-    first = re.split(r"[/*·^-]", unit, maxsplit=1)[0]
-    return next((dimension for dimension, units in BASE_UNITS.items() if first in units), "")

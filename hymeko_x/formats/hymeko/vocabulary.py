@@ -6,16 +6,14 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from hymeko_x.formats.hymeko import (
-    BASE_UNITS,
     DOF_WORDS,
     LIMIT_WORDS,
     PARTS,
     SHAPE_ROLES,
     SHAPE_WORDS,
     SOLIDS,
-    unit_exponents,
-    unit_factor,
 )
+from hymeko_x.formats.hymeko.units import BASE_UNITS, unit_exponents, unit_factor
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from hymeko_x.formats.hymeko import SHAPE_ROLES, SHAPE_WORDS, SOLIDS, attached_edge
 from hymeko_x.frontends.hymeko.block import Block
 from hymeko_x.frontends.hymeko.builder import sign_of
+from hymeko_x.frontends.hymeko.values import describe
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import Id, file_stem, shape_edge
 from hymeko_x.ir.values import IDENTITY, ZERO, Pose, Tensor, Vec3, rotate_tensor
@@ -31,7 +32,7 @@ def read_body(builder: HymekoBuilder, key: Id, element: Element) -> None:
     block = Block([item for item in items if not _is_shape(item) and not is_base_arc(item)], builder.reader)
     place = _place(block)
     inertial = _inertial(block, place)
-    color = block.take("color")
+    color = block.take("color") if any(map(_is_seen, items)) else None
     if key.kind == "body":
         builder.vertices[key] = parts.Body(inertial)
     for item in items:
@@ -85,6 +86,10 @@ def read_fixed(builder: HymekoBuilder, key: Id, element: Element) -> None:
 
 def _is_shape(item: Item) -> bool:
     return (isinstance(item, Node | Field) and item.name in _ROLES) or (isinstance(item, ArcItem) and item.role in _ROLES)
+
+
+def _is_seen(item: Item) -> bool:
+    return _is_shape(item) and (item.role if isinstance(item, ArcItem) else getattr(item, "name", "")) != "collision"
 
 
 def _is_referenced(items: tuple[Item, ...], node: Node) -> bool:
@@ -141,12 +146,16 @@ def _inertial(block: Block, place: Pose) -> parts.Inertial | None:
         None if mass is None else reader.finite((reader.number(mass.value, "mass", mass),), mass)[0],
         place.xyz if com is None else reader.vec3(com.value, "length", com),
     )
+    if tensor is None and axes is not None:
+        raise reader.refuse(axes, "'axes' are those of an 'inertia', and there is none")
     if tensor is None:
         return inertial
     local = _tensor(tensor, reader)
     if axes is None:
         return replace(inertial, tensor=local)
-    turn = cast("tuple[Value, ...]", axes.value)
+    turn = axes.value
+    if not is_list(turn):
+        raise reader.refuse(axes, f"'axes' takes [roll pitch yaw] or [w x y z], not {describe(turn)}")
     frame = reader.pose((ZERO, *turn) if turn and isinstance(turn[0], str) else (ZERO, turn), axes)
     written = parts.InertialWritten(replace(frame, xyz=inertial.com), local)
     return replace(inertial, tensor=rotate_tensor(frame.quat, local), written=written)

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x.formats.hymeko import ALIASES, LUMPED_UNITS, TARGETS, unit_exponents
+from hymeko_x.formats.hymeko import ALIASES, LUMPED_UNITS, TARGETS
+from hymeko_x.formats.hymeko.units import unit_exponents
 from hymeko_x.ir import lumped, parts
 from hymeko_x.language.syntax import Field, Quantity
 

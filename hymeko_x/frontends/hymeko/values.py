@@ -10,7 +10,7 @@ from msgspec import Struct, field
 
 from hymeko_x import codes
 from hymeko_x.diagnostics import Origin, Refusal, Report, refuse
-from hymeko_x.formats.hymeko import BASE_UNITS, unit_dimension, unit_factor
+from hymeko_x.formats.hymeko.units import BASE_UNITS, fits, fitting_units, unit_dimension, unit_factor
 from hymeko_x.ir.values import Pose, Vec3, Written, numbers_text, pose, pose_from_rpy
 from hymeko_x.ir.written import NOTATIONS, number_count, pose_as_written
 from hymeko_x.language.syntax import ArcItem, Field, Item, Node, Quantity, Query, Ref, Value, is_list, origin_of
@@ -52,10 +52,10 @@ class ValueReader(Struct):
             if factor is None:
                 hint = "lengths m mm, angles rad deg, mass kg g, time s ms, and products such as kg*m^2 or rad/s"
                 raise self.refuse(item, f"'{value.unit}' is not a unit that is known", hint=hint)
-            kind = unit_dimension(value.unit)
-            if dimension in BASE_UNITS and kind and kind != dimension:
-                message = f"{name_of(item)} takes a unit of {dimension}, and '{value.unit}' is one of {kind}"
-                raise self.refuse(item, message, hint=f"such as {', '.join(list(BASE_UNITS[dimension])[:4])}")
+            if not fits(value.unit, dimension):
+                kind = unit_dimension(value.unit)
+                message = f"{name_of(item)} takes a unit of {dimension}, and '{value.unit}' is {f'one of {kind}' if kind else 'none'}"
+                raise self.refuse(item, message, hint=f"such as {', '.join(fitting_units(dimension))}")
             return value.number * factor
         raise self.refuse(item, f"{name_of(item)} takes a number, not {describe(value)}")
 
