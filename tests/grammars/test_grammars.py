@@ -81,6 +81,12 @@ def test_ten_thousand_random_walks_give_no_syntax_error(name: str) -> None:
     assert walks(name, range(10_000))["text"] > 9_000
 
 
+@pytest.mark.parametrize("text", ["a : b(x /* y) */ = 1) {}", "a : b(x // y)\n = 1) {}", "a(x /* y) */) {}", "a(x /*/*0 y\n */){}"])
+def test_a_comment_behind_the_first_name_in_parentheses_is_no_expression(text: str) -> None:
+    assert accepts("llguidance", text)
+    assert is_parsed(text)
+
+
 # ---- mutated texts ---------------------------------------------------------------------------------------------------------------
 
 SMALL = re.findall(r"```hymeko\n(.*?)```", (ROOT / "docs/language.md").read_text("utf-8"), re.DOTALL)
