@@ -10,9 +10,18 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Sequence
 
 _SIDES = "left right l r front rear hind back middle mid fl fr rl rr hl hr bl br ml mr lf rf lr lh rh lb rb lm rm"
-_KINDS = "joint link body geom shape mesh part visual collision frame robot motor actuator act jnt"
+_KINDS = "joint link body geom shape mesh part visual collision frame robot motor actuator act jnt torq mat"
 _PLAIN: frozenset[str] = frozenset(f"{_SIDES} {_KINDS}".split())
 """Words that say on which side an element is, or of which kind; they tell nothing of what it is."""
+
+_HUMP = re.compile(r"(?<=[a-z])(?=[A-Z])|(?<=[A-Z])(?=[A-Z][a-z])")
+_SIDE = re.compile(r"(?:left|right)(?=[a-z]{3})", re.IGNORECASE)
+_LIMBS = {
+    "leg": "leg hip thigh knee shin calf ankle foot toe femur tibia",
+    "arm": "arm shoulder elbow wrist forearm upperarm",
+    "finger": "finger thumb index ring little pinky ffj mfj rfj lfj thj",
+}
+_LIMB_OF = {word: limb for limb, words in _LIMBS.items() for word in words.split()}
 
 
 def words_of(name: str) -> list[str]:
@@ -21,8 +30,15 @@ def words_of(name: str) -> list[str]:
 
 
 def telling_words(name: str, plain: Collection[str] = ()) -> list[str]:
-    """The words of a name that tell what it is, without ``plain`` ones."""
-    return [word for word in words_of(name) if len(word) > 2 and word.lower() not in _PLAIN and word not in plain]
+    """The words of a name that tell what it is, without ``plain`` ones: ``finger`` of ``left_finger1`` and of ``leftFinger``."""
+    words = [_SIDE.sub("", part) for word in words_of(name) for part in _HUMP.split(word)]
+    return [word for word in dict.fromkeys(words) if len(word) > 2 and word.lower() not in _PLAIN and word not in plain]
+
+
+def limb(names: Iterable[str]) -> str:
+    """``leg``, ``arm`` or ``finger`` where each of these names has a word for a part of that; empty otherwise."""
+    limbs = {next((_LIMB_OF[word] for word in map(str.lower, telling_words(name)) if word in _LIMB_OF), "") for name in names}
+    return limbs.pop() if len(limbs) == 1 else ""
 
 
 _LEFT = frozenset(["left", "l", "fl", "rl", "hl", "bl", "ml", "lf", "lr", "lh", "lb", "lm"])

@@ -53,14 +53,14 @@ arm : robot {
 }
 """) == (
         "arm : robot {\n"
-        "  axle() { limit [-90 90] velocity 120 effort 87 }\n"
+        "  arm_joint() { limit [-90 90] velocity 120 effort 87 }\n"
         "  base {}\n"
         "  upper {}\n"
         "  fore {}\n"
         "  hand {}\n"
-        "  @shoulder : axle { [0 0 0.3] + base - upper axis=Y }\n"
-        "  @elbow : axle { [0 0 0.3] + upper - fore axis=Y }\n"
-        "  @wrist : axle { [0 0 0.3] + fore - hand axis=X }\n"
+        "  @shoulder : arm_joint { [0 0 0.3] + base - upper axis=Y }\n"
+        "  @elbow : arm_joint { [0 0 0.3] + upper - fore axis=Y }\n"
+        "  @wrist : arm_joint { [0 0 0.3] + fore - hand axis=X }\n"
         "}\n"
     )
 

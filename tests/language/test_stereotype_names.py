@@ -50,3 +50,29 @@ def test_shapes_are_called_after_what_their_bodies_are() -> None:
     text = _printed(*(f"{size}_wheel|{shape}" for size in ("big", "small", "thin", "fat")))
     assert _stereotypes(text) == ["wheel", "wheel_hull", "wheel_joint"]
     assert hx.loads(text.encode(), "hymeko") == hx.loads(hx.dumps(hx.loads(text.encode(), "hymeko"), "hymeko").encode(), "hymeko")
+
+
+def _joints(*pairs: str) -> list[str]:
+    """The stereotypes of a HyMeKo robot with these joints, each ``name|child``, that share much."""
+    ends = [pair.split("|") for pair in pairs]
+    bodies = " ".join(f"{child} {{ mass {number} }}" for number, (_, child) in enumerate(ends, 1))
+    joints = " ".join(f"@{name} {{ + base - {child} axis=Y limit [-61 61] effort 41 velocity 121 damping 0.125 }}" for name, child in ends)
+    return _stereotypes(hx.dumps(hx.loads(f"r : robot {{ base {{}} {bodies} {joints} }}", "hymeko"), "hymeko"))
+
+
+def test_joints_of_one_limb_are_called_after_it() -> None:
+    assert _joints("shoulder_pan|a", "elbow|b", "wrist_1|c", "wrist_2|d") == ["arm_joint"]
+    assert _joints("RHipPitch|a", "RKneePitch|b", "LHipRoll|c", "LAnkleRoll|d") == ["leg_joint"]
+    assert _joints("index_finger_joint1|a", "index_finger_joint2|b", "little_finger_joint1|c", "little_finger_joint2|d") == ["finger_joint"]
+
+
+def test_joints_called_by_number_are_called_after_what_they_move() -> None:
+    assert _joints("j1|left_wheel", "j2|right_wheel", "j3|third_wheel") == ["wheel_joint"]
+
+
+def test_shapes_beside_their_bodies_are_called_after_the_side() -> None:
+    shape = "box [0.0625 0.125 0.25] rgba [0.125 0.25 0.5] name=x"
+    places = ("0 0.03125 0", "0 0.03125 0", "0 -0.03125 0", "0 -0.03125 0")
+    legs = " ".join(f"hip{n} {{ mass {n} visual {{ {shape}{n} at [[{place}] [12.25 34.5 56.75]] }} }}" for n, place in enumerate(places, 1))
+    text = hx.dumps(hx.loads(f"r : robot {{ {legs} }}", "hymeko"), "hymeko")
+    assert _stereotypes(text) == ["hip", "right_hip_look", "left_hip_look"]

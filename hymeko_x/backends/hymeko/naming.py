@@ -6,9 +6,9 @@ import re
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from hymeko_x.factor.words import common_words, meaning, side, telling_words
+from hymeko_x.factor.words import common_words, limb, meaning, side, telling_words
 from hymeko_x.ir.values import number_text
-from hymeko_x.language.syntax import Field, Ref, is_list
+from hymeko_x.language.syntax import ArcItem, Field, Ref, is_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -37,6 +37,8 @@ _TYPES = {
 """What a stereotype is called, alone or behind other words, by the type of its elements."""
 _BEHIND = {"": "body", "@": "axis", "visual": "look", "collision": "hull"}
 """What stands behind other words instead, where that is shorter or not the word of a kind."""
+_TELLING = {"inertia [1 1 1]": "unit_inertia", "mode=trackcom": "tracking_camera"}
+"""Names for what a stereotype gives alone."""
 _EFFORTS = ("effort", "forcerange", "ctrlrange")
 _ROTATIONS = {"X": "roll", "Y": "pitch", "Z": "yaw"}
 _SHORT = 12
@@ -51,11 +53,14 @@ def names(kind: str, units: Sequence[Unit], members: Sequence[Element]) -> Itera
     plain = _TYPES.get(kind, f"{kind}_kind" if kind.isidentifier() else "kind")
     behind = _BEHIND.get(kind, plain.removesuffix("_kind"))
     found = [given.get("class", "")]
+    texts = [unit.text for unit in units]
     if len(units) == 1:
         found += [given.get("material", ""), given.get("mesh", "")]
     is_inside = len(members[0].path) > 1
+    found += _by_mesh(given.get("mesh", ""), members, behind)
     found += _by_owners(members, behind, is_inside=is_inside, sides=kind != "dof")
-    found += [given.get("material", ""), given.get("mesh", "")]
+    found += [given.get("material", ""), given.get("mesh", ""), *(name for text, name in _TELLING.items() if [text] == texts)]
+    yield from _by_place(units, members, behind)
     yield from sorted(filter(_WORD.fullmatch, found), key=lambda name: len(name) > _SHORT)
     yield plain
     if not is_inside or kind == "dof":
@@ -75,10 +80,45 @@ def _by_owners(members: Sequence[Element], behind: str, *, is_inside: bool, side
         yield from ([f"{where}_{own}"] if where else [])
         yield f"{own}_{behind}"
         yield from ([f"{where}_{own}_{behind}"] if where else [])
+    else:
+        around = meaning(_ends(members)) or _by_assembly(members)
+        yield f"{around}_{'joint' if behind == _BEHIND['@'] else behind}" if around else ""
     counts = Counter(word for owner in owners for word in dict.fromkeys(telling_words(owner)))
     most = max(counts, key=lambda word: counts[word], default="")
     if 2 * counts[most] > len(owners):
         yield from (most, f"{most}_{behind}")
+
+
+def _by_assembly(members: Sequence[Element]) -> str:
+    """What elements are a part of, by their names with those of their assemblies: ``wrist``, ``finger``, ``leg``; empty for none."""
+    full = [f"{member.home}_{member.owner}" for member in members]
+    return meaning(full) or limb(full)
+
+
+def _ends(members: Sequence[Element]) -> list[str]:
+    """The bodies to which joints lead that are called by number."""
+    if any(telling_words(member.owner) for member in members):
+        return [""]
+    arcs = [[item for item in member.node.items if isinstance(item, ArcItem) and item.ref.direction == "-"] for member in members]
+    return [found[0].ref.path[-1] if member.node.edge and found else "" for member, found in zip(members, arcs, strict=True)]
+
+
+def _by_mesh(mesh: str, members: Sequence[Element], behind: str) -> Iterator[str]:
+    """A name from a mesh that is another thing than the bodies: ``foot_look`` of the mesh ``foot`` at each calf."""
+    words = telling_words(mesh)
+    if words and not any(set(words) & set(telling_words(member.owner)) for member in members):
+        yield f"{'_'.join(words)}_{behind}"
+
+
+def _by_place(units: Sequence[Unit], members: Sequence[Element], behind: str) -> Iterator[str]:
+    """A name from the side to which shapes are moved, along y, where their bodies have no side: ``left_hip_look``."""
+    own = meaning([member.owner for member in members])
+    if any(side([f"{member.home}_{member.owner}"]) for member in members):
+        return
+    value = units[0].item.value if own and units[0].slot == "at" and isinstance(units[0].item, Field) else None
+    place = value[0] if is_list(value) and is_list(value[0]) else value
+    if is_list(place) and len(place) == 3 and isinstance(place[1], float) and place[0] == place[2] == 0.0 != place[1]:
+        yield f"{'left' if place[1] > 0.0 else 'right'}_{own}_{behind}"
 
 
 def _by_values(units: Iterable[Unit], plain: str) -> Iterator[str]:

@@ -55,9 +55,11 @@ def with_stereotypes(items: Sequence[Item], taken: Iterable[str] = (), given: Gi
     """
     items, classes = unmarked(items)
     names = {*standard_templates(), *RESERVED, *taken, *(given or ()), *_names_of_elements(items)}
+    common = {home for home, count in Counter(homes).items() if 3 * count > len(homes)}  # those tell no element from another
     groups: dict[tuple[str, str], list[Element]] = {}
     for element in elements(items):
-        element.home = homes[element.path[0]] if homes else ""
+        home = homes[element.path[0]] if homes else ""
+        element.home = "" if home in common else home
         groups.setdefault(group(element), []).append(element)
     definitions: list[_Definition] = []
     changed: dict[tuple[int, ...], Node] = {}
