@@ -345,6 +345,8 @@ COM_OUTSIDE = Code(
     "a centre of mass lies far outside of its body",
     "The centre of mass is farther from the box around the body's shapes than half of its diagonal. Often it was given in another frame or unit, or in that of the joint.",
 )
+REPAIRED = Code("HX321", "a fault was repaired", "`check --fix` repaired the fault in the author's text; docs/verify.md lists which faults it repairs, and how.")
+
 # ---- HX4xx: dynamics -------------------------------------------------------------------------------------------------
 NO_DYNAMICS = Code(
     "HX400",

@@ -152,6 +152,7 @@ NOTES: Mapping[Code, str] = {
     codes.EDIT_REWRITTEN: "the edit is there, in an element that was printed anew",
     codes.OPTIONS_FOUND: "they explain the edited file best",
     codes.REWRITTEN: "the output is the same robot in other words",
+    codes.REPAIRED: "it was asked for, and each repair is in the list",
     codes.READ_BESIDE: "it belongs to the robot",
     codes.FOR_TARGET: "it was asked for, and belongs to the robot from then on",
     codes.RENAMED: "references follow, and the name was no name in the target",

@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 
 _LARGEST = 1e3  # m; larger sizes were probably written in millimetres
 _MOST_RADIANS = 100.0  # a hinge that turns further was probably written in degrees
-_LEAST_MASS = 1e-15  # kg; below it engines divide by zero
+LEAST_MASS = 1e-15  # kg; below it engines divide by zero
 _EDGE = 1e-9  # relative: rounding of principal moments at the edge of the triangle inequality
-_UNIT_LENGTH = 1e-6  # by which the length of an axis may differ from 1: single precision
+UNIT_LENGTH = 1e-6  # by which the length of an axis may differ from 1: single precision
 _MOST_NAMED = 5  # roots named in a message
 
 
@@ -148,7 +148,7 @@ def _check_numbers(found: _Findings, declared: Declared) -> None:
 
 def _check_dof(found: _Findings, key: Id, dof: parts.Dof) -> None:
     """A direction where one is needed, and limits that leave room to move."""
-    if dof.kind not in (parts.DofKind.BALL, parts.DofKind.FREE) and not abs(math.hypot(*dof.axis) - 1.0) < _UNIT_LENGTH:
+    if dof.kind not in (parts.DofKind.BALL, parts.DofKind.FREE) and not abs(math.hypot(*dof.axis) - 1.0) < UNIT_LENGTH:
         found.error(codes.ZERO_AXIS, key, f"{key} has no direction to move in: its axis is {dof.axis}")
     _check_limits(found, key, dof)
     numbers = {"effort limit": dof.limits.effort, "velocity limit": dof.limits.velocity}
@@ -181,7 +181,7 @@ def _check_inertia(found: _Findings) -> None:
             _check_inertial(found, key, body.inertial)
             _check_centre(found, key, body.inertial)
         view = mechanism.parent_joint.get(key)
-        if view is not None and view.joint.dofs and _group_mass(mechanism, key) < _LEAST_MASS:
+        if view is not None and view.joint.dofs and _group_mass(mechanism, key) < LEAST_MASS:
             message = f"{key} moves and has no mass, nor has anything that is fixed to it"
             found.error(codes.NO_INERTIA, key, message, "give it a mass and an inertia tensor")
 
@@ -200,20 +200,27 @@ def _check_inertial(found: _Findings, key: Id, inertial: parts.Inertial) -> None
     mass = inertial.mass
     if mass is not None and not (math.isfinite(mass) and mass >= 0.0):
         found.error(codes.BAD_MASS, key, f"{key} has mass {mass!r}", "a mass is a positive number of kg")
-    if inertial.tensor is None:
-        return
-    if not all(map(math.isfinite, inertial.tensor)):
-        found.error(codes.BAD_TENSOR, key, f"the inertia tensor of {key} has numbers that are not finite")
-        return
-    low, middle, high = principal_moments(inertial.tensor)
-    hint = f"a solid of {mass:g} kg and 0.1 m has about {(mass or 0.0) * 0.01 / 6:.2g} kg m^2" if mass else ""
+    fault = tensor_fault(inertial)
+    if fault is not None:
+        hint = f"a solid of {mass:g} kg and 0.1 m has about {(mass or 0.0) * 0.01 / 6:.2g} kg m^2" if mass else ""
+        is_finite = all(map(math.isfinite, inertial.tensor or ()))
+        found.error(codes.BAD_TENSOR, key, fault.format(key), hint if is_finite else "")
+
+
+def tensor_fault(inertial: parts.Inertial) -> str | None:
+    """Why no body can have this tensor, with ``{}`` for the body; None where one can, or nothing is given."""
+    tensor = inertial.tensor
+    if tensor is None:
+        return None
+    if not all(map(math.isfinite, tensor)):
+        return "the inertia tensor of {} has numbers that are not finite"
+    low, middle, high = principal_moments(tensor)
     moments = f"{low:.6g}, {middle:.6g}, {high:.6g}"
-    if low < -_EDGE * high or (mass and low <= 0.0 and high <= 0.0):
-        message = f"the inertia tensor of {key} is not positive definite: its principal moments are {moments}"
-        found.error(codes.BAD_TENSOR, key, message, hint)
-    elif low + middle < high * (1.0 - _EDGE):
-        message = f"no body can have the inertia tensor of {key}: of {moments} the last exceeds the sum of the others"
-        found.error(codes.BAD_TENSOR, key, message, hint)
+    if low < -_EDGE * high or (inertial.mass and low <= 0.0 and high <= 0.0):
+        return f"the inertia tensor of {{}} is not positive definite: its principal moments are {moments}"
+    if low + middle < high * (1.0 - _EDGE):
+        return f"no body can have the inertia tensor of {{}}: of {moments} the last exceeds the sum of the others"
+    return None
 
 
 def _check_centre(found: _Findings, key: Id, inertial: parts.Inertial) -> None:

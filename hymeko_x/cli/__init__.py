@@ -44,7 +44,7 @@ GROUPS: Mapping[str, Mapping[str, Verb]] = {
     },
     "look": {
         "info": Verb("info", "what is in a file"),
-        "check": Verb("info", "is a robot complete and sane? for people and for repair loops"),
+        "check": Verb("check", "is a robot complete and sane? for people and for repair loops; --fix repairs it"),
         "graph": Verb("graph", "draw the hypergraph: kinematic tree, or vertices, edges and arcs"),
         "view": Verb("view", "robots in the browser: sliders, two side by side, what verify finds in red"),
         "render": Verb("render", "draw a robot, or a film of its joints, without a screen"),

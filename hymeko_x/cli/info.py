@@ -1,12 +1,10 @@
-"""`hymeko-x info`, `check`, `formats` and `explain`: what is in a file, whether it is sane, what can be read, and what a code means."""
+"""`hymeko-x info`, `formats` and `explain`: what is in a file, what can be read, and what a code means."""
 
 from __future__ import annotations
 
-import argparse
 import json
 import textwrap
 from collections import Counter
-from functools import partial
 from typing import TYPE_CHECKING
 
 from hymeko_x import formats, targets
@@ -15,16 +13,17 @@ from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.codes import CODES
-from hymeko_x.diagnostics import Report, Severity
+from hymeko_x.diagnostics import Report
 from hymeko_x.ir import parts
 from hymeko_x.ir.mechanism import WORLD
 from hymeko_x.severities import reasons
 
 if TYPE_CHECKING:
+    import argparse
+
     from hymeko_x.cli.inputs import Input
     from hymeko_x.ir.mechanism import Id, Mechanism
 
-PROFILES = ("kinematics", "simulation", "display", "complete")
 COORDINATES = {parts.DofKind.BALL: 3, parts.DofKind.FREE: 6}
 """Degrees of freedom of the dofs that have more than one."""
 
@@ -100,68 +99,6 @@ def _text(value: object) -> str:
     if isinstance(value, dict):
         return ", ".join(f"{count} {name}" if isinstance(count, int) else f"{name} ({count})" for name, count in value.items()) or "none"
     return f"{value:.6g}" if isinstance(value, float) else str(value)
-
-
-# ---- check -------------------------------------------------------------------------------------------------------------
-
-
-def check_arguments(parser: argparse.ArgumentParser) -> None:
-    """The options of `check`."""
-    parser.add_argument("inputs", nargs="+", metavar="FILE", help="the robot to check, or several; - is standard input")
-    parser.add_argument("--profile", action="append", choices=PROFILES, help="what it is for (repeatable; default: all but complete)")
-    parser.add_argument("--links", type=_count, metavar="N", help="how many links there should be")
-    parser.add_argument("--joints", type=_count, metavar="N", help="how many joints there should be")
-    parser.add_argument(
-        "--fail-on", choices=("error", "warning"), default="error", help="exit 3 when one of these was found (default error)"
-    )
-    parser.add_argument("--json", action="store_true", help="print JSON")
-    input_arguments(parser)
-
-
-def run_check(chosen: argparse.Namespace) -> int:
-    """Print what is wrong; exit 3 when it is bad enough in one of the files, 1 when one cannot be read."""
-    if len(chosen.inputs) == 1:
-        return _check(chosen.inputs[0], chosen)
-    if chosen.json:
-        raise UsageError("--json is for one robot at a time")
-    codes = [exits.guarded("check", partial(_check, path, chosen)) for path in chosen.inputs]
-    return next((code for code in (exits.BUG, exits.FAILED, exits.FAIL_ON) if code in codes), exits.DONE)
-
-
-def _check(path: str, chosen: argparse.Namespace) -> int:
-    from hymeko_x.validation import USUAL, Declared, Profile, validate
-
-    report = Report()
-    given = read_input(path, chosen, report, anyway=True)
-    profiles = [Profile(word) for word in chosen.profile] if chosen.profile else USUAL
-    validate(given.mechanism, given.source.files, report, profiles, Declared(chosen.links, chosen.joints))
-    failed = report.worst in ((Severity.ERROR,) if chosen.fail_on == "error" else (Severity.ERROR, Severity.WARNING))
-    if chosen.json:
-        print(json.dumps(_check_json(given, report, passed=not failed), indent=2, ensure_ascii=False))
-    else:
-        show_diagnostics(report, chosen)
-        print(_summary(report) if len(chosen.inputs) == 1 else f"{path}: {_summary(report)}")
-    return exits.FAIL_ON if failed else exits.DONE
-
-
-def _check_json(given: Input, report: Report, *, passed: bool) -> dict[str, object]:
-    """The document of `--json`; diagnostics have the keys of `convert --report`."""
-    source = {"path": given.source.name, "format": given.format.name}
-    return {"source": source, "passed": passed, "diagnostics": [diagnostic.as_json() for diagnostic in report]}
-
-
-def _summary(report: Report) -> str:
-    """How many of each severity there are."""
-    counts = {severity: sum(d.severity is severity for d in report) for severity in (Severity.ERROR, Severity.WARNING)}
-    if not any(counts.values()):
-        return "nothing is wrong"
-    return ", ".join(f"{count} {severity.value}{'s' if count != 1 else ''}" for severity, count in counts.items() if count)
-
-
-def _count(text: str) -> int:
-    if not text.isascii() or not text.isdigit():
-        raise argparse.ArgumentTypeError(f"expected a number, found '{text}'")
-    return int(text)
 
 
 # ---- formats and codes -------------------------------------------------------------------------------------------------

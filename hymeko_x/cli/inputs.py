@@ -91,11 +91,16 @@ def lenient_argument(parser: argparse.ArgumentParser) -> None:
 
 def shape_arguments(parser: argparse.ArgumentParser) -> None:
     """Options for bodies without inertia, and for meshes that collide."""
+    inertia_arguments(parser)
+    convex = "replace concave meshes that collide by their convex hulls, or by convex parts (CoACD)"
+    parser.add_argument("--collision", choices=("hull", "decompose"), help=convex)
+
+
+def inertia_arguments(parser: argparse.ArgumentParser) -> None:
+    """Options for bodies without inertia."""
     given = "give bodies without inertia that of their shapes (default 1000 where --inertia-from is given)"
     parser.add_argument("--density", type=_density, metavar="KG_PER_M3", help=given)
     parser.add_argument("--inertia-from", choices=("collision", "visual", "hull"), help="of which shapes (default collision)")
-    convex = "replace concave meshes that collide by their convex hulls, or by convex parts (CoACD)"
-    parser.add_argument("--collision", choices=("hull", "decompose"), help=convex)
 
 
 def _density(text: str) -> float:
