@@ -34,9 +34,19 @@ def with_names(mechanism: Mechanism, change: Callable[[str], str], *, is_part: b
         key: replace(edge, data=_edge_named(edge.data, change), arcs=_arcs(edge, graph.edges, change)) for key, edge in graph.edges.items()
     }
     pairs = ((key, Id(key.kind, change(key.name))) for table in (vertices, edges) for key in table if key != WORLD)
-    renamed = rename(replace(mechanism, graph=Hypergraph(vertices, edges)), {old: new for old, new in pairs if old != new})
+    names = {old: new for old, new in pairs if old != new}
+    renamed = with_references(rename(replace(mechanism, graph=Hypergraph(vertices, edges)), names), names)
     extras = {key: tuple(_extras(found, change, is_of_whole=is_part and key == ROOT)) for key, found in renamed.extras.items()}
     return replace(renamed, extras={key: found for key, found in extras.items() if found})
+
+
+def with_references(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
+    """The mechanism, whose elements have their new names already, with these names in its notations as well."""
+    notations = mechanism.notations
+    for row in formats.FORMATS:
+        if row.references is not None and names:
+            notations = formats.loaded(row.references)(notations, names)
+    return mechanism if notations is mechanism.notations else replace(mechanism, notations=notations)
 
 
 def _named(part: VertexPart, change: Callable[[str], str]) -> VertexPart:

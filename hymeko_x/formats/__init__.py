@@ -204,6 +204,7 @@ SDF = Format(
     fragment_sensors="hymeko_x.formats.sdf.fragments:sensor_names",
     completes="hymeko_x.frontends.sdf.static:complete",
     outline="hymeko_x.xml.outline:outline",
+    references="hymeko_x.formats.sdf.references:renamed",
     keeps_package_uris=True,
     joints_share_names=True,
     has_single_dof_joints=True,

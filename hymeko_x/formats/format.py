@@ -77,6 +77,8 @@ class Format(Struct, frozen=True):
     names_in: str | None = None
     """The function ``(extra, change, is_of_whole) -> extra or None`` that changes the names in an extra of a part that becomes one of a
     robot; None for what a robot has once."""
+    references: str | None = None
+    """The function ``(notations, names) -> notations`` by which references in the notations follow elements that got other names."""
     poses: str | None = None
     """The function ``mechanism -> list of (name, {joint: coordinates})`` that reads the named configurations that it keeps as texts."""
     joins: str | None = None

@@ -14,7 +14,9 @@ from msgspec.structs import replace
 from hymeko_x.ir.graph import Arc, Hypergraph
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Mechanism
 from hymeko_x.ir.names import names_in_use
-from hymeko_x.ir.parts import Body, Shape, World
+from hymeko_x.ir.notations import UNNAMED
+from hymeko_x.ir.parts import Body, Joint, Material, Mesh, Shape, Texture, World
+from hymeko_x.joining import with_references
 from hymeko_x.robot.errors import EditError
 
 if TYPE_CHECKING:
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
     from hymeko_x.ir.parts import EdgePart, Inertial, VertexPart
 
 T = TypeVar("T")
-SHAPE = KINDS[Shape]
+BODY, JOINT, SHAPE = KINDS[Body], KINDS[Joint], KINDS[Shape]
 
 
 class Draft:
@@ -39,6 +41,7 @@ class Draft:
         self.edges: dict[Id, RobotEdge] = dict(mechanism.graph.edges)
         self._was: dict[Id, Id] = {}
         self._gone: set[Id] = set()
+        self._named: set[Id] = set()
         self._at: dict[Id, dict[Id, None]] = {}
         for key, edge in self.edges.items():
             for arc in edge.arcs:
@@ -56,17 +59,17 @@ class Draft:
         key = Id(kind, name)
         if key in self:
             return key
-        found = self._shapes_called.get(name, ()) if kind == SHAPE else ()
-        return found[0] if len(found) == 1 and found[0] in self else None
+        if kind != SHAPE:
+            return None
+        found = [shape for shape in self._shapes_called.get(name, ()) if shape in self and _name_of(self.edges[shape]) == name]
+        return found[0] if len(found) == 1 else None
 
     @cached_property
-    def _shapes_called(self) -> dict[str, list[Id]]:
-        """The shapes by their authors' names."""
-        called: dict[str, list[Id]] = {}
+    def _shapes_called(self) -> dict[str, dict[Id, None]]:
+        """The shapes by their authors' names; changed shapes are also under the names that they had."""
+        called: dict[str, dict[Id, None]] = {}
         for key in self.ids(SHAPE):
-            part = self.part(key)
-            if isinstance(part, Shape) and part.name:
-                called.setdefault(part.name, []).append(key)
+            called.setdefault(_name_of(self.edges[key]) or "", {})[key] = None
         return called
 
     def ids(self, kind: str) -> Iterator[Id]:
@@ -109,6 +112,8 @@ class Draft:
         self.edges[key] = edge
         for arc in edge.arcs:
             self._at.setdefault(arc.target, {})[key] = None
+        if key.kind == SHAPE:
+            self._shapes_called.setdefault(_name_of(edge) or "", {})[key] = None
 
     def add_vertex(self, key: Id, part: VertexPart) -> None:
         """Add a vertex."""
@@ -124,6 +129,12 @@ class Draft:
         if key in self:
             raise EditError(f"there is a {key} already")
         return key
+
+    def check_shape_name(self, name: str) -> None:
+        """Raises: EditError when a shape cannot get this name, because another one is found by it."""
+        self.check_open(Id(SHAPE, name))
+        if not name or self.find(SHAPE, name) is not None:
+            raise EditError(f"there is a shape '{name}' already" if name else "a shape needs a name")
 
     def free_id(self, kind: str, name: str) -> Id:
         """A free id as close to the name as possible, for an element that needs no name of its own."""
@@ -141,10 +152,45 @@ class Draft:
         return WORLD
 
     def rename(self, old: Id, name: str) -> Id:
-        """Give an element another name, wherever it occurs. Raises: EditError when it is taken."""
+        """Give an element another name, wherever it occurs; what its reader named after it follows. Raises: EditError when it is taken."""
+        if old.kind == SHAPE:
+            return self._rename_shape(old, name)
         if name == old.name:
             return old
-        new = self.new_id(old.kind, name)
+        new = self._moved(old, self.new_id(old.kind, name))
+        self.set_part(new, _renamed(self.part(new), old.name, name))
+        self._named.add(new)
+        if old.kind == BODY:
+            for key in [key for key in self._at.get(new, ()) if self._is_named_after(key, old)]:
+                self._moved(key, self.free_id(key.kind, name + key.name.removeprefix(old.name)))
+        return new
+
+    def _rename_shape(self, key: Id, name: str) -> Id:
+        if self.find(SHAPE, name) == key:
+            return key
+        self.check_shape_name(name)
+        edge = self.edges[key]
+        assert isinstance(edge.data, Shape)
+        self.set_edge(key, replace(edge, data=replace(edge.data, name=name)))
+        return key
+
+    def _is_named_after(self, key: Id, body: Id) -> bool:
+        """Whether a reader made the name of an edge from that of its body: a shape's, and that of a joint without a name."""
+        if key.kind == SHAPE:
+            return key.name.startswith(f"{body.name}/")
+        return key.kind == JOINT and key.name == body.name and self.is_unnamed(key)
+
+    def is_unnamed(self, key: Id) -> bool:
+        """Whether the author of the file gave the element no name, and no edit did: a note says so, or a fixed joint is where its body is."""
+        if key in self._named:
+            return False
+        was, origins = self._was.get(key, key), self.mechanism.origins
+        part = self.edges[key].data if key.kind == JOINT else None
+        is_implied = isinstance(part, Joint) and not part.dofs and was in origins and origins[was] == origins.get(Id(BODY, was.name))
+        return is_implied or self.mechanism.notation(was, UNNAMED) is not None
+
+    def _moved(self, old: Id, new: Id) -> Id:
+        """The element under another id, to which all arcs lead."""
         if old in self.vertices:
             self.vertices[new] = self.vertices.pop(old)
         else:
@@ -205,15 +251,23 @@ class Draft:
         changed = replace(source, name=source.name if name is None else name, graph=graph)
         if not (now or self._gone):
             return changed
-        return replace(
+        changed = replace(
             changed,
             extras=self._kept(source.extras, now),
             origins=self._kept(source.origins, now),
-            notations=self._kept(source.notations, now),
+            notations=self._notations(now),
             stereotypes=self._kept(source.stereotypes, now),
             stored=self._kept(source.stored, now),
             layout=tuple([now.get(key, key) for key in source.layout if key not in self._gone]),
         )
+        return with_references(changed, now)
+
+    def _notations(self, now: Mapping[Id, Id]) -> dict[Id, Mapping[str, str]]:
+        """The notations by present id; an element that got a name is no longer unnamed."""
+        kept = self._kept(self.mechanism.notations, now)
+        for key in self._named & kept.keys():
+            kept[key] = {word: text for word, text in kept[key].items() if word != UNNAMED.name}
+        return kept
 
     def _kept(self, table: Mapping[Id, T], now: Mapping[Id, Id]) -> dict[Id, T]:
         """A side table with the present ids."""
@@ -224,6 +278,17 @@ _LOSES_ARC = frozenset({("stance", "joint"), ("shape", "material")})
 """The kinds of edges that stay when they lose an element of a kind."""
 _OWNED = {"mount": ("frame", "camera", "light", "sensor"), "drive": ("actuator",), "sense": ("sensor",)}
 """By the kind of an edge, the vertices that go with it when nothing else needs them."""
+
+
+def _name_of(edge: RobotEdge) -> str | None:
+    return edge.data.name if isinstance(edge.data, Shape) else None
+
+
+def _renamed(part: VertexPart | EdgePart, old: str, new: str) -> VertexPart | EdgePart:
+    """The part of an element with another name, where the part holds its name."""
+    if isinstance(part, Joint):
+        return replace(part, dofs=tuple([replace(dof, name=new) if dof.name == old else dof for dof in part.dofs]))
+    return replace(part, name=new) if isinstance(part, Material | Mesh | Texture) and part.name is not None else part
 
 
 def _redirected(arc: RobotArc, old: Id, new: Id) -> RobotArc:

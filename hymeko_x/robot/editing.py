@@ -165,8 +165,9 @@ class Editing(Named, Generic[R]):
         material: str | None = None,
     ) -> el.ShapeElement:
         """A shape: a geometry with sizes in m, or the name of a mesh."""
-        key = self._draft.new_id("shape", name)
+        self._draft.check_shape_name(name)
         body, pose = self._place(on, at)
+        key = self._draft.free_id("shape", f"{body.name}/{role.value}")
         mesh = self.meshes[geometry].id if isinstance(geometry, str) else None
         surface = None if material is None else self.materials[material].id
         part = Shape(MeshShape() if isinstance(geometry, str) else geometry, role, name)
@@ -276,6 +277,7 @@ class Editing(Named, Generic[R]):
         if isinstance(element, Element):
             return self._own(element)
         found = [key for kind in el.KINDS if (key := self._draft.find(kind, element)) is not None]
+        found = [key for key in found if not self._draft.is_unnamed(key)] or found
         if len(found) > 1:
             ways = " or ".join(f"e.{el.KINDS[key.kind][0]}[{element!r}]" for key in found)
             raise EditError(f"'{element}' is the name of {' and of '.join(str(key) for key in found)}; give {ways}")

@@ -109,7 +109,6 @@ WRONG: list[tuple[Callable[[Editing], object], str]] = [
     (lambda e: e.add_joint("j", parent="fore", child="upper"), "body 'upper' has the parent joint 'shoulder' already"),
     (lambda e: e.add_pose("p", {"elbow": (1, 2)}), "pose 'p': joint 'elbow' has 1 coordinates"),
     (lambda e: e.add_sensor("s", "imu"), "sensor 's' measures either something"),
-    (lambda e: e.remove("base"), "'base' is the name of body 'base' and of joint 'base'; give e.bodies['base'] or e.joints['base']"),
     (lambda e: e.rename("elbow", "shoulder"), "there is a joint 'shoulder' already"),
 ]
 
@@ -121,6 +120,13 @@ def test_an_edit_that_cannot_be_is_an_error_and_changes_nothing(change: Callable
             change(e)
         assert str(error.value).startswith(message)
     assert e.robot == arm()
+
+
+def test_a_name_of_two_elements_needs_the_kind() -> None:
+    with arm().edit() as e:
+        e.add_body("elbow", on="fore")
+        with pytest.raises(hx.EditError, match=r"'elbow' is the name of body 'elbow' and of joint 'elbow'; give e.bodies\['elbow'\] or"):
+            e.remove("elbow")
 
 
 def test_a_name_that_is_not_there_lists_similar_ones() -> None:
@@ -182,3 +188,41 @@ def test_a_thousand_edits_of_a_thousand_links_take_a_moment() -> None:
     took = time.process_time() - start
     assert (robot.mass, len(robot.frames), "link249" in robot.bodies) == (250, 250, True)
     assert took < 0.6
+
+
+def test_names_that_a_reader_made_follow_the_body_and_authors_names_stay() -> None:
+    text = """<mujoco><asset><material name="steel" rgba="1 0 0 1"/></asset><worldbody><body name="base">
+    <geom name="foot" size="1" material="steel"/><geom size="2"/>
+    <body name="arm"><joint/><geom size="1"/><body name="tip"><joint name="tip"/><geom size="1"/></body></body></body></worldbody></mujoco>"""
+    with hx.Robot(hx.loads(text, "mjcf")).edit() as e:
+        e.rename("base", "root")
+        e.rename(e.bodies["arm"], "upper")
+        e.rename(e.bodies["tip"], "end")
+        e.rename(e.shapes["foot"], "paw")
+        e.rename("steel", "iron")
+        assert e.shapes["paw"].name == "root/shape"
+    assert ([*e.robot.joints], [*e.robot.shapes][:2]) == (["root", "upper", "tip"], ["root/shape", "root/shape#2"])
+    model = e.robot.to_mujoco()
+    assert [model.body(number).name for number in range(4)] == ["world", "root", "upper", "end"]
+    assert [model.joint(number).name for number in range(2)] == ["", "tip"]
+    assert model.geom("paw").matid[0] == model.material("iron").id
+    assert '<material name="iron"/>' in hx.dumps(e.robot, "urdf")
+
+
+def test_an_unnamed_joint_gets_the_name_that_it_is_given() -> None:
+    robot = hx.Robot(hx.loads("<mujoco><worldbody><body name='b'><joint/><geom size='1'/></body></worldbody></mujoco>", "mjcf"))
+    with robot.edit() as e:
+        e.rename(e.joints["b"], "hip")
+    assert e.robot.to_mujoco().joint(0).name == "hip"
+
+
+def test_a_shape_is_found_by_its_new_name_and_no_two_get_one() -> None:
+    with arm().edit() as e:
+        e.add_shape("bumper", Box((1, 1, 1)), on="fore")
+        e.rename(e.shapes["foot"], "paw")
+        assert e.shapes["bumper"].body.name == "fore"
+        for call in (lambda: e.rename(e.shapes["paw"], "bumper"), lambda: e.add_shape("paw", Box((1, 1, 1)), on="fore")):
+            with pytest.raises(hx.EditError, match="there is a shape '(bumper|paw)' already"):
+                call()
+        with pytest.raises(KeyError):
+            e.shapes["foot"]

@@ -100,10 +100,11 @@ def _frame_tag(key: Id, scope: str, world: Id | None, sheet: SdfSheet) -> Tag:
     model = world or sheet.places.model_frame(scope)
     own = sheet.mechanism.notation(key, notations.ATTACHED)
     base: Id | None = model
-    if own is not None:
+    named = sheet.places.find(scope, own) if own else None
+    if own is not None and (named is not None or not own):
         tag.attributes["attached_to"] = own
-        base = sheet.places.find(scope, own) if own else model
-    elif not sheet.from_sdf and body != WORLD:
+        base = named or model
+    elif (own is not None or not sheet.from_sdf) and body != WORLD:
         tag.attributes["attached_to"] = sheet.places.name(body, scope)
         base = body
     sheet.add_pose(tag, key, scope, base or model)

@@ -245,6 +245,8 @@ class SdfSheet:
         False where that frame is not there any more, or where none was named and the place is another one.
         """
         named = self.places.find(scope, own.relative_to) if own.relative_to else None
+        if own.relative_to and named is None:
+            return False
         base = named or default
         value = pose if pose is not None else self.places.relative(key, base)
         if pose is not None and base != default:
