@@ -181,7 +181,7 @@ class Draft:
         return key.kind == JOINT and key.name == body.name and self.is_unnamed(key)
 
     def is_unnamed(self, key: Id) -> bool:
-        """Whether the author of the file gave the element no name, and no edit did: a note says so, or a fixed joint is where its body is."""
+        """Whether neither the author of the file nor an edit named the element: it has that note, or is a fixed joint where its body is."""
         if key in self._named:
             return False
         was, origins = self._was.get(key, key), self.mechanism.origins

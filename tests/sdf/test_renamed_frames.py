@@ -27,7 +27,13 @@ def test_references_follow_new_names() -> None:
             e.rename(e.bodies[name], new)
         e.rename(e.joints["j"], "knee")
     text = hx.dumps(e.robot, "sdf")
-    for part in ('<pose relative_to="knee">', '<pose relative_to="base">', 'expressed_in="base"', 'attached_to="shank"', 'relative_to="foot"'):
+    for part in (
+        '<pose relative_to="knee">',
+        '<pose relative_to="base">',
+        'expressed_in="base"',
+        'attached_to="shank"',
+        'relative_to="foot"',
+    ):
         assert part in text
     assert "<child>f</child>" in text
     after = hx.Robot(hx.loads(text, "sdf"))

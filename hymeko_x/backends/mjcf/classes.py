@@ -20,9 +20,9 @@ from hymeko_x.factor.sets import Costs, share
 from hymeko_x.factor.words import by_meaning, words_of_all
 from hymeko_x.formats.mjcf import CLASSES, MAIN
 from hymeko_x.formats.mjcf.classes import PARTIAL, Classes
+from hymeko_x.formats.mjcf.roles import ATTRIBUTES
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.ir.names import free_name
-from hymeko_x.ir.parts import Role
 from hymeko_x.xml.printing import Tag
 
 if TYPE_CHECKING:
@@ -31,12 +31,7 @@ if TYPE_CHECKING:
     from hymeko_x.backends.mjcf.sheet import MjcfSheet
     from hymeko_x.factor.sets import Row
 
-_ROLES: Mapping[str, Mapping[str, str]] = MappingProxyType(
-    {
-        CLASSES[Role.VISUAL]: {"contype": "0", "conaffinity": "0", "group": "2"},
-        CLASSES[Role.COLLISION]: {"group": "3"},
-    }
-)
+_ROLES: Mapping[str, Mapping[str, str]] = MappingProxyType({name: ATTRIBUTES[role] for role, name in CLASSES.items()})
 """The attributes of geoms that are only seen and of those that only touch."""
 _MASSLESS = {"density": "0"}
 

@@ -8,6 +8,7 @@ from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.formats.mjcf import CLASSES
 from hymeko_x.formats.mjcf.notations import GRID as NOTED_GRID
 from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, PLACE, Place, seen_from
+from hymeko_x.formats.mjcf.roles import role_attributes
 from hymeko_x.ir.graph import Arc
 from hymeko_x.ir.parts import NoShape, Plane
 
@@ -43,4 +44,6 @@ def geom_tag(sheet: MjcfSheet, body: BodyTag, view: ShapeView) -> None:
     }
     context = kept if fitted or mesh is None else {**kept, "mesh": mesh}
     found = sheet.attributes(values, groups, base, notations, context)
-    body.add(tag_of("geom", {"name": shape.name or None, "class": own_class, **found, **kept}, sheet.inside(key), view.body), frame)
+    own = {**found, **kept}
+    own |= role_attributes(shape.role, {**base, **own}) if sheet.from_mjcf else {}
+    body.add(tag_of("geom", {"name": shape.name or None, "class": own_class, **own}, sheet.inside(key), view.body), frame)

@@ -7,19 +7,15 @@ from typing import TYPE_CHECKING
 from hymeko_x.formats.mjcf import notations
 from hymeko_x.formats.mjcf.notations import frame_of
 from hymeko_x.formats.mjcf.places import FITTED_GEOM, GEOM, GRID, Place
+from hymeko_x.formats.mjcf.roles import role_of
 from hymeko_x.formats.mjcf.words import PLACES
 from hymeko_x.frontends.mjcf.builder import Scope, placed
 from hymeko_x.ir.mechanism import shape_edge
-from hymeko_x.ir.parts import Role, Shape
+from hymeko_x.ir.parts import Shape
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from hymeko_x.formats.mjcf.tree import Element
     from hymeko_x.frontends.mjcf.builder import MjcfBuilder
-
-_SHOWN = 3
-"""Geoms of this group and higher ones are not shown by default."""
 
 
 def read_geom(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
@@ -45,17 +41,3 @@ def read_geom(element: Element, scope: Scope, builder: MjcfBuilder) -> None:
     if place.grid is not None and place.grid != GRID:
         builder.note(key, notations.GRID, place.grid)
     builder.keep(element, key)
-
-
-def role_of(given: Mapping[str, str]) -> Role:
-    """For the eye alone when it can touch nothing; for contact alone when it is in a group that is not shown."""
-    if not _number(given.get("contype", "1")) and not _number(given.get("conaffinity", "1")):
-        return Role.VISUAL
-    return Role.COLLISION if _number(given.get("group", "0")) >= _SHOWN else Role.BOTH
-
-
-def _number(text: str) -> int:
-    try:
-        return int(text)
-    except ValueError:
-        return 0
