@@ -57,9 +57,9 @@ class Builder(Struct, kw_only=True):
         if extras:
             self.extras.setdefault(key, []).extend(extras)
 
-    def add_material(self, material: Material, texture: Texture | None = None) -> Id:
-        """A new material, whose name is that of its id, and the texture that it has."""
-        key = self.names.take("material", material.name or "material")
+    def add_material(self, material: Material, texture: Texture | None = None, mark: str = "#") -> Id:
+        """A new material, whose name is that of its id, and the texture that it has; the mark stands before a number in the name."""
+        key = self.names.take("material", material.name or "material", mark)
         self.vertices[key] = replace(material, name=key.name)
         if texture is not None:
             self.add_texture(texture, key)

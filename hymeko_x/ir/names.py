@@ -32,23 +32,23 @@ class Names:
         else:
             self._taken.add((kind, name))
 
-    def take(self, kind: str, name: str) -> Id:
-        """A free id of this kind, as close to the name as possible."""
+    def take(self, kind: str, name: str, mark: str = "#") -> Id:
+        """A free id of this kind, as close to the name as possible; the mark stands before a number."""
         wanted = Id(kind, name)
-        free = self.free(kind, name) if wanted in self._taken else wanted
+        free = self.free(kind, name, mark) if wanted in self._taken else wanted
         self._taken.add(free)
         return free
 
-    def free(self, kind: str, name: str) -> Id:
+    def free(self, kind: str, name: str, mark: str = "#") -> Id:
         """The id that :meth:`take` would give out."""
         wanted = Id(kind, name)
         if wanted not in self._taken:
             return wanted
         number = self._next.get(wanted, 2)
-        while Id(kind, f"{name}#{number}") in self._taken:
+        while Id(kind, f"{name}{mark}{number}") in self._taken:
             number += 1
         self._next[wanted] = number
-        return Id(kind, f"{name}#{number}")
+        return Id(kind, f"{name}{mark}{number}")
 
 
 def free_name(wanted: str, is_taken: Callable[[str], bool], mark: str = "#") -> str:

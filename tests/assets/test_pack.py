@@ -112,10 +112,11 @@ def test_types_that_mujoco_does_not_read_become_obj(suffix: str) -> None:
 def test_a_visual_with_three_materials_becomes_three_shapes_with_their_colours() -> None:
     files = {"a.dae": dae()}
     result, new, _, said = packed(with_meshes(Mesh("a.dae"), material=Id("material", "grey")), files)
-    assert list(new) == ["meshes/a.obj", "meshes/a_2.obj", "meshes/a_3.obj"]
+    assert list(new) == ["meshes/a_red.obj", "meshes/a_green.obj", "meshes/a_blue.obj"]
     assert said == ["note HX202 mesh 'a/0' has 3 appearances; each one becomes a mesh of its own"]
     views = result.shapes[body("b0")]
     assert [view.shape.name for view in views] == ["s0", None, None]
+    assert [view.material.name for view in views if view.material] == ["red", "green", "blue"]
     assert [result.vertex(view.material, Material).rgba for view in views if view.material] == [
         (1.0, 0.0, 0.0, 1.0),
         (0.0, 1.0, 0.0, 1.0),
@@ -123,6 +124,13 @@ def test_a_visual_with_three_materials_becomes_three_shapes_with_their_colours()
     ]
     model = compiles(with_meshes(Mesh("a.dae", (2.0, 2.0, 2.0)), material=Id("material", "grey")), files)
     assert (model.ngeom, list(model.mesh_scale[0])) == (3, [2.0, 2.0, 2.0])
+
+
+def test_materials_of_colours_that_are_alike_are_numbered() -> None:
+    files = {"a.dae": dae(), "b.dae": dae().replace(b"<color>1 0 0 1", b"<color>0.9 0 0 1")}
+    result, new, _, _ = packed(with_meshes(Mesh("a.dae"), Mesh("b.dae")), files)
+    assert [material.name for _, material in result.vertices(Material)] == ["red", "green", "blue", "red_2"]
+    assert list(new)[3:] == ["meshes/b_red.obj", "meshes/b_green.obj", "meshes/b_blue.obj"]
 
 
 def test_the_colours_of_a_file_win_over_the_shapes_own_colour() -> None:

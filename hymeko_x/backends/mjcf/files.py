@@ -219,7 +219,8 @@ def _pack_appearances(run: _Packing, key: Id, mesh: Mesh, parts: tuple[Submesh, 
 
 def _own_mesh(run: _Packing, mesh: Mesh, part: Submesh) -> _Piece:
     """A part of a file as a mesh of its own."""
-    name = f"{file_stem(mesh.uri or '')}_{part.appearance.name}" if part.appearance and part.appearance.name else file_stem(mesh.uri or "")
+    meaning = "" if part.appearance is None else _meaning_of(part.appearance)
+    name = "_".join(filter(None, (file_stem(mesh.uri or ""), meaning)))
     key = run.names.take("mesh", name)
     _write_mesh(run, key, mesh, part, name, solid=False)
     return _Piece(key, _material(run, part.appearance, mesh))
@@ -358,10 +359,18 @@ def _material(run: _Packing, found: Appearance | None, mesh: Mesh) -> Id | None:
     known = run.materials.get((found.rgba, found.image))
     if known is not None:
         return known
-    key = run.materials[found.rgba, found.image] = run.add_material(Material(found.name or file_stem(mesh.uri or ""), found.rgba))
+    new = Material(_meaning_of(found) or file_stem(mesh.uri or ""), found.rgba)
+    key = run.materials[found.rgba, found.image] = run.add_material(new, mark="_")
     if found.image is not None:
         run.add_texture(Texture(run.shelf.place(_TEXTURES, key.name, ".png", png_bytes(found.image))), key)
     return key
+
+
+def _meaning_of(found: Appearance) -> str:
+    """The name of an appearance, else that of its image or colour; empty where it has none of them."""
+    from hymeko_x.meshes.colours import name_of_colour
+
+    return found.name or file_stem(found.file) or ("" if found.rgba is None else name_of_colour(found.rgba))
 
 
 # ---- diagnostics -----------------------------------------------------------------------------------------------------------------------
