@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
-import msgspec
 from msgspec import Struct
+from msgspec.json import encode
 from msgspec.structs import replace
 
 from hymeko_x.ir.decimals import clean_quat, shortest, shortest_of
@@ -20,12 +20,14 @@ from hymeko_x.ir.values import Pose, unit_quat
 from hymeko_x.rewrite.inertia import physical
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Iterable, Mapping
 
     from hymeko_x.ir.mechanism import Id, Mechanism
 
-_LONG = re.compile(r"(?<![\w.])-?(?:(?=[\d.]{16})\d+(?:\.\d+)?(?:e-?\d+)?|\d+(?:\.\d+)?e-\d\d+)(?![\w.])")
+_LONG = re.compile(rb"(?<![\w.])-?(?:(?=[\d.]{16})\d+(?:\.\d+)?(?:e-?\d+)?|\d+(?:\.\d+)?e-\d\d+)(?![\w.])")
 """Numbers with so many digits, or so close to zero, that they may be computed."""
+_BLANKS = bytes(code if code in b"0123456789.-e" else 32 for code in range(256))
+"""The characters of numbers, and blanks for all others."""
 _AS_THEY_ARE = Mesh | Subset
 """Parts whose numbers are data of files."""
 
@@ -55,19 +57,20 @@ def clean_pose(pose: Pose) -> Pose:
 
 def _changed(parts: Mapping[Id, Any], before: Mapping[Id, Any]) -> dict[Id, Any]:
     """The parts that the source does not have like this, as far as they have long numbers."""
-    return {key: part for key, part in parts.items() if part is not before.get(key) and _LONG.search(_text(part))}
+    return {key: part for key, part in parts.items() if part is not before.get(key) and _long_numbers((part,))}
 
 
 def _known(source: Mechanism) -> frozenset[float]:
     """The long numbers of the source, and their absolute values."""
-    parts = (*source.graph.vertices.values(), *source.graph.edges.values())
-    numbers = {float(text) for part in parts for text in _LONG.findall(_text(part))}
+    numbers = {float(text) for text in _long_numbers((*source.graph.vertices.values(), *source.graph.edges.values()))}
     return frozenset(numbers | {*map(abs, numbers)})
 
 
-def _text(part: Any) -> str:
-    """The numbers of a part as text; empty for data of files."""
-    return "" if isinstance(part, _AS_THEY_ARE) else msgspec.json.encode(part).decode()
+def _long_numbers(parts: Iterable[Any]) -> list[bytes]:
+    """The long numbers of parts, but for data of files. Splitting at blanks first takes a tenth of the time that the expression takes."""
+    text = encode([part for part in parts if not isinstance(part, _AS_THEY_ARE)])
+    words = [word for word in {*text.translate(_BLANKS).split()} if len(word) > 15 or b"e-" in word]
+    return _LONG.findall(b" ".join(words)) if words else []
 
 
 def _shortened(value: Any, known: Collection[float]) -> Any:

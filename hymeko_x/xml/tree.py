@@ -140,6 +140,13 @@ class Node:
 
     # ---- looking without taking ------------------------------------------------------------------------------------------
 
+    def child(self, tag: str) -> Node | None:
+        """The first child of this name, unread or not, or None."""
+        for child in self.children:
+            if child.tag == tag:
+                return child
+        return None
+
     def has(self, *tags: str) -> bool:
         """Whether a child with one of these names is unread."""
         return any(child.tag in tags and not child.taken for child in self.children)

@@ -143,7 +143,7 @@ def _noise_by_axis(found: re.Match[str]) -> str:
     kind = next((_text(child) for child in noise.children if child.tag == "type"), "none")
     texts = []
     for old, new in _IMU_PARTS.items():
-        part = next((child for child in noise.children if child.tag == old), None)
+        part = noise.child(old)
         if part is not None:
             numbers = "".join(markup(child) for child in part.children if child.is_element)
             axes = "".join(f'<{axis}><noise type="{escaped(kind)}">{numbers}</noise></{axis}>' for axis in "xyz")

@@ -185,7 +185,7 @@ class SdfSheet:
 
     def put(self, tag: Tag, field: Field, value: Any, texts: Mapping[str, str], prefix: str = "") -> None:
         """Write a value below a tag: as its author wrote it where that means the same, and not at all where it is the default."""
-        text = self.text(field.codec, value, field.default, texts.get(f"{prefix}{field.path}"))
+        text = self.text(field.codec, value, field.default, texts.get(f"{prefix}{field.path}") if texts else None)
         if text is None:
             return
         for step in field.path.split("/"):

@@ -112,7 +112,7 @@ class SdfBuilder(Builder):
         *steps, last = field.path.split("/")
         path = []
         for step in steps:
-            found = next((child for child in node.children if child.tag == step), None)
+            found = node.child(step)
             if found is None:
                 return field.default
             path.append(found)

@@ -71,7 +71,7 @@ def _read_gearbox(node: Node, model: Model, builder: SdfBuilder, hinges: Mapping
 
 
 def _text(node: Node, tag: str) -> str:
-    child = next((child for child in node.children if child.tag == tag), None)
+    child = node.child(tag)
     return "" if child is None else (child.text or "").strip()
 
 

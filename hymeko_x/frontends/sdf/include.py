@@ -214,7 +214,7 @@ def _merged(model: Node, include: Node) -> list[Node]:
     canonical = model.attributes.get("canonical_link") or next(iter(links), "")
     if canonical:
         frame.attributes["attached_to"] = canonical
-    pose = next((child for child in model.children if child.tag == "pose"), None) or Node("pose", {}, frame, include.file, include.line)
+    pose = model.child("pose") or Node("pose", {}, frame, include.file, include.line)
     pose.attributes.setdefault("relative_to", words.MODEL_FRAME)
     pose.parent = frame
     frame.children = [pose]

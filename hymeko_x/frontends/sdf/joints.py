@@ -77,7 +77,7 @@ def _read_ends(node: Node, model: Model, builder: SdfBuilder) -> tuple[Id, Id] |
     """The bodies that the joint joins; frames stand for the bodies that they are on."""
     names, bodies = [], []
     for tag in ("parent", "child"):
-        child = next((child for child in node.children if child.tag == tag), None)
+        child = node.child(tag)
         name = "" if child is None else (child.text or "").strip()
         found = builder.find(model.scope, name) if name else None
         body = None if found is None else body_of(found, builder)
@@ -192,7 +192,7 @@ def _frame_of_axis(xyz: Node, axis: Node, tag: str, key: Id, model: Model, build
 
 def _read_couplings(node: Node, key: Id, model: Model, builder: SdfBuilder) -> None:
     for number, tag in enumerate(words.AXES):
-        axis = next((child for child in node.children if child.tag == tag), None)
+        axis = node.child(tag)
         mimic = None if axis is None else axis.take_child("mimic")
         if axis is None or mimic is None:
             continue

@@ -72,7 +72,7 @@ def is_auto(node: Node, builder: SdfBuilder) -> bool:
 
 def _density(link: Node, key: Id, builder: SdfBuilder) -> float | None:
     """The density in kg/m^3 of collisions that give none, where the inertial comes from them; else None."""
-    node = next((child for child in link.children if child.tag == "inertial"), None)
+    node = link.child("inertial")
     if node is None:
         return None
     text = next((child.text for child in node.children if child.tag == "density"), None)

@@ -20,18 +20,18 @@ if TYPE_CHECKING:
 
 def read_material(visual: Node, key: Id, builder: SdfBuilder) -> tuple[Rgba | None, Id | None]:
     """The colour of a visual, or, where it has textures, the material with them. Scripts and further colours stay as written."""
-    node = next((child for child in visual.children if child.tag == "material"), None)
+    node = visual.child("material")
     if node is None or not node.children:
         return None, None
     node.taken = True
-    script = next((child for child in node.children if child.tag == "script"), None)
+    script = node.child("script")
     if script is not None and not any(child.tag == "uri" and (child.text or "").strip() for child in script.children):
         builder.warn(
             codes.MISSING_PART, script, f"{visual.subject}: <script> without a <uri>, which libsdformat refuses, is kept as written"
         )
     rgba = builder.child_value(node, "diffuse", COLOUR, None, key, "material/diffuse")
-    pbr = next((child for child in node.children if child.tag == "pbr"), None)
-    metal = None if pbr is None else next((child for child in pbr.children if child.tag == "metal"), None)
+    pbr = node.child("pbr")
+    metal = None if pbr is None else pbr.child("metal")
     if pbr is None or metal is None:
         return rgba, None
     pbr.taken = metal.taken = True

@@ -134,7 +134,7 @@ def _attachment(node: Node, model: Model, builder: SdfBuilder) -> Id:
 
 
 def _child_end(node: Node, model: Model, builder: SdfBuilder) -> Id:
-    child = next((child for child in node.children if child.tag == "child"), None)
+    child = node.child("child")
     found = None if child is None else builder.find(model.scope, (child.text or "").strip())
     return found or model.frame
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 def read_link_sensor(node: Node, body: Id, model: Model, builder: SdfBuilder) -> None:
     """A sensor on a link; a plain camera is a camera. What its kind has of its own stays as written."""
-    camera = next((child for child in node.children if child.tag == "camera"), None)
+    camera = node.child("camera")
     if node.attributes.get("type") == "camera" and camera is not None:
         key = _own(node, "camera", model.scope, builder)
         pose = compose(_pose(node, key, body, model, builder), Pose(quat=CAMERA_TURN))

@@ -52,7 +52,7 @@ def read_shape(node: Node, number: int, role: Role, body: Id, model: Model, buil
 
 def _read_geometry(shape: Node, key: Id, builder: SdfBuilder) -> tuple[Geometry, Id | None, Pose | None]:
     """The geometry of a shape, its mesh, and how it is turned in the shape's frame."""
-    node = next((child for child in shape.children if child.tag == "geometry"), None)
+    node = shape.child("geometry")
     if node is None:
         builder.warn(codes.MISSING_PART, shape, f"{shape.subject}: <{shape.tag}> has no <geometry>; the shape has no geometry")
         return NoShape(), None, None
