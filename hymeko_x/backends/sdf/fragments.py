@@ -28,7 +28,7 @@ _MODEL_PATHS = ("model", "world/model")
 
 
 def fragments_of(mechanism: Mechanism) -> list[str]:
-    """The <gazebo> elements of a robot that came from SDF: of links, of joints, and of the model. Empty for others."""
+    """The <gazebo> elements of a robot that came from SDF: of links, of joints, and of the model; then <ros2_control>. Empty for others."""
     sheet = SdfSheet(mechanism, "")
     if not sheet.from_sdf:
         return []
@@ -36,7 +36,7 @@ def fragments_of(mechanism: Mechanism) -> list[str]:
     joints = [(view.id, list(_of_joint(view.id, sheet))) for view in mechanism.joints.values() if not sheet.is_implied(view)]
     found = [_fragment({"reference": key.name}, children) for key, children in (*bodies, *joints) if children]
     found += [_fragment({}, [child]) for child in _of_model(sheet)]
-    return found
+    return found + [extra.text for extra in sheet.extras(ROOT) if extra.path in _MODEL_PATHS and extra.text.startswith(f"<{words.BESIDE}")]
 
 
 def _fragment(attributes: dict[str, str], children: Sequence[Tag | str]) -> str:

@@ -9,6 +9,7 @@ from msgspec.structs import replace
 from hymeko_x import codes
 from hymeko_x.backends.sdf.gazebo import obey_gazebo_fragments
 from hymeko_x.backends.sdf.loops import close_loops_by_joints
+from hymeko_x.backends.sdf.nesting import nesting_of
 from hymeko_x.formats import sdf as words
 from hymeko_x.formats.sdf import notations
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, joint_edge
@@ -114,15 +115,18 @@ def make_names_unique_in_models(mechanism: Mechanism, context: Context) -> Mecha
     """Links, frames and joints of a model have different names; ``::`` only stands between a model and what is in it."""
     taken: set[str] = set()
     renamed: dict[Id, Id] = {}
-    unwritten = _unwritten(mechanism)
+    nesting = nesting_of(mechanism)
+    unwritten = _unwritten(mechanism) | {*nesting.models.values()}
     order = ("body", "joint", "loop", "frame")
     named = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if key.kind in order]
     for key in sorted(named, key=lambda key: order.index(key.kind)):
         if key in unwritten:
             continue
-        wanted = key.name.replace(words.SCOPE, "_")
-        if (wanted.startswith("__") and wanted.endswith("__")) or wanted == words.WORLD_FRAME:
-            wanted = f"{key.kind}_{wanted.strip('_')}"
+        scope = nesting.scope_of(key)
+        own = key.name.removeprefix(scope).replace(words.SCOPE, "_")
+        if (own.startswith("__") and own.endswith("__")) or own == words.WORLD_FRAME:
+            own = f"{key.kind}_{own.strip('_')}"
+        wanted = scope + own
         name = free_name(wanted if wanted not in taken else f"{wanted}_{key.kind}", taken.__contains__, "_")
         taken.add(name)
         if name != key.name:

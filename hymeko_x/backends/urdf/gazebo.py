@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 def write_gazebo_fragments(mechanism: Mechanism, _context: Context) -> Mechanism:
     """What formats with fragments of their own represent of the robot is in <gazebo> elements behind it."""
     own = mechanism.extras.get(ROOT, ())
-    known = {extra.text for extra in own}
+    known = {extra.text for extra in own if extra.format == words.FORMAT}
     rows = [row for row in formats.FORMATS if row.fragments is not None]
     named = {name for row in rows for name in formats.loaded(row.fragment_sensors or "")(known)}
     found = [(row, text) for row in rows for text in formats.loaded(row.fragments or "")(mechanism) if text not in known]

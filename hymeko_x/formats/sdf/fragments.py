@@ -47,6 +47,9 @@ OF_MODEL = frozenset(("static", "self_collide", "allow_auto_disable", "enable_wi
 OBEYED = ("preserveFixedJoint", "disableFixedJointLumping")
 """They keep fixed joints, which always stay here."""
 
+BESIDE = "ros2_control"
+"""A custom element of <model> that the root of URDF has as well. Of URDF alone it is not written into SDF: Drake refuses it there."""
+
 _SENSOR = re.compile(r"""<sensor\b[^>]*?\bname=["']([^"']*)["']""")
 
 
