@@ -19,9 +19,12 @@ from hymeko_x.robot.kinematics import all_poses
 from hymeko_x.server.text import Definition, Word, heads, unquoted, word_at, words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Callable, Iterator, Mapping
 
     from hymeko_x.server.analysis import Analysis
+
+    Texts = Callable[[Path], Analysis | None]
+    """The HyMeKo text at a path; None where there is none."""
 
 _HEAD = re.compile(r"(@?)\s*(`[^`]*`|[^\W\d]\w*)?[^:]*(?::\s*([\w.`]+))?")
 _QUANTITY = re.compile(r"(?<![\w.])[+-]?(\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?(?![eE][+-]?\d)([A-Za-z%°µ][\w/^*%·-]*)")
@@ -46,7 +49,7 @@ def _is_template(document: Analysis, found: Definition) -> bool:
     return document.text[found.end : found.end + 1] == "("
 
 
-def definition(document: Analysis, position: types.Position) -> types.Location | None:
+def definition(document: Analysis, position: types.Position, texts: Texts) -> types.Location | None:
     """The place where the name at a position is defined: in this text, or in a file that it imports."""
     offset = document.places.offset(position)
     imported = _import_at(document, offset)
@@ -58,7 +61,7 @@ def definition(document: Analysis, position: types.Position) -> types.Location |
     found = definition_of(document, word)
     if found is not None and len(found.path) >= len(word.path):
         return types.Location(Path(document.path).resolve().as_uri(), document.places.range(found.start, found.end))
-    return _in_another_file(document, word)
+    return _in_another_file(document, word) or _template_in_another_file(document, word, texts)
 
 
 def _import_at(document: Analysis, offset: int) -> str | None:
@@ -81,6 +84,18 @@ def _in_another_file(document: Analysis, word: Word) -> types.Location | None:
         return None
     place = types.Position((origin.line or 1) - 1, max((origin.column or 1) - 1, 0))
     return types.Location(Path(origin.file).resolve().as_uri(), types.Range(place, place))
+
+
+def _template_in_another_file(document: Analysis, word: Word, texts: Texts) -> types.Location | None:
+    """The place of a template of an imported text, with the import's alias before its name or without."""
+    known = document.imports()
+    path = word.path[1:] if word.path[0] in known else word.path
+    for given in dict.fromkeys(known.values()):
+        other = texts(Path(document.path).parent / given)
+        found = None if other is None else next((one for one in other.by_name.get(path[-1], ()) if one.path == path), None)
+        if other is not None and found is not None:
+            return types.Location(Path(other.path).resolve().as_uri(), other.places.range(found.start, found.end))
+    return None
 
 
 def _element(document: Analysis, word: Word) -> Id | None:
@@ -108,18 +123,6 @@ def references(document: Analysis, position: types.Position) -> list[types.Range
     last = target.path[-1]
     same = (other for other in words(document.text) if other.path[-1] == last)
     return [document.places.range(other.start, other.end) for other in same if definition_of(document, other) == target]
-
-
-def rename(document: Analysis, position: types.Position, name: str) -> list[types.TextEdit] | str:
-    """The edits that give the element at a position another name; a text where it cannot have it."""
-    word = word_at(document.text, document.places.offset(position))
-    target = None if word is None else definition_of(document, word)
-    if target is None:
-        return "there is no element here that this text defines"
-    if any(found.path == (*target.path[:-1], name) for found in document.definitions):
-        return f"there is a '{name}' already"
-    shown = name if re.fullmatch(r"[^\W\d]\w*", name) else "`" + name.replace("\\", "\\\\").replace("`", "\\`") + "`"
-    return [types.TextEdit(place, shown) for place in references(document, position)]
 
 
 # ---- hover ---------------------------------------------------------------------------------------------------------------------

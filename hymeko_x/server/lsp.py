@@ -13,6 +13,8 @@ from pygls.lsp.server import LanguageServer
 
 from hymeko_x.server import answers
 from hymeko_x.server.analysis import SEVERITIES, Analysis, analyse, path_of, unread
+from hymeko_x.server.renaming import rename_element
+from hymeko_x.server.workspace import Workspace
 
 if TYPE_CHECKING:
     from hymeko_x.diagnostics import Diagnostic
@@ -44,6 +46,10 @@ class _Server(LanguageServer):
         """A document of HyMeKo text in its latest version; None for one of another format."""
         document = self.document(uri)
         return document if document.is_text else None
+
+    def around(self) -> Workspace:
+        """The open texts, each in its latest version, and those on the disk."""
+        return Workspace({uri: self.document(uri) for uri in [*self.workspace.text_documents]})
 
     def show_soon(self, uri: str) -> None:
         """Send the diagnostics of a document as soon as nothing was typed for a moment: questions are answered before."""
@@ -118,7 +124,7 @@ def make_server() -> LanguageServer:
 
 
 def _add_answers_at_places(server: _Server) -> None:
-    """The features that answer questions about a place in HyMeKo text."""
+    """The features that answer questions about a place in a text; of another format than HyMeKo names can be changed."""
 
     @server.feature(types.TEXT_DOCUMENT_HOVER)
     def hover(given: types.HoverParams) -> types.Hover | None:
@@ -128,23 +134,22 @@ def _add_answers_at_places(server: _Server) -> None:
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
     def definition(given: types.DefinitionParams) -> types.Location | None:
         document = server.text(given.text_document.uri)
-        return None if document is None else answers.definition(document, given.position)
+        return None if document is None else answers.definition(document, given.position, server.around().text)
 
     @server.feature(types.TEXT_DOCUMENT_REFERENCES)
     def references(given: types.ReferenceParams) -> list[types.Location]:
         document = server.text(given.text_document.uri)
-        found = [] if document is None else answers.references(document, given.position)
-        return [types.Location(given.text_document.uri, place) for place in found]
+        found = {} if document is None else server.around().references(document, given.position)
+        return [types.Location(uri, place) for uri, places in found.items() for place in places]
 
     @server.feature(types.TEXT_DOCUMENT_RENAME)
-    def rename(given: types.RenameParams) -> types.WorkspaceEdit | None:
-        document = server.text(given.text_document.uri)
-        if document is None:
-            return None
-        edits = answers.rename(document, given.position, given.new_name)
+    def rename(given: types.RenameParams) -> types.WorkspaceEdit:
+        document = server.document(given.text_document.uri)
+        change = server.around().rename if document.is_text else rename_element
+        edits = change(document, given.position, given.new_name)
         if isinstance(edits, str):
             raise JsonRpcException(message=edits, code=types.LSPErrorCodes.RequestFailed)
-        return types.WorkspaceEdit({given.text_document.uri: edits})
+        return types.WorkspaceEdit(edits)
 
     @server.feature(types.TEXT_DOCUMENT_COMPLETION, types.CompletionOptions(trigger_characters=[".", ":", "+", "-", "~", "=", "@"]))
     def completion(given: types.CompletionParams) -> list[types.CompletionItem]:

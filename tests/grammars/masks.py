@@ -145,6 +145,7 @@ def walk(name: str, seed: int, *, length: int = 40, most: int = 400) -> str | No
         allowed = matcher.allowed()
         if not allowed or (END in allowed and (step >= length or allowed == [END])):
             return bytes(text).decode()
+        allowed = [token for token in allowed if token < 0xA0 or token > 0xFF or text[-1:] != b"\xed"]  # xgrammar allows surrogates
         token = _closing(allowed, step) if step >= length or _is_cut(text) else _random(allowed, chance)
         assert matcher.take(token)
         text += _Vocabulary.tokens[token]

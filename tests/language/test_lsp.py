@@ -20,6 +20,7 @@ from pygls.lsp.client import LanguageClient
 
 from hymeko_x.server import answers
 from hymeko_x.server.analysis import Analysis, analyse, unread
+from hymeko_x.server.workspace import Workspace
 from tests.robot.robots import ARM, URDF_HAND
 
 ROOT = Path(__file__).parents[2]
@@ -184,6 +185,81 @@ def test_names_are_explained_found_and_renamed(tmp_path: Path) -> None:
     edit(tmp_path, work)
 
 
+LEG = "leg(h) : link { mass ${h} }\nfoot : link { mass 1 }\n"
+WALKER = """import "legs.hymeko" as legs
+walker : robot {
+  base { mass 1 }
+  left : leg(h=2) {}
+  right : legs.leg(h=3) {}
+  @hip : revolute { + base - left axis=Y }
+}
+"""
+
+
+def test_references_and_new_names_go_over_imports(tmp_path: Path) -> None:
+    (tmp_path / "walker.hymeko").write_text(WALKER)
+    (tmp_path / "other.hymeko").write_text("other : robot { leg { mass 1 } }\n")
+
+    async def work(editor: Editor) -> None:
+        uri = await editor.open("legs.hymeko", LEG)
+        document, client = types.TextDocumentIdentifier(uri), editor.client
+        walker = (tmp_path / "walker.hymeko").as_uri()
+        expected = [(uri, at(LEG, "leg(")), (walker, at(WALKER, "leg(h=2")), (walker, at(WALKER, "leg(h=3"))]
+        context = types.ReferenceContext(True)
+        places = await client.text_document_references_async(types.ReferenceParams(context, document, at(LEG, "leg(")))
+        assert [(place.uri, place.range.start) for place in places or ()] == expected
+        await editor.open("walker.hymeko", WALKER)
+        there = types.TextDocumentIdentifier(walker)
+        places = await client.text_document_references_async(types.ReferenceParams(context, there, at(WALKER, "leg(h=3")))
+        assert [(place.uri, place.range.start) for place in places or ()] == expected
+        edits = await client.text_document_rename_async(types.RenameParams(there, at(WALKER, "leg(h=2"), "shank"))
+        assert edits is not None
+        assert edits.changes is not None
+        assert applied(LEG, list(edits.changes[uri])) == LEG.replace("leg(", "shank(")
+        assert applied(WALKER, list(edits.changes[walker])) == WALKER.replace("leg(", "shank(")
+        with pytest.raises(JsonRpcException, match="there is a 'foot' already"):
+            await client.text_document_rename_async(types.RenameParams(there, at(WALKER, "leg(h=2"), "foot"))
+
+    edit(tmp_path, work)
+
+
+XACRO = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
+  <xacro:macro name="leg" params="side">
+    <link name="${side}_foot"/>
+    <joint name="${side}_ankle" type="fixed"><parent link='base'/><child link="${side}_foot"/></joint>
+  </xacro:macro>
+  <link name="base"/>
+  <link name="left_sole"/>
+  <joint name="left_toe" type="fixed"><parent link="left_foot"/><child link="left_sole"/></joint>
+  <xacro:leg side="left"/>
+</robot>
+"""
+
+
+def test_elements_of_other_formats_get_other_names_wherever_they_stand(tmp_path: Path) -> None:
+    async def work(editor: Editor) -> None:
+        async def renamed(file: str, text: str, what: str, nth: int, name: str) -> str:
+            uri = await editor.open(file, text)
+            place = at(text, what, nth, len(what) - 2)
+            found = await editor.client.text_document_rename_async(types.RenameParams(types.TextDocumentIdentifier(uri), place, name))
+            assert found is not None
+            assert found.changes is not None
+            return applied(text, list(found.changes[uri]))
+
+        assert await renamed("claw.urdf", URDF_HAND, 'link="palm"', 0, "a<b") == URDF_HAND.replace('"palm"', '"a&lt;b"')
+        assert await renamed("arm.xml", ARM, 'joint name="shoulder"', 0, "yaw") == ARM.replace('"shoulder"', '"yaw"')
+        expected = XACRO.replace("'base'", "'trunk'").replace('"base"', '"trunk"')
+        assert await renamed("r.xacro", XACRO, 'link name="base"', 0, "trunk") == expected
+        with pytest.raises(JsonRpcException, match="there is a body 'finger' already"):
+            await renamed("claw.urdf", URDF_HAND, 'link name="palm"', 0, "finger")
+        with pytest.raises(JsonRpcException, match="there is no name of an element here"):
+            await renamed("claw.urdf", URDF_HAND, 'mass value="0.5"', 0, "finger")
+        with pytest.raises(JsonRpcException, match="'left_foot' stands in the text in more places"):
+            await renamed("r.xacro", XACRO, 'parent link="left_foot"', 0, "left_hoof")
+
+    edit(tmp_path, work)
+
+
 def test_completion_knows_types_names_fields_units_and_groups(tmp_path: Path) -> None:
     async def work(editor: Editor) -> None:
         uri = await editor.open("arm.hymeko", TEXT)
@@ -242,7 +318,7 @@ def test_other_formats_get_the_diagnostics_of_check(tmp_path: Path) -> None:
 
 def test_a_question_after_a_keystroke_in_a_thousand_lines_is_answered_soon() -> None:
     """In processor time, the best of five: 0.1 s is what an editor's user does not notice; a machine under load has twice that."""
-    bodies = [f"  body_{number} {{ mass 1 com [0 0 0.1] inertia [1 1 1] shape {{ box [0.1 0.1 0.1] }} }}" for number in range(500)]
+    bodies = [f"  body_{number} {{ mass 1 com [0 0 10cm] inertia [1 1 1] shape {{ box [0.1 0.1 0.1] }} }}" for number in range(500)]
     joints = [f"  @joint_{number} {{ [0 0 0.1] + body_{number} - body_{number + 1} axis=Y limit [-9 9] }}" for number in range(499)]
     text = "\n".join(["r : robot {", *bodies, *joints, "}"])
     known = analyse("long.hymeko", text, None)
@@ -251,7 +327,11 @@ def test_a_question_after_a_keystroke_in_a_thousand_lines_is_answered_soon() -> 
         "completion": lambda document: answers.completion(document, types.Position(700, 24)),
         "hover": lambda document: answers.hover(document, types.Position(400, 4)),
         "references": lambda document: answers.references(document, types.Position(400, 4)),
-        "definition": lambda document: answers.definition(document, types.Position(700, 30)),
+        "definition": lambda document: answers.definition(document, types.Position(700, 30), lambda path: None),
+        "symbols": answers.symbols,
+        "folding": answers.folding,
+        "inlays": lambda document: answers.inlays(document, types.Range(types.Position(0, 0), types.Position(60, 0))),
+        "renaming": lambda document: Workspace({"long.hymeko": document}).rename(document, types.Position(400, 4), "other"),
     }
     for name, ask in questions.items():
         best = 9.0
