@@ -117,9 +117,10 @@ class SdfBuilder(Builder):
                 return field.default
             path.append(found)
             node = found
-        if node.has(last):  # else an empty element stays as it is
-            for found in path:
-                found.taken = True
+        if not node.has(last):  # an empty element stays as it is
+            return field.default
+        for found in path:
+            found.taken = True
         return self.child_value(node, last, field.codec, field.default, key, f"{prefix}{field.path}")
 
     def child_value(self, node: Node, tag: str, codec: Codec, default: Any, key: Id, path: str) -> Any:
