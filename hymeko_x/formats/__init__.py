@@ -202,6 +202,7 @@ SDF = Format(
     layout_options=frozenset({"package_layout"}),
     fragments="hymeko_x.backends.sdf.fragments:fragments_of",
     fragment_sensors="hymeko_x.formats.sdf.fragments:sensor_names",
+    fragment_mounts="hymeko_x.formats.sdf.mounted:mounted_in",
     completes="hymeko_x.frontends.sdf.static:complete",
     outline="hymeko_x.xml.outline:outline",
     references="hymeko_x.formats.sdf.references:renamed",

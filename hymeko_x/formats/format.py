@@ -88,6 +88,8 @@ class Format(Struct, frozen=True):
     """The function ``mechanism -> texts``: the elements in which other formats hold what only it represents of its robots."""
     fragment_sensors: str | None = None
     """The function ``texts -> names``: the sensors and cameras that such elements describe."""
+    fragment_mounts: str | None = None
+    """The function ``text -> (link, name, pose in the link, camera or frame of an IMU) ...`` of such an element."""
     companions: tuple[str, ...] = ()
     """The suffixes of files of the same name beside one of its files that are read with it (SRDF)."""
     companion: str | None = None

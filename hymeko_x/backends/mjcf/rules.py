@@ -19,6 +19,7 @@ from hymeko_x.ir.mechanism import ROOT
 from hymeko_x.ir.parts import Actuator, DofKind
 from hymeko_x.rewrite.actuators import drop_foreign_actuators, drop_idle_actuators
 from hymeko_x.rewrite.couplings import drop_odd_tendons, make_couplings_scalar, make_tendons_sound, name_wrapped_shapes
+from hymeko_x.rewrite.fragments import mount_sensors_of_fragments
 from hymeko_x.rewrite.inertia import fill_tensors, give_moving_bodies_mass, make_tensors_physical
 from hymeko_x.rewrite.joints import (
     expand_screws,
@@ -55,6 +56,7 @@ def _drive_by_transmissions(mechanism: Mechanism, context: Context) -> Mechanism
 
 
 RULES: tuple[Rule, ...] = (
+    mount_sensors_of_fragments,
     make_names_usable,
     name_assets_once,
     open_second_parents,
@@ -158,6 +160,7 @@ ACTUATED: tuple[Rule, ...] = (integrate_implicitly,)
 
 _REPLACED: Mapping[Rule, Rule | None] = MappingProxyType(
     {
+        mount_sensors_of_fragments: None,
         anchor_closures: None,
         name_dofs: None,
         give_moving_bodies_mass: None,

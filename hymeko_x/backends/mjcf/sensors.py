@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from hymeko_x.backends.mjcf.sheet import tag_of
 from hymeko_x.ir.parts import Sense, Sensor
+from hymeko_x.rewrite.fragments import IMU
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,12 +19,14 @@ _SENSED = {"frame": "site", "shape": "geom", "world": "body"}
 
 
 def write_sensors(sheet: MjcfSheet) -> None:
-    """Every sensor of a mechanism that came from MJCF; those of others have kinds that MuJoCo does not have."""
+    """Every sensor of a mechanism that came from MJCF, and those of IMUs; others have kinds that MuJoCo does not have."""
     senses: dict[Id, tuple[RobotArc, ...]] = {}
     for _, _, arcs in sheet.mechanism.edges(Sense):
         senses |= {arc.target: arcs for arc in arcs if arc.sign < 0}
     items: list[tuple[Id, Tag]] = []
-    for key, sensor in sheet.mechanism.vertices(Sensor) if sheet.from_mjcf else ():
+    for key, sensor in sheet.mechanism.vertices(Sensor):
+        if not sheet.from_mjcf and sensor.kind not in IMU:
+            continue
         parameters = sheet.parameters(sensor.parameters, f"sensor/{sensor.kind}", {})
         attributes = {
             "name": sheet.name(key),

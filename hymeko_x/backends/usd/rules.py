@@ -10,6 +10,7 @@ from hymeko_x import codes
 from hymeko_x.formats.usd.contacts import GROUP, GROUPED, GROUPS, pairs_digest
 from hymeko_x.ir.mechanism import ROOT, WORLD
 from hymeko_x.ir.parts import Contact, Loop
+from hymeko_x.rewrite.fragments import mount_sensors_of_fragments
 from hymeko_x.rewrite.joints import expand_screws
 from hymeko_x.rewrite.names import make_names_usable
 from hymeko_x.rewrite.shapes import drop_unused_assets
@@ -53,6 +54,7 @@ def _is_group(extra: Extra) -> bool:
 
 
 RULES: tuple[Rule, ...] = (
+    mount_sensors_of_fragments,
     make_names_usable,
     expand_screws,
     drop_loops_without_bodies,

@@ -1,0 +1,63 @@
+"""Cameras and IMUs that a file holds as text for another program, as elements of the robot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hymeko_x import codes, formats
+from hymeko_x.diagnostics import listed
+from hymeko_x.ir.graph import Arc, Edge
+from hymeko_x.ir.mechanism import ROOT, Id, mount_edge
+from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.parts import Camera, Frame, Sense, Sensor
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from hymeko_x.ir.mechanism import Mechanism, RobotEdge
+    from hymeko_x.ir.parts import VertexPart
+    from hymeko_x.ir.values import Pose
+    from hymeko_x.rewrite.context import Context
+
+IMU = ("accelerometer", "gyro")
+"""What an IMU measures at its frame."""
+_SHOWN = 3
+
+
+def mount_sensors_of_fragments(mechanism: Mechanism, context: Context) -> Mechanism:
+    """Cameras of fragments are cameras of their links; IMUs are frames, with a sensor of accelerations and one of angular velocities.
+
+    What the robot has by the same name already is not added. The fragments themselves stay, as do sensors that are IMUs.
+    """
+    vertices: dict[Id, VertexPart] = {}
+    edges: dict[Id, RobotEdge] = {}
+    names = names_in_use(mechanism)
+    for link, name, pose, part in _mounted(mechanism):
+        body, key = Id("body", link), Id("camera" if isinstance(part, Camera) else "frame", name)
+        if body not in mechanism.graph.vertices or key in mechanism.graph.vertices or key in vertices:
+            continue
+        vertices[key] = part
+        edges[names.take("mount", name)] = mount_edge(body, key, pose)
+        for kind in () if key.kind == "camera" else IMU:
+            sensor = names.take("sensor", f"{name}_{kind}")
+            vertices[sensor] = Sensor(kind)
+            edges[names.take("sense", sensor.name)] = Edge(Sense(), (Arc(key, 1), Arc(sensor, -1)))
+    if not vertices:
+        return mechanism
+    found = [key for key in vertices if key.kind != "sensor"]
+    shown = listed([f"'{key.name}'" for key in found], _SHOWN)
+    message = f"cameras and IMUs that the file holds for a simulator are written: {shown}"
+    context.report.note(codes.REWRITTEN, message, element=str(found[0]))
+    return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
+
+
+def _mounted(mechanism: Mechanism) -> Iterator[tuple[str, str, Pose, Camera | Frame]]:
+    readers = [formats.loaded(row.fragment_mounts) for row in formats.FORMATS if row.fragment_mounts is not None]
+    for extra in mechanism.extras.get(ROOT, ()):
+        for read in readers:
+            yield from read(extra.text)
+    for views in mechanism.mounts.values():
+        for view in views:
+            part = mechanism.graph.vertices.get(view.thing)
+            if isinstance(part, Sensor) and part.kind == "imu":
+                yield view.body.name, view.thing.name, view.pose, Frame()
