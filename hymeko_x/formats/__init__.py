@@ -203,6 +203,7 @@ SDF = Format(
     fragments="hymeko_x.backends.sdf.fragments:fragments_of",
     fragment_sensors="hymeko_x.formats.sdf.fragments:sensor_names",
     fragment_mounts="hymeko_x.formats.sdf.mounted:mounted_in",
+    fragment_of="hymeko_x.formats.sdf.mounted:fragment_of",
     completes="hymeko_x.frontends.sdf.static:complete",
     outline="hymeko_x.xml.outline:outline",
     references="hymeko_x.formats.sdf.references:renamed",

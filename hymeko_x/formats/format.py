@@ -90,6 +90,8 @@ class Format(Struct, frozen=True):
     """The function ``texts -> names``: the sensors and cameras that such elements describe."""
     fragment_mounts: str | None = None
     """The function ``text -> (link, name, pose in the link, camera or frame of an IMU) ...`` of such an element."""
+    fragment_of: str | None = None
+    """The function ``(link, name, pose, part) -> text`` that writes such an element of one of these."""
     companions: tuple[str, ...] = ()
     """The suffixes of files of the same name beside one of its files that are read with it (SRDF)."""
     companion: str | None = None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from hymeko_x import codes, formats
 from hymeko_x.diagnostics import listed
 from hymeko_x.ir.graph import Arc, Edge
-from hymeko_x.ir.mechanism import ROOT, Id, mount_edge
+from hymeko_x.ir.mechanism import ROOT, WORLD, Id, mount_edge
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.parts import Camera, Frame, Sense, Sensor
 
@@ -49,6 +49,22 @@ def mount_sensors_of_fragments(mechanism: Mechanism, context: Context) -> Mechan
     message = f"cameras and IMUs that the file holds for a simulator are written: {shown}"
     context.report.note(codes.REWRITTEN, message, element=str(found[0]))
     return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
+
+
+def held(mechanism: Mechanism) -> list[str]:
+    """The fragments of cameras on bodies, and of frames at which accelerations and angular velocities are measured."""
+    writers = [formats.loaded(row.fragment_of) for row in formats.FORMATS if row.fragment_of is not None]
+    measured: dict[Id, set[str]] = {}
+    for _, _, arcs in mechanism.edges(Sense):
+        kinds = [part.kind for arc in arcs if isinstance(part := mechanism.graph.vertices.get(arc.target), Sensor)]
+        for arc in arcs:
+            measured.setdefault(arc.target, set()).update(kinds)
+    found = []
+    for view in (view for body, views in mechanism.mounts.items() if body != WORLD for view in views):
+        part = mechanism.graph.vertices.get(view.thing)
+        if isinstance(part, Camera) or (isinstance(part, Frame) and measured.get(view.thing, set()).issuperset(IMU)):
+            found += [write((view.body.name, view.thing.name, view.pose, part)) for write in writers]
+    return found
 
 
 def _mounted(mechanism: Mechanism) -> Iterator[tuple[str, str, Pose, Camera | Frame]]:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from msgspec.structs import replace
 
 from hymeko_x import codes
+from hymeko_x.backends.urdf.gazebo import hold_sensors
 from hymeko_x.backends.urdf.ros2_control import declare_ros2_control
 from hymeko_x.diagnostics import counted
 from hymeko_x.formats import urdf as words
@@ -138,5 +139,6 @@ RULES: tuple[Rule, ...] = (
     give_reasons,
     exclude_neighbours,
     declare_groups,
+    hold_sensors,
     declare_ros2_control,
 )

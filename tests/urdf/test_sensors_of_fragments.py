@@ -89,3 +89,29 @@ def test_the_way_back_has_the_fragments_as_they_were(tmp_path: Path, capsys: pyt
         assert main(["diff", str(tmp_path / "r.urdf"), str(tmp_path / "back.urdf")]) == 0
         assert (tmp_path / "back.urdf").read_text("utf-8").count("<sensor") == 2
     assert capsys.readouterr().out.count("differ") == 0
+
+
+EYES = """<mujoco model="r"><worldbody><body name="base"><geom size="0.1"/>
+<body name="head" pos="0 0 1"><joint name="j" axis="0 0 1"/><geom size="0.1"/>
+<camera name="eye" pos="0.1 0 0.2" euler="40 20 10" fovy="40" resolution="640 480"/>
+<site name="imu" pos="0 0.3 0.5" euler="0 0 30"/><site name="mark" pos="1 0 0"/></body></body></worldbody>
+<sensor><accelerometer name="acc" site="imu"/><gyro name="rate" site="imu"/><gyro name="other" site="mark"/></sensor></mujoco>"""
+
+
+def test_for_ros_cameras_and_imus_are_sensors_of_gazebo_and_come_back(tmp_path: Path) -> None:
+    (tmp_path / "r.xml").write_text(EYES, "utf-8")
+    hx.convert(tmp_path / "r.xml", tmp_path / "r.urdf", target="ros2")
+    text = (tmp_path / "r.urdf").read_text("utf-8")
+    assert [text.count(f'type="{kind}"') for kind in ("camera", "imu")] == [1, 1]
+    hx.convert(tmp_path / "r.urdf", tmp_path / "back.xml")
+    before, after = (mujoco.MjModel.from_xml_path(str(tmp_path / name)) for name in ("r.xml", "back.xml"))
+    states = []
+    for model in (before, after):
+        data = mujoco.MjData(model)
+        data.qvel[0] = 2.0
+        mujoco.mj_forward(model, data)
+        eye = data.camera("eye")
+        states.append(np.concatenate([eye.xpos, eye.xmat, model.camera("eye").fovy, data.site("imu").xpos, data.site("imu").xmat]))
+        states.append(np.concatenate([data.sensordata[:6]]))
+    assert np.allclose(states[0], states[2], atol=1e-9)
+    assert np.allclose(states[1], states[3], atol=1e-9)

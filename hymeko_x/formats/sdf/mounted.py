@@ -10,9 +10,11 @@ from hymeko_x.formats.sdf.fragments import TAG
 from hymeko_x.formats.sdf.notations import WrittenPose
 from hymeko_x.formats.sdf.sensors import CAMERA_TURN, HFOV, IMAGE
 from hymeko_x.formats.sdf.values import NUMBER, BadText, read_pose
+from hymeko_x.ir.decimals import shortest
 from hymeko_x.ir.parts import Camera, Frame
-from hymeko_x.ir.values import IDENTITY, Pose, compose
+from hymeko_x.ir.values import IDENTITY, Pose, compose, inverse, numbers_text, rpy_of
 from hymeko_x.xml.parse import parse_text
+from hymeko_x.xml.printing import Tag, ready
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,6 +42,29 @@ def mounted_in(text: str) -> Iterator[Mounted]:
             yield link, name, compose(pose, Pose(quat=CAMERA_TURN)), _camera(camera)
         elif kind == "imu":
             yield link, name, _pose(node), Frame()
+
+
+def fragment_of(mounted: Mounted) -> str:
+    """The fragment of a camera on a link, or of an IMU of which the part is its frame: what :func:`mounted_in` reads."""
+    link, name, pose, part = mounted
+    sensor = Tag("sensor", {"name": name, "type": "camera" if isinstance(part, Camera) else "imu"})
+    placed = compose(pose, inverse(Pose(quat=CAMERA_TURN))) if isinstance(part, Camera) else pose
+    if placed != IDENTITY:
+        sensor.add("pose").children.append(numbers_text((*placed.xyz, *rpy_of(placed))))
+    if isinstance(part, Camera):
+        _add_camera(sensor.add("camera"), part)
+    return ready(Tag(TAG, {"reference": link}, [sensor]), 1)
+
+
+def _add_camera(tag: Tag, camera: Camera) -> None:
+    """The horizontal field of view, from the vertical one and the shape of the image."""
+    width, height = camera.resolution or tuple(int(field.default) for field in IMAGE)
+    if camera.fovy is not None and width > 0 and height > 0:
+        across = 2.0 * math.atan(math.tan(camera.fovy / 2.0) * width / height)
+        tag.add("horizontal_fov").children.append(NUMBER.write(shortest(across)))
+    image = tag.add("image")
+    for field, value in zip(IMAGE, (width, height), strict=True):
+        image.add(field.name).children.append(NUMBER.write(float(value)))
 
 
 def _camera(node: Node) -> Camera:
