@@ -81,6 +81,12 @@ def test_ten_thousand_random_walks_give_no_syntax_error(name: str) -> None:
     assert walks(name, range(10_000))["text"] > 9_000
 
 
+@pytest.mark.full
+def test_a_thousand_random_walks_of_xgrammar_give_no_syntax_error() -> None:
+    pytest.importorskip("xgrammar", reason="xgrammar needs torch, which is large; pip install xgrammar torch runs this test")
+    assert walks("xgrammar", range(1000))["text"] > 900
+
+
 @pytest.mark.parametrize("text", ["a : b(x /* y) */ = 1) {}", "a : b(x // y)\n = 1) {}", "a(x /* y) */) {}", "a(x /*/*0 y\n */){}"])
 def test_a_comment_behind_the_first_name_in_parentheses_is_no_expression(text: str) -> None:
     assert accepts("llguidance", text)
