@@ -58,3 +58,10 @@ def test_a_joint_goes_into_the_model_that_has_both_of_its_links() -> None:
 def test_without_the_frame_of_a_model_a_name_is_no_path() -> None:
     mjcf = '<mujoco model="m"><worldbody><body name="a::l"><freejoint/><geom size="1"/></body></worldbody></mujoco>'
     assert structure(hx.dumps(hx.loads(mjcf, "mjcf"), "sdf")) == {"/m": {"a_l"}}
+
+
+def test_a_link_with_the_name_of_a_model_beside_it_gets_another_one() -> None:
+    inside = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+    mjcf = f"""<mujoco model="m"><worldbody><body name="a"><freejoint name="f"/>{inside}</body>
+      <body name="a::l"><freejoint name="g"/>{inside}<site name="a::__model__"/></body></worldbody></mujoco>"""
+    assert structure(hx.dumps(hx.loads(mjcf, "mjcf"), "sdf")) == {"/m": {"a", "a_body"}, "/m/a": {"l"}}

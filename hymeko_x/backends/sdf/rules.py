@@ -113,9 +113,9 @@ def _uncrossed(dof: Dof) -> Dof:
 
 def make_names_unique_in_models(mechanism: Mechanism, context: Context) -> Mechanism:
     """Links, frames and joints of a model have different names; ``::`` only stands between a model and what is in it."""
-    taken: set[str] = set()
     renamed: dict[Id, Id] = {}
     nesting = nesting_of(mechanism)
+    taken = {scope.removesuffix(words.SCOPE) for scope in nesting.models}
     unwritten = _unwritten(mechanism) | {*nesting.models.values()}
     order = ("body", "joint", "loop", "frame")
     named = [key for key in (*mechanism.graph.vertices, *mechanism.graph.edges) if key.kind in order]
