@@ -71,7 +71,13 @@ class Conversion:
         restored = restore(with_old_names(self._with_inertials(guess.image), names), residue, self.notes).mechanism
         ours = dict(residue.alignment.names)
         named = with_new_names(restored, {new: ours.get(old, old) for new, old in names.items() if ours.get(old) != WORLD})
-        return with_edited_poses(named, guess.image, self.edited, self.format)
+        return with_edited_poses(self._with_transmissions(named), guess.image, self.edited, self.format)
+
+    def _with_transmissions(self, robot: Mechanism) -> Mechanism:
+        """The robot with its transmissions as they were: gains and ranges of the actuators that they become have no place in them."""
+        own = {key: part for key, part in self.mechanism.vertices(Actuator) if part.kind == "transmission"}
+        changed = {key: part for key, part in own.items() if robot.graph.vertices.get(key, part) != part}
+        return robot.with_graph(robot.graph.replace(vertices=changed)) if changed else robot
 
     def missing(self, source: Source) -> list[str]:
         """The edits that did not arrive, in words: what the edited file has otherwise than ORIGINAL with its new text, converted again."""

@@ -134,3 +134,15 @@ def test_servos_are_drives_of_usd_and_plugins_of_gazebo(tmp_path: Path) -> None:
     hx.convert(tmp_path / "r.urdf", tmp_path / "r.sdf", target="gazebo")
     plugins = (tmp_path / "r.sdf").read_text("utf-8")
     assert ("JointPositionController" in plugins, "ApplyJointForce" in plugins) == (True, True)
+
+
+def test_update_leaves_transmissions_as_they_are_where_gains_were_edited(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, edited = tmp_path / "r.urdf", tmp_path / "r.xml"
+    path.write_text(arm(transmission("j", "PositionJointInterface")), "utf-8")
+    hx.convert(path, edited)
+    text = edited.read_text("utf-8")
+    edited.write_text(text.replace('kp="', 'kp="1'), "utf-8")
+    before = path.read_text("utf-8")
+    assert main(["update", str(path), str(edited)]) == 0
+    assert path.read_text("utf-8") == before
+    assert "the edit did not arrive: actuator 'j_motor' parameters.kp" in capsys.readouterr().err
