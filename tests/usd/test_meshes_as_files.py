@@ -92,3 +92,47 @@ def test_on_standard_output_a_model_stands_alone(tmp_path: Path) -> None:
     text = hx.dumps(hx.load(stage(tmp_path / "home")), "mjcf", keep="inside")
     assert "ball" in text
     assert "ball.obj" not in text
+
+
+# ---- one cause each, with the smallest stage ---------------------------------------------------------------------------------
+
+SOLID = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+SIDES = [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3]
+
+
+def compiled(folder: Path, points: object, corners: list[int], places: list[tuple[float, float]] | None = None) -> mujoco.MjModel:
+    """The model that MuJoCo makes of a stage with a body that has one mesh, which collides by its hull."""
+    found = stage_with_body(folder)
+    shape = mesh(found, "/r/b/shape", points, corners)
+    UsdPhysics.CollisionAPI.Apply(shape.GetPrim())
+    UsdPhysics.MeshCollisionAPI.Apply(shape.GetPrim()).CreateApproximationAttr("convexHull")
+    if places is not None:
+        UsdGeom.PrimvarsAPI(shape).CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, "vertex").Set(places)
+    found.Save()
+    hx.convert(folder / "r.usda", folder / "r.xml")
+    return mujoco.MjModel.from_xml_path(str(folder / "r.xml"))
+
+
+def test_many_points_go_into_a_file_and_not_into_the_text(tmp_path: Path) -> None:
+    model = compiled(tmp_path / "r", Vt.Vec3fArray.FromNumpy(BALL.vertices.astype(np.float32)), BALL.faces.ravel().tolist())
+    assert model.nmeshvert == len(BALL.vertices)
+    assert (tmp_path / "r" / "r.xml").stat().st_size < 2000
+
+
+def test_texture_coordinates_reach_mujoco(tmp_path: Path) -> None:
+    model = compiled(tmp_path / "r", SOLID, SIDES, PLACES[:4])
+    assert model.mesh_texcoord.tolist() == [[u, 1.0 - v] for u, v in PLACES[:4]]
+    assert model.mesh_facetexcoord.ravel().tolist() == SIDES
+
+
+@pytest.mark.parametrize("places", [None, PLACES])
+def test_a_point_of_no_triangle_is_in_the_hull(places: list[tuple[float, float]] | None, tmp_path: Path) -> None:
+    model = compiled(tmp_path / "r", [*SOLID, (1, 1, 1)], SIDES, places)
+    assert (model.nmeshvert, model.mesh_graph[0]) == (5, 5)
+
+
+@pytest.mark.parametrize("places", [None, PLACES])
+def test_points_at_one_place_stay_two_points(places: list[tuple[float, float]] | None, tmp_path: Path) -> None:
+    corners = [*SIDES[:9], 1, 2, 4]
+    model = compiled(tmp_path / "r", [*SOLID, SOLID[3]], corners, places)
+    assert (model.nmeshvert, model.mesh_face.ravel().tolist()) == (5, corners)
