@@ -219,8 +219,8 @@ def _item_actions(place: Callable[[int], tuple[int, int]]) -> dict[str, Reduce]:
 
 
 def _headed_node(parts: list[Any], _: int) -> Node:
-    name, edge, types, line, column = parts[0]
-    return Node(name, tuple(_ungrouped(parts[1:])), types, None, (), edge, line, column)
+    name, edge, types, parameters, line, column = parts[0]
+    return Node(name, tuple(_ungrouped(parts[1:])), types, parameters, (), edge, line, column)
 
 
 @cache

@@ -122,20 +122,26 @@ class _Statements:
         weight, bracket, end = text.rpartition("]")
         match = _ARC.match(end)
         assert match is not None, text
-        direction, name = match.groups()
-        return ArcItem(Ref((name,), direction), "", _list_value(weight + bracket, offset) if bracket else None, (), *self._place(offset))
+        role, direction, path = match.groups()
+        return ArcItem(
+            Ref(tuple(path.split(".")), direction),
+            role or "",
+            _list_value(weight + bracket, offset) if bracket else None,
+            (),
+            *self._place(offset),
+        )
 
-    def head(self, text: str, offset: int) -> tuple[str, str, tuple[Stereotype, ...], int, int]:
-        """The name of a node, its edge word, its type, line and column."""
+    def head(self, text: str, offset: int) -> tuple[str, str, tuple[Stereotype, ...], tuple[()] | None, int, int]:
+        """The name of a node, its edge word, its type, its parameters if it has an empty list of them, line and column."""
         match = _HEAD.match(text)
         assert match is not None, text
-        edge, name, kind = match.groups()
-        return (name, edge, (Stereotype(Ref((kind,))),) if kind else (), *self._place(offset))
+        edge, name, parameters, kind = match.groups()
+        return (name, edge, (Stereotype(Ref(tuple(kind.split(".")))),) if kind else (), () if parameters else None, *self._place(offset))
 
 
 _FIELD = re.compile(r"(\w+)\s*=?\s*(.*)", re.DOTALL)
-_ARC = re.compile(r"\s*(\W+?)\s*(\w+)")
-_HEAD = re.compile(r"(@?)(\w+)(?:\s*:\s*(\w+))?")
+_ARC = re.compile(r"\s*(\w+)?\s*([^\w\s]+)\s*([\w.]+)")
+_HEAD = re.compile(r"(@?)(\w+)\s*(\()?[\s)]*(?::\s*([\w.]+))?")
 _BY_FIRST_LETTER: Mapping[str, Convert] = MappingProxyType({'"': _string, "'": _string, "[": _list_value})
 
 

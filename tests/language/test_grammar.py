@@ -96,6 +96,8 @@ def test_lark_and_the_machine_accept_the_same_damaged_files(lark: Lark, path: Pa
         ("a { urdf { g(r=x) { m 1 } } }", "a { urdf { g ( r=x ) {m 1}}}"),
         ("a use s { x 1 }", "a use s{x 1}"),
         ("a { (+ b [1 2], - c) }", "a{(+b [1 2],-c)}"),
+        ("p() { m 1 } q ( ) : b.c { } @r() : s.t { }", "p /* */ () { m 1 } q( /* */ ):b . c{} @ r ( ) : s . t {}"),
+        ("@e { at - a.b, [1 2] at -c.d, x-y }", "@e { at /* */ -a . b, [1 2] /* */ at - c . d, x /* */ - y }"),
         ("a { x inf y=nan }", "a { x=inf y nan }"),
     ],
 )
