@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import re
 import subprocess
 from pathlib import Path
@@ -67,6 +68,27 @@ def test_published_files_keep_the_laws() -> None:
         check_laws(text)
         readable += 1
     assert readable >= 40
+
+
+NOTES = (" // {} }}\n", " # {} [\n", " /* {}\n two */ ", "/*{}*/", "\n// {}\n", "\n\n\n  # {}\n\n")
+
+
+@pytest.mark.parametrize("path", OWN[::4], ids=lambda path: path.name)
+def test_comments_at_any_depth_keep_their_places(path: Path) -> None:
+    chance = random.Random(path.name)
+    pieces: list[str] = []
+    for word in tokens(path.read_text(encoding="utf-8")):
+        note = chance.choice(NOTES).format(len(pieces)) if chance.random() < 0.3 else " "
+        pieces += [note, word]
+    text = "".join(pieces)
+    check_laws(text)
+    assert neighbours(format_text(text)) == neighbours(text)
+
+
+def neighbours(text: str) -> list[tuple[str, int]]:
+    """Each comment with the number of tokens before it."""
+    found = [(comment_text(match[1]), len(tokens(text[: match.start(1)]))) for match in COMMENT.finditer(text) if match[1]]
+    return found[:20] + found[-20:]
 
 
 SPACES = st.sampled_from([" ", "  ", "\n", "\n\n\n", "\t", " \n  ", " // note\n", " /* a\n  b */ ", " # {\n", "\r\n"])
