@@ -15,6 +15,7 @@ from hymeko_x.api import loads
 from hymeko_x.diagnostics import Diagnostic, Refusal
 from hymeko_x.formats import OWN
 from hymeko_x.language.outline import NAME, TYPES, block_of
+from hymeko_x.language.printer import print_name
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -151,7 +152,7 @@ def _spelt(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> Ite
     found = re.search(rf"(?<!\w){re.escape(last)}(?!\w)".encode(), data[place:])
     name = suggested[1].split(" or ")[0]
     if found is not None:
-        yield _replaced(data, place + found.start(), place + found.end(), _quoted(name), f"it is now '{name}'")
+        yield _replaced(data, place + found.start(), place + found.end(), print_name(name), f"it is now '{name}'")
 
 
 def _renamed(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> Iterator[Change]:
@@ -172,7 +173,7 @@ def _defined(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> I
     name = next(iter(re.findall(r"'([^'.]+)'", fault.message)), None)
     is_element = "is not defined" in fault.message and len(path) > 2
     if name is not None and is_element:
-        yield _replaced(data, path[-1].start, path[-1].start, f"{_quoted(name)} {{}}\n", f"'{name}' is now defined, without fields")
+        yield _replaced(data, path[-1].start, path[-1].start, f"{print_name(name)} {{}}\n", f"'{name}' is now defined, without fields")
 
 
 def _untyped(data: bytes, fault: Diagnostic, place: int, path: list[Block]) -> Iterator[Change]:
@@ -217,8 +218,3 @@ def _without(data: bytes, start: int, end: int, what: str) -> Change:
 
 def _replaced(data: bytes, start: int, end: int, new: str, done: str) -> Change:
     return Change((data[:start] + new.encode() + data[end:]).decode(), done)
-
-
-def _quoted(name: str) -> str:
-    """A name as it is written."""
-    return name if _PLAIN_NAME.fullmatch(name) else "`" + name.replace("\\", "\\\\").replace("`", "\\`") + "`"

@@ -67,11 +67,6 @@ def unquoted(name: str) -> str:
     return re.sub(r"\\(.)", r"\1", name[1:-1]) if name.startswith("`") else name
 
 
-def quoted(name: str) -> str:
-    """A name as it is written: in backticks where it needs them."""
-    return name if re.fullmatch(r"[^\W\d]\w*", name) else "`" + name.replace("\\", "\\\\").replace("`", "\\`") + "`"
-
-
 def words(text: str) -> Iterator[Word]:
     """Every name in the text outside of comments and strings."""
     for match in _WORDS.finditer(text):

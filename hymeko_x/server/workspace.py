@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 from lsprotocol import types
 
 from hymeko_x import formats
+from hymeko_x.language.printer import print_name
 from hymeko_x.server import answers
 from hymeko_x.server.analysis import Analysis, analyse, path_of
-from hymeko_x.server.text import Definition, quoted, word_at, words
+from hymeko_x.server.text import Definition, word_at, words
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -77,7 +78,8 @@ class Workspace:
         if any(one.path == (*target.path[:-1], name) for one in home.definitions):
             return f"there is a '{name}' already"
         return {
-            uri: [types.TextEdit(place, quoted(name)) for place in places] for uri, places in self.references(document, position).items()
+            uri: [types.TextEdit(place, print_name(name)) for place in places]
+            for uri, places in self.references(document, position).items()
         }
 
 

@@ -179,6 +179,10 @@ def test_names_are_explained_found_and_renamed(tmp_path: Path) -> None:
         assert edits.changes is not None
         renamed = applied(TEXT, list(edits.changes[uri]))
         assert renamed == TEXT.replace("link : leg", "`1st` : leg").replace("- link", "- `1st`").replace("+ link", "+ `1st`")
+        word = await client.text_document_rename_async(types.RenameParams(document, at(TEXT, "- link", shift=2), "use"))
+        assert word is not None
+        assert word.changes is not None
+        assert {one.new_text for one in word.changes[uri]} == {"`use`"}
         with pytest.raises(JsonRpcException, match="there is a 'base' already"):
             await client.text_document_rename_async(types.RenameParams(document, at(TEXT, "tool {}"), "base"))
 
