@@ -41,6 +41,7 @@ _SECONDS = 300.0
 
 
 KNOWN = {
+    "hopper": "",  # thin lines, which MuJoCo draws on its patterns; other formats have the mean colour of a pattern
     "minitaur": "usd",  # USD has one normal for each triangle, its file has one for each corner: edges and round parts are shaded otherwise
 }
 """Faults that are known: a part of the path of robots, and the beginning of the formats in which they differ."""

@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 _VISUAL = frozenset({0, 1, 2})
 _COLLISION = frozenset({3, 4, 5})
 _FRAMES_PER_JOINT = 24
+_GLOSS = (0.5, 0.5, 0.0)
+"""Specular, shininess and reflectance of what has no material."""
 _FIELD_OF_VIEW = 35.0
 """The vertical angle of the camera in degrees: long enough that an arm does not look bent."""
 
@@ -161,7 +163,8 @@ class Studio:
             other.model.joint(joint).name: joint for joint, kind in enumerate(other.model.jnt_type) if mujoco.mjtJoint(kind) in scalar
         }
         for joint in range(self.model.njnt):
-            same = theirs.get(self.model.joint(joint).name)
+            name = self.model.joint(joint).name
+            same = theirs.get(name, theirs.get(name.removesuffix("_joint")))  # which stands behind names that a body has as well
             if same is not None and self.model.jnt_type[joint] == other.model.jnt_type[same]:
                 self.data.qpos[self.model.jnt_qposadr[joint]] = other.data.qpos[other.model.jnt_qposadr[same]]
         mujoco.mj_forward(self.model, self.data)
@@ -241,9 +244,11 @@ def _groups(model: mujoco.MjModel, *, collision: bool) -> frozenset[int]:
 
 
 def _remove_surroundings(spec: Any) -> None:
-    """Take away sky, floors and settings of the view, which other formats cannot represent, so that the robot alone is compared."""
+    """Take away sky, floors, gloss and settings of the view, which other formats cannot represent, so that the robot alone is compared."""
     import mujoco
 
+    for material in spec.materials:
+        material.specular, material.shininess, material.reflectance = _GLOSS
     plain = mujoco.MjSpec().visual
     for part in ("headlight", "map", "rgba", "quality"):
         setattr(spec.visual, part, getattr(plain, part))

@@ -18,6 +18,7 @@ from hymeko_x import codes
 from hymeko_x.formats.mjcf.places import PLACE, Place
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.formats.mjcf.words import NAME, compiler_has, compilers, joined, mentions, settings_of
+from hymeko_x.frontends.mjcf.colours import with_mean_colours
 from hymeko_x.ir.mechanism import ROOT, Id, Mechanism, file_stem, shape_edge
 from hymeko_x.ir.parts import Body, Box, Camera, Capsule, Cylinder, DofKind, Ellipsoid, Inertial, Joint, Mesh, NoShape, Sphere
 from hymeko_x.ir.values import pose, rotate_tensor, unit_quat
@@ -47,10 +48,10 @@ def complete(mechanism: Mechanism, printed: Printed, files: Files, report: Repor
     """The mechanism, which came from MJCF and goes there as it is ``printed``, with what MuJoCo computes of it.
 
     That is the mass, centre of mass and tensor of every body, stiffness and damping of springs, the points of meshes, the sizes of
-    fitted primitives, and the field of view of cameras. Bodies without mass stay without an inertial. Where MuJoCo is not installed
-    or refuses the text, only cameras change, with an error (a warning where files are missing).
+    fitted primitives, the field of view of cameras, and the colours of patterns. Bodies without mass stay without an inertial. Where MuJoCo
+    is not installed or refuses the text, only cameras and colours change, with an error (a warning where files are missing).
     """
-    mechanism = _with_fields_of_view(mechanism)
+    mechanism = with_mean_colours(_with_fields_of_view(mechanism))
     wanted = [key for key, body in mechanism.vertices(Body) if body.inertial is None and mechanism.shapes.get(key)]
     scaled = compiler_has(mechanism, _SCALES)
     sprung = mentions(mechanism, "springdamper")
