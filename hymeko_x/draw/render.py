@@ -244,7 +244,7 @@ def _groups(model: mujoco.MjModel, *, collision: bool) -> frozenset[int]:
 
 
 def _remove_surroundings(spec: Any) -> None:
-    """Take away sky, floors, gloss and settings of the view, which other formats cannot represent, so that the robot alone is compared."""
+    """Take away sky, floors, gloss, skins and settings of the view, which other formats cannot represent: the robot alone is compared."""
     import mujoco
 
     for material in spec.materials:
@@ -254,6 +254,8 @@ def _remove_surroundings(spec: Any) -> None:
         setattr(spec.visual, part, getattr(plain, part))
     for texture in [texture for texture in spec.textures if texture.type == mujoco.mjtTexture.mjTEXTURE_SKYBOX]:
         spec.delete(texture)
+    for skin in tuple(spec.skins):
+        spec.delete(skin)
     for geom in spec.worldbody.geoms:
         if geom.type == mujoco.mjtGeom.mjGEOM_PLANE:
             geom.material, geom.rgba = "", [0.0] * 4

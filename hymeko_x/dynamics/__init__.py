@@ -55,12 +55,14 @@ def dynamics(
 def _report_left_out(found: Multibody, report: Report) -> None:
     """Warn (HX408) of every element that acts on a robot's motion and has no part in its equations."""
     from hymeko_x import codes
+    from hymeko_x.dynamics.couplings import followers_of
     from hymeko_x.dynamics.drives import cables_of, motors_of
     from hymeko_x.dynamics.loops import closures_of
     from hymeko_x.ir import parts
 
     robot, tree = found.mechanism, found.tree
     words = [(key, f"{key} is a loop of a kind") for key in closures_of(robot, tree)[1]]
+    words += [(key, f"{key} couples along a path, or by a polynomial of several coordinates") for key in followers_of(robot, tree)[1]]
     words += [(key, f"{key} pulls along a path or with a law") for key in cables_of(robot, tree)[1]]
     words += [(key, f"{key} has a law or an end") for key in (motors_of(robot, tree)[1] if found.motors is not None else [])]
     for key, joint, _ in robot.edges(parts.Joint):

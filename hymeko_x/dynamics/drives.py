@@ -46,7 +46,7 @@ class Motor(Struct, frozen=True):
 # ---- from the mechanism ------------------------------------------------------------------------------------------------------------
 
 
-def _terms_of(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc]) -> Terms | None:
+def terms_of(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc]) -> Terms | None:
     """The links of one coordinate that arcs lead to, with the first number of their weights; None where an arc leads elsewhere."""
     places = {(link.joint, link.number): place for place, link in enumerate(tree.links) if link.coordinates == 1}
     found = []
@@ -65,7 +65,7 @@ def cables_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Cable, ...], list
     for key, tendon, arcs in mechanism.edges(parts.Tendon):
         if not tendon.stiffness and not tendon.damping:
             continue
-        terms = _terms_of(mechanism, tree, arcs) if tendon.kind == "fixed" else None
+        terms = terms_of(mechanism, tree, arcs) if tendon.kind == "fixed" else None
         rest = None if terms is None else _rest(tendon, terms, tree)
         if terms is None or rest is None:
             left.append(key)
@@ -95,7 +95,7 @@ def motors_of(mechanism: Mechanism, tree: Tree) -> tuple[tuple[Motor, ...], list
         terms = None
         if drive is not None and not drive.kind and len(ends) == 1:
             gear = (numbers_weight(ends[0]) or (1.0,))[0]
-            terms = _terms_of(mechanism, tree, tendons.get(ends[0].target, ends))
+            terms = terms_of(mechanism, tree, tendons.get(ends[0].target, ends))
             if terms is not None and ends[0].target in tendons:
                 terms = tuple((place, gear * factor) for place, factor in terms)
         if terms is None or law is None:

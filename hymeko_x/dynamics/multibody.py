@@ -141,4 +141,4 @@ def multibody_of(
     if actuated and not motors:
         message = f"{mechanism.name}: no actuator of it drives a joint by a law that is linear in control, position and velocity"
         raise refuse(codes.NO_FORM, message, hint="the inputs are forces of the joints without --inputs actuators")
-    return Multibody(mechanism, tree, followers_of(mechanism, tree), gravity, closures, cables, motors)
+    return Multibody(mechanism, tree, followers_of(mechanism, tree)[0], gravity, closures, cables, motors)

@@ -113,6 +113,7 @@ MJCF = Format(
     completes="hymeko_x.frontends.mjcf.complete:complete",
     flattens="hymeko_x.frontends.mjcf.flat:flatten",
     names_in="hymeko_x.formats.mjcf.prefixes:renamed",
+    couplings="hymeko_x.formats.mjcf.couplings:couplings",
     poses="hymeko_x.formats.mjcf.keyframes:poses",
     joins="hymeko_x.formats.mjcf.keyframes:joined",
     pack="hymeko_x.backends.mjcf.files:pack_for_mujoco",

@@ -79,6 +79,8 @@ class Format(Struct, frozen=True):
     robot; None for what a robot has once."""
     references: str | None = None
     """The function ``(notations, names) -> notations`` by which references in the notations follow elements that got other names."""
+    couplings: str | None = None
+    """The function ``mechanism -> pairs of an id and an edge``: the couplings that only its extras hold (MJCF: those of tendons)."""
     poses: str | None = None
     """The function ``mechanism -> list of (name, {joint: coordinates})`` that reads the named configurations that it keeps as texts."""
     joins: str | None = None
