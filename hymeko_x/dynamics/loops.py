@@ -42,7 +42,7 @@ from hymeko_x.ir.mechanism import pose_weight
 from hymeko_x.ir.parts import DofKind
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
     from hymeko_x.dynamics.recursion import Constants
@@ -157,18 +157,40 @@ class Change(NamedTuple):
 
 def closing(closures: Sequence[Closure], constants: Constants, q: Sequence[Number], v: Sequence[Number]) -> Closing:
     """The closures at (q, v)."""
-    frames, count = constants.link_frames(q), constants.tree.nv
+    frames = constants.link_frames(q)
     pairs = _pairs(closures, constants, frames)
-    columns = []
-    for k in range(count):
-        unit = _velocities(constants, frames, [int(k == j) for j in range(count)])
-        columns.append([x for pair in pairs for x in _gaps(pair.closure, _rate(pair, unit), constants.numbers)])
-    gap = [x for pair in pairs for x in _gaps(pair.closure, Change(pair.gap, pair.turn), constants.numbers)]
     velocities = _velocities(constants, frames, v)
     accelerations = _accelerations(constants, frames, v, velocities)
-    bends = [_bend(pair, velocities, accelerations) for pair in pairs]
-    drift = [x for pair, bend in zip(pairs, bends, strict=True) for x in _gaps(pair.closure, bend, constants.numbers)]
-    return Closing(gap, [[column[i] for column in columns] for i in range(len(gap))], drift)
+    gap = [x for pair in pairs for x in _gaps(pair.closure, Change(pair.gap, pair.turn), constants.numbers)]
+    slope = [row for pair in pairs for row in _rows(pair, constants, frames)]
+    drift = [x for pair in pairs for x in _gaps(pair.closure, _bend(pair, velocities, accelerations), constants.numbers)]
+    return Closing(gap, slope, drift)
+
+
+def _rows(pair: Pair, constants: Constants, frames: Sequence[Frame]) -> Matrix:
+    """The rows of a closure in J. What moves both ends together moves no closure: only links from there to the ends count."""
+    closure, tree = pair.closure, constants.tree
+    chains = list(_chain(closure.first.link, tree)), list(_chain(closure.second.link, tree))
+    rows: Matrix = [[0] * tree.nv for _ in range(closure.rows)]
+    for end in (0, 1):
+        place, common = pair.inside[end], set(chains[1 - end])
+        for i in chains[end]:
+            if i in common:
+                break
+            for k, column in enumerate(constants.subspaces[i], tree.links[i].v):
+                moved = down(place, column)
+                rate = _rate(pair, moved, NOTHING) if end == 0 else _rate(pair, NOTHING, moved)
+                for row, value in zip(rows, _gaps(closure, rate, constants.numbers), strict=True):
+                    row[k] = value
+            place = composed(frames[i], place)
+    return rows
+
+
+def _chain(link: int, tree: Tree) -> Iterator[int]:
+    """A link and all above it."""
+    while link >= 0:
+        yield link
+        link = tree.links[link].parent
 
 
 def _velocities(constants: Constants, frames: Sequence[Frame], v: Sequence[Number]) -> list[Spatial]:
@@ -210,9 +232,8 @@ def _at_ends(pair: Pair, motions: Sequence[Spatial]) -> tuple[Spatial, Spatial]:
     return down(first, motions[pair.closure.first.link]), down(second, motions[pair.closure.second.link])
 
 
-def _rate(pair: Pair, velocities: Sequence[Spatial]) -> Change:
-    """d' = R v_b - v_a - w_a x d and R' = [w]x R, w = R w_b - w_a."""
-    a, b = _at_ends(pair, velocities)
+def _rate(pair: Pair, a: Spatial, b: Spatial) -> Change:
+    """d' = R v_b - v_a - w_a x d and R' = [w]x R, w = R w_b - w_a, of the motions a and b of both ends."""
     w = plus(turned(pair.turn, b.angular), _opposite(a.angular))
     moved = plus(turned(pair.turn, b.linear), _opposite(plus(a.linear, cross(a.angular, pair.gap))))
     return Change(moved, _crossed(w, pair.turn))
@@ -220,7 +241,8 @@ def _rate(pair: Pair, velocities: Sequence[Spatial]) -> Change:
 
 def _bend(pair: Pair, velocities: Sequence[Spatial], accelerations: Sequence[Spatial]) -> Change:
     """The derivatives of d' and R' when velocities change by ``accelerations``."""
-    (a, b), (a_rate, b_rate), rate = _at_ends(pair, velocities), _at_ends(pair, accelerations), _rate(pair, velocities)
+    (a, b), (a_rate, b_rate) = _at_ends(pair, velocities), _at_ends(pair, accelerations)
+    rate = _rate(pair, a, b)
     w = plus(turned(pair.turn, b.angular), _opposite(a.angular))
     w_rate = plus(plus(turned(pair.turn, b_rate.angular), turned(rate.turn, b.angular)), _opposite(a_rate.angular))
     moved = plus(plus(turned(rate.turn, b.linear), turned(pair.turn, b_rate.linear)), _opposite(a_rate.linear))

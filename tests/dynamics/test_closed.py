@@ -13,6 +13,7 @@ import sympy
 import hymeko_x as hx
 from hymeko_x.diagnostics import Refusal
 from hymeko_x.dynamics.assembly import assembled, reduction
+from hymeko_x.dynamics.loops import closing
 from hymeko_x.dynamics.multibody import Multibody
 from hymeko_x.dynamics.pages import page_of, printed
 from hymeko_x.dynamics.positions import moved
@@ -171,3 +172,16 @@ def test_welds_and_hinges_close_a_planar_linkage_as_well(shut: str) -> None:
     u = [0.4, 0.0, -0.1]
     ours, theirs = (np.array(each.graph(x, u), dtype=float)[:, 0] for each in (plain, other))
     np.testing.assert_allclose(ours, theirs, atol=1e-8 * np.abs(ours).max())
+
+
+def test_what_carries_both_ends_of_a_loop_moves_no_closure() -> None:
+    """The Jacobian of the four-bar on a cart, which may turn too, has plain zeros there, in formulas and in numbers."""
+    text = (EXAMPLES / "four_bar.hymeko").read_text().replace("+ world", "+ cart")
+    text = text.replace("world {}", "world {} base : link { mass 1 inertia [1 1 1] } cart : link { mass 1 inertia [1 1 1] }")
+    text = text.replace("~ world", "~ cart").rstrip().removesuffix("}")
+    found = hx.dynamics(load(f"{text} @slide : prismatic {{ + world - base axis=X }} @turn : revolute {{ + base - cart axis=[1 2 3] }} }}"))
+    carried = [link.v for link in found.tree.links if link.name in ("slide", "turn")]
+    slope = closing(found.closures, found._constants, list(np.linspace(0.3, 0.9, found.tree.nq)), [0.0] * found.tree.nv).slope
+    assert len(carried) == 2
+    assert all(isinstance(row[k], int) for row in slope for k in carried)
+    assert all(any(row[k] for row in slope) for k in range(found.tree.nv) if k not in carried)
