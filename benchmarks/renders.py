@@ -23,10 +23,12 @@ import numpy as np
 
 from hymeko_x import api, formats
 from hymeko_x.corpus import cache, catalog
-from hymeko_x.diagnostics import Refusal
+from hymeko_x.diagnostics import Refusal, Report
 from hymeko_x.draw.files import grid, png
 from hymeko_x.draw.pair import compared
 from hymeko_x.draw.render import Look, Studio, choose_backend, is_drawn, open_studio
+from hymeko_x.rewrite.context import Context
+from hymeko_x.rewrite.roots import leave_scenery_out
 from hymeko_x.robot import Robot
 from hymeko_x.source import ManyFiles
 
@@ -41,6 +43,7 @@ _SECONDS = 300.0
 
 
 KNOWN = {
+    "adroit": "",  # images that MuJoCo folds around a cube; other formats lay them out flat
     "hopper": "",  # thin lines, which MuJoCo draws on its patterns; other formats have the mean colour of a pattern
     "minitaur": "usd",  # USD has one normal for each triangle, its file has one for each corner: edges and round parts are shaded otherwise
 }
@@ -83,6 +86,7 @@ def drawn(path: str, pictures: Path | None = None) -> Drawn:
         before, covered = studio.still(), studio.covered()
     except Refusal as refusal:
         return Drawn(path, reason=f"{refusal.diagnostic.code.id}: {refusal.diagnostic.message}"[:200])
+    robot = Robot(leave_scenery_out(robot.mechanism, Context(Report())), robot.files)  # URDF makes boxes of floors
     rows, columns = np.flatnonzero(covered.any(axis=1)), np.flatnonzero(covered.any(axis=0))
     filled = max(np.ptp(rows) / SIZE[1], np.ptp(columns) / SIZE[0]) if covered.any() else 0.0
     found = Drawn(path, float(filled), int(before[covered].max(initial=0)), changed={}, failed={})

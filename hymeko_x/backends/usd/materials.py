@@ -13,6 +13,7 @@ from hymeko_x.ir.parts import Layer, Material, Texture
 if TYPE_CHECKING:
     from hymeko_x.backends.usd.sheet import Prim, UsdSheet
     from hymeko_x.ir.mechanism import Id
+    from hymeko_x.ir.parts import Rgba
 
 
 def write_materials(sheet: UsdSheet) -> None:
@@ -49,10 +50,11 @@ def _write_surface(sheet: UsdSheet, spec: Any, material: Material, image: tuple[
         if value is not None:
             put(shader, f"inputs:{name}", T.Float, value)
     if image is not None:
-        _write_image(sheet, spec, shader, image[1])
+        _write_image(sheet, spec, shader, image[1], material.rgba or words.WHITE)
 
 
-def _write_image(sheet: UsdSheet, spec: Any, shader: Any, texture: Texture) -> None:
+def _write_image(sheet: UsdSheet, spec: Any, shader: Any, texture: Texture, rgba: Rgba) -> None:
+    """An image, which the colour of its material multiplies."""
     coordinates = _shader(sheet, spec, "coordinates", "UsdPrimvarReader_float2")
     put(coordinates, "inputs:varname", T.String, "st")
     put(coordinates, "outputs:result", T.Float2, None)
@@ -61,6 +63,8 @@ def _write_image(sheet: UsdSheet, spec: Any, shader: Any, texture: Texture) -> N
     connect(image, "inputs:st", T.Float2, coordinates, "outputs:result")
     for name in words.WRAPS:
         put(image, name, T.Token, words.REPEAT)
+    if rgba[:3] != words.WHITE[:3]:
+        put(image, words.SCALE, T.Float4, Gf.Vec4f(*rgba[:3], 1.0))
     put(image, "outputs:rgb", T.Float3, None)
     connect(shader, "inputs:diffuseColor", T.Color3f, image, "outputs:rgb")
 

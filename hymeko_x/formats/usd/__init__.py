@@ -66,6 +66,9 @@ ROOT_PRIM = word("usd.root")
 """The notation of the mechanism with the path of the prim that represents the robot."""
 
 WRAPS = ("inputs:wrapS", "inputs:wrapT")
+SCALE = "inputs:scale"
+"""By which the colours of an image are multiplied."""
+WHITE = (1.0, 1.0, 1.0, 1.0)
 REPEAT = "repeat"
 """The wrapping of images in every format that does not specify one."""
 WITHIN = "xformOp:scale:within"

@@ -62,7 +62,7 @@ def bound_material(prim: Prim, builder: UsdBuilder) -> Id | None:
 
 
 def _material(name: str, shader: Any) -> Material:
-    colour, opacity = _constant(shader, "diffuseColor"), _constant(shader, "opacity")
+    colour, opacity = _colour(shader), _constant(shader, "opacity")
     rgba = None
     if colour is not None:
         r, g, b = (single(float(value)) for value in colour)
@@ -74,6 +74,15 @@ def _material(name: str, shader: Any) -> Material:
         metallic=None if metallic is None else single(float(metallic)),
         roughness=None if roughness is None else single(float(roughness)),
     )
+
+
+def _colour(shader: Any) -> Any:
+    """Red, green and blue of a surface, or by which they multiply those of its image; None where they are not given."""
+    image = _image(shader)
+    scale = None if image is None else image.GetPrim().GetAttribute(words.SCALE)
+    if not scale:
+        return _constant(shader, "diffuseColor")
+    return scale.Get()[:3] if scale.HasAuthoredValue() else None
 
 
 def _constant(shader: Any, name: str) -> Any:
@@ -103,7 +112,7 @@ def _is_plain_image(image: Any, coordinates: Any, shader: Any) -> bool:
     """Whether an image is repeated, and has no attributes beyond those that the writer sets."""
     authored = [{str(name) for name in child.GetAuthoredPropertyNames()} for child in (image, coordinates)]
     is_repeated = all(image.GetAttribute(name).Get() == words.REPEAT for name in words.WRAPS)
-    is_ours = authored[0] == _OF_IMAGE and authored[1] == _OF_COORDINATES and is_repeated
+    is_ours = authored[0] - {words.SCALE} == _OF_IMAGE and authored[1] == _OF_COORDINATES and is_repeated
     return is_ours and coordinates.GetAttribute("inputs:varname").Get() == "st" and _image(shader) is not None
 
 
