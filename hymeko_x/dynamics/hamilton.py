@@ -2,6 +2,8 @@
 
 J = [[0, N], [-N', C]], where q' = N(q) v and C(p) turns the momenta of balls and free bodies with their own axes:
 p' = p x w of an angular momentum, and so on. R has the dampers, G the inputs. Energies are in J.
+Closed loops phi(q) = 0 are one more port, through which no power flows: x' = (J - R) dH/dx + G u + B f, 0 = B' dH/dx, B = [[0], [A']] with
+the Jacobian A of phi over the independent velocities, and the forces f of the closures.
 Source: van der Schaft & Jeltsema, Port-Hamiltonian Systems Theory (2014), chapters 2 and 6.
 """
 
@@ -20,7 +22,7 @@ from hymeko_x.dynamics.numbers import add, dot, factorize, graphs, solve, symbol
 from hymeko_x.dynamics.recursion import Constants, mass_matrix
 from hymeko_x.dynamics.spatial import composed, minus, plus, scaled, skew, turned
 from hymeko_x.dynamics.system import Variable
-from hymeko_x.dynamics.trees import position_rates, reduced
+from hymeko_x.dynamics.trees import position_rates, reduced, reduced_closing
 from hymeko_x.ir.parts import DofKind
 
 if TYPE_CHECKING:
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from hymeko_x.dynamics.drives import Terms
+    from hymeko_x.dynamics.loops import Closing
     from hymeko_x.dynamics.numbers import Matrix, Number, Numbers
     from hymeko_x.dynamics.spatial import Frame
     from hymeko_x.dynamics.tree import Link
@@ -41,6 +44,7 @@ _ITERATIONS = 50
 _EXACT = 1e-12
 """Newton's last step, relative to the state."""
 _TINY = 1e-300
+_RANK = 1e-11
 
 
 class Blocks(NamedTuple):
@@ -63,7 +67,7 @@ class Flow(NamedTuple):
 
 
 class MechanicalHamiltonian(Struct, frozen=True, dict=True):
-    """The port-Hamiltonian form of a mechanism without loops, over its independent coordinates."""
+    """The port-Hamiltonian form of a mechanism over the coordinates that follow no others; closed loops are a port."""
 
     found: Trees
 
@@ -93,6 +97,13 @@ class MechanicalHamiltonian(Struct, frozen=True, dict=True):
         g: Matrix = [[0] * len(columns) for _ in q] + [[column[k] for column in columns] for k in range(len(p))]
         return Blocks(mass, _potential(found, constants, whole.q, numbers), _structure(links, q, p), r, g)
 
+    def closed(self, q: Sequence[Number], numbers: Numbers) -> Closing:
+        """phi of the closed loops at q, and its Jacobian A over the independent velocities."""
+        found = self.found
+        rest = [0] * sum(link.velocities for link in self.links)
+        whole = expanded(found.tree, found.followers, q, rest, numbers)
+        return reduced_closing(found.closures, Constants(found.tree, numbers, found.gravity), whole)
+
     # ---- as expressions of casadi ------------------------------------------------------------------------------------------------
 
     @cached_property
@@ -111,18 +122,35 @@ class MechanicalHamiltonian(Struct, frozen=True, dict=True):
 
     @cached_property
     def _step(self) -> Any:
-        """The casadi function (x0, x1, u, h) -> what is missing to a step, its derivative by x1, y, and what dampers take."""
+        """The casadi function (x0, (x1, f), u, h) -> what is missing to a step, its derivative by (x1, f), y, and what dampers take."""
         import casadi
 
-        n, m = len(self.states), len(self.found.system.inputs)
+        n, m, loops = len(self.states), len(self.found.system.inputs), sum(closure.rows for closure in self.found.closures)
         a, b, u, h = casadi.SX.sym("a", n), casadi.SX.sym("b", n), casadi.SX.sym("u", m), casadi.SX.sym("h")
+        f = casadi.SX.sym("f", loops)
         before, after = self.functions(a)[0], self.functions(b)[0]
         _, middle, j, r, g = self.functions((a + b) / 2)
         change = b - a
         gradient = middle + change * (after - before - casadi.dot(middle, change)) / (casadi.dot(change, change) + _TINY)
-        missing = change - h * (casadi.mtimes(j - r, gradient) + casadi.mtimes(g, u))
+        phi, pull = self._pull(a, b, j, f) if loops else (casadi.SX(0, 1), 0)
+        missing = casadi.vertcat(change - h * (casadi.mtimes(j - r, gradient) + casadi.mtimes(g, u) + pull), phi)
         lost = h * casadi.dot(gradient, casadi.mtimes(r, gradient))
-        return casadi.Function("step", [a, b, u, h], [missing, casadi.jacobian(missing, b), casadi.mtimes(g.T, gradient), lost])
+        after = casadi.vertcat(b, f)
+        return casadi.Function("step", [a, after, u, h], [missing, casadi.jacobian(missing, after), casadi.mtimes(g.T, gradient), lost])
+
+    def _pull(self, a: Any, b: Any, j: Any, f: Any) -> tuple[Any, Any]:
+        """phi at the end of a step from a to b, and B f, by a discrete gradient of phi: no power flows where phi is 0 at both ends."""
+        import casadi
+
+        count = sum(link.coordinates for link in self.links)
+        q = casadi.SX.sym("q", count)
+        phi = casadi.Function("phi", [q], [casadi.vertcat(*self.closed([q[k] for k in range(count)], graphs()).gap)])
+        slope = casadi.Function("slope", [q], [casadi.jacobian(phi(q), q)])
+        before, after, change = a[:count], b[:count], b[:count] - a[:count]
+        middle = slope((before + after) / 2)
+        rest = phi(after) - phi(before) - casadi.mtimes(middle, change)
+        discrete = middle + casadi.mtimes(rest, change.T) / (casadi.dot(change, change) + _TINY)
+        return phi(after), casadi.vertcat(casadi.SX(count, 1), casadi.mtimes(casadi.mtimes(discrete, j[:count, count:]).T, f))
 
     def state(self, q: Sequence[float], v: Sequence[float]) -> list[float]:
         """The state at positions and velocities of the independent coordinates."""
@@ -157,15 +185,18 @@ class MechanicalHamiltonian(Struct, frozen=True, dict=True):
     def _advanced(self, x: Floats, guess: Floats, u: Floats, step: float, number: int) -> tuple[Floats, Floats, float]:
         import numpy as np
 
-        after = guess
+        width = len(x)
+        after = np.append(guess, np.zeros(sum(closure.rows for closure in self.found.closures)))
         for _ in range(_ITERATIONS):
             missing, slope, output, lost = (np.array(value, dtype=float) for value in self._step(x, after, u, step))
-            change = np.linalg.solve(slope, missing[:, 0]) if np.isfinite(slope).all() else np.full(len(x), np.nan)
+            if not np.isfinite(slope).all():
+                break
+            change = _solved(slope, missing[:, 0], is_square=len(after) == width)
             after = after - change
             if not np.isfinite(after).all():
                 break
-            if np.abs(change).max() <= _EXACT * (1.0 + np.abs(after).max()):
-                return after, output[:, 0], float(lost[0, 0])
+            if np.abs(change[:width]).max() <= _EXACT * (1.0 + np.abs(after[:width]).max()):
+                return after[:width], output[:, 0], float(lost[0, 0])
         message = f"the step at {number * step:.6g} s has no solution; a shorter --step may have one"
         raise refuse(codes.SIMULATION_FAILED, message)
 
@@ -176,16 +207,11 @@ def _expressions(matrix: Matrix) -> Any:
     return casadi.vertcat(*[casadi.horzcat(*row) if row else casadi.SX(1, 0) for row in matrix])
 
 
-def mechanical_hamiltonian(found: Trees) -> MechanicalHamiltonian:
-    """The port-Hamiltonian form of a mechanism.
+def _solved(slope: Floats, missing: Floats, *, is_square: bool) -> Floats:
+    """A step of Newton's method; closures that repeat each other share their force evenly."""
+    import numpy as np
 
-    Raises: Refusal (HX408) for closed loops, whose forces are no ports.
-    """
-    if found.closures:
-        loop = found.closures[0].id
-        message = f"{loop} closes a loop; there is no port-Hamiltonian form over independent coordinates"
-        raise refuse(codes.NO_FORM, message, found.mechanism.origin(loop), element=str(loop), hint="--form state-space")
-    return MechanicalHamiltonian(found)
+    return np.linalg.solve(slope, missing) if is_square else np.linalg.lstsq(slope, missing, rcond=_RANK)[0]
 
 
 def _momentum(velocity: Variable) -> Variable:
@@ -307,3 +333,15 @@ def formulas_of(form: MechanicalHamiltonian) -> Formulas:
     matrices = (blocks.mass, blocks.J, blocks.R, blocks.G)
     m, j, r, g = (sympy.Matrix(*shape, [x for row in rows for x in row]) for shape, rows in zip(shapes, matrices, strict=True))
     return Formulas(m.applyfunc(sympy.trigsimp), sympy.trigsimp(blocks.potential), j, r, g)
+
+
+def loop_formulas(form: MechanicalHamiltonian) -> tuple[Any, Any]:
+    """phi(q) of closed loops and B as formulas of sympy, without rows and columns that are zero everywhere."""
+    import sympy
+
+    count = sum(link.coordinates for link in form.links)
+    closed = form.closed([sympy.Symbol(f"q{k}", real=True) for k in range(1, count + 1)], symbols())
+    rows = [(gap, row) for gap, row in zip(closed.gap, closed.slope, strict=True) if any(entry != 0 for entry in row)]
+    phi = sympy.Matrix(len(rows), 1, [gap for gap, _ in rows])
+    b = sympy.Matrix(len(form.states), len(rows), lambda i, k: rows[k][1][i - count] if i >= count else 0)
+    return phi.applyfunc(sympy.trigsimp), b.applyfunc(sympy.trigsimp)

@@ -10,7 +10,7 @@ from hymeko_x.dynamics.assembly import reduction
 from hymeko_x.dynamics.couplings import expanded, followers_of, independent
 from hymeko_x.dynamics.drives import cables_of, motors_of
 from hymeko_x.dynamics.forms import SecondOrder
-from hymeko_x.dynamics.hamilton import MechanicalHamiltonian, mechanical_hamiltonian
+from hymeko_x.dynamics.hamilton import MechanicalHamiltonian
 from hymeko_x.dynamics.loops import closing, closures_of
 from hymeko_x.dynamics.numbers import floats
 from hymeko_x.dynamics.operating import OperatingPoint, linearized, named_positions, operating_point, start_of, sympy_matrix
@@ -63,11 +63,8 @@ class Multibody(Trees, frozen=True, dict=True):
         return SecondOrder(space.states[:n], space.inputs, m, -m * a[n:, n:], -m * a[n:, :n], m * b[n:, :], m * space.offset[n:, :])
 
     def port_hamiltonian(self) -> MechanicalHamiltonian:
-        """H, J, R, G over positions and momenta.
-
-        Raises: Refusal (HX408) for closed loops.
-        """
-        return mechanical_hamiltonian(self)
+        """H, J, R, G over positions and momenta; closed loops are a port."""
+        return MechanicalHamiltonian(self)
 
     # ---- closed loops ------------------------------------------------------------------------------------------------------
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from msgspec import Struct
 
 from hymeko_x.dynamics.assembly import reduction
-from hymeko_x.dynamics.hamilton import formulas_of
+from hymeko_x.dynamics.hamilton import formulas_of, loop_formulas
 from hymeko_x.dynamics.linear import complex_text
 from hymeko_x.dynamics.loops import STABILISATION
 from hymeko_x.dynamics.lumped import Lumped
@@ -89,8 +89,15 @@ _ENERGY = "x' = (J - R) dH/dx + G u, y = G' dH/dx, x = (q, p), H = p' M(q)^-1 p 
 def _energy_formulas(dynamics: Multibody) -> Page:
     form = dynamics.port_hamiltonian()
     m, v, j, r, g = formulas_of(form)
-    blocks = (Block("M", m), Block("V", v), Block("J", j), Block("R", r), Block("G", g))
-    return Page(dynamics.tree.name, "port-hamiltonian", _ENERGY, {"states": form.states, "inputs": dynamics.system.inputs}, blocks, {})
+    blocks: tuple[Block, ...] = (Block("M", m), Block("V", v), Block("J", j), Block("R", r), Block("G", g))
+    if dynamics.closures:
+        blocks = (*blocks, *[Block(name, value) for name, value in zip(("phi", "B"), loop_formulas(form), strict=True)])
+    names = {"states": form.states, "inputs": dynamics.system.inputs}
+    return Page(dynamics.tree.name, "port-hamiltonian", _formula(dynamics), names, blocks, {})
+
+
+def _formula(dynamics: Multibody) -> str:
+    return _ENERGY.replace(" u, y", " u + B f, 0 = B' dH/dx, phi(q) = 0, y") if dynamics.closures else _ENERGY
 
 
 def _energy_at(dynamics: Multibody, at: str) -> Page:
@@ -100,15 +107,22 @@ def _energy_at(dynamics: Multibody, at: str) -> Page:
     form, positions = dynamics.port_hamiltonian(), dynamics.at(at).positions
     x = form.state(positions, [0.0] * (len(form.states) - len(positions)))
     energy, gradient, j, r, g = (np.array(value, dtype=float) for value in form.functions(x))
-    matrices = (("dH/dx", gradient), ("J", j), ("R", r), ("G", g))
+    matrices = [("dH/dx", gradient), ("J", j), ("R", r), ("G", g)]
+    if dynamics.closures:
+        slope = dynamics.closed_at(positions)[1]
+        matrices.append(("B", np.vstack([np.zeros((len(positions), len(slope))), slope.T])))
     blocks = (Block("H", sympy_matrix(energy)[0]), *[Block(name, sympy_matrix(matrix)) for name, matrix in matrices])
     checks = {
         "antisymmetric J": bool((j == -j.T).all()),
         "positive semidefinite R": np.linalg.eigvalsh(r).min() >= -1e-12 * np.abs(r).max(),
     }
-    facts = {"at": _where(dynamics, positions), **{name: "yes" if holds else "no" for name, holds in checks.items()}}
+    facts = {
+        "at": _where(dynamics, positions),
+        **_loops(dynamics, positions),
+        **{name: "yes" if holds else "no" for name, holds in checks.items()},
+    }
     names = {"states": form.states, "inputs": dynamics.system.inputs}
-    return Page(dynamics.tree.name, "port-hamiltonian", _ENERGY, names, blocks, facts)
+    return Page(dynamics.tree.name, "port-hamiltonian", _formula(dynamics), names, blocks, facts)
 
 
 def _pairs(values: Mapping[str, float]) -> str:
