@@ -6,6 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+import hymeko_x as hx
 from hymeko_x.backends.hymeko import write
 from hymeko_x.diagnostics import Report
 from hymeko_x.frontends.hymeko import read
@@ -139,3 +140,11 @@ def test_whatever_names_begin_alike_reads_back_equal(mechanism: Mechanism) -> No
     assert back == mechanism
     assert back.layout[: len(mechanism.layout)] == mechanism.layout
     assert write(back, Options(), Report()).main == printed
+
+
+def test_a_template_is_not_named_like_a_type_of_the_vocabulary() -> None:
+    names = [f"arm_{side}_{number}_actuator" for side in ("left", "right") for number in range(1, 6)]
+    robot = hx.loads(f"r : robot {{ base {{ mass 1 }} {' '.join(f'{name} : actuator.geared {{}}' for name in names)} }}", "hymeko")
+    text = hx.dumps(robot, "hymeko")
+    assert "actuator2() : assembly" in text
+    assert hx.loads(text, "hymeko") == robot
