@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 
+from hymeko_x import formats, pipeline
+from hymeko_x.diagnostics import Report
 from hymeko_x.ir.mechanism import WORLD, Id, Mechanism
 from hymeko_x.ir.parts import Coupling, DofKind, Limits
+from hymeko_x.rewrite import Options
+from hymeko_x.source import NoFiles
 from tests.usd.stages import HEADER, read_text
 
 NESTED = """#usda 1.0
@@ -171,3 +175,37 @@ def Xform "robot"
 }}
 """
     assert [dof.kind for dof in read_text(text).joints[Id("joint", "s")].joint.dofs] == [DofKind.SLIDE, DofKind.BALL]
+
+
+PHYSX = f"""{HEADER}
+def Xform "robot"
+{{
+    def Xform "base" (apiSchemas = ["PhysicsRigidBodyAPI"]) {{}}
+    def Xform "arm" (apiSchemas = ["PhysicsRigidBodyAPI"]) {{}}
+    def PhysicsRevoluteJoint "elbow"
+    {{
+        float2 mjc:solreflimit = (0.5, 0.05)
+        rel physics:body0 = </robot/base>
+        rel physics:body1 = </robot/arm>
+        float physxJoint:armature = 0.02
+        float physxJoint:maxJointVelocity = 90
+    }}
+}}
+"""
+
+
+def test_a_value_that_only_physx_has_is_a_value_of_the_joint_and_of_physx_again() -> None:
+    robot = read_text(PHYSX)
+    (dof,) = robot.joints[Id("joint", "elbow")].joint.dofs
+    assert (dof.armature, dof.limits.velocity) == (0.02, math.pi / 2)
+    assert not any("physxJoint" in extra.text for extra in robot.extras[Id("joint", "elbow")])
+    result = pipeline.convert(robot, formats.USD, Options(), NoFiles(), Report())
+    assert result.losses == ()
+    for line in ("physxJoint:armature = 0.02", "physxJoint:maxJointVelocity = 90", "mjc:armature = 0.02", "newton:velocityLimit = 90"):
+        assert line in result.package.main.decode()
+
+
+def test_a_value_of_physx_that_contradicts_newton_s_stays_as_it_is_written() -> None:
+    robot = read_text(PHYSX.replace("float physx", "float newton:armature = 0.03\n        float physx", 1))
+    assert robot.joints[Id("joint", "elbow")].joint.dofs[0].armature == 0.03
+    assert any("physxJoint:armature = 0.02" in extra.text for extra in robot.extras[Id("joint", "elbow")])

@@ -92,6 +92,9 @@ def _write_drive(spec: Any, instance: str, actuator: Actuator, dof: Dof, gear: f
         value = authored.get(parameter)
         if isinstance(value, int | float):
             put(spec, f"drive:{instance}:physics:{name}", T.Float, value * gear * gear * unit)
+    inherited = authored.get("inheritrange")
+    if isinstance(inherited, float) and inherited:
+        put(spec, table.INHERITED.format(instance), T.Double, inherited)
     most = authored.get("forcerange")
     if isinstance(most, tuple) and len(most) == 2:
         put(spec, f"drive:{instance}:physics:maxForce", T.Float, max(map(abs, most)) * abs(gear))

@@ -132,7 +132,7 @@ def write_frames(sheet: UsdSheet, spec: Any, key: Id, ends: tuple[End, End], dof
         put(spec, "physics:axis", T.Token, token)
         _write_limits(spec, dofs[0], is_neutral=sheet.is_neutral)
     for dof in dofs[:1]:
-        write_behaviour(spec, dof, is_neutral=sheet.is_neutral)
+        write_behaviour(spec, dof, table.PHYSX if sheet.is_neutral else sheet.mechanism.notation(key, words.PHYSX) or ())
 
 
 def _write_end(sheet: UsdSheet, spec: Any, side: int, body: Id, key: Id) -> None:
@@ -186,10 +186,10 @@ def _write_generic(spec: Any, dofs: tuple[Dof, ...]) -> None:
                 put(spec, f"limit:{name}:physics:{end}", T.Float, value if dof is None else _coordinate(dof, value))
 
 
-def write_behaviour(spec: Any, dof: Dof, *, is_neutral: bool) -> None:
+def write_behaviour(spec: Any, dof: Dof, physx: tuple[str, ...]) -> None:
     """What a dof does beyond moving, in MuJoCo's schema (doubles, radians) and in Newton's (degrees), where it is not the default.
 
-    A stage that is neutral has a layer for PhysX as well, which has limits of velocities (in degrees) and armature of its own.
+    ``physx`` are the values, of limits of velocities (in degrees) and armature, that PhysX' own schema gets as well.
     """
     turns = dof.kind is not DofKind.SLIDE
     degree = math.pi / 180.0 if turns else 1.0
@@ -207,9 +207,8 @@ def write_behaviour(spec: Any, dof: Dof, *, is_neutral: bool) -> None:
     if dof.limits.velocity is not None:
         apply(spec, "NewtonJointAPI")
         put(spec, "newton:velocityLimit", T.Float, dof.limits.velocity / degree)
-    if is_neutral:
-        speed = None if dof.limits.velocity is None else shortest(dof.limits.velocity / degree)
-        _write_schema(spec, "PhysxJointAPI", "physxJoint", T.Float, {"armature": dof.armature, "maxJointVelocity": speed or 0.0})
+    values = {"armature": dof.armature, "maxJointVelocity": shortest((dof.limits.velocity or 0.0) / degree)}
+    _write_schema(spec, "PhysxJointAPI", "physxJoint", T.Float, {name: value for name, value in values.items() if name in physx})
     if dof.limits.effort is not None:
         apply(spec, "MjcJointAPI")
         put(spec, "mjc:actuatorfrcrange:min", T.Double, -dof.limits.effort)

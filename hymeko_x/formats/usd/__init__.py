@@ -25,6 +25,8 @@ REVERSED = flag("usd.reversed")
 """The notation of a joint whose parent in the tree is its ``body1``."""
 EQUALITY = flag("usd.equality")
 """The notation of a coupling that has MuJoCo's schema alone, without Newton's."""
+PHYSX = words("usd.physx")
+"""The notation of a joint with the names of its values that PhysX' schema has too, in a stage that is not neutral."""
 NORMALS = flag("usd.normals", "faces")
 """The notation of a mesh shape whose prim has the normal of each triangle as computed from its points."""
 TEXCOORDS = flag("usd.texcoords", "corners")
@@ -117,3 +119,9 @@ def single(value: float) -> float:
         if _pack(short) == packed:
             return short
     return float(f"{value:.9g}")
+
+
+def single_in(value: float, unit: float) -> float:
+    """A single-precision number in another unit: 10 for the float of 10 pi/180 that is read in radians."""
+    short = single(value * unit)
+    return short if math.isfinite(short) and _pack(short / unit) == _pack(value) else value * unit

@@ -35,6 +35,8 @@ RANGES: Mapping[str, str] = MappingProxyType(
 )
 """Parameters that are two numbers, each with an attribute of its own below this one: ``min`` and ``max``."""
 NUMBERS: Mapping[str, str] = MappingProxyType({"cranklength": "crankLength", "inheritrange": "inheritRange"})
+INHERITED = "hymeko:drive:{}:inheritRange"
+"""The attribute of a drive's joint for the one parameter of a position servo that follows from no other value, by the drive's instance."""
 INTEGERS: Mapping[str, str] = MappingProxyType({"actdim": "actDim", "group": "group"})
 DEFAULTS: Mapping[str, str] = MappingProxyType({"dyntype": "none", "gaintype": "fixed", "biastype": "none"})
 """The words of a plain motor."""

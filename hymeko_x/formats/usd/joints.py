@@ -25,6 +25,8 @@ TYPES = (*DOFS, FIXED, GENERIC, DISTANCE)
 AXES: Mapping[str, Vec3] = MappingProxyType({"X": X, "Y": Y, "Z": Z})
 D6_AXES = ("transX", "transY", "transZ", "rotX", "rotY", "rotZ")
 """The axes of a generic joint in the order in which they move: the first is nearest to the parent."""
+PHYSX = ("armature", "maxJointVelocity")
+"""The values of PhysX' schema for joints that the IR can represent."""
 DRIVES = ("angular", "linear", *D6_AXES)
 """The instances of a DriveAPI."""
 

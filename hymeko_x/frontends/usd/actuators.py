@@ -57,15 +57,15 @@ def _add_drive(prim: Prim, key: Id, instance: str, number: int, joint: Joint, bu
     gain = scene.kilograms * (scene.metres**2 * 180.0 / math.pi if turns else 1.0)
     effort = scene.kilograms * scene.metres * (scene.metres if turns else 1.0)
     prefix = f"drive:{instance}:physics"
-    kp = builder.number(prim, f"{prefix}:stiffness", 0.0) * gain
-    kv = builder.number(prim, f"{prefix}:damping", 0.0) * gain
+    kp, kv = (words.single_in(builder.number(prim, f"{prefix}:{name}", 0.0), gain) for name in ("stiffness", "damping"))
     most = builder.number(prim, f"{prefix}:maxForce", math.inf) * effort
     if _is_limit(most, joint.dofs[number].limits.effort):
         if not (kp or kv):
             return  # a drive without gains only repeats the limit
         most = math.inf
     kind = "position" if kp else "velocity" if kv else "motor"
-    gains = [(name, value) for name, value in (("kp", kp), ("kv", kv)) if value]
+    inherited = builder.number(prim, table.INHERITED.format(instance), 0.0) if kp else 0.0
+    gains = [(name, value) for name, value in (("kp", kp), ("kv", kv), ("inheritrange", inherited)) if value]
     limits: list[tuple[str, float | str | tuple[float, ...]]] = [("forcerange", (-most, most))] if math.isfinite(most) else []
     own = joint.dofs[number].name
     name = own or (key.name if len(joint.dofs) == 1 else f"{key.name}_{instance}")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from msgspec import Struct
@@ -26,8 +25,6 @@ if TYPE_CHECKING:
 
 _MJC = ("armature", "damping", "frictionloss", "stiffness", "ref", "springref")
 _OF_COUPLINGS = ("newton:mimic", "mjc:coef", "mjc:target", "mjc:solimp", "mjc:solref")
-_PHYSX = MappingProxyType({"armature": "armature", "maxJointVelocity": "velocityLimit"})
-"""The values of PhysX that the IR can represent, each with its name in Newton's schema."""
 _UNLIMITED = 1e6
 """PhysX' limit in degrees or units per second of a joint without a limit."""
 _NEWTON = ("armature", "damping", "friction", "velocityLimit")
@@ -71,6 +68,7 @@ def read_joint(prim: Prim, builder: UsdBuilder) -> ReadJoint | None:
     _mark_schemas(prim, builder)
     enabled = prim.value("physics:jointEnabled") is not False
     excluded = bool(prim.value("physics:excludeFromArticulation"))
+    _note_physx(prim, key, builder)
     if prim.kind == table.GENERIC:
         builder.note(key, words.TYPE, prim.kind)
     for side, end in enumerate((first, second)):
@@ -79,12 +77,13 @@ def read_joint(prim: Prim, builder: UsdBuilder) -> ReadJoint | None:
 
 
 def _mark_schemas(prim: Prim, builder: UsdBuilder) -> None:
-    """A schema of which every value is typed needs no extra; one without values does."""
+    """A schema of which every value is typed, or one that is not zero, needs no extra: the writer applies it. One without values does."""
     read = builder.read_names.get(prim.path, set())
     own = [name for name in prim.properties if not name.startswith(_OF_COUPLINGS)]
     for prefix, schema in (("mjc:", "MjcJointAPI"), ("newton:", "NewtonJointAPI"), ("physxJoint:", "PhysxJointAPI")):
         authored = [name for name in own if name.startswith(prefix)]
-        if authored and read.issuperset(authored):
+        is_written = any(name in read and prim.value(name) for name in authored)
+        if authored and (is_written or read.issuperset(authored)):
             builder.mark_read(prim, f"@{schema}")
 
 
@@ -210,7 +209,8 @@ def _behaving(prim: Prim, dof: Dof, builder: UsdBuilder) -> Dof:
     angle = math.pi / 180.0 if turns else scene.metres
     mjc = {name: builder.number(prim, f"mjc:{name}", math.nan) for name in _MJC}
     newton = {name: builder.number(prim, f"newton:{name}", math.nan) for name in _NEWTON}
-    physx = {name: _of_physx(prim, name, newton[twin], builder) for name, twin in _PHYSX.items()}
+    twins = {"armature": (mjc["armature"], newton["armature"]), "maxJointVelocity": (newton["velocityLimit"],)}
+    physx = {name: _of_physx(prim, name, twins[name], builder) for name in table.PHYSX}
     speed = _first(newton["velocityLimit"], physx["maxJointVelocity"], math.inf) * angle
     if math.isfinite(newton["velocityLimit"]):
         builder.mark_read(prim, "newton:velocityLimit")
@@ -226,14 +226,22 @@ def _behaving(prim: Prim, dof: Dof, builder: UsdBuilder) -> Dof:
     )
 
 
-def _of_physx(prim: Prim, name: str, twin: float, builder: UsdBuilder) -> float:
-    """A value of PhysxJointAPI, NaN where it has none; it stays an extra unless Newton's attribute, the twin, has the same value."""
+def _of_physx(prim: Prim, name: str, twins: tuple[float, ...], builder: UsdBuilder) -> float:
+    """A value of PhysxJointAPI, NaN where it has none; it stays an extra where MuJoCo's or Newton's attribute, a twin, contradicts."""
     value = prim.value(f"physxJoint:{name}")
     if not isinstance(value, float) or not 0.0 < value < _UNLIMITED:
         return math.nan
-    if words.single(value) == twin:
+    if all(math.isnan(twin) or words.single(twin) == words.single(value) for twin in twins):
         builder.mark_read(prim, f"physxJoint:{name}")
     return words.single(value)
+
+
+def _note_physx(prim: Prim, key: Id, builder: UsdBuilder) -> None:
+    """Keep which values PhysxJointAPI has, as far as the joint has the same."""
+    read = builder.read_names.get(prim.path, set())
+    names = [name for name in table.PHYSX if f"physxJoint:{name}" in read]
+    if names:
+        builder.note(key, words.PHYSX, tuple(names))
 
 
 def _effort(prim: Prim, unit: float, builder: UsdBuilder) -> float | None:
