@@ -102,6 +102,30 @@ def _content(place: Path, origin: Origin) -> bytes:
     return data
 
 
+def check_outputs(*paths: str | Path | None, makes_folders: bool = False) -> None:
+    """Refuse outputs that could not be written, before any work is done for them; None and ``-`` are none.
+
+    ``makes_folders``: folders that are missing will be made. Raises: Refusal HX002.
+    """
+    for path in paths:
+        try:
+            if path is not None and str(path) != "-":
+                _check_output(Path(path), makes_folders=makes_folders)
+        except (OSError, ValueError) as error:
+            raise refuse(codes.CANNOT_WRITE, f"cannot be written: {_reason(error)}", Origin(str(path))) from error
+
+
+def _check_output(target: Path, *, makes_folders: bool = False) -> None:
+    """Raises: OSError, ValueError where a file cannot be written."""
+    folder = next(place for place in target.parents if place.exists()) if makes_folders else target.parent
+    if not folder.is_dir():
+        raise FileNotFoundError(errno.ENOENT, f"there is no folder '{folder}'")
+    if target.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+    if not os.access(target if _is_stream(target) else folder, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+
+
 def write_package(package: Package, path: str, files: Files, within: Within | None = None) -> None:
     """Write the main file to ``path`` and its assets beside it. A run that is killed leaves the old output or the new one, whole.
 
@@ -115,8 +139,7 @@ def write_package(package: Package, path: str, files: Files, within: Within | No
     beside = target.with_name(f"{target.name}{KEPT_SUFFIX}")
     assets, main, kept = Staging(), Staging(), Staging()
     try:
-        if not target.parent.is_dir():
-            raise FileNotFoundError(errno.ENOENT, f"there is no folder '{target.parent}'")
+        _check_output(target)
         assets.add_all((place, contents.read(name)) for name, place in _assets(package, target))
         if is_stream := _is_stream(target):
             _write_stream(package, target)

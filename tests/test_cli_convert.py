@@ -223,6 +223,41 @@ def test_an_output_that_cannot_be_written_is_exit_1(folder: Path, capsys: pytest
     assert capsys.readouterr().err == "typo/out.urdf: error[HX002]: cannot be written: there is no folder 'typo'\n"
 
 
+@pytest.mark.parametrize(
+    "words",
+    [
+        "convert gone.urdf typo/out.xml",
+        "convert gone.urdf out.xml --report typo/out.json",
+        "import gone.urdf -o typo/out.hymeko",
+        "export gone.hymeko -o typo/out.xml",
+        "attach gone.urdf gone.xml -o typo/out.xml",
+        "update gone.urdf gone.xml -o arm.urdf/out.urdf",
+        "report gone.urdf gone.xml -o arm.urdf/out.html",
+        "graph gone.urdf -o arm.urdf/out.svg",
+        "render gone.urdf -o arm.urdf/out.png",
+        "dynamics gone.urdf -o arm.urdf/out.txt",
+        "dynamics gone.urdf --bode typo/out.svg",
+        "simulate gone.urdf --figure typo/out.svg",
+        "info gone.urdf -o arm.urdf/out.txt",
+    ],
+)
+def test_an_output_that_cannot_be_written_is_reported_before_anything_is_read(
+    words: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words.split()) == exits.FAILED
+    place = "typo" if "typo" in words else "arm.urdf"
+    err = capsys.readouterr().err
+    assert err.startswith(f"{place}/out.")
+    assert "error[HX002]: cannot be written" in err
+    assert "gone" not in err
+
+
+def test_a_folder_is_no_output(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "out.svg").mkdir()
+    assert main(["graph", "gone.urdf", "-o", "out.svg"]) == exits.FAILED
+    assert capsys.readouterr().err == "out.svg: error[HX002]: cannot be written: Is a directory\n"
+
+
 def test_a_format_that_can_only_be_written_is_refused_as_input(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from msgspec.structs import replace
 

@@ -134,8 +134,9 @@ def _printed_into(path: str, run: Callable[[], int]) -> int:
     from contextlib import redirect_stdout
     from io import StringIO
 
-    from hymeko_x.disk import write_files
+    from hymeko_x.disk import check_outputs, write_files
 
+    check_outputs(path, makes_folders=True)
     with redirect_stdout(StringIO()) as printed:
         code = run()
     write_files({path: printed.getvalue().encode()})

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from msgspec.structs import replace
 
-from hymeko_x import formats
+from hymeko_x import disk, formats
 from hymeko_x.cli.convert import Output, deliver, output_arguments
 from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import Input, input_arguments, lenient_argument, read_input
@@ -40,6 +40,7 @@ def run_attach(chosen: argparse.Namespace) -> int:
     if chosen.output == "-" and not chosen.to_format:
         raise UsageError("say which format to write to standard output: --to FORMAT")
     format = formats.of_output(chosen.output, chosen.to_format)
+    disk.check_outputs(chosen.output, chosen.report)
     report = Report()
     host, part = (read_input(path, chosen, report) for path in (chosen.host, chosen.part))
     prefix = f"{PurePath(part.source.name).stem}/" if chosen.prefix is None else chosen.prefix

@@ -39,6 +39,7 @@ def run_report(chosen: argparse.Namespace) -> int:
     if "-" in (chosen.a, chosen.b):
         raise UsageError("the robots are files: the formats' own engines read them as well")
     refuse_own_reading(chosen)
+    disk.check_outputs(chosen.output, makes_folders=True)
     from hymeko_x.draw.comparison.facts import comparison, draw
 
     a, b = (read_side(path, chosen) for path in (chosen.a, chosen.b))

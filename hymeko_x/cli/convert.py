@@ -55,6 +55,7 @@ def import_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run_import(chosen: argparse.Namespace) -> int:
     """Read the file and print it as HyMeKo, which represents everything: losses are measured only on request."""
+    disk.check_outputs(chosen.output, chosen.report)
     report = Report()
     given = read_input(chosen.input, chosen, report, formats.OWN)
     return deliver(given, Output(formats.OWN, chosen.output), chosen, report, measured=bool(chosen.report or chosen.fail_on))
@@ -75,6 +76,7 @@ def run_export(chosen: argparse.Namespace) -> int:
     if not chosen.to_format and not chosen.target and chosen.output == "-":
         raise UsageError("say which format to write: --to FORMAT, or -o FILE with its suffix")
     format = _output_format(chosen, chosen.output)
+    disk.check_outputs(chosen.output, chosen.report)
     report = Report()
     return deliver(read_input(chosen.input, chosen, report, format), Output(format, chosen.output), chosen, report)
 
@@ -143,6 +145,7 @@ def _convert(chosen: argparse.Namespace, source: str, output: str) -> int:
     if chosen.verify and "-" in (source, output):
         raise UsageError("--verify reads the files again with other engines, so that neither can be a pipe")
     format = _output_format(chosen, output)
+    disk.check_outputs(output, chosen.report)
     report = Report()
     given = read_input(source, chosen, report, format)
     own = unchanged(given.source, given.format, format)

@@ -11,7 +11,7 @@ from hymeko_x.cli.exits import UsageError
 from hymeko_x.cli.inputs import input_arguments, lenient_argument, read_input
 from hymeko_x.cli.report import show_diagnostics
 from hymeko_x.diagnostics import Report
-from hymeko_x.disk import write_files
+from hymeko_x.disk import check_outputs, write_files
 
 if TYPE_CHECKING:
     import argparse
@@ -49,6 +49,8 @@ def run_dynamics(chosen: argparse.Namespace) -> int:
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.pages import page_of, printed
 
+    check_outputs(chosen.output, makes_folders=True)
+    check_outputs(chosen.bode)
     report = Report()
     found = _dynamics(chosen, report)
     if chosen.to is not None:
@@ -121,6 +123,7 @@ def run_simulate(chosen: argparse.Namespace) -> int:
     from hymeko_x.dynamics.balance import balanced_response
     from hymeko_x.dynamics.tables import csv_text, draw, write_table
 
+    check_outputs(chosen.output, chosen.figure)
     report = Report()
     found = _dynamics(chosen, report)
     step = chosen.time / 1000 if chosen.step is None else chosen.step

@@ -47,6 +47,7 @@ def run_generate(chosen: argparse.Namespace) -> int:
     """Print the table; exit 4 when a run does not end with the same robot."""
     from hymeko_x.generate.loop import generate
 
+    disk.check_outputs(chosen.log, chosen.result, makes_folders=True)
     task = _task(chosen)
     model = _model(chosen, task)
     lines: list[str] = []

@@ -43,6 +43,7 @@ def graph_arguments(parser: argparse.ArgumentParser) -> None:
 def run_graph(chosen: argparse.Namespace) -> int:
     """Draw, and write the picture."""
     suffix = output_suffix(chosen.output, _SUFFIXES)
+    disk.check_outputs(chosen.output, makes_folders=True)
     report = Report()
     robot = read_input(chosen.input, chosen, report).mechanism
     show_diagnostics(report, chosen)

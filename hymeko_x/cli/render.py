@@ -42,6 +42,7 @@ def run_render(chosen: argparse.Namespace) -> int:
     suffix = Path(chosen.output).suffix.lower()
     if suffix not in (_FILMS if chosen.animate else (".png",)):
         raise UsageError(f"{'a film' if chosen.animate else 'a picture'} ends in {' or '.join(_FILMS if chosen.animate else ('.png',))}")
+    disk.check_outputs(chosen.output, makes_folders=True)
     from hymeko_x.draw.render import choose_backend
 
     choose_backend()

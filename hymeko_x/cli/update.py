@@ -46,6 +46,8 @@ def run_update(chosen: argparse.Namespace) -> int:
     """Bring the edits home, show them, and write the files unless it is a rehearsal."""
     if "-" in (chosen.original, chosen.edited, chosen.output):
         raise UsageError("update reads and writes files, and no pipes")
+    if not chosen.dry_run:
+        disk.check_outputs(chosen.output or chosen.original, makes_folders=True)
     report = Report()
     original, edited = source_of(chosen.original, chosen), source_of(chosen.edited, chosen)
     format = formats.by_name(chosen.from_format) if chosen.from_format else formats.of_input(original.name, original.data)
