@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import mujoco
 import pytest
 
 import hymeko_x as hx
@@ -63,3 +64,29 @@ def test_it_is_reported_beside_an_edit_that_arrives(tmp_path: Path) -> None:
 
 def test_an_edit_that_arrives_is_not_reported(tmp_path: Path) -> None:
     assert updated(tmp_path, "r.urdf", ('"ankle"', '"heel"'), ('"toe"', '"tip"'))[1] == []
+
+
+TOOL = """<link name="tool"><inertial><mass value="1.5"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial>
+<visual><geometry><box size="0.1 0.2 0.3"/></geometry></visual><collision><geometry><box size="0.1 0.2 0.3"/></geometry></collision></link>
+<joint name="tool" type="fixed"><parent link="toe"/><child link="tool"/></joint></robot>"""
+
+
+@pytest.mark.unread("HX101")
+def test_a_visual_that_is_added_to_mjcf_touches_nothing(tmp_path: Path) -> None:
+    assert updated(tmp_path, "r.urdf", ("</robot>", TOOL))[1] == []
+    hx.update(tmp_path / "r.xml", tmp_path / "r.urdf")
+    model = mujoco.MjModel.from_xml_path(str(tmp_path / "r.xml"))
+    geoms = range(model.ngeom - 2, model.ngeom)
+    assert [(model.geom_contype[geom], model.geom_conaffinity[geom], model.geom_group[geom]) for geom in geoms] == [(0, 0, 2), (1, 1, 3)]
+    assert hx.update(tmp_path / "r.xml", tmp_path / "r.urdf", dry_run=True).edits == ()
+
+
+@pytest.mark.unread("HX101")
+def test_masses_have_no_place_where_the_engine_counts_shapes(tmp_path: Path) -> None:
+    (tmp_path / "r.xml").write_text(LEG.replace("<worldbody>", '<compiler inertiafromgeom="true"/><worldbody>'))
+    hx.convert(tmp_path / "r.xml", tmp_path / "r.urdf")
+    (tmp_path / "r.urdf").write_text((tmp_path / "r.urdf").read_text().replace("</robot>", TOOL))
+    for _ in range(2):
+        found = hx.update(tmp_path / "r.xml", tmp_path / "r.urdf")
+    assert [row.code.id for row in found.report] == ["HX118"]
+    assert "body 'tool' inertial: none -> inertial(mass 1.5" in found.report.diagnostics[0].message
