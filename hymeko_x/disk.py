@@ -121,7 +121,7 @@ def _check_output(target: Path, *, makes_folders: bool = False) -> None:
     if not folder.is_dir():
         raise FileNotFoundError(errno.ENOENT, f"there is no folder '{folder}'")
     if target.is_dir():
-        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        raise IsADirectoryError(errno.EISDIR, f"'{target}' is a folder")
     if not os.access(target if _is_stream(target) else folder, os.W_OK):
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 

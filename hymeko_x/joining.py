@@ -12,6 +12,7 @@ from hymeko_x.ir.mechanism import ROOT, WORLD, Id, pose_weight
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import DofKind, Joint, Material, Mesh, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose, compose
+from hymeko_x.xml.references import with_new_names_in_fragments
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -41,7 +42,9 @@ def with_names(mechanism: Mechanism, change: Callable[[str], str], *, is_part: b
 
 
 def with_references(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
-    """The mechanism, whose elements have their new names already, with these names in its notations as well."""
+    """The mechanism, whose elements have their new names already, with these names in its notations and fragments as well."""
+    fragments = frozenset(row.name for row in formats.FORMATS if row.has_fragments)
+    mechanism = with_new_names_in_fragments(mechanism, names, fragments) if names else mechanism
     notations = mechanism.notations
     for row in formats.FORMATS:
         if row.references is not None and names:

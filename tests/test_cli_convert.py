@@ -255,7 +255,7 @@ def test_an_output_that_cannot_be_written_is_reported_before_anything_is_read(
 def test_a_folder_is_no_output(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "out.svg").mkdir()
     assert main(["graph", "gone.urdf", "-o", "out.svg"]) == exits.FAILED
-    assert capsys.readouterr().err == "out.svg: error[HX002]: cannot be written: Is a directory\n"
+    assert capsys.readouterr().err == "out.svg: error[HX002]: cannot be written: 'out.svg' is a folder\n"
 
 
 def test_a_format_that_can_only_be_written_is_refused_as_input(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -81,6 +81,8 @@ class Format(Struct, frozen=True):
     """The function ``(notations, names) -> notations`` by which references in the notations follow elements that got other names."""
     couplings: str | None = None
     """The function ``mechanism -> pairs of an id and an edge``: the couplings that only its extras hold (MJCF: those of tendons)."""
+    has_fragments: bool = False
+    """Whether its extras are elements of XML in which <joint_name>, <link_name> and their like name elements of the robot."""
     poses: str | None = None
     """The function ``mechanism -> list of (name, {joint: coordinates})`` that reads the named configurations that it keeps as texts."""
     joins: str | None = None

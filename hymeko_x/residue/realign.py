@@ -14,6 +14,7 @@ from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate, rotate_tensor
+from hymeko_x.joining import with_references
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -210,7 +211,7 @@ def with_old_names(image: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
         old = Id(key.kind, f"{bodies[body]}{stroke}{rest}") if body in bodies else key
         if old not in there:
             followed[key] = old
-    return rename(image, {**followed, **names})
+    return _renamed(image, {**followed, **names})
 
 
 def with_new_names(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
@@ -226,7 +227,12 @@ def with_new_names(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
     back = {old: new for new, old in names.items()}
     dofs = {old.name: new.name for old, new in back.items() if old.kind == "joint"}
     edges = {key: _with_dof_names(edge, dofs) for key, edge in mechanism.graph.edges.items() if isinstance(edge.data, Joint)}
-    return rename(mechanism.with_graph(mechanism.graph.replace(edges=edges)), back)
+    return _renamed(mechanism.with_graph(mechanism.graph.replace(edges=edges)), back)
+
+
+def _renamed(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
+    """The mechanism with new ids by the old ones, in references of its notations and fragments as well."""
+    return with_references(rename(mechanism, names), names)
 
 
 def _with_dof_names(edge: RobotEdge, names: Mapping[str, str]) -> RobotEdge:
