@@ -134,11 +134,16 @@ def read_for(target: Format, source: Source, format: Format, report: Report, *, 
     return image, kept or Kept("", "")
 
 
-def _native(source: Source, format: Format, report: Report) -> tuple[Mechanism, Kept | None]:
-    """The mechanism as the file itself describes it, and what is kept for it: inside of it, else beside it."""
+def read_file(source: Source, format: Format, report: Report) -> Reading:
+    """The mechanism as the file and those that it imports describe it, and what is kept inside of it. Raises: Refusal."""
     if format.imports is not None and source.parts is None:
         source = formats.loaded(format.imports)(source, report)
-    image, inside = reader(format)(source, report)
+    return reader(format)(source, report)
+
+
+def _native(source: Source, format: Format, report: Report) -> tuple[Mechanism, Kept | None]:
+    """The mechanism as the file itself describes it, and what is kept for it: inside of it, else beside it."""
+    image, inside = read_file(source, format, report)
     kept = Kept(inside, source.name) if inside else source.kept
     if source.ignores_kept or (kept is None and not source.originals):
         return image, None

@@ -53,7 +53,7 @@ class Conversion:
         """``notes`` gets what restoring reports, which matters where there are edits."""
         self.mechanism, self.source, self.format, self.report, self.notes = mechanism, source, format, report, notes
         since = len(report)
-        self.edited = pipeline.reader(format)(edited, report).mechanism
+        self.edited = pipeline.read_file(edited, format, report).mechanism
         pipeline.stop_on_errors(report, since, lenient=False)
         self.files, self.home = edited.files, home
         self.folder = os.path.dirname(edited.name) or "."

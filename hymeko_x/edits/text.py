@@ -13,8 +13,9 @@ from hymeko_x import codes, formats, pipeline
 from hymeko_x.assets.resolve import DiskFiles
 from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
-from hymeko_x.diagnostics import Refusal, Report
+from hymeko_x.diagnostics import Origin, Refusal, Report, listed
 from hymeko_x.edits.merging import merged
+from hymeko_x.edits.overrides import with_overrides
 from hymeko_x.edits.splicing import Lines
 from hymeko_x.residue.pairing import other_names
 from hymeko_x.rewrite import Options, legalize
@@ -35,10 +36,14 @@ _MOST_TRIES = 3
 
 
 class Texts(NamedTuple):
-    """Texts that changed, by their paths, the main one by the name of its source; and new files beside the main one."""
+    """Texts that changed, by their paths, the main one by the name of its source; and new files beside the main one.
+
+    ``missing`` are imported elements whose edits have no place in the text.
+    """
 
     changed: dict[str, bytes]
     beside: Mapping[str, bytes]
+    missing: frozenset[Id] = frozenset()
 
 
 class PackagesBehind(Struct, frozen=True):
@@ -90,10 +95,16 @@ def text_with_edits(source: Source, format: Format, before: Mechanism, after: Me
         if wrong is None:
             _report_replaced(replaced.values(), source, report)
             return Texts({**files, **companion}, attempt.beside)
-        more = None if wrong is _UNREADABLE else attempt.blocks_of(wrong)
+        if wrong is not _UNREADABLE and attempt.imported.issuperset(wrong):
+            _report_missing(wrong, source, report)
+            return Texts({**files, **companion}, attempt.beside, wrong)
+        more = None if wrong is _UNREADABLE or attempt.imported else attempt.blocks_of(wrong)
         if more is None or more.keys() <= replaced.keys():
             break
         replaced |= more
+    if attempt.imported:
+        report.warn(codes.EDIT_DROPPED, "the edits have no place in the text, which imports robots of other files", Origin(source.name))
+        return Texts({}, {}, frozenset(difference.element for difference in diff(before, after, TOLERANCE)))
     report.warn(codes.EDIT_REWRITTEN, f"the edits could not be placed in the text of '{source.name}', which is printed anew as a whole")
     return Texts({source.name: attempt.whole, **companion}, attempt.beside)
 
@@ -118,6 +129,12 @@ def _report_replaced(elements: Iterable[Id], source: Source, report: Report) -> 
         report.note(codes.EDIT_REWRITTEN, f"{key} is printed anew in '{source.name}': its edit has no place in the author's text")
 
 
+def _report_missing(elements: Iterable[Id], source: Source, report: Report) -> None:
+    names = listed(sorted(map(str, elements)), _MOST_NAMES)
+    report.warn(codes.EDIT_DROPPED, f"edits have no place in the text, which imports what they change: {names}", Origin(source.name))
+
+
+_MOST_NAMES = 5
 _UNREADABLE: frozenset[Id] = frozenset()
 
 
@@ -129,13 +146,17 @@ class _Attempt:
         printing = formats.by_name(format.expands_to) if format.expands_to else format
         outline = formats.loaded(printing.outline or "")
         own = Report()
-        pipeline.reader(format)(source, own)
+        pipeline.read_file(source, format, own)
         self.errors = len(own.errors(0))
         self.own: Outline = formats.loaded(format.outline or "")(source, Report())
         package = printed(after, format, report)
         self.whole, self.beside = package.main, package.files
         sources = [Source(source.name, printed(robot, printing, Report(), flat=True).main, source.files) for robot in (before, after)]
         self.before, self.after = (outline(print, Report()) for print in sources)
+        if format.imports is not None:
+            texts = with_overrides(self.own, self.before, self.after)
+            self.before, self.after = (outline(Source(source.name, text, source.files), Report()) for text in texts)
+        self.imported = imported(source, format, before)
         image, self.goal = (pipeline.reader(printing)(print, Report()).mechanism for print in sources)
         self.unprinted = {(difference.element, difference.field) for difference in diff(before, image, TOLERANCE)}
 
@@ -150,7 +171,7 @@ class _Attempt:
         edited = replace(self.source, data=main, files=EditedFiles(self.source.files, files))
         report = Report()
         try:
-            found = pipeline.reader(self.format)(edited, report).mechanism
+            found = pipeline.read_file(edited, self.format, report).mechanism
         except Refusal:
             return _UNREADABLE
         if len(report.errors(0)) > self.errors:
@@ -184,6 +205,14 @@ class _Attempt:
             keys += [arc.target for arc in reversed(edge.arcs)]
         origins = (self.goal.origin(each) for each in keys)
         return [origin.line for origin in origins if origin is not None and origin.line is not None]
+
+
+def imported(source: Source, format: Format, mechanism: Mechanism) -> frozenset[Id]:
+    """The elements of a text's mechanism that stand in other files, which edits of the text leave as they are."""
+    if format.imports is None:
+        return frozenset()
+    origins = ((key, mechanism.origin(key)) for key in (*mechanism.graph.vertices, *mechanism.graph.edges))
+    return frozenset(key for key, origin in origins if origin is not None and origin.file != source.name)
 
 
 def printed(mechanism: Mechanism, format: Format, report: Report, *, flat: bool = False) -> Package:

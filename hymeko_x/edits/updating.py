@@ -16,8 +16,10 @@ from hymeko_x.compare.diff import diff
 from hymeko_x.compare.ledger import TOLERANCE
 from hymeko_x.diagnostics import Origin, Report, refuse
 from hymeko_x.edits.conversion import Conversion, new_assets
-from hymeko_x.edits.text import EditedFiles, Texts, text_with_edits
+from hymeko_x.edits.text import EditedFiles, Texts, imported, text_with_edits
+from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import Mesh, Texture
+from hymeko_x.residue.pairing import other_names
 from hymeko_x.rewrite import Options
 
 if TYPE_CHECKING:
@@ -83,6 +85,7 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
     notes = Report()
     conversion = Conversion(before, original, edited, edited_format, format, report, notes)
     after, beside = _with_new_assets(before, conversion.edited_mechanism(options), edited)
+    after = _with_imported_names(before, after, imported(original, format, before))
     every = diff(before, after, TOLERANCE)
     lost = _dropped(every, after, original, format)
     for edit in lost:
@@ -90,7 +93,8 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
         report.warn(codes.EDIT_DROPPED, message, before.origin(edit.element), element=str(edit.element))
     edits = tuple([edit for edit in every if edit not in lost])
     texts = text_with_edits(original, format, before, after, report) if edits else Texts({}, {})
-    if not lost:
+    edits = tuple([edit for edit in edits if edit.element not in texts.missing])
+    if not lost and not texts.missing:
         files = EditedFiles(original.files, {**texts.changed, **beside, **texts.beside})
         text = texts.changed.get(original.name, original.data)
         _report_missing(conversion.missing(replace(original, data=text, files=files)), original, report)
@@ -99,6 +103,12 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
     report.extend(notes)
     old = {path: original.data if path == original.name else original.files.read(path) for path in texts.changed}
     return Updated(replace(after, origins=before.origins), edits, original.data, texts.changed, old, {**beside, **texts.beside}, report)
+
+
+def _with_imported_names(before: Mechanism, after: Mechanism, imported: frozenset[Id]) -> Mechanism:
+    """The edited robot with the names that a text cannot change, as other files give them."""
+    names = other_names(after, before) if imported else {}
+    return rename(after, {new: old for new, old in names.items() if old in imported})
 
 
 def _report_missing(missing: list[str], original: Source, report: Report) -> None:
