@@ -237,17 +237,23 @@ def test_hymeko_keeps_its_author_s_text(edit: tuple[str, str], old: str, new: st
     assert edited(HYMEKO, "urdf", edit, tmp_path, "hymeko") == HYMEKO.replace(old, new)
 
 
+def test_a_value_of_an_element_in_a_template_is_an_override(tmp_path: Path) -> None:
+    text = "r : robot {\n  pair() : assembly {\n    a { mass 1 inertia [1 1 1] }\n  }\n  left : pair {}\n}\n"
+    after = edited(text, "urdf", ('mass value="1"', 'mass value="3"'), tmp_path, "hymeko")
+    assert after == text.replace("left : pair {}\n", "left : pair {}\n  left.a { mass 3 }\n")
+
+
 def test_what_a_text_cannot_hold_is_printed_anew_and_reported(tmp_path: Path) -> None:
-    text = "r : robot {\n  pair() : assembly {\n    a { mass 1 inertia [1 1 1] }\n  }\n  // kept as long as possible\n  left : pair {}\n}\n"
+    text = "r : robot {\n  pair() : assembly {\n    a { collision { box [1 1 1] } }\n  }\n  // kept if possible\n  left : pair {}\n}\n"
     original, there = tmp_path / "r.hymeko", tmp_path / "r.urdf"
     original.write_text(text)
     hx.convert(original, there)
-    there.write_text(there.read_text().replace('mass value="1"', 'mass value="3"'))
+    there.write_text(there.read_text().replace('box size="1 1 1"', 'box size="3 1 1"'))
     found = hx.update(original, there)
     assert [str(diagnostic) for diagnostic in found.report] == [
         f"warning[HX108]: the edits could not be placed in the text of '{original}', which is printed anew as a whole"
     ]
-    assert list(map(str, found.edits)) == ["body 'left_a' inertial.mass: 1 -> 3"]
+    assert list(map(str, found.edits)) == ["shape 'left_a/collision' geometry.size: [1 1 1] -> [3 1 1]"]
     assert list(map(str, hx.diff(hx.load(there), hx.load(original)))) == []
 
 
