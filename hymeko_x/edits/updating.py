@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from hymeko_x.source import Source
 
 _ASSETS = "meshes"
+_ASSET_KINDS = frozenset({"mesh", "material", "texture"})
 _MOST_MISSING = 10
 """How many edits that did not arrive are listed."""
 
@@ -87,11 +88,12 @@ def update(original: Source, format: Format, edited: Source, edited_format: Form
     after, beside = _with_new_assets(before, conversion.edited_mechanism(options), edited)
     after = _with_imported_names(before, after, imported(original, format, before))
     every = diff(before, after, TOLERANCE)
-    lost = _dropped(every, after, original, format)
+    dropped = _dropped(every, after, original, format)
+    lost = [edit for edit in dropped if not _is_unused(edit, after)]
     for edit in lost:
         message = f"the edit has no place in {format.name}: {edit}"
         report.warn(codes.EDIT_DROPPED, message, before.origin(edit.element), element=str(edit.element))
-    edits = tuple([edit for edit in every if edit not in lost])
+    edits = tuple([edit for edit in every if edit not in dropped])
     texts = text_with_edits(original, format, before, after, report) if edits else Texts({}, {})
     edits = tuple([edit for edit in edits if edit.element not in texts.missing])
     if not lost and not texts.missing:
@@ -126,6 +128,11 @@ def _dropped(edits: tuple[Difference, ...], after: Mechanism, original: Source, 
     losses = pipeline.convert(after, format, Options(lenient=True), original.files, Report()).losses or ()
     gone = {(loss.element, loss.field) for loss in losses if loss.fate == "dropped"}
     return [edit for edit in edits if (str(edit.element), edit.field) in gone and not _is_inherited(edit) and not _is_weight(edit)]
+
+
+def _is_unused(edit: Difference, after: Mechanism) -> bool:
+    """Whether an edit only leaves a mesh or a material that no shape has any more, as where a body was removed."""
+    return edit.element.kind in _ASSET_KINDS and edit.before is None and not after.graph.incidence.get(edit.element)
 
 
 def _is_weight(edit: Difference) -> bool:

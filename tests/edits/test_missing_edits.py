@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import mujoco
@@ -90,3 +91,19 @@ def test_masses_have_no_place_where_the_engine_counts_shapes(tmp_path: Path) -> 
         found = hx.update(tmp_path / "r.xml", tmp_path / "r.urdf")
     assert [row.code.id for row in found.report] == ["HX118"]
     assert "body 'tool' inertial: none -> inertial(mass 1.5" in found.report.diagnostics[0].message
+
+
+@pytest.mark.unread("HX101")
+def test_a_mesh_that_no_shape_has_any_more_is_no_edit(tmp_path: Path) -> None:
+    """The converted file still lists the mesh of a body that was removed."""
+    facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet"
+    (tmp_path / "tip.stl").write_text(f"solid tip\n{facet}\nendsolid\n")
+    mesh = '<visual><geometry><mesh filename="tip.stl"/></geometry></visual>'
+    tip = f'<link name="tip">{mesh}</link><joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint>'
+    (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{tip}</robot>')
+    hx.convert(tmp_path / "r.urdf", tmp_path / "r.xml")
+    (tmp_path / "r.xml").write_text(re.sub('<body name="tip".*?</body>', "", (tmp_path / "r.xml").read_text(), flags=re.DOTALL))
+    hx.update(tmp_path / "r.urdf", tmp_path / "r.xml")
+    assert "tip" not in (tmp_path / "r.urdf").read_text()
+    again = hx.update(tmp_path / "r.urdf", tmp_path / "r.xml")
+    assert ([str(edit) for edit in again.edits], [row.message for row in again.report]) == ([], [])
