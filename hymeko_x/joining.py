@@ -12,7 +12,7 @@ from hymeko_x.ir.mechanism import ROOT, WORLD, Id, pose_weight
 from hymeko_x.ir.names import rename
 from hymeko_x.ir.parts import DofKind, Joint, Material, Mesh, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose, compose
-from hymeko_x.xml.references import with_new_names_in_fragments
+from hymeko_x.rewrite.references import with_references
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -39,17 +39,6 @@ def with_names(mechanism: Mechanism, change: Callable[[str], str], *, is_part: b
     renamed = with_references(rename(replace(mechanism, graph=Hypergraph(vertices, edges)), names), names)
     extras = {key: tuple(_extras(found, change, is_of_whole=is_part and key == ROOT)) for key, found in renamed.extras.items()}
     return replace(renamed, extras={key: found for key, found in extras.items() if found})
-
-
-def with_references(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
-    """The mechanism, whose elements have their new names already, with these names in its notations and fragments as well."""
-    fragments = frozenset(row.name for row in formats.FORMATS if row.has_fragments)
-    mechanism = with_new_names_in_fragments(mechanism, names, fragments) if names else mechanism
-    notations = mechanism.notations
-    for row in formats.FORMATS:
-        if row.references is not None and names:
-            notations = formats.loaded(row.references)(notations, names)
-    return mechanism if notations is mechanism.notations else replace(mechanism, notations=notations)
 
 
 def _named(part: VertexPart, change: Callable[[str], str]) -> VertexPart:

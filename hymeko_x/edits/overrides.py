@@ -60,11 +60,11 @@ def _override(splices: Splices, before: Block, block: Block, instance: str, auth
 
 
 def _is_placement(block: Block, instance: str) -> bool:
-    """Whether a block is the joint that puts the root of an instance in its place."""
+    """Whether a block is the joint that puts the root of an instance in its place; its child may follow from its name."""
     inner, outer = (block.fields.get(name) for name in (_INNER, _OUTER))
-    if inner is None or outer is None:
+    if not block.tag or outer is None or f"+ {instance}_" in outer.text:
         return False
-    return f"- {instance}_" in f"{inner.text} " and f"+ {instance}_" not in outer.text
+    return inner is None or f"- {instance}_" in inner.text
 
 
 def _changes(splices: Splices, before: Block, after: Block) -> str:

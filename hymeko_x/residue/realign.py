@@ -14,7 +14,7 @@ from hymeko_x.ir.names import rename
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate, rotate_tensor
-from hymeko_x.joining import with_references
+from hymeko_x.rewrite.references import with_references
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -16,7 +16,7 @@ from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Mechanism
 from hymeko_x.ir.names import names_in_use
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Joint, Material, Mesh, Shape, Texture, World
-from hymeko_x.joining import with_references
+from hymeko_x.rewrite.references import with_references
 from hymeko_x.robot.errors import EditError
 
 if TYPE_CHECKING:
