@@ -41,17 +41,22 @@ def write_mesh_shape(sheet: UsdSheet, spec: Any, view: ShapeView, users: dict[Id
         _carry_mesh(sheet, spec, view.mesh)
         if surface is not None:
             write_triangles(spec, surface)
-            if _has_own(sheet.mechanism, view.id, words.NORMALS):
-                _write_normals(spec, surface)
-            if _has_own(sheet.mechanism, view.id, words.TEXCOORDS):
-                _write_places(spec, mesh)
+            _write_attributes(spec, sheet.mechanism, view.id, mesh, surface)
     else:
         if view.mesh not in shared:
-            shared[view.mesh] = _write_prototype(sheet, view.mesh, mesh, surface)
+            shared[view.mesh] = _write_prototype(sheet, view.id, view.mesh, mesh, surface)
             _carry_mesh(sheet, spec, view.mesh)
         spec.kind = "Mesh"
         spec.reference = shared[view.mesh]
     return None if mesh.scale == (1.0, 1.0, 1.0) or surface is None else mesh.scale
+
+
+def _write_attributes(spec: Prim, mechanism: Mechanism, shape: Id, mesh: Mesh, surface: Triangles) -> None:
+    """Normals and texture coordinates of a mesh, as far as the prim of the shape gets them."""
+    if _has_own(mechanism, shape, words.NORMALS):
+        _write_normals(spec, surface)
+    if _has_own(mechanism, shape, words.TEXCOORDS):
+        _write_places(spec, mesh)
 
 
 def _has_own(mechanism: Mechanism, shape: Id, notation: Notation[bool]) -> bool:
@@ -64,8 +69,8 @@ def _carry_mesh(sheet: UsdSheet, spec: Any, mesh: Id) -> None:
     sheet.paths[mesh] = spec.path
 
 
-def _write_prototype(sheet: UsdSheet, key: Id, mesh: Mesh, surface: Triangles) -> Any:
-    """A mesh that is shown several times: a class, which is seen only through references to it."""
+def _write_prototype(sheet: UsdSheet, shape: Id, key: Id, mesh: Mesh, surface: Triangles) -> Any:
+    """A mesh that is shown several times, for the first time by this shape: a class, which is seen only through references to it."""
     scope = sheet.root.AppendChild("meshes")
     if scope not in sheet.prims:
         group = sheet.define(scope, "Scope")
@@ -73,8 +78,7 @@ def _write_prototype(sheet: UsdSheet, key: Id, mesh: Mesh, surface: Triangles) -
         put(group, f"{words.PREFIX}scope", T.Bool, True)
     spec = sheet.define(sheet.free_path(scope, key.name), "Mesh")
     write_triangles(spec, surface)
-    _write_normals(spec, surface)
-    _write_places(spec, mesh)
+    _write_attributes(spec, sheet.mechanism, shape, mesh, surface)
     return spec.path
 
 
