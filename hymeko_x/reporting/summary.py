@@ -107,9 +107,16 @@ def kept_line(losses: Sequence[Loss]) -> str:
 
 
 def groups(losses: Iterable[Loss]) -> list[Group]:
-    """Losses of one fate, kind and field together; an edge that goes with an element that is lost as well is left out."""
+    """Losses of one fate, kind and field together.
+
+    Left out are edges that go with an element that is lost as well, and the other fields of elements that are of another kind now.
+    """
     found: dict[tuple[str, str, str], list[Loss]] = {}
+    losses = list(losses)
+    changed = {loss.element for loss in losses if loss.field == "kind" and loss.fate == "approximated"}
     for loss in losses:
+        if loss.element in changed and loss.field != "kind":
+            continue
         verb = "added" if loss.before is None and not loss.field else loss.fate
         found.setdefault((verb, kind_of(loss), word_of(loss.field)), []).append(loss)
     _replace_shapes(found)
@@ -203,7 +210,7 @@ def _amount(group: Group) -> str:
 
 def _change(group: Group) -> str:
     """What the first of them was, and what it became, where both are a word."""
-    before, after = (_WORD.match(text or "") for text in group.losses[0][2:4])
+    before, after = (_WORD.match((text or "").strip("'")) for text in group.losses[0][2:4])
     return f" ({_bare(before[1])} -> {_bare(after[1])})" if before and after and before[1] != after[1] else ""
 
 
