@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from hymeko_x.edits.splicing import Splices
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Container, Iterator, Mapping
 
     from hymeko_x.outline import Block, Outline
 
@@ -26,16 +26,22 @@ _INNER, _OUTER = "-", "+"
 def with_overrides(own: Outline, before: Outline, after: Outline) -> tuple[bytes, bytes]:
     """The texts of two prints of a robot, with overrides for what only an instance in the author's text stands for."""
     authored, old, new = ({(block.tag, block.name): block for block in _top(outline)} for outline in (own, before, after))
-    instances = sorted((name for tag, name in authored if not tag and "." not in name), key=len, reverse=True)
+    instances = {name for tag, name in authored if not tag and "." not in name}
     first, second = (Splices(print.files[print.main].data, print.style) for print in (before, after))
     for key, block in old.items():
-        instance = next((name for name in instances if block.name.startswith(f"{name}_")), None)
-        if instance is None or key in authored:
+        instance = None if key in authored else _instance_of(block.name, instances)
+        if instance is None:
             continue
         _override(first, block, block, instance, authored)
         if key in new:
             _override(second, block, new[key], instance, authored)
     return first.result(), second.result()
+
+
+def _instance_of(name: str, instances: Container[str]) -> str | None:
+    """The instance whose name the name of an element begins with, the longest one."""
+    parts = name.split("_")
+    return next((found for number in range(len(parts) - 1, 0, -1) if (found := "_".join(parts[:number])) in instances), None)
 
 
 def _top(outline: Outline) -> Iterator[Block]:

@@ -51,7 +51,7 @@ def repaired(source: Source, format: Format, before: Mechanism, found: Sequence[
     if format.outline is None:
         raise refuse(codes.UNKNOWN_FORMAT, f"{format.name} is no text in which repairs could be placed", Origin(source.name))
     context = Context(report, files_of(before, source.files))
-    named = _name_once(before, context, [one.origin for one in found if one.code == codes.DUPLICATE_NAME])
+    named = _name_once(before, context, {one.origin for one in found if one.code == codes.DUPLICATE_NAME})
     mended = _mend_joints(named, context, frozenset(one.element for one in found if one.code == codes.NOT_UNIT))
     after = _with_inertials(_mend_sizes(_mend_tensors(mended, context), context), options, context)
     after = shorten_computed(after, before)
@@ -104,16 +104,19 @@ def _note(context: Context, mechanism: Mechanism, key: Id, message: str) -> None
 # ---- names -------------------------------------------------------------------------------------------------------------------
 
 
-def _name_once(mechanism: Mechanism, context: Context, places: list[Origin | None]) -> Mechanism:
+def _name_once(mechanism: Mechanism, context: Context, places: set[Origin | None]) -> Mechanism:
     """The second one of two links or joints of one name has a name of its own. References mean the first one, as they did."""
-    taken = {*mechanism.graph.vertices, *mechanism.graph.edges}
+    keys = (*mechanism.graph.vertices, *mechanism.graph.edges)
+    taken: dict[str, set[str]] = {}
+    for key in keys:
+        taken.setdefault(key.kind, set()).add(key.name)
     renamed: dict[Id, Id] = {}
-    for key in (*mechanism.graph.vertices, *mechanism.graph.edges):
+    for key in keys:
         name = key.name.partition(_MARK)[0]
         if name == key.name or mechanism.origin(key) not in places:
             continue
-        renamed[key] = Id(key.kind, free_name(name, {other.name for other in taken if other.kind == key.kind}.__contains__, "_"))
-        taken.add(renamed[key])
+        renamed[key] = Id(key.kind, free_name(name, taken[key.kind].__contains__, "_"))
+        taken[key.kind].add(renamed[key].name)
         _note(context, mechanism, key, f"there are two of the name '{name}'; this {key.kind} is called '{renamed[key].name}'")
     return rename(mechanism, renamed)
 
