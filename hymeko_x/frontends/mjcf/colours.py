@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from operator import mul
 from typing import TYPE_CHECKING
 
@@ -63,7 +64,7 @@ def _attributes(mechanism: Mechanism, texture: Id, classes: Classes) -> Mapping[
 
 
 def _mean(texture: Mapping[str, str]) -> Rgba | None:
-    """The mean colour of a pattern; None for a texture that is none."""
+    """The mean colour of a pattern; None for a texture that is none, or has colours that are no numbers."""
     first = _FIRST.get(f"{texture['builtin']} {texture['type']}")
     if first is None:
         return None
@@ -71,13 +72,13 @@ def _mean(texture: Mapping[str, str]) -> Rgba | None:
     parts = ((1.0 - marked) * first, (1.0 - marked) * (1.0 - first), marked)
     colours = ([float(number) for number in texture[name].split()] for name in ("rgb1", "rgb2", "markrgb"))
     red, green, blue = (sum(map(mul, parts, channels)) for channels in zip(*colours, strict=True))
-    return red, green, blue, 1.0
+    return (red, green, blue, 1.0) if all(map(math.isfinite, (red, green, blue))) else None
 
 
 def _marked(texture: Mapping[str, str]) -> float:
     """The part of the pixels of a pattern that a mark covers; the sides of a cube are squares."""
-    width = float(texture.get("width", "1"))
-    height = width if texture["type"] == "cube" else float(texture.get("height", "1"))
+    width = max(1.0, float(texture.get("width", "1")))
+    height = width if texture["type"] == "cube" else max(1.0, float(texture.get("height", "1")))
     match texture.get("mark"):
         case "edge":
             return 1.0 - max(0.0, 1.0 - 2.0 / width) * max(0.0, 1.0 - 2.0 / height)
