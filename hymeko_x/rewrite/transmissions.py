@@ -78,6 +78,11 @@ def drive_by_transmissions(mechanism: Mechanism, context: Context) -> Mechanism:
     return mechanism.with_graph(mechanism.graph.replace(vertices=vertices, edges=edges))
 
 
+def commanded(mechanism: Mechanism) -> list[Id]:
+    """The transmissions that are written as actuators."""
+    return [command.actuator for command in _commands(mechanism)]
+
+
 def _commands(mechanism: Mechanism) -> list[_Command]:
     """The transmissions to be written: one for each joint, those of ros2_control before older ones."""
     found: dict[Id, _Command] = {}

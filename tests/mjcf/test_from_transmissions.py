@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
 
 import mujoco
 import pytest
@@ -10,9 +10,7 @@ import pytest
 import hymeko_x as hx
 from hymeko_x.cli import main
 
-if TYPE_CHECKING:
-    from pathlib import Path
-
+ROOT = Path(__file__).parents[2]
 INERTIA = '<inertia ixx="0.03" iyy="0.03" izz="0.002" ixy="0" ixz="0" iyz="0"/>'
 LINK = f'<inertial><origin xyz="0 0 0.2"/><mass value="2"/>{INERTIA}</inertial>'
 
@@ -146,3 +144,14 @@ def test_update_leaves_transmissions_as_they_are_where_gains_were_edited(tmp_pat
     assert main(["update", str(path), str(edited)]) == 0
     assert path.read_text("utf-8") == before
     assert "the edit did not arrive: actuator 'j_motor' parameters.kp" in capsys.readouterr().err
+
+
+def test_the_verifier_finds_the_actuators_of_transmissions_in_the_text(tmp_path: Path) -> None:
+    text = (ROOT / "corpus/robots/transmission.hymeko").read_text()
+    (tmp_path / "a.hymeko").write_text(text)
+    hx.convert(tmp_path / "a.hymeko", tmp_path / "a.xml")
+    found = hx.verify(tmp_path / "a.hymeko", tmp_path / "a.xml", samples=3)
+    assert found.verdict == "same as far as mjcf can say"
+    assert "actuators" in [check.quantity for check in found.checks]
+    (tmp_path / "a.xml").write_text((tmp_path / "a.xml").read_text().replace("lift_motor", "lost_motor"))
+    assert hx.verify(tmp_path / "a.hymeko", tmp_path / "a.xml", samples=3).verdict == "different"

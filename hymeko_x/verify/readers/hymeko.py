@@ -19,6 +19,7 @@ from hymeko_x.ir.mechanism import Id, JointView, Mechanism, ShapeView, numbers_w
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.rewrite.context import Options
 from hymeko_x.rewrite.inertia import evenly_spread
+from hymeko_x.rewrite.transmissions import commanded
 from hymeko_x.source import Source
 from hymeko_x.verify import model as m
 from hymeko_x.verify.model import INF, WORLD, Array, Body, Dof, Feature, Kind, KinematicModel, Step, Tendon, point_of, world_body
@@ -38,7 +39,7 @@ if TYPE_CHECKING:
 FEATURES = frozenset(Feature) - {Feature.TIED_TENDONS}
 
 _TRANSMISSION = "transmission"
-"""The kind of the actuators that urdfdom does not read, and that no other engine has."""
+"""The kind of the actuators whose law depends on the program that commands them."""
 
 
 def read(path: Path, lookup: Lookup) -> KinematicModel:
@@ -86,12 +87,18 @@ def from_mechanism(mechanism: Mechanism, *, format: str = "mechanism") -> Kinema
         bodies=bare.bodies,
         couplings=tuple(_couplings(mechanism, dofs)),
         loops=tuple(_loops(mechanism, numbers, frames)),
-        actuators=tuple(_records(mechanism, [key for key, part in mechanism.vertices(parts.Actuator) if part.kind != _TRANSMISSION])),
+        actuators=tuple(_actuators(mechanism)),
         sensors=tuple(_records(mechanism, [key for key, _ in mechanism.vertices(parts.Sensor)])),
         tendons=tuple(_tendons(mechanism, dofs, frames, numbers)),
         features=FEATURES,
         is_independent=False,
     )
+
+
+def _actuators(mechanism: Mechanism) -> Iterator[m.Record]:
+    """The actuators; of transmissions those that simulators have, without their law, which the text does not give."""
+    yield from _records(mechanism, [key for key, part in mechanism.vertices(parts.Actuator) if part.kind != _TRANSMISSION])
+    yield from (m.Record(key.name, (), ()) for key in commanded(mechanism))
 
 
 def _records(mechanism: Mechanism, keys: Iterable[Id]) -> Iterator[m.Record]:
