@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 PLANE = "hymeko_x_contact_"
 """What stands before the name of a plane for contact."""
+_SHARED = frozenset({"geometry", "pose", "origin"})
+"""The elements of a shape for contact that one for the eye may have, too; ``origin`` is the pose of old files."""
 _FOLDER = re.compile(r"(model|package)://[^/]+")
 _FRAMES_SINCE = 1.7
 """The version from which on a model may have frames of its own."""
@@ -45,6 +47,7 @@ def readable_text(path: Path) -> str | None:
     for shape in planes:
         shape.tag = "visual"
         shape.set("name", PLANE + shape.get("name", ""))
+        shape[:] = [child for child in shape if child.tag in _SHARED]
     for model, joint in gearboxes:
         model[list(model).index(joint)] = _frame(joint, float(root.get("version", "0")))
     for uri in root.iter("uri"):
