@@ -86,27 +86,27 @@ def _seconds(work: Work) -> float:
 
 
 def _from_urdf(target: str) -> Callable[[str], Work]:
-    return lambda urdf: lambda: hx.dumps(hx.loads(urdf, "urdf"), target)
+    return lambda urdf: lambda: hx.dumps(hx.loads(urdf, "urdf").mechanism, target)
 
 
 def _from_sdf(urdf: str) -> Work:
-    text = hx.dumps(hx.loads(urdf, "urdf"), "sdf")
-    return lambda: hx.dumps(hx.loads(text, "sdf"), "urdf")
+    text = hx.dumps(hx.loads(urdf, "urdf").mechanism, "sdf")
+    return lambda: hx.dumps(hx.loads(text, "sdf").mechanism, "urdf")
 
 
 def _to_urdf(urdf: str) -> Work:
-    mjcf = hx.dumps(hx.loads(urdf, "urdf"), "mjcf")
-    return lambda: hx.dumps(hx.loads(mjcf, "mjcf"), "urdf")
+    mjcf = hx.dumps(hx.loads(urdf, "urdf").mechanism, "mjcf")
+    return lambda: hx.dumps(hx.loads(mjcf, "mjcf").mechanism, "urdf")
 
 
 def _print(urdf: str) -> Work:
-    mechanism = hx.loads(urdf, "urdf")
+    mechanism = hx.loads(urdf, "urdf").mechanism
     return lambda: hx.dumps(mechanism, "hymeko")
 
 
 def _parse(urdf: str) -> Work:
-    text = hx.dumps(hx.loads(urdf, "urdf"), "hymeko")
-    return lambda: hx.loads(text, "hymeko")
+    text = hx.dumps(hx.loads(urdf, "urdf").mechanism, "hymeko")
+    return lambda: hx.loads(text, "hymeko").mechanism
 
 
 def _xml(urdf: str) -> Work:

@@ -21,7 +21,7 @@ from hymeko_x.language.printer import print_document
 def main() -> int:
     """Read every text with both, in turns."""
     plain = Lark((Path(__file__).parent / "plain.lark").read_text(encoding="utf-8"), parser="lalr")
-    documents = [document(hx.load(path)) for path in robots("urdf")]
+    documents = [document(hx.load(path).mechanism) for path in robots("urdf")]
     texts = [print_document(tree) for tree in documents]
     parse("warm { up 1 }")
     total = sum(map(len, texts))

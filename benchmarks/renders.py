@@ -81,7 +81,7 @@ def drawn(path: str, pictures: Path | None = None) -> Drawn:
     row = formats.of_input(path, Path(path).read_bytes())
     look = Look(SIZE, is_authored=True)
     try:
-        robot = api.open(path, lenient=True)
+        robot = api.load(path, lenient=True)
         studio = open_studio(robot, path if is_drawn(row) else None, look)
         before, covered = studio.still(), studio.covered()
     except Refusal as refusal:
@@ -110,7 +110,7 @@ def _converted(robot: Robot, target: formats.Format, look: Look, studio: Studio)
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"robot{target.suffixes[0]}"
         api.dump(robot, file, target.name, assets=None if target.holds_files else "copy", lenient=True)
-        again = api.open(file, target.name, lenient=True)
+        again = api.load(file, target.name, lenient=True)
         again = Robot(again.mechanism, ManyFiles((again.files, robot.files)))  # files of packages stay where they are
         return open_studio(again, str(file) if is_drawn(target) else None, look, studio)
 

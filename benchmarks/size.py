@@ -61,7 +61,7 @@ _MESH_ARRAY = re.compile(
 
 def usda_ratio(robot: Path) -> float:
     """The letters of a URDF's HyMeKo text for one letter of its USD text, in which no array of a mesh is counted."""
-    stage = _MESH_ARRAY.sub("", hx.dumps(hx.load(robot), "usd"))
+    stage = _MESH_ARRAY.sub("", hx.dumps(hx.load(robot).mechanism, "usd"))
     return _code(_said(robot, "urdf"), "hymeko") / _code(stage, "usd")
 
 

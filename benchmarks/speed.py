@@ -69,7 +69,7 @@ def _compare(way: Way, names: tuple[str, ...]) -> bool:
         if text is None or not _mujoco_takes(text):
             print(f"{path.name}: MuJoCo does not take it without meshes")
             continue
-        own = text if way.own is way.robots else hx.dumps(hx.loads(text, way.robots.name), way.own.name)
+        own = text if way.own is way.robots else hx.dumps(hx.loads(text, way.robots.name).mechanism, way.own.name)
         theirs, write, measured = in_turns(lambda: _mujoco(text), lambda: _write(own, way), lambda: _measure(own, way))  # noqa: B023
         writes.append(write / theirs)
         measures.append(measured / theirs)

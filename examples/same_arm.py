@@ -32,7 +32,7 @@ Newton and MuJoCo read.
 def main() -> None:
     """Print the page."""
     print(HEAD.format(text=(ARM / "arm.hymeko").read_text("utf-8")), end="")
-    robot = hx.load(ARM / "arm.hymeko")
+    robot = hx.load(ARM / "arm.hymeko").mechanism
     for name, file in FORMATS:
         language = "text" if name == "usd" else "xml"
         by_hand, written = (ARM / file).read_text("utf-8"), hx.dumps(robot, name)

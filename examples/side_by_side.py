@@ -27,7 +27,7 @@ The file is `{path}` of the package `{package}`, read once and written four time
 def main() -> None:
     """Print the page."""
     file = next(file for file in catalog.development_files("urdf") if file.path.endswith("newton/examples/assets/quadruped.urdf"))
-    robot = hx.load(cache.fetch(file.package, cache.cache_root(os.environ)) / file.path)
+    robot = hx.load(cache.fetch(file.package, cache.cache_root(os.environ)) / file.path).mechanism
     texts = {name: hx.dumps(robot, name) for name, _ in FORMATS}
     print(HEAD.format(path=file.path, package=file.package.name), end="")
     for name, text in texts.items():

@@ -3,9 +3,9 @@
     import hymeko_x as hx
 
     robot = hx.load("robot.urdf")
+    print(robot.joints["elbow"].limits.upper)
     hx.dump(robot, "robot.xml")
     print(hx.dumps(robot, "hymeko"))
-    arm = hx.open("arm.urdf")                 # the same with names: arm.joints["elbow"].limits.upper
     print(hx.verify("robot.urdf", "robot.xml").verdict)
     result = hx.convert("a.urdf", "b.xml", packages={"a_description": "..."})
 
@@ -18,7 +18,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hymeko_x.api import convert, dump, dumps, load, loads, open, update
+    from hymeko_x.api import convert, dump, dumps, load, loads, update
     from hymeko_x.compare.diff import diff
     from hymeko_x.diagnostics import Diagnostic, Refusal, Report, Severity
     from hymeko_x.dynamics import dynamics
@@ -53,13 +53,12 @@ __all__ = [
     "load",
     "loads",
     "mm",
-    "open",
     "update",
     "verify",
 ]
 
 _HOMES = {
-    **dict.fromkeys(("convert", "dump", "dumps", "load", "loads", "open", "update"), "hymeko_x.api"),
+    **dict.fromkeys(("convert", "dump", "dumps", "load", "loads", "update"), "hymeko_x.api"),
     **dict.fromkeys(("Diagnostic", "Refusal", "Report", "Severity"), "hymeko_x.diagnostics"),
     "diff": "hymeko_x.compare.diff",
     "dynamics": "hymeko_x.dynamics",

@@ -94,29 +94,14 @@ Assets = Literal["copy", "reference", "pack"] | None
 
 def load(
     path: Place, format: str | None = None, *, report: Report | None = None, lenient: bool = False, **reading: Unpack[Reading]
-) -> Mechanism:
+) -> Robot:
     """The robot in a file; :class:`Reading` lists the options. The format is taken from suffix and content unless it is given.
 
     Diagnostics go into ``report``. ``lenient`` goes on where the input has errors, with what each error says.
 
     Raises: Refusal when the file cannot be read; Stopped, a Refusal, when it has errors and ``lenient`` is not set.
     """
-    source = _source(path, **reading)
-    return pipeline.read(source, _input_format(source, format), Report() if report is None else report, lenient=lenient)
-
-
-def open(
-    path: Place, format: str | None = None, *, report: Report | None = None, lenient: bool = False, **reading: Unpack[Reading]
-) -> Robot:
-    """The robot in a file as an object whose elements have names, and which can be edited and composed; options as for :func:`load`.
-
-    Raises: as :func:`load`.
-    """
-    from hymeko_x.robot import Robot
-
-    source = _source(path, **reading)
-    read = pipeline.read(source, _input_format(source, format), Report() if report is None else report, lenient=lenient)
-    return Robot(read, source.files)
+    return _robot(_source(path, **reading), format, report, lenient=lenient)
 
 
 def loads(
@@ -128,7 +113,7 @@ def loads(
     lenient: bool = False,
     kept: str | None = None,
     ignore_kept: bool = False,
-) -> Mechanism:
+) -> Robot:
     """The robot in a text or in bytes. ``files`` are those that it may refer to (none by default), ``kept`` is the text of its kept file.
 
     Raises: as :func:`load`.
@@ -136,7 +121,14 @@ def loads(
     data = data.encode() if isinstance(data, str) else data
     beside = Kept(kept, f"<text>{KEPT_SUFFIX}") if kept else None
     source = Source("<text>", data, NoFiles() if files is None else files, kept=beside, ignores_kept=ignore_kept)
-    return pipeline.read(source, _input_format(source, format), Report() if report is None else report, lenient=lenient)
+    return _robot(source, format, report, lenient=lenient)
+
+
+def _robot(source: Source, format: str | None, report: Report | None, *, lenient: bool) -> Robot:
+    from hymeko_x.robot import Robot
+
+    mechanism = pipeline.read(source, _input_format(source, format), Report() if report is None else report, lenient=lenient)
+    return Robot(mechanism, source.files)
 
 
 def dump(

@@ -68,7 +68,7 @@ def test_a_page_without_the_block_is_not_renewed() -> None:
 @pytest.mark.parametrize("format", ["urdf", "mjcf"])
 @pytest.mark.parametrize("links", [1, 2, 9, 20])
 def test_a_made_robot_has_so_many_links(format: str, links: int, tmp_path: Path) -> None:
-    robot = load(made(format, links, tmp_path).path)
+    robot = load(made(format, links, tmp_path).path).mechanism
     assert {id.name for id in robot.graph.vertices if id.kind == "body"} == {f"link{i}" for i in range(links)}
     assert {id.name for id in robot.joints if id.name.startswith("joint")} == {f"joint{i}" for i in range(1, links)}
 

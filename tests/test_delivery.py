@@ -27,7 +27,7 @@ def robot(folder: Path, name: str, size: int) -> Path:
 
 def size_of(main: Path) -> float:
     """How large the only mesh of an output is."""
-    mechanism = hx.load(main)
+    mechanism = hx.load(main).mechanism
     (mesh,) = [part for part in mechanism.graph.vertices.values() if isinstance(part, Mesh)]
     assert mesh.uri is not None
     mesh_file = DiskFiles(main.parent).find(mesh.uri)

@@ -91,7 +91,7 @@ class Written(Struct, frozen=True):
 
 
 def written(way: Way, source: Path) -> Written:
-    robot, files = hx.load(source / way.source), DiskFiles(source)
+    robot, files = hx.load(source / way.source).mechanism, DiskFiles(source)
     format = formats.of_output(way.target)
     options = Options(layout=way.layout, split=way.split, beside="o")
     place = pipeline.Place(assets="copy")

@@ -109,7 +109,7 @@ def test_every_diagnostic_is_shown_before_the_command_ends(wrong: Path, capsys: 
 
 
 def test_loading_an_error_raises_and_lenient_does_not(wrong: Path) -> None:
-    for load in (lambda **how: hx.load(wrong, **how), lambda **how: hx.loads(WRONG, "urdf", **how)):  # type: ignore[misc]
+    for load in (lambda **how: hx.load(wrong, **how).mechanism, lambda **how: hx.loads(WRONG, "urdf", **how).mechanism):  # type: ignore[misc]
         with pytest.raises(Stopped, match="read as fixed") as caught:
             load()
         assert caught.value.diagnostic.code == codes.UNKNOWN_WORD
@@ -147,7 +147,7 @@ def test_no_break_spaces_between_attributes_are_white_space_with_a_warning(blank
     clean = '<robot name="r"><link name="a b"><visual><geometry><sphere radius="0.1" /></geometry></visual></link ></robot>'
     report = Report()
     copied = clean.replace(" n", f"{blank}n").replace(" r", f"{blank}r").replace(" /", f"{blank}/").replace(" >", f"{blank}>")
-    assert hx.loads(copied, report=report).graph == hx.loads(clean, "urdf").graph
+    assert hx.loads(copied, report=report).mechanism.graph == hx.loads(clean, "urdf").mechanism.graph
     assert [str(diagnostic) for diagnostic in report] == [
         "<text>:1:7: warning[HX005]: no-break or other typographic spaces between attributes; read as spaces"
     ]
@@ -155,7 +155,7 @@ def test_no_break_spaces_between_attributes_are_white_space_with_a_warning(blank
 
 @pytest.mark.unread("HX005")
 def test_a_no_break_space_within_a_name_stays() -> None:
-    [body] = hx.loads('<robot name="r"><link\xa0name="a\xa0b"/></robot>', "urdf").roots
+    [body] = hx.loads('<robot name="r"><link\xa0name="a\xa0b"/></robot>', "urdf").mechanism.roots
     assert body.name == "a\xa0b"
 
 

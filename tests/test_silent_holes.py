@@ -75,7 +75,7 @@ WHOLE = {**SHAPES, "inertial": INERTIAL.format("0 0 0")}
 def found(text: str, *profiles: Profile) -> list[str]:
     """The codes of what `check` finds, errors only."""
     report = Report()
-    validate(hx.loads(text, "urdf"), NoFiles(), report, profiles)
+    validate(hx.loads(text, "urdf").mechanism, NoFiles(), report, profiles)
     return [diagnostic.code.id for diagnostic in report if diagnostic.severity is Severity.ERROR]
 
 
@@ -91,7 +91,7 @@ def test_complete_demands_visual_collision_and_inertial_of_every_link(missing: s
 def test_check_warns_of_a_centre_of_mass_far_outside_of_the_shapes(centre: str, expected: list[str]) -> None:
     report = Report()
     text = LINK.format("".join(SHAPES.values()) + INERTIAL.format(centre))
-    validate(hx.loads(text, "urdf"), NoFiles(), report)
+    validate(hx.loads(text, "urdf").mechanism, NoFiles(), report)
     assert [diagnostic.code.id for diagnostic in report] == expected
 
 
@@ -101,7 +101,7 @@ def test_check_warns_of_a_centre_of_mass_far_outside_of_the_shapes(centre: str, 
 @pytest.mark.parametrize("target", [row.name for row in formats.FORMATS if row.backend and not row.is_exact])
 def test_a_lumped_system_that_cannot_be_written_says_so(target: str) -> None:
     with pytest.raises(Stopped) as caught:
-        hx.dumps(hx.loads(LUMPED, "hymeko"), target)
+        hx.dumps(hx.loads(LUMPED, "hymeko").mechanism, target)
     assert str(caught.value) == (
         f"error[HX065]: 'quarter_vehicle' has no bodies, and {target} can represent nothing of it: "
         "1 spring, 1 damper, 1 mass, 1 port; port 'road' moves as an input gives it, and joints have no such motion\n"
@@ -157,7 +157,7 @@ def test_hymeko_text_needs_no_suffix(text: str) -> None:
 @pytest.mark.parametrize("target", ["mjcf", "urdf", "sdf", "xacro"])
 def test_a_pendulum_swings_because_its_centre_of_mass_is_that_of_its_shapes(target: str) -> None:
     """The centre of mass comes with the tensor: 1 kg at 0.5 m below the hinge, and m/12 l^2 about it for the middle of a thin rod."""
-    rod = hx.loads(hx.dumps(hx.loads(PENDULUM, "hymeko"), target), target).vertex(Id("body", "rod"), Body).inertial
+    rod = hx.loads(hx.dumps(hx.loads(PENDULUM, "hymeko").mechanism, target), target).mechanism.vertex(Id("body", "rod"), Body).inertial
     assert rod is not None
     assert rod.com == pytest.approx((0.0, 0.0, -0.5))
     assert rod.tensor is not None
@@ -166,7 +166,7 @@ def test_a_pendulum_swings_because_its_centre_of_mass_is_that_of_its_shapes(targ
 
 def test_a_centre_of_mass_that_is_given_stays() -> None:
     text = PENDULUM.replace("mass 1", "mass 1 com [0 0 -0.2]")
-    rod = hx.loads(hx.dumps(hx.loads(text, "hymeko"), "urdf"), "urdf").vertex(Id("body", "rod"), Body).inertial
+    rod = hx.loads(hx.dumps(hx.loads(text, "hymeko").mechanism, "urdf"), "urdf").mechanism.vertex(Id("body", "rod"), Body).inertial
     assert rod is not None
     assert rod.com == (0.0, 0.0, -0.2)
 
@@ -199,16 +199,16 @@ NESTED = st.recursive(_vertices(FIELDS) | EDGES, lambda within: _vertices(within
 def test_nested_graphs_come_back_from_their_text(parts: list[str]) -> None:
     missing = [f"v{name} {{}}" for name in "ab" if not any(part.startswith(f"v{name} ") for part in parts)]
     text = f"g : graph {{ {' '.join([*missing, *parts])} }}"
-    graph = hx.loads(text, "hymeko")
+    graph = hx.loads(text, "hymeko").mechanism
     printed = hx.dumps(graph, "hymeko")
-    again = hx.loads(printed, "hymeko")
+    again = hx.loads(printed, "hymeko").mechanism
     assert (again.graph, again.extras, hx.dumps(again, "hymeko")) == (graph.graph, graph.extras, printed)
     assert "".join(printed.split()).count("@e") == text.count("@e")
 
 
 def test_nested_vertices_and_edges_of_a_graph_are_kept_without_a_warning() -> None:
     report = Report()
-    graph = hx.loads("g : graph { a { x 1 b {} @e { + a } c { y 2 } } }", "hymeko", report=report)
+    graph = hx.loads("g : graph { a { x 1 b {} @e { + a } c { y 2 } } }", "hymeko", report=report).mechanism
     assert [str(diagnostic) for diagnostic in report] == []
     assert hx.dumps(graph, "hymeko") == "g : graph { a : datum { x 1 b @e { + a } c { y 2 } } }\n"
 

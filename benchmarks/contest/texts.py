@@ -28,7 +28,7 @@ def texts(robots: Sequence[Input]) -> Iterator[Row]:
     """Rows whose megabytes are the length of the text."""
     plain = Lark((Path(__file__).parents[1] / "plain.lark").read_text("utf-8"), parser="lalr")
     for robot in robots:
-        tree = document(hx.load(robot.path))
+        tree = document(hx.load(robot.path).mechanism)
         text = print_document(tree)
         times = in_turns(lambda: parse(text), lambda: print_document(tree), lambda: plain.parse(text), rounds=3)  # noqa: B023
         for program, seconds in zip((READING, PRINTING, LARK), times, strict=True):

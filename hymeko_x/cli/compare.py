@@ -148,7 +148,7 @@ def _legs(chosen: argparse.Namespace, original: Mechanism, stops: list[Format], 
         after.parent.mkdir(exist_ok=True)
         result = api.convert(before, after, to_format=format.name, packages=packages, keep="beside", lenient=chosen.lenient, **first)
         first = {}  # the options of reading are for the input alone, not for the results of the legs
-        back = api.load(after, format.name, packages=packages, lenient=chosen.lenient)
+        back = api.load(after, format.name, packages=packages, lenient=chosen.lenient).mechanism
         losses = None if result.losses is None else len(result.losses)
         differences = len(diff(original, back, _TOLERANCE))
         yield Leg(format.name, after.stat().st_size, losses, differences, verdict_of(chosen.input, str(after), chosen))

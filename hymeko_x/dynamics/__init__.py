@@ -19,12 +19,13 @@ if TYPE_CHECKING:
     from hymeko_x.diagnostics import Report
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.multibody import Multibody
+    from hymeko_x.ir.holder import Holder
     from hymeko_x.ir.mechanism import Mechanism
     from hymeko_x.source import Files
 
 
 def dynamics(
-    robot: Mechanism,
+    robot: Mechanism | Holder,
     *,
     base: str | None = None,
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.81),
@@ -42,11 +43,13 @@ def dynamics(
     """
     from hymeko_x.dynamics.lumped import Lumped
     from hymeko_x.dynamics.multibody import multibody_of
+    from hymeko_x.ir.holder import mechanism_of
     from hymeko_x.networks.assembly import has_network, network_of
 
-    if has_network(robot):
-        return Lumped(network_of(robot))
-    found = multibody_of(_with_inertias(robot, files, report), base=base, gravity=gravity, actuated=inputs == "actuators")
+    mechanism = mechanism_of(robot)
+    if has_network(mechanism):
+        return Lumped(network_of(mechanism))
+    found = multibody_of(_with_inertias(mechanism, files, report), base=base, gravity=gravity, actuated=inputs == "actuators")
     if report is not None:
         _report_left_out(found, report)
     return found

@@ -91,7 +91,7 @@ def judged(task: Task, answer: str, attempt: int) -> Step:
     mended = repair(file_in(answer)) if task.format is OWN else Repair(file_in(answer))
     text = mended.text
     try:
-        robot = loads(text, task.format.name)
+        robot = loads(text, task.format.name).mechanism
     except Refusal as refusal:
         return Step(attempt, False, False, False, tuple(str(one) for one in refusal.diagnostics), answer, text, mended.changes)
     report = Report()

@@ -44,7 +44,7 @@ def test_an_archive_alone_is_the_robot_with_its_files(name: str, source: Path, t
     with zipfile.ZipFile(moved) as archive:
         assert archive.namelist()[0] == ARCHIVES[name]
     report = Report()
-    robot = hx.load(moved, report=report)
+    robot = hx.load(moved, report=report).mechanism
     assert sum(view.mesh is not None for view in robot.every_shape()) == 2
     hx.dump(robot, moved.parent / "back.xml")
     assert mujoco.MjModel.from_xml_path(str(moved.parent / "back.xml")).nmesh == 2
@@ -94,7 +94,7 @@ def test_one_of_several_robots_is_named_by_its_path(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "two.zip", "w") as archive:
         for name in ("left.urdf", "right.urdf"):
             archive.writestr(f"arms/{name}", f'<robot name="{name[:-5]}"><link name="base"/></robot>')
-    assert hx.load(tmp_path / "two.zip" / "arms" / "left.urdf").name == "left"
+    assert hx.load(tmp_path / "two.zip" / "arms" / "left.urdf").mechanism.name == "left"
     with pytest.raises(Refusal, match=r"several robots: arms/left.urdf, arms/right.urdf") as found:
         hx.load(tmp_path / "two.zip")
     assert found.value.diagnostic.hint == f"{tmp_path}/two.zip/arms/left.urdf names one"
@@ -104,7 +104,7 @@ def test_archives_of_others_are_read_like_folders(tmp_path: Path) -> None:
     with zipfile.ZipFile(tmp_path / "arm.zip", "w") as archive:
         for name, data in (("arm/meshes/part.obj", "v 0 0 0\n"), ("arm/package.xml", "<package/>"), ("arm/urdf/arm.urdf", URDF)):
             archive.writestr(name, data.replace("package://arm_description/meshes/", "../meshes/"))
-    robot = hx.open(tmp_path / "arm.zip")
+    robot = hx.load(tmp_path / "arm.zip")
     assert robot.files.find("../meshes/part.obj") == f"{tmp_path}/arm.zip/arm/meshes/part.obj"
     assert robot.files.find("../../../arm.zip") is None
 
@@ -124,7 +124,7 @@ def test_no_name_in_an_archive_leads_out_of_it(tmp_path: Path) -> None:
         archive.writestr("r.urdf", '<robot name="r"><link name="base"/></robot>')
         archive.writestr("../../evil.urdf", '<robot name="evil"/>')
         archive.writestr("/tmp/evil.urdf", '<robot name="evil"/>')
-    robot = hx.open(tmp_path / "in" / "r.zip", confine=tmp_path / "in")
+    robot = hx.load(tmp_path / "in" / "r.zip", confine=tmp_path / "in")
     assert robot.files.find("../../secret.stl") is None
     assert hx.verify(tmp_path / "in" / "r.zip", tmp_path / "in" / "r.zip").is_same
     assert not list(tmp_path.rglob("evil*"))

@@ -36,7 +36,7 @@ def robot(folder: Path) -> Path:
 
 def sizes(path: Path) -> list[float]:
     """The sizes of the meshes of a robot in URDF along x, in the order of the text."""
-    uris = [part.uri or "" for _, part in hx.load(path).assets()]
+    uris = [part.uri or "" for _, part in hx.load(path).mechanism.assets()]
     return [round(float(trimesh.load(path.parent / uri, force="mesh").extents[0]), 6) for uri in uris]
 
 

@@ -128,7 +128,7 @@ FILES = [file for format in SUFFIXES for file in development_files(format)]
 def contents_of(robot: Path, format: str) -> dict[tuple[str, str], bytes]:
     """What the robot refers to, by element and, for what its mesh files refer to, by the path from there."""
     files, found = DiskFiles(robot.parent), {}
-    for key, uri in files_named(hx.load(robot, format)):
+    for key, uri in files_named(hx.load(robot, format).mechanism):
         path = files.find(uri)
         if path is not None:
             found[str(key), ""] = files.read(path)

@@ -38,13 +38,13 @@ def library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_a_name_of_robot_descriptions_is_converted(library: Path) -> None:
     assert main(["convert", "arm_description", "out.xml", "--lenient", "-q"]) == exits.DONE
-    assert hx.load("out.xml", lenient=True).name == "arm"
+    assert hx.load("out.xml", lenient=True).mechanism.name == "arm"
 
 
 def test_a_xacro_of_robot_descriptions_has_its_arguments_and_those_of_the_user(library: Path) -> None:
     for words, name in (([], "left"), (["--arg", "side=right"], "right")):
         assert main(["convert", "limb_description", "out.urdf", "-q", *words]) == exits.DONE
-        assert [root.name for root in hx.load("out.urdf").roots] == [name]
+        assert [root.name for root in hx.load("out.urdf").mechanism.roots] == [name]
 
 
 def test_a_file_of_the_same_name_wins(library: Path) -> None:

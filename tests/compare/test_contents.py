@@ -148,6 +148,8 @@ def test_a_piece_without_a_triangle_is_a_change_of_the_whole(tmp_path: Path) -> 
     vertices = [line for line in piece.read_text().splitlines() if not line.startswith("f ")]
     piece.write_text("\n".join([*vertices, "f 1 2 3", ""]))
     fetch = fetch_from(DiskFiles(tmp_path))
-    losses = losses_between_files(Contents(hx.load(source), fetch), Contents(hx.load(tmp_path / "r.xml"), fetch), formats.MJCF)
+    losses = losses_between_files(
+        Contents(hx.load(source).mechanism, fetch), Contents(hx.load(tmp_path / "r.xml").mechanism, fetch), formats.MJCF
+    )
     found = {loss.field: (loss.before, loss.after) for loss in losses if loss.field.startswith("content")}
     assert found["content.triangles"] == ("12", "7")

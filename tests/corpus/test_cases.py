@@ -119,6 +119,6 @@ def test_the_signed_rank_test_is_that_of_the_textbook() -> None:
 
 
 def test_a_file_is_counted_in_bodies_joints_dofs_and_shapes() -> None:
-    mechanism = hx.loads(MJCF, "mjcf")
+    mechanism = hx.loads(MJCF, "mjcf").mechanism
     robot = counted(Robot("k", "p", "mjcf"), mechanism, Report())
     assert (robot.bodies, robot.joints, robot.dofs, robot.shapes) == (1, 1, 1, 1)

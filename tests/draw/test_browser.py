@@ -164,7 +164,7 @@ def hide_note(page: Any) -> None:
 @pytest.mark.full
 def test_a_slider_moves_both_robots_and_nothing_else(open_page: Callable[..., Any], serve: Callable[..., str], tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(ARM)
-    (tmp_path / "arm.xml").write_text(api.dumps(api.loads(ARM, "urdf"), "mjcf"))
+    (tmp_path / "arm.xml").write_text(api.dumps(api.loads(ARM, "urdf").mechanism, "mjcf"))
     page = open_page(serve("arm.urdf", "arm.xml"))
     page.get_by_text(re.compile("^same")).wait_for(timeout=60 * SECOND)
     hide_note(page)

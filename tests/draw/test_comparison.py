@@ -41,7 +41,7 @@ XHTML = "{http://www.w3.org/1999/xhtml}"
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "arm.urdf").write_text(ARM)
-    (tmp_path / "arm.xml").write_text(api.dumps(api.loads(ARM, "urdf"), "mjcf"))
+    (tmp_path / "arm.xml").write_text(api.dumps(api.loads(ARM, "urdf").mechanism, "mjcf"))
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

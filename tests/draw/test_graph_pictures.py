@@ -93,7 +93,7 @@ def both_pictures(robot: Mechanism, wanted: Wanted = WHOLE) -> tuple[str, str]:
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_every_vertex_edge_sign_and_weight_is_in_the_incidence_graph_once(path: Path) -> None:
-    robot = hx.load(path)
+    robot = hx.load(path).mechanism
     picture = incidence_picture(diagram(robot, Wanted(only=EDGE_KINDS)))
     edges = robot.graph.edges
     ends = {arc.target for edge in edges.values() for arc in edge.arcs}
@@ -115,7 +115,7 @@ def test_every_vertex_edge_sign_and_weight_is_in_the_incidence_graph_once(path: 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_every_body_joint_and_hyperedge_is_in_the_tree_once(path: Path) -> None:
-    robot = hx.load(path)
+    robot = hx.load(path).mechanism
     picture = tree_picture(tree(robot, Wanted()))
     bodies = Counter(("body", shown(key.name)) for key, _ in robot.vertices(parts.Body))
     drawn = named(picture, "vertex")

@@ -29,7 +29,7 @@ def images(html: str) -> list[tuple[str, str]]:
 
 
 def robot() -> Robot:
-    return Robot(api.loads(ARM.replace("NAME", NAME.replace("<", "&lt;").replace('"', "&quot;")), "urdf"))
+    return Robot(api.loads(ARM.replace("NAME", NAME.replace("<", "&lt;").replace('"', "&quot;")), "urdf").mechanism)
 
 
 def test_a_notebook_shows_picture_and_tree() -> None:
@@ -63,7 +63,7 @@ class OnlyTheCore(MetaPathFinder):
             raise ModuleNotFoundError(f"No module named {name!r}", name=name)
 sys.meta_path.insert(0, OnlyTheCore())
 import hymeko_x
-print(hymeko_x.open("arm.urdf")._repr_html_())
+print(hymeko_x.load("arm.urdf")._repr_html_())
 """
     (tmp_path / "arm.urdf").write_text(ARM.replace("NAME", "arm"))
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}

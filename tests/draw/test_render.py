@@ -42,7 +42,7 @@ def _can_draw() -> None:
 
 @functools.cache
 def picture(text: str, format: str = "urdf", **look: object) -> np.ndarray:
-    robot = api.loads(text, format)
+    robot = api.loads(text, format).mechanism
     return open_studio(robot, None, Look(**{"size": SIZE, **look})).still()  # type: ignore[arg-type]
 
 
@@ -65,7 +65,7 @@ def test_the_robot_fills_the_picture(view: str, scale: float) -> None:
 
 @pytest.mark.parametrize("format", ["mjcf", "hymeko", "usd", "xacro"])
 def test_a_robot_has_the_same_picture_in_every_format(format: str) -> None:
-    other = api.dumps(api.loads(ARM, "urdf"), format)
+    other = api.dumps(api.loads(ARM, "urdf").mechanism, format)
     assert np.mean(np.any(picture(ARM) != picture(other, format), axis=2)) < 0.005
 
 
@@ -111,7 +111,7 @@ def test_what_cannot_be_drawn_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("suffix", "magic"), [(".gif", b"GIF89a"), (".mp4", b"ftyp")])
 def test_a_film_shows_the_joints_move(suffix: str, magic: bytes) -> None:
-    pictures = [*open_studio(api.loads(ARM, "urdf"), None, Look(size=(64, 48))).sweep()]
+    pictures = [*open_studio(api.loads(ARM, "urdf").mechanism, None, Look(size=(64, 48))).sweep()]
     assert any(np.any(pictures[0] != later) for later in pictures[1:])
     assert magic in film(pictures, suffix)[:16]
 
@@ -119,7 +119,7 @@ def test_a_film_shows_the_joints_move(suffix: str, magic: bytes) -> None:
 def test_the_command_draws_several_files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("arm.urdf").write_text(ARM)
-    Path("arm.xml").write_text(api.dumps(api.loads(ARM, "urdf"), "mjcf"))
+    Path("arm.xml").write_text(api.dumps(api.loads(ARM, "urdf").mechanism, "mjcf"))
     assert main(["render", "arm.urdf", "arm.xml", "-o", "both.png", "--size", "320x240"]) == 0
     both = np.asarray(Image.open(io.BytesIO(Path("both.png").read_bytes())))
     assert both.shape == (240, 640, 3)

@@ -112,7 +112,7 @@ def test_a_joint_with_a_reference_is_drawn_where_it_is_in_the_first_robot(tmp_pa
         '<mujoco><worldbody><body name="b" pos="0 0 0.5"><joint name="up" type="slide" axis="0 0 1" ref="0.5"/>'
         '<geom type="box" size="0.1 0.2 0.1" mass="1" rgba="0.8 0.1 0.1 1"/></body></worldbody></mujoco>'
     )
-    robot = api.open(tmp_path / "a.xml")
+    robot = api.load(tmp_path / "a.xml")
     api.dump(robot, tmp_path / "a.urdf", "urdf")
-    other = api.open(tmp_path / "a.urdf")
+    other = api.load(tmp_path / "a.urdf")
     assert pair(Subject(robot, str(tmp_path / "a.xml")), Subject(other, None), LOOK).changed < renders.CHANGED

@@ -101,7 +101,7 @@ def test_a_scene_has_the_shapes_with_their_colours_and_ellipsoids_of_inertia() -
 
 
 def api_open(text: str, format: str) -> Robot:
-    return Robot(api.loads(text, format, lenient=True))
+    return Robot(api.loads(text, format, lenient=True).mechanism)
 
 
 @pytest.mark.parametrize("angle", [-1.0, 0.3, 1.0])
@@ -143,7 +143,7 @@ def _ends(motion: Motion) -> Sequence[object]:
 
 def test_a_slider_moves_the_nodes_of_both_robots(open_session: Callable[..., object], tmp_path: Path) -> None:
     (tmp_path / "arm.urdf").write_text(ARM)
-    (tmp_path / "arm.xml").write_text(api.dumps(api.loads(ARM, "urdf"), "mjcf"))
+    (tmp_path / "arm.xml").write_text(api.dumps(api.loads(ARM, "urdf").mechanism, "mjcf"))
     session = open_session("arm.urdf", "arm.xml")
     page, robot = session.page, api_open(ARM, "urdf")
     assert page.server.get_host() == "127.0.0.1"

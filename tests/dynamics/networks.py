@@ -60,4 +60,4 @@ def mujoco_model(network: Network) -> mujoco.MjModel:
 
 
 def load(text: str) -> hx.Mechanism:
-    return hx.loads(text, "hymeko")
+    return hx.loads(text, "hymeko").mechanism

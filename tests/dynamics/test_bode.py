@@ -16,7 +16,7 @@ from tests.dynamics.test_mechanisms import CART_POLE
 
 def test_the_frequency_response_is_the_transfer_function() -> None:
     """Of the quarter vehicle's road, a position and its rate; and of the forces of a cart-pole."""
-    for found in (hx.dynamics(hx.load(LISTING)), hx.dynamics(load(CART_POLE))):
+    for found in (hx.dynamics(hx.load(LISTING).mechanism), hx.dynamics(load(CART_POLE))):
         space = found.state_space()
         w = frequencies(space)[::57]
         response, functions = frequency_response(space, w), space.transfer()
@@ -27,7 +27,7 @@ def test_the_frequency_response_is_the_transfer_function() -> None:
 
 
 def test_a_suspension_passes_slow_roads_and_amplifies_at_its_natural_frequency() -> None:
-    space = hx.dynamics(hx.load(LISTING)).state_space()
+    space = hx.dynamics(hx.load(LISTING).mechanism).state_space()
     gain = np.abs(frequency_response(space, np.array([1e-3, 31.6, 3000.0])))[:, 0, 0]
     assert abs(gain[0] - 1.0) < 1e-6
     assert gain[1] > 1.5

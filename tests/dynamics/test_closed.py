@@ -27,7 +27,7 @@ FREEDOM = {"four_bar": (1, 3), "delta": (3, 21)}
 
 @pytest.fixture(scope="module", params=FREEDOM)
 def found(request: pytest.FixtureRequest) -> Multibody:
-    return hx.dynamics(hx.load(EXAMPLES / f"{request.param}.hymeko"), inputs="actuators")
+    return hx.dynamics(hx.load(EXAMPLES / f"{request.param}.hymeko").mechanism, inputs="actuators")
 
 
 def drawn(found: Multibody) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -47,7 +47,7 @@ def test_the_degrees_of_freedom_are_those_that_the_rank_leaves(found: Multibody)
 
 
 def test_the_page_says_how_loops_are_closed() -> None:
-    text = printed(page_of(hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko")), "state-space"), "text")
+    text = printed(page_of(hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko").mechanism), "state-space"), "text")
     words = "loops: 1 closed; 1 of 3 degrees of freedom remain; in simulations and generated files stabilised (Baumgarte) at 20 1/s"
     assert words in text
 
@@ -142,7 +142,7 @@ def test_a_simulation_keeps_the_loops_closed(found: Multibody) -> None:
 
 def test_the_formulas_of_a_loop_have_their_jacobian() -> None:
     """Of a linkage in a plane two rows: what is across the plane is closed everywhere."""
-    found = hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko"))
+    found = hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko").mechanism)
     phi, slope = found.symbolic_loops()
     q = sympy.symbols("q1:4", real=True)
     assert phi.shape == (2, 1)

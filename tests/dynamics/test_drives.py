@@ -37,7 +37,7 @@ def compare(found: Multibody, model: mujoco.MjModel, tolerance: float) -> None:
 
 
 def test_actuators_and_tendons_act_as_in_mujoco() -> None:
-    found = hx.dynamics(hx.loads(MODEL, "mjcf"), inputs="actuators")
+    found = hx.dynamics(hx.loads(MODEL, "mjcf").mechanism, inputs="actuators")
     compare(found, mujoco.MjModel.from_xml_string(MODEL), 1e-10)
     units = {"m": "N*m", "p": "rad", "v": "m/s", "g": "", "t": ""}
     assert {v.name: v.unit for v in found.system.inputs} == {f"{name}.control": unit for name, unit in units.items()}
@@ -45,7 +45,7 @@ def test_actuators_and_tendons_act_as_in_mujoco() -> None:
 
 def test_the_linear_system_has_the_laws_of_actuators() -> None:
     """Against the finite differences of one step of semi-implicit Euler: v+ = v + h a(q, v, u)."""
-    found = hx.dynamics(hx.loads(MODEL, "mjcf"), inputs="actuators")
+    found = hx.dynamics(hx.loads(MODEL, "mjcf").mechanism, inputs="actuators")
     point = found.at("a=0.3,b=-0.4")._replace(inputs=[0.2, -0.1, 0.3, 0.1, -0.2])
     a, b, _, _ = linearized(found, point).floats
     n, h = 3, 1e-4
@@ -66,7 +66,7 @@ def test_the_actuators_of_a_robot_act_as_in_mujoco(robot: Path) -> None:
     """Those of fixed bases without balls, of which every actuator and tendon is in the equations."""
     report = Report()
     try:
-        found = hx.dynamics(hx.load(robot), inputs="actuators", report=report)
+        found = hx.dynamics(hx.load(robot).mechanism, inputs="actuators", report=report)
         model = mujoco.MjModel.from_xml_path(str(robot))
     except (Refusal, ValueError) as error:
         pytest.skip(str(error))
@@ -78,18 +78,18 @@ def test_the_actuators_of_a_robot_act_as_in_mujoco(robot: Path) -> None:
     model.actuator_forcelimited[:], model.jnt_actfrclimited[:], model.body_gravcomp[:] = 0, 0, 0.0
     model.opt.viscosity = model.opt.density = 0.0
     model.dof_frictionloss[:] = 0.0
-    found = hx.dynamics(hx.load(robot), inputs="actuators", gravity=tuple(model.opt.gravity * pulls))
+    found = hx.dynamics(hx.load(robot).mechanism, inputs="actuators", gravity=tuple(model.opt.gravity * pulls))
     compare(found, model, 1e-7)
 
 
 def test_actuators_that_are_not_in_the_equations_are_named() -> None:
     text = MODEL.replace("</actuator>", '<muscle name="pull" joint="a"/><motor name="push" joint="a" gear="2"/></actuator>')
     report = Report()
-    found = hx.dynamics(hx.loads(text, "mjcf"), inputs="actuators", report=report)
+    found = hx.dynamics(hx.loads(text, "mjcf").mechanism, inputs="actuators", report=report)
     assert [variable.name for variable in found.system.inputs][-1] == "push.control"
     assert [str(d).split(": ", 2)[-1] for d in report if d.code.id == "HX408"] == [
         "actuator 'pull' has a law or an end, which is not in the equations"
     ]
     none = MODEL[: MODEL.index("<actuator>")] + "</mujoco>"
     with pytest.raises(Refusal, match=r"HX408\]: .*no actuator of it drives a joint"):
-        hx.dynamics(hx.loads(none, "mjcf"), inputs="actuators")
+        hx.dynamics(hx.loads(none, "mjcf").mechanism, inputs="actuators")

@@ -24,7 +24,7 @@ BAD_CONDITION = 1e10
 def of(path: Path, **options: object) -> Multibody | None:
     """The dynamics of a robot; None where nothing moves, or something moves no mass."""
     try:
-        return hx.dynamics(hx.load(path), **options)  # type: ignore[return-value]
+        return hx.dynamics(hx.load(path).mechanism, **options)  # type: ignore[return-value]
     except Refusal as refusal:
         if refusal.diagnostic.code.id not in ("HX400", "HX404"):
             raise

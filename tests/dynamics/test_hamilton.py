@@ -28,9 +28,9 @@ SYSTEMS = {
     "coupled": lambda: hx.dynamics(
         load(DOUBLE.replace("lower axis=-Y", "lower axis=-Y damping 0.2 stiffness 3 [0.1 0.5 0.3] mimic - shoulder"))
     ),
-    "ball": lambda: hx.dynamics(hx.loads(BALL, "mjcf")),
+    "ball": lambda: hx.dynamics(hx.loads(BALL, "mjcf").mechanism),
     "top": lambda: hx.dynamics(load(SPINNING)),
-    "driven": lambda: hx.dynamics(hx.loads(DRIVEN, "mjcf"), inputs="actuators"),
+    "driven": lambda: hx.dynamics(hx.loads(DRIVEN, "mjcf").mechanism, inputs="actuators"),
 }
 
 
@@ -85,7 +85,7 @@ def test_the_discrete_gradient_keeps_the_power_balance(found: Multibody) -> None
 
 
 def test_the_energy_is_that_of_mujoco() -> None:
-    found = hx.dynamics(hx.loads(BALL, "mjcf"))
+    found = hx.dynamics(hx.loads(BALL, "mjcf").mechanism)
     q, v = drawn(found)
     model = mujoco.MjModel.from_xml_string(BALL)
     model.opt.enableflags |= int(mujoco.mjtEnableBit.mjENBL_ENERGY)
@@ -119,7 +119,7 @@ def test_a_response_with_the_energy_of_a_swinging_pendulum_and_of_a_car() -> Non
         "elbow.momentum",
     ]
     np.testing.assert_allclose(swinging.outputs[:, 0], swinging.outputs[0, 0], rtol=1e-8)
-    car = hx.dynamics(hx.load(LISTING))
+    car = hx.dynamics(hx.load(LISTING).mechanism)
     road = table([0.0, 0.2, 1.5], [0.0, 0.1, 0.1])
     ours, theirs = balanced_response(car, 1.5, 1e-3, {"chassis": road}), car.simulate(1.5, 1e-3, {"chassis": road})
     np.testing.assert_allclose(ours.states[:, 1] / 50.0, theirs.states[:, 1], atol=2e-3)
@@ -144,7 +144,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 
 @pytest.fixture(scope="module", params=["four_bar", pytest.param("delta", marks=pytest.mark.full)])
 def looped(request: pytest.FixtureRequest) -> Multibody:
-    return hx.dynamics(hx.load(EXAMPLES / f"{request.param}.hymeko"))
+    return hx.dynamics(hx.load(EXAMPLES / f"{request.param}.hymeko").mechanism)
 
 
 def test_the_forces_of_closed_loops_are_a_port_without_power(looped: Multibody) -> None:
@@ -180,7 +180,7 @@ def test_the_discrete_gradient_keeps_loops_closed_and_the_power_balance(looped: 
 
 def test_a_four_bar_flows_as_in_the_solver() -> None:
     """It falls for 0.5 s; half the step, a quarter of the error."""
-    found = hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko"))
+    found = hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko").mechanism)
     form = found.port_hamiltonian()
     exact = found.simulate(0.5, 0.5, at="drive=0.5").states[-1]
     start = form.state(found.start("drive=0.5"), [0.0] * 3)
@@ -190,14 +190,14 @@ def test_a_four_bar_flows_as_in_the_solver() -> None:
 
 
 def test_the_page_of_a_four_bar_has_the_port_of_its_loop() -> None:
-    page = printed(page_of(hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko")), "port-hamiltonian"), "text")
+    page = printed(page_of(hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko").mechanism), "port-hamiltonian"), "text")
     assert "x' = (J - R) dH/dx + G u + B f, 0 = B' dH/dx, phi(q) = 0" in page
     assert "1 of 3 degrees of freedom remain" in page
 
 
 @pytest.mark.full
 def test_the_formulas_of_a_loop_have_its_port() -> None:
-    found = hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko"))
+    found = hx.dynamics(hx.load(EXAMPLES / "four_bar.hymeko").mechanism)
     phi, b = loop_formulas(found.port_hamiltonian())
     q = sympy.symbols("q1:4", real=True)
     difference = b[3:, :] - phi.jacobian(sympy.Matrix(q)).T

@@ -27,7 +27,7 @@ LISTING = Path(__file__).parents[2] / "corpus" / "listings" / "quarter_vehicle_m
 
 @pytest.fixture(scope="module")
 def car() -> hx.dynamics.Lumped:
-    return hx.dynamics(hx.load(LISTING))
+    return hx.dynamics(hx.load(LISTING).mechanism)
 
 
 # ---- the published example -----------------------------------------------------------------------------------------------

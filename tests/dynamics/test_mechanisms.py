@@ -106,7 +106,7 @@ MODEL = """<mujoco><option timestep="1e-4"><flag contact="disable" constraint="d
 
 def test_the_linear_system_is_that_of_mujocos_finite_differences() -> None:
     """One step of semi-implicit Euler: v+ = v + h a(q, v), q+ = q + h v+."""
-    found = hx.dynamics(hx.loads(MODEL, "mjcf"))
+    found = hx.dynamics(hx.loads(MODEL, "mjcf").mechanism)
     a, b, _, _ = linearized(found, found.at("pivot=0.3")._replace(inputs=[0.0, 0.0])).floats
     n, h = 5, 1e-4
     model = mujoco.MjModel.from_xml_string(MODEL)
@@ -218,7 +218,7 @@ def test_what_is_not_in_the_equations_is_named() -> None:
 
 def test_a_hundred_configurations_of_a_humanoid_take_less_than_fifty_milliseconds() -> None:
     """Of processor time; the best of five runs."""
-    found = hx.dynamics(hx.load(Path(__file__).parents[2] / "corpus" / "robots" / "humanoid.hymeko"))
+    found = hx.dynamics(hx.load(Path(__file__).parents[2] / "corpus" / "robots" / "humanoid.hymeko").mechanism)
     q, v = np.tile(found.tree.rest, (100, 1)), np.ones((100, found.tree.nv))
     times = []
     for _ in range(5):

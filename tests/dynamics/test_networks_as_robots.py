@@ -67,13 +67,13 @@ def test_a_tree_of_masses_moves_in_mujoco_as_its_network_does(seed: int) -> None
 def test_the_quarter_vehicle_comes_back_with_its_poles(target: str, tmp_path: Path) -> None:
     hx.convert(LISTING, tmp_path / "r.xml")
     hx.convert(tmp_path / "r.xml", tmp_path / target) if target != "r.xml" else None
-    space = hx.dynamics(hx.load(tmp_path / target)).state_space()
+    space = hx.dynamics(hx.load(tmp_path / target).mechanism).state_space()
     assert sorted((round(pole.value.real, 6), round(pole.value.imag, 6)) for pole in space.poles) == [(-10.0, -30.0), (-10.0, 30.0)]
 
 
 @pytest.mark.parametrize("target", ["urdf", "xacro", "mjcf", "usd", "sdf"])
 def test_every_format_for_robots_has_the_masses(target: str) -> None:
-    robot = hx.loads(hx.dumps(hx.load(LISTING), target), target)
+    robot = hx.loads(hx.dumps(hx.load(LISTING).mechanism, target), target).mechanism
     (joint,) = robot.joints.values()
     assert [dof.kind.value for dof in joint.joint.dofs] == ["slide"]
     (mass,) = [body.inertial.mass for key, body in robot.vertices(hx.ir.parts.Body) if key.name == "link" and body.inertial is not None]

@@ -48,7 +48,7 @@ def test_coupled_tendons_move_as_mujoco_demands(equalities: str, freedom: int) -
     """Positions keep MuJoCo's equalities, and accelerations are those of its mass matrix and forces under its Jacobian."""
     text = model(equalities)
     report = Report()
-    found = hx.dynamics(hx.loads(text, "mjcf"), report=report)
+    found = hx.dynamics(hx.loads(text, "mjcf").mechanism, report=report)
     assert not list(report)
     theirs = mujoco.MjModel.from_xml_string(text)
     data = mujoco.MjData(theirs)
@@ -75,14 +75,14 @@ def test_couplings_without_equations_are_named() -> None:
     path = '<spatial name="path"><site site="s"/><site site="t"/></spatial>'
     text = model('<tendon name="cable" tendon1="path"/><tendon tendon1="one" tendon2="two" polycoef="0 1 1"/>', path)
     text = text.replace("<worldbody>", '<worldbody><site name="s"/><site name="t" pos="0 0 1"/>')
-    hx.dynamics(hx.loads(text, "mjcf"), report=report)
+    hx.dynamics(hx.loads(text, "mjcf").mechanism, report=report)
     words = "couples along a path, or by a polynomial of several coordinates, which is not in the equations"
     assert [str(found).partition("HX408]: ")[2] for found in report] == [f"coupling 'cable' {words}", f"coupling 'one' {words}"]
 
 
 def test_a_coupling_of_tendons_in_hymeko_text_is_in_the_equations() -> None:
-    robot = hx.loads(model(""), "mjcf")
+    robot = hx.loads(model(""), "mjcf").mechanism
     text = hx.dumps(robot, "hymeko").rstrip().removesuffix("}") + "  @pair : coupling { + two [0 3] - one }\n}\n"
-    found = hx.dynamics(hx.loads(text, "hymeko"))
+    found = hx.dynamics(hx.loads(text, "hymeko").mechanism)
     q = whole(found, np.array([0.4, 0.3, 0.2, 0.1]), np.zeros(4))[0]
     assert q[0] + 2.0 * q[1] == pytest.approx(1.5 * q[2])

@@ -172,7 +172,7 @@ def test_the_c_code_of_a_seven_dof_arm_is_within_three_times_of_pinocchio(tmp_pa
 
 @pytest.mark.skipif(shutil.which("octave") is None, reason="Octave is not installed (Debian: apt install octave octave-control)")
 def test_octave_computes_the_step_response(tmp_path: Path) -> None:
-    car = hx.dynamics(hx.load(LISTING))
+    car = hx.dynamics(hx.load(LISTING).mechanism)
     (tmp_path / "car.m").write_text(written(car, "octave") + "disp(y(end)); disp(poles');\n")
     out = subprocess.run(["octave", "-q", "car.m"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout
     assert float(out.split()[0]) == pytest.approx(1.0, abs=1e-3)
@@ -250,15 +250,15 @@ def test_an_fmu_is_valid_and_simulates_as_we_do(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_a_generated_file_says_where_it_comes_from_and_is_the_same_again(language: str) -> None:
-    car = hx.dynamics(hx.load(LISTING))
+    car = hx.dynamics(hx.load(LISTING).mechanism)
     content = writers.written(car, language)
     if language == "fmu":
         content = zipfile.ZipFile(io.BytesIO(content)).read("sources/model.c")
     assert b"quarter_vehicle_model: equations of motion, written by hymeko-x" in content
-    assert writers.written(hx.dynamics(hx.load(LISTING)), language) == writers.written(car, language)
+    assert writers.written(hx.dynamics(hx.load(LISTING).mechanism), language) == writers.written(car, language)
 
 
 def test_the_sympy_file_is_exact() -> None:
-    module = run(written(hx.dynamics(hx.load(LISTING)), "sympy"))
+    module = run(written(hx.dynamics(hx.load(LISTING).mechanism), "sympy"))
     values = dict(zip(module.p, map(sympy.Rational, map(str, module.P)), strict=True))
     assert sympy.Matrix([[0, 1], [-1000, -20]]) == module.rates.jacobian(module.x).subs(values)

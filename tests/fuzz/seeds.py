@@ -47,5 +47,5 @@ def _converted(path: Path, format: str) -> bytes | None:
     """A robot in a format; None for graphs and lumped systems, which only HyMeKo represents."""
     if format == "hymeko":
         return path.read_bytes()
-    robot = hx.load(path)
+    robot = hx.load(path).mechanism
     return hx.dumps(robot, format).encode() if any(robot.vertices(Body)) else None

@@ -23,11 +23,11 @@ SCARA = Path(__file__).parents[2] / "corpus/listings/scara_robot.hymeko"
 
 
 def task(format: str = "urdf", prompt: str = "card") -> Task:
-    return Task(SCARA.read_text("utf-8"), SCARA, hx.load(SCARA), formats.by_name(format), prompt)
+    return Task(SCARA.read_text("utf-8"), SCARA, hx.load(SCARA).mechanism, formats.by_name(format), prompt)
 
 
 def right(format: str = "urdf") -> str:
-    return hx.dumps(hx.load(SCARA), format)
+    return hx.dumps(hx.load(SCARA).mechanism, format)
 
 
 @pytest.fixture
@@ -46,8 +46,8 @@ def test_the_right_answer_passes_everything(format: str) -> None:
 @pytest.mark.parametrize("fault", [*STRUCTURE[1:], *NUMBERS])
 @pytest.mark.unread("HX045", "HX314", "HX317", "HX318")
 def test_the_verifier_finds_every_fault(fault: str) -> None:
-    robot = _with_fault(hx.load(SCARA), fault, random.Random(1))
-    assert robot != hx.load(SCARA)
+    robot = _with_fault(hx.load(SCARA).mechanism, fault, random.Random(1))
+    assert robot != hx.load(SCARA).mechanism
     step = judged(task(), hx.dumps(robot, "urdf", lenient=True), 1)
     assert step.faults
     assert not step.is_same
@@ -96,7 +96,7 @@ def test_the_first_fence_is_the_file() -> None:
 
 @pytest.mark.unread("HX045")
 def test_faults_come_at_the_rate_of_the_paper() -> None:
-    model = Faulty(hx.load(SCARA), formats.by_name("urdf"), 0.18, random.Random(3))
+    model = Faulty(hx.load(SCARA).mechanism, formats.by_name("urdf"), 0.18, random.Random(3))
     expected = right()
     faulty = sum(file_in(model([])) != expected for _ in range(200))
     assert 0.18 * 200 < faulty < 0.45 * 200  # 1 - 0.82 * 0.82 = 0.33 with those of numbers

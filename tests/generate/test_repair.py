@@ -74,7 +74,7 @@ def test_a_text_of_another_language_is_left_alone() -> None:
 
 @pytest.mark.unread("HX314", "HX317")
 def test_the_loop_mends_an_answer_before_it_asks_again() -> None:
-    task = Task(SCARA.read_text("utf-8"), SCARA, hx.load(SCARA), formats.OWN)
+    task = Task(SCARA.read_text("utf-8"), SCARA, hx.load(SCARA).mechanism, formats.OWN)
     broken = task.text.replace("+ base_link", "+ base_lnk")
     (step,) = generate(task, lambda messages: broken, 5)
     assert step.is_same

@@ -34,7 +34,7 @@ def test_the_card_has_at_most_1500_tokens() -> None:
 
 def test_the_robot_of_the_card_is_read_in_silence_and_is_of_the_grammar() -> None:
     report = Report()
-    robot = hx.loads(LISTING, "hymeko", report=report)
+    robot = hx.loads(LISTING, "hymeko", report=report).mechanism
     assert [str(one) for one in report] == []
     assert {key.name: len(view.joint.dofs) for key, view in robot.joints.items()} == {"shoulder": 1, "slide": 1}
     assert accepts("llguidance", LISTING)
@@ -48,14 +48,14 @@ def test_the_forms_that_the_card_names_are_read() -> None:
     shapes = "s { shape { capsule [0.1 0.2] } visual { sphere 5cm rgba [1 0 0 1] } inertia [1 1 1 0 0 0] mass 1 } "
     template = "leg(len=0.3) : link { mass 1 shape { box [${len} 0.05 0.05] } } left : leg(len=0.4) {} "
     text = f"r : robot {{ {bodies}{joints}{mimic}{shapes}{template}}}"
-    assert len(hx.loads(text, "hymeko").joints) == 8
+    assert len(hx.loads(text, "hymeko").mechanism.joints) == 8
     parse(text)
 
 
 def test_the_commands_of_the_skill_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
     text = LISTING.replace('visual { mesh "meshes/hand.stl" }', "visual { sphere 50mm }")
-    hx.dump(hx.loads(text, "hymeko"), "arm.urdf")
+    hx.dump(hx.loads(text, "hymeko").mechanism, "arm.urdf")
     for command in COMMANDS:
         program, *words = shlex.split(command)
         assert program == "hymeko-x"

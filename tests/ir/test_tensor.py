@@ -70,7 +70,7 @@ def test_a_mechanism_comes_back_from_its_tensor(mechanism: Mechanism) -> None:
 
 
 def test_changed_numbers_are_changed_weights() -> None:
-    arm = hx.Robot(hx.loads(ARM, "hymeko"))
+    arm = hx.loads(ARM, "hymeko")
     tensor = arm.to_tensor()
     row, column = (tensor.elements.index(key) for key in tensor.elements if key.name in ("base", "turn"))
     dense = tensor.array.toarray()

@@ -82,19 +82,19 @@ def test_the_schema_accepts_what_is_written(mechanism: Mechanism) -> None:
 
 @pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.stem)
 def test_our_robots_are_exact_and_valid(path: Path) -> None:
-    SCHEMA.validate(json.loads(check_exact(hx.load(path))))
+    SCHEMA.validate(json.loads(check_exact(hx.load(path).mechanism)))
 
 
 @pytest.mark.robots("urdf", "mjcf", "usd", "xacro", "sdf", every=40)
 @pytest.mark.unread("HX040")
 def test_real_robots_are_exact(robot: Path) -> None:
-    check_exact(hx.load(robot, lenient=True))
+    check_exact(hx.load(robot, lenient=True).mechanism)
 
 
 @pytest.mark.full
 @pytest.mark.robots("urdf", "mjcf", "usd", "xacro", "sdf")
 def test_the_schema_accepts_every_real_robot(robot: Path) -> None:
-    SCHEMA.validate(json.loads(text(hx.load(robot, lenient=True))))
+    SCHEMA.validate(json.loads(text(hx.load(robot, lenient=True).mechanism)))
 
 
 def test_numbers_that_json_does_not_have_are_objects() -> None:
@@ -181,7 +181,7 @@ def _outcome(chance: random.Random) -> str:
     for _ in range(chance.choice((1, 1, 2))):
         change_somewhere(root, chance)
     try:
-        robot = hx.loads(text_of(root), "json", lenient=True)
+        robot = hx.loads(text_of(root), "json", lenient=True).mechanism
         for target in ("urdf", "mjcf", "hymeko"):
             hx.dumps(robot, target, lenient=True)
     except Refusal as refusal:

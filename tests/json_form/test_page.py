@@ -18,7 +18,7 @@ DOCUMENT = re.findall(r"```json\n(.*?)```", PAGE, re.DOTALL)[0]
 
 def test_the_document_is_a_robot() -> None:
     SCHEMA.validate(json.loads(DOCUMENT))
-    robot = hx.loads(DOCUMENT.encode(), "json")
+    robot = hx.loads(DOCUMENT.encode(), "json").mechanism
     (joint,) = robot.joints.values()
     assert (joint.parent.name, joint.child.name, joint.parent_pose.xyz) == ("base", "tip", (0.0, 0.0, 0.3))
 

@@ -30,7 +30,7 @@ RIGHT_ANGLE = math.radians(90.0)
 def load(path: Path) -> Mechanism:
     """A file that nothing has to be said about."""
     report = Report()
-    mechanism = hx.load(path, report=report)
+    mechanism = hx.load(path, report=report).mechanism
     assert [str(diagnostic) for diagnostic in report] == []
     return mechanism
 

@@ -43,17 +43,17 @@ ROBOT = (
 @pytest.mark.unread("HX107")
 def test_a_residue_that_holds_something_else_is_left_out(content: str) -> None:
     report = Report()
-    robot = hx.loads(ROBOT.format(content), "urdf", report=report)
+    robot = hx.loads(ROBOT.format(content), "urdf", report=report).mechanism
     assert [diagnostic.code.id for diagnostic in report] == ["HX107"]
-    assert robot == hx.loads(ROBOT.replace("{{ version 2 {} }}", ""), "urdf")
+    assert robot == hx.loads(ROBOT.replace("{{ version 2 {} }}", ""), "urdf").mechanism
 
 
 @pytest.mark.parametrize("names", ["body { a=b }", "body { a=c b=c }"])
 def test_a_name_that_another_element_has_by_now_is_not_given_again(names: str) -> None:
     """Two elements under one name would be one."""
-    robot = hx.loads(ROBOT.format(f"names {{ {names} }}"), "urdf")
+    robot = hx.loads(ROBOT.format(f"names {{ {names} }}"), "urdf").mechanism
     assert len(list(robot.vertices(Body))) == 2
 
 
 def test_a_residue_in_cdata_is_found_in_a_file_without_any_other_words() -> None:
-    assert hx.loads(ROBOT.format('extras { body { of [a] mjcf ["x" "y"] } }'), "urdf").extras
+    assert hx.loads(ROBOT.format('extras { body { of [a] mjcf ["x" "y"] } }'), "urdf").mechanism.extras

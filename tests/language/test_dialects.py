@@ -107,10 +107,10 @@ def folder(tmp_path: Path) -> Path:
 
 def load(path: Path) -> Mechanism:
     report = Report()
-    found = hx.load(path, report=report)
+    found = hx.load(path, report=report).mechanism
     assert [str(diagnostic) for diagnostic in report] == []
     text = hx.dumps(found, "hymeko")
-    again = hx.loads(text, "hymeko")
+    again = hx.loads(text, "hymeko").mechanism
     assert again == found
     assert hx.dumps(again, "hymeko") == text
     return found
@@ -229,7 +229,7 @@ def test_the_root_is_found_beside_its_description_and_its_types(tmp_path: Path) 
 
 def test_a_long_chain_of_constants_has_a_value() -> None:
     chain = " ".join(f"const a{n} = a{n + 1} + 1;" for n in range(5000))
-    graph = hx.loads(f"d {{ {chain} const a5000 = 0; }}\ng : graph {{ b {{ x a0; }} }}", "hymeko")
+    graph = hx.loads(f"d {{ {chain} const a5000 = 0; }}\ng : graph {{ b {{ x a0; }} }}", "hymeko").mechanism
     assert graph.vertex(Id("datum", "b"), parts.Datum) == parts.Datum((("x", 5000.0),))
 
 

@@ -12,8 +12,8 @@ from hymeko_x.rewrite import Options
 
 
 def read(text: str) -> Mechanism:
-    robot = hx.loads(text, "hymeko")
-    assert hx.loads(printed(robot), "hymeko") == robot
+    robot = hx.loads(text, "hymeko").mechanism
+    assert hx.loads(printed(robot), "hymeko").mechanism == robot
     return robot
 
 

@@ -30,7 +30,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def read(path: str) -> hx.Robot:
-    return hx.Robot(hx.load(path))
+    return hx.load(path)
 
 
 def load(here: Path, text: str) -> hx.Robot:
@@ -109,7 +109,7 @@ def test_elements_of_an_instance_change_from_inside_and_outside(here: Path) -> N
 
 def test_elements_of_assemblies_change_in_the_same_way() -> None:
     leg = "leg() : assembly { foot { mass 1 } toe { mass 2 } @ankle { + foot - toe damping 1 } }"
-    robot = hx.Robot(hx.loads(f"r : robot {{ {leg} a : leg {{}} b : leg {{}} a.foot {{ mass 3 }} @b.ankle {{ damping 4 }} }}", "hymeko"))
+    robot = hx.loads(f"r : robot {{ {leg} a : leg {{}} b : leg {{}} a.foot {{ mass 3 }} @b.ankle {{ damping 4 }} }}", "hymeko")
     assert [body.mass for body in robot.bodies.values()] == [3, 2, 1, 2]
     assert [joint.damping for joint in robot.joints.values()] == [1, 4]
 
@@ -179,7 +179,7 @@ def test_a_text_that_imports_is_verified_against_what_it_becomes(here: Path, suf
 
 
 def test_a_printed_robot_stands_inside_another_one(here: Path) -> None:
-    hx.dump(hx.load("arm.xml"), "arm.hymeko")
+    hx.dump(hx.load("arm.xml").mechanism, "arm.hymeko")
     text = 'import "{}" as arm r : robot {{ a : arm {{}} }}'
     assert load(here, text.format("arm.hymeko")) == load(here, text.format("arm.xml"))
 

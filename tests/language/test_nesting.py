@@ -33,7 +33,7 @@ PLAIN = Knobs(
 
 def read(text: str) -> Mechanism:
     report = Report()
-    found = hx.loads(text, "hymeko", report=report)
+    found = hx.loads(text, "hymeko", report=report).mechanism
     assert [str(diagnostic) for diagnostic in report] == []
     return found
 
@@ -59,7 +59,7 @@ def test_a_block_of_a_block_is_vertices_and_edges_and_the_edges_that_tell_so() -
 def test_a_type_among_the_values_of_inner_data_comes_back() -> None:
     graph = read('g : graph { sensors { eye { type "camera" rate 30 } @e { type "link" + eye } } ear { type "microphone" } }')
     assert graph.vertex(vertex("sensors.eye"), parts.Datum) == parts.Datum((("type", "camera"), ("rate", 30.0)))
-    assert hx.loads(hx.dumps(graph, "hymeko"), "hymeko") == graph
+    assert hx.loads(hx.dumps(graph, "hymeko"), "hymeko").mechanism == graph
 
 
 def test_edges_stand_inside_of_edges_and_weights_have_any_shape() -> None:

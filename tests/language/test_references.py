@@ -14,9 +14,9 @@ from hymeko_x.ir.values import Pose, quat_from_rpy
 
 def read(text: str) -> Mechanism:
     report = Report()
-    found = hx.loads(text, "hymeko", report=report)
+    found = hx.loads(text, "hymeko", report=report).mechanism
     assert [str(diagnostic) for diagnostic in report] == []
-    assert hx.loads(hx.dumps(found, "hymeko"), "hymeko") == found
+    assert hx.loads(hx.dumps(found, "hymeko"), "hymeko").mechanism == found
     return found
 
 

@@ -120,7 +120,7 @@ def measures(folder: Path, home: str) -> np.ndarray:
         model = mujoco.MjModel.from_xml_path(str(folder / home))
         counts = [model.nmeshvert, model.nmeshface]
         return np.array([*counts, *model.body_mass[1:], *model.body_inertia[1:].ravel(), *model.geom_aabb.ravel()])
-    uri = hx.load(folder / home)
+    uri = hx.load(folder / home).mechanism
     paths = [mesh.uri for mesh in (uri.graph.vertices[view.mesh] for view in uri.every_shape() if view.mesh)]
     whole = trimesh.util.concatenate([trimesh.load(folder / path, force="mesh", process=False) for path in dict.fromkeys(paths)])
     return np.array([*whole.bounds.ravel(), whole.area])
@@ -250,7 +250,7 @@ def pixels(folder: Path, home: str) -> np.ndarray:
     if home == "r.xml":
         model = mujoco.MjModel.from_xml_path(str(folder / home))
         return np.array([model.tex_width[0], model.tex_height[0], *model.tex_data])
-    (texture,) = [part.uri for _, part in hx.load(folder / home).assets()]
+    (texture,) = [part.uri for _, part in hx.load(folder / home).mechanism.assets()]
     if texture.endswith(".ktx"):
         return np.frombuffer((folder / texture).read_bytes(), np.uint8)
     return np.asarray(Image.open(folder / texture).convert("RGBA"))

@@ -40,7 +40,7 @@ def actuators(text: str) -> str:
 
 def efforts(text: str, target: str = "urdf") -> dict[str, float | None]:
     """The effort limits of the joints in the converted robot, by name."""
-    robot = hx.loads(hx.dumps(hx.loads(text, "mjcf"), target), target)
+    robot = hx.loads(hx.dumps(hx.loads(text, "mjcf").mechanism, target), target).mechanism
     return {view.id.name: view.joint.dofs[0].limits.effort for view in robot.joints.values() if view.joint.dofs}
 
 
@@ -106,7 +106,7 @@ def test_no_control_and_no_state_makes_mujoco_exceed_the_limit(case: str) -> Non
 
 def test_the_limits_are_a_note_and_no_loss() -> None:
     report = Report()
-    source = hx.loads(model(CASES["the sum of several"][0]), "mjcf")
+    source = hx.loads(model(CASES["the sum of several"][0]), "mjcf").mechanism
     result = pipeline.convert(source, formats.by_name("urdf"), Options(), NoFiles(), report)
     notes = [diagnostic.message for diagnostic in report if diagnostic.code == codes.REWRITTEN]
     assert notes == [
@@ -120,12 +120,12 @@ def test_a_limit_that_the_actuators_do_not_explain_is_a_loss() -> None:
     """The rule gives what the actuators can exert; another number in the output would be a fault, and is listed."""
     from hymeko_x.compare.ledger import losses_between
 
-    source = hx.loads(model(CASES["the sum of several"][0]), "mjcf")
-    image = hx.loads(model(CASES["the sum of several"][0], ' actuatorfrcrange="-13 13"'), "mjcf")
+    source = hx.loads(model(CASES["the sum of several"][0]), "mjcf").mechanism
+    image = hx.loads(model(CASES["the sum of several"][0], ' actuatorfrcrange="-13 13"'), "mjcf").mechanism
     losses = losses_between(source, image, (), formats.by_name("urdf"))
     assert [(loss.element, loss.field, loss.after) for loss in losses] == [("joint 'a'", "dofs[0].limits.effort", "13")]
 
 
 def test_what_is_kept_takes_the_limits_away_again() -> None:
-    source = hx.loads(model(CASES["the sum of several"][0]), "mjcf")
-    assert hx.loads(hx.dumps(source, "urdf", keep="inside"), "urdf") == source
+    source = hx.loads(model(CASES["the sum of several"][0]), "mjcf").mechanism
+    assert hx.loads(hx.dumps(source, "urdf", keep="inside"), "urdf").mechanism == source

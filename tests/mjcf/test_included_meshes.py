@@ -15,5 +15,5 @@ def test_meshes_of_an_included_file_are_found_when_a_robot_is_written(tmp_path: 
     (tmp_path / "parts" / "assets.xml").write_text('<mujoco><asset><mesh name="cube" file="cube.obj"/></asset></mujoco>')
     main = '<include file="parts/assets.xml"/><worldbody><body name="b"><geom type="mesh" mesh="cube"/></body></worldbody>'
     (tmp_path / "robot.xml").write_text(f"<mujoco>{main}</mujoco>")
-    robot = hx.load(tmp_path / "robot.xml")
+    robot = hx.load(tmp_path / "robot.xml").mechanism
     assert [str(item) for item in hx.dump(robot, tmp_path / "robot.usdc")] == []

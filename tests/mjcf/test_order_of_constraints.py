@@ -48,9 +48,9 @@ def test_another_order_is_a_loss(through: str, tmp_path: Path) -> None:
 
 
 def test_another_order_is_a_difference(tmp_path: Path) -> None:
-    first = hx.load(robot(tmp_path / "a.xml", CONSTRAINTS[:3]))
+    first = hx.load(robot(tmp_path / "a.xml", CONSTRAINTS[:3])).mechanism
     (tmp_path / "b").mkdir()
-    second = hx.load(robot(tmp_path / "b" / "a.xml", [CONSTRAINTS[1], CONSTRAINTS[0], CONSTRAINTS[2]]))
+    second = hx.load(robot(tmp_path / "b" / "a.xml", [CONSTRAINTS[1], CONSTRAINTS[0], CONSTRAINTS[2]])).mechanism
     assert [str(difference) for difference in hx.diff(first, second)] == [
         "mechanism order of constraints: loop 'z' coupling 'y' loop 'x' -> coupling 'y' loop 'z' loop 'x'"
     ]

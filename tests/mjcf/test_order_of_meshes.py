@@ -27,9 +27,9 @@ PLAIN = 'contype="0" conaffinity="0"'
 
 @pytest.mark.parametrize("order", list(permutations(NAMES)), ids="-".join)
 def test_every_order_comes_back_through_text(order: tuple[str, ...]) -> None:
-    robot = hx.loads(_mjcf(order).encode(), "mjcf")
+    robot = hx.loads(_mjcf(order).encode(), "mjcf").mechanism
     text = hx.dumps(robot, "hymeko")
-    back = hx.loads(text.encode(), "hymeko")
+    back = hx.loads(text.encode(), "hymeko").mechanism
     assert back == robot
     written = hx.dumps(back, "mjcf")
     assert tuple(re.findall(r'<mesh name="(\w+)"', written)) == order
@@ -50,5 +50,5 @@ def test_an_order_is_a_word_or_the_beginnings_of_its_runs(order: tuple[str, ...]
     named = _mjcf(order)
     for name in NAMES:
         named = named.replace(f'<mesh name="{name}" {TETRA}/>', f'<mesh name="{name}" file="{name}.stl"/>')
-    found = re.findall(r"meshes\S* ?(?:\"[^\"]*\")?", hx.dumps(hx.loads(named.encode(), "mjcf"), "hymeko"))
+    found = re.findall(r"meshes\S* ?(?:\"[^\"]*\")?", hx.dumps(hx.loads(named.encode(), "mjcf").mechanism, "hymeko"))
     assert [text.strip() for text in found] == ([] if note is None else [note])

@@ -410,5 +410,5 @@ def test_a_chain_of_many_bodies_is_printed_without_recursion() -> None:
 @pytest.mark.unread("HX061", "HX201")
 def test_a_layer_without_a_texture_says_nothing() -> None:
     text = "r : robot { steel : material {} weave : texture {} b { shape { box [1 1 1], -> steel } } @layered : layer { - steel } }"
-    robot = hx.loads(text, "hymeko")
+    robot = hx.loads(text, "hymeko").mechanism
     assert "texture=" not in hx.dumps(robot, "mjcf")

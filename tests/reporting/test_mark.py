@@ -59,7 +59,7 @@ def test_update_and_diff_do_not_see_it(suffix: str, arm: Path) -> None:
     hx.convert(arm, output)
     assert hx.update(arm, output, dry_run=True).edits == ()
     bare.write_text("".join(line for line in output.read_text().splitlines(keepends=True) if "made by" not in line))
-    assert hx.load(output) == hx.load(bare)
+    assert hx.load(output).mechanism == hx.load(bare).mechanism
 
 
 def test_a_copy_within_one_format_is_the_source_to_the_byte(arm: Path) -> None:

@@ -26,7 +26,7 @@ EVERY = 4
 def test_other_readers_see_the_same(
     text: str, own: str, target: str, tmp_path: Path, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
 ) -> None:
-    robot = hx.loads(text, own)
+    robot = hx.loads(text, own).mechanism
     carrying, pure = (tmp_path / name / f"robot{SUFFIXES[target]}" for name in ("carrying", "pure"))
     for path in (carrying, pure):
         path.parent.mkdir()
@@ -41,13 +41,13 @@ def test_other_readers_see_the_same(
 
 
 def test_the_only_trace_in_a_model_is_one_text() -> None:
-    spec = mujoco.MjSpec.from_string(hx.dumps(hx.loads(URDF, "urdf"), "mjcf", keep="inside"))
+    spec = mujoco.MjSpec.from_string(hx.dumps(hx.loads(URDF, "urdf").mechanism, "mjcf", keep="inside"))
     assert [text.name for text in spec.texts] == ["hymeko-x residue"]
     assert spec.compile().ntext == 1
 
 
 def test_mujoco_sees_the_same_urdf() -> None:
-    robot = hx.loads(PLAIN_MJCF, "mjcf")
+    robot = hx.loads(PLAIN_MJCF, "mjcf").mechanism
     carrying, pure = (mujoco.MjModel.from_xml_string(hx.dumps(robot, "urdf", keep=keep)) for keep in ("inside", None))
     assert differences(pure, carrying) == []
 

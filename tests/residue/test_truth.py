@@ -50,7 +50,7 @@ def test_what_was_asked_for_is_the_robot_s_own_from_then_on(keep: Any, tmp_path:
     hx.convert(tmp_path / "gripper.urdf", tmp_path / "ga.xml", actuators="position", base="free", keep=keep)
     hx.convert(tmp_path / "ga.xml", tmp_path / "gb.xml", keep=keep)
     for name in ("ga.xml", "gb.xml"):
-        robot = hx.load(tmp_path / name)
+        robot = hx.load(tmp_path / name).mechanism
         assert is_floating(robot), name
         assert [actuator.kind for _, actuator in robot.vertices(Actuator)] == ["position"], name
     a, b = (mujoco.MjModel.from_xml_path(str(tmp_path / name)) for name in ("ga.xml", "gb.xml"))
@@ -62,7 +62,7 @@ def test_what_was_asked_for_comes_home(keep: Any, tmp_path: Path) -> None:
     (tmp_path / "gripper.urdf").write_text(GRIPPER)
     hx.convert(tmp_path / "gripper.urdf", tmp_path / "ga.xml", actuators="motor", base="free", keep=keep)
     hx.convert(tmp_path / "ga.xml", tmp_path / "home.urdf", keep=keep)
-    home = hx.load(tmp_path / "home.urdf")
+    home = hx.load(tmp_path / "home.urdf").mechanism
     assert is_floating(home)
     assert [actuator.kind for _, actuator in home.vertices(Actuator)] == ["motor"]
     assert [dof.limits.velocity for view in home.joints.values() for dof in view.joint.dofs if dof.kind is DofKind.SLIDE] == [0.1]
@@ -101,7 +101,7 @@ def test_a_second_conversion_within_a_format_gives_the_same_robot(
         return
     first = native(text, format)
     assert faults(first, native(again(text, format, keep), format), format) == []
-    loaded = hx.dumps(hx.loads(text, format, lenient=True), format, keep=keep, lenient=True).encode()
+    loaded = hx.dumps(hx.loads(text, format, lenient=True).mechanism, format, keep=keep, lenient=True).encode()
     assert faults(first, native(loaded, format), format) == []
 
 
@@ -118,7 +118,7 @@ def test_within_one_format_nothing_is_kept_but_what_was_kept_goes_along(text: st
         assert [path.exists() for path in kept] == [number == 1] * 2
         if number:
             assert kept[0].read_text() == kept[1].read_text()
-            assert unequal(hx.load(source), hx.load(second)) == []
+            assert unequal(hx.load(source).mechanism, hx.load(second).mechanism) == []
 
 
 # ---- real robots -----------------------------------------------------------------------------------------------------------------
@@ -145,7 +145,7 @@ def assert_same_again(robot: Path, target: str, base: Any, actuators: Any, folde
         else:
             verdict = hx.verify(first, second, samples=5, meshes=False)
             assert [f"{check.quantity} at {check.at}" for check in verdict.failed] == [], verdict.reason
-        before, after = (hx.load(path, target, ignore_kept=True) for path in (first, second))
+        before, after = (hx.load(path, target, ignore_kept=True).mechanism for path in (first, second))
         assert faults(before, after, target) == []
 
 

@@ -25,8 +25,8 @@ def converted(folder: Path, shapes: str, **options: object) -> tuple[Inertial | 
     (folder / "r.urdf").write_text(LINKS.format(shapes=shapes))
     done = hx.convert(folder / "r.urdf", folder / "out.urdf", **options)  # type: ignore[arg-type]
     assert done.losses == ()
-    written: Mechanism = hx.load(folder / "out.urdf")
-    assert written.vertex(Id("body", "b"), Body) == hx.load(folder / "r.urdf").vertex(Id("body", "b"), Body)
+    written: Mechanism = hx.load(folder / "out.urdf").mechanism
+    assert written.vertex(Id("body", "b"), Body) == hx.load(folder / "r.urdf").mechanism.vertex(Id("body", "b"), Body)
     return written.vertex(Id("body", "a"), Body).inertial, [d.message for d in done.report if d.code.id in ("HX114", "HX103")]
 
 

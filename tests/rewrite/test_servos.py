@@ -23,7 +23,7 @@ SLIDING = """<mujoco><worldbody><body pos="0 0 1"><joint name="lift" type="slide
 
 
 def test_loads_are_those_of_the_mass_matrix_and_of_gravity(tmp_path: Path) -> None:
-    for robot in (hx.load(ARM), hx.loads(SLIDING, "mjcf")):
+    for robot in (hx.load(ARM).mechanism, hx.loads(SLIDING, "mjcf").mechanism):
         path = tmp_path / "robot.xml"
         hx.dump(robot, path, base="fixed", target="mujoco")
         model = mujoco.MjModel.from_xml_path(str(path))

@@ -101,7 +101,7 @@ def test_missing_inertials_are_missing_again_after_the_way_back(name: str, tmp_p
     source, target = tmp_path / "robot.hymeko", tmp_path / name
     source.write_text("robot { base { mass 2 shape { box [0.1 0.2 0.3] } } }")
     hx.convert(source, target, keep="inside")
-    assert hx.load(target) == hx.load(source)
+    assert hx.load(target).mechanism == hx.load(source).mechanism
 
 
 def test_a_plane_gives_no_tensor_even_where_it_became_a_thin_box() -> None:

@@ -82,15 +82,15 @@ URDF_HAND = """<robot name="claw">
 
 
 def arm() -> hx.Robot:
-    return hx.Robot(hx.loads(ARM, "mjcf"))
+    return hx.loads(ARM, "mjcf")
 
 
 def hand() -> hx.Robot:
-    return hx.Robot(hx.loads(HAND, "mjcf"))
+    return hx.loads(HAND, "mjcf")
 
 
 def claw() -> hx.Robot:
-    return hx.Robot(hx.loads(URDF_HAND, "urdf"))
+    return hx.loads(URDF_HAND, "urdf")
 
 
 _FILES = ("paths", "npaths", "nbuffer", "names_map")

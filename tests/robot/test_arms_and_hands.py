@@ -59,7 +59,7 @@ def opened(real_robot: Callable[..., Path]) -> Callable[[tuple[str, str]], hx.Ro
 
     @cache
     def found(which: tuple[str, str]) -> hx.Robot:
-        return hx.open(path_of(real_robot, which), lenient=True)
+        return hx.load(path_of(real_robot, which), lenient=True)
 
     return found
 

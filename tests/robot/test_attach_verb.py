@@ -22,7 +22,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize("suffix", ["xml", "urdf", "usda", "hymeko"])
 def test_a_hand_is_on_an_arm_in_any_format(folder: Path, suffix: str) -> None:
     assert main(["attach", "arm.xml", "claw.urdf", "--at", "flange", "--xyz", "0", "0", "0.1", "-o", f"both.{suffix}", "-q"]) == exits.DONE
-    both = hx.open(folder / f"both.{suffix}")
+    both = hx.load(folder / f"both.{suffix}")
     assert both.mass == pytest.approx(arm().mass + claw().mass, abs=1e-6)
     assert both.fk({"shoulder": 0.2})["claw/palm"].xyz == pytest.approx(
         arm().attach(claw(), at="flange", prefix="claw/", pose=(0, 0, 0.1)).fk({"shoulder": 0.2})["claw/palm"].xyz, abs=1e-6

@@ -49,7 +49,7 @@ def test_within_mjcf_the_model_is_the_one_that_mujoco_attaches() -> None:
 
 def test_keyframes_of_both_fit_the_whole() -> None:
     with_key = HAND.replace("</mujoco>", "<keyframe><key name='open' qpos='0.01 0.02' ctrl='3'/></keyframe></mujoco>")
-    model = arm().attach(hx.Robot(hx.loads(with_key, "mjcf")), at="flange", prefix="hand/").to_mujoco()
+    model = arm().attach(hx.loads(with_key, "mjcf"), at="flange", prefix="hand/").to_mujoco()
     assert (model.key("home").qpos.tolist(), model.key("home").ctrl.tolist()) == ([0.1, 0.2, 0, 0], [0.1, 0, 0])
     assert (model.key("hand/open").qpos.tolist(), model.key("hand/open").ctrl.tolist()) == ([0, 0, 0.01, 0.02], [0, 0, 3])
 
@@ -135,11 +135,11 @@ def test_meshes_of_several_folders_are_found(tmp_path) -> None:  # type: ignore[
             "</robot>"
         )
     (tmp_path / "out").mkdir()
-    whole = hx.open(tmp_path / "arm/arm.urdf").attach(hx.open(tmp_path / "hand/hand.urdf"), at="arm", prefix="hand/")
+    whole = hx.load(tmp_path / "arm/arm.urdf").attach(hx.load(tmp_path / "hand/hand.urdf"), at="arm", prefix="hand/")
     report = hx.dump(whole, tmp_path / "out/both.xml")
     assert [str(line) for line in report if "not found" in line.message] == []
     model = mujoco.MjModel.from_xml_path(str(tmp_path / "out/both.xml"))
     assert (model.nmesh, model.ngeom) == (2, 2)
     hx.dump(whole, tmp_path / "out/both.hymeko")
-    again = hx.open(tmp_path / "out/both.hymeko")
+    again = hx.load(tmp_path / "out/both.hymeko")
     assert again.to_mujoco().nmesh == 2

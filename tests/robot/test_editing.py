@@ -163,7 +163,7 @@ def test_an_edit_is_the_same_before_and_after_a_conversion(format: str) -> None:
         return e.robot
 
     def converted(robot: hx.Robot) -> hx.Robot:
-        return hx.Robot(hx.loads(hx.dumps(robot, format, base="fixed"), format))
+        return hx.loads(hx.dumps(robot, format, base="fixed"), format)
 
     single = Tolerance(1e-6, 1e-6)  # USD stores some numbers in single precision
     assert hx.diff(change(converted(claw())), converted(change(claw())), single) == ()
@@ -176,7 +176,7 @@ def test_a_thousand_edits_of_a_thousand_links_take_a_moment() -> None:
         f"<joint name='j{number}' type='continuous'><parent link='l{number}'/><child link='l{number + 1}'/></joint>"
         for number in range(1000)
     )
-    robot = hx.Robot(hx.loads(f"<robot name='r'>{links}{joints}</robot>", "urdf"))
+    robot = hx.loads(f"<robot name='r'>{links}{joints}</robot>", "urdf")
     start = time.process_time()
     with robot.edit() as e:
         for number in range(250):
@@ -195,7 +195,7 @@ def test_names_that_a_reader_made_follow_the_body_and_authors_names_stay() -> No
     <geom name="foot" size="1" material="steel"/><geom size="2"/>
     <body name="arm"><joint/><geom size="1"/><body name="tip"><joint name="tip"/><geom size="1"/></body></body>
     </body></worldbody></mujoco>"""
-    with hx.Robot(hx.loads(text, "mjcf")).edit() as e:
+    with hx.loads(text, "mjcf").edit() as e:
         e.rename("base", "root")
         e.rename(e.bodies["arm"], "upper")
         e.rename(e.bodies["tip"], "end")
@@ -211,7 +211,7 @@ def test_names_that_a_reader_made_follow_the_body_and_authors_names_stay() -> No
 
 
 def test_an_unnamed_joint_gets_the_name_that_it_is_given() -> None:
-    robot = hx.Robot(hx.loads("<mujoco><worldbody><body name='b'><joint/><geom size='1'/></body></worldbody></mujoco>", "mjcf"))
+    robot = hx.loads("<mujoco><worldbody><body name='b'><joint/><geom size='1'/></body></worldbody></mujoco>", "mjcf")
     with robot.edit() as e:
         e.rename(e.joints["b"], "hip")
     assert e.robot.to_mujoco().joint(0).name == "hip"
@@ -238,4 +238,4 @@ def test_a_geom_is_for_what_the_edit_says(role: Role, contype: int, group: int) 
     for name in ("new", "foot"):
         geom = model.geom(name)
         assert (geom.contype[0], geom.conaffinity[0], geom.group[0]) == (contype, contype, group)
-    assert hx.Robot(hx.loads(hx.dumps(e.robot, "mjcf"), "mjcf")).shapes["new"].role is role
+    assert hx.loads(hx.dumps(e.robot, "mjcf"), "mjcf").shapes["new"].role is role

@@ -43,7 +43,7 @@ def test_the_text_of_a_robot_is_one_line_or_a_tree_of_at_most_forty() -> None:
     joints = "".join(
         f"<joint name='j{number}' type='fixed'><parent link='l{number - 1}'/><child link='l{number}'/></joint>" for number in range(1, 100)
     )
-    lines = str(hx.Robot(hx.loads(f"<robot name='r'>{links}{joints}</robot>", "urdf"))).splitlines()
+    lines = str(hx.loads(f"<robot name='r'>{links}{joints}</robot>", "urdf")).splitlines()
     assert (len(lines), lines[-1]) == (40, "... and 62 more bodies")
 
 
@@ -93,6 +93,15 @@ def test_every_public_function_takes_a_robot() -> None:
     assert hx.dumps(robot, "urdf") == hx.dumps(robot.mechanism, "urdf")
     assert hx.diff(robot, robot.mechanism) == ()
     assert hx.verify(robot, robot.mechanism, samples=3).verdict == "same"
+    ours, theirs = (hx.dynamics(given).state_space().floats for given in (robot, robot.mechanism))
+    assert all(np.array_equal(a, b) for a, b in zip(ours, theirs, strict=True))
+
+
+def test_a_robot_that_was_loaded_has_names_and_a_short_text() -> None:
+    robot = hx.loads(hx.dumps(claw(), "urdf"), "urdf")
+    assert robot.joints["close"].child.name == "finger"
+    assert len(repr(robot).splitlines()) == 1
+    assert "finger" in str(robot)
 
 
 def test_a_robot_does_not_change() -> None:

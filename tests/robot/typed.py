@@ -3,7 +3,7 @@
 HEAD = """
 import hymeko_x as hx
 from hymeko_x import deg, mm
-arm, hand = hx.open("arm.urdf"), hx.open("hand.xml")
+arm, hand = hx.load("arm.urdf"), hx.load("hand.xml")
 """
 
 RIGHT = """
@@ -32,7 +32,7 @@ text: str = hx.dumps(arm, "hymeko")
 same: bool = hx.verify(arm, "arm.xml").is_same
 verdict: str = hx.verify("arm.urdf", "arm.xml", joints=True, rename={"a_*": "*"}).verdict
 count: int = len(hx.diff(arm, hand))
-mechanism: hx.Mechanism = hx.load("arm.urdf")
+mechanism: hx.Mechanism = hx.load("arm.urdf").mechanism
 lost: bool = bool(hx.convert("arm.urdf", "arm.usda", target="newton").losses)
 role: str = arm.shapes["fore/visual"].body.name
 drives: list[str] = [element.name for element in arm.actuators["motor"].drives]
@@ -69,8 +69,8 @@ hx.dumps(arm, 3)
 hx.verify(arm)
 hx.verify(arm, hand, sample=5)
 hx.convert("arm.urdf")
-hx.open("arm.urdf").bodies["base"].shapes["visual"]
+hx.load("arm.urdf").bodies["base"].shapes["visual"]
 hx.Pose.from_rpy(1, 2, 3)
 turned = hx.Pose.from_rpy((0, 0, 1)) * 2
-hx.load("arm.urdf").mass
+hx.load("arm.urdf").graph
 """

@@ -19,17 +19,17 @@ IMU = """<gazebo reference="b"><sensor name="imu" type="imu"><imu>
 
 
 def sdf(text: str) -> str:
-    return hx.dumps(hx.loads(text, "urdf"), "sdf")
+    return hx.dumps(hx.loads(text, "urdf").mechanism, "sdf")
 
 
 def test_a_prefix_is_declared_as_the_source_declares_it() -> None:
     text = sdf(ROBOT.format(' xmlns:controller="http://example.org/controller"', MANAGER))
     assert '<controller:manager xmlns:controller="http://example.org/controller" name="m">' in text
-    assert len(hx.loads(text, "sdf").graph.vertices) == 1
+    assert len(hx.loads(text, "sdf").mechanism.graph.vertices) == 1
 
 
 def test_an_undeclared_prefix_is_reported_and_left_out() -> None:
-    robot = hx.loads(ROBOT.format(' xmlns:controller="http://example.org/controller"', MANAGER), "urdf")
+    robot = hx.loads(ROBOT.format(' xmlns:controller="http://example.org/controller"', MANAGER), "urdf").mechanism
     extras = tuple(extra for extra in robot.extras[ROOT] if not extra.path.startswith("@xmlns"))
     report = Report()
     text = hx.dumps(replace(robot, extras={ROOT: extras}), "sdf", report=report)

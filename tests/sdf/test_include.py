@@ -20,7 +20,7 @@ def load(tmp_path: Path, inside: str) -> tuple[hx.Mechanism, list[str]]:
     (folder / "part.sdf").write_text(PART, "utf-8")
     (tmp_path / "r.sdf").write_text(f'<sdf version="1.9"><model name="r"><link name="a"/>{inside}</model></sdf>', "utf-8")
     report = Report()
-    robot = hx.load(str(tmp_path / "r.sdf"), report=report, lenient=True)
+    robot = hx.load(str(tmp_path / "r.sdf"), report=report, lenient=True).mechanism
     return robot, [diagnostic.code.id for diagnostic in report if diagnostic.code.id != "HX009"]  # which says that reading went on
 
 

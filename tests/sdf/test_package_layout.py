@@ -48,7 +48,7 @@ def test_the_folder_has_what_gazebo_looks_for(arm: Path) -> None:
 def test_a_world_includes_it_by_its_name(arm: Path) -> None:
     pytest.importorskip("pydrake")
     (arm.parent / "w.sdf").write_text(WORLD, "utf-8")
-    robot = hx.load(arm.parent / "w.sdf")
+    robot = hx.load(arm.parent / "w.sdf").mechanism
     assert {joint.child.name for joint in robot.joints.values()} == {"left::base", "left::tip", "right::base", "right::tip"}
     assert hx.verify(arm.parent / "w.sdf", robot, samples=3).is_same
     hx.convert(arm.parent / "w.sdf", arm.parent / "w.xml")

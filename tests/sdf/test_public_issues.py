@@ -55,19 +55,19 @@ def test_it_is_converted(issue: str, tmp_path: Path) -> None:
     (tmp_path / "in.sdf").write_text(text, "utf-8")
     hx.convert(tmp_path / "in.sdf", tmp_path / name)
     is_read = "revolute2" not in issue  # by Drake
-    verdict = hx.verify(tmp_path / "in.sdf" if is_read else hx.load(tmp_path / "in.sdf"), tmp_path / name, samples=10)
+    verdict = hx.verify(tmp_path / "in.sdf" if is_read else hx.load(tmp_path / "in.sdf").mechanism, tmp_path / name, samples=10)
     assert verdict.is_same, [*verdict.failed, verdict.reason]
 
 
 def test_gz_usd_33_a_joint_without_an_actuator_has_no_drive() -> None:
-    assert "drive:" not in hx.dumps(hx.loads(SAMPLES["continuous"], "sdf"), "usd")
+    assert "drive:" not in hx.dumps(hx.loads(SAMPLES["continuous"], "sdf").mechanism, "usd")
 
 
 def test_sdformat_986_no_link_and_no_fixed_joint_is_lost_on_the_way_from_urdf(tmp_path: Path) -> None:
     """Links without inertia were left out with all that is below them, and fixed joints were lumped: frames and names were gone."""
     (tmp_path / "m.urdf").write_text(LUMPED, "utf-8")
     hx.convert(tmp_path / "m.urdf", tmp_path / "m.sdf")
-    robot = hx.load(tmp_path / "m.sdf")
+    robot = hx.load(tmp_path / "m.sdf").mechanism
     assert [key.name for key, _ in robot.vertices(Body)] == ["base", "tool", "tip"]
     assert [(view.id.name, len(view.joint.dofs)) for view in robot.joints.values()] == [("flange", 0), ("probe", 1)]
     verdict = hx.verify(tmp_path / "m.urdf", tmp_path / "m.sdf", samples=10)
@@ -75,7 +75,7 @@ def test_sdformat_986_no_link_and_no_fixed_joint_is_lost_on_the_way_from_urdf(tm
 
 
 def test_ros2_control_632_what_a_model_of_sdf_says_of_its_controllers_is_in_its_urdf() -> None:
-    robot = hx.loads(model(TWO + HINGE + CONTROL), "sdf")
+    robot = hx.loads(model(TWO + HINGE + CONTROL), "sdf").mechanism
     assert f"  {CONTROL}\n</robot>" in hx.dumps(robot, "urdf")
     assert CONTROL in hx.dumps(robot, "sdf")
 

@@ -21,7 +21,7 @@ def places(robot: hx.Robot, names: list[str]) -> list[tuple[float, ...]]:
 
 
 def test_references_follow_new_names() -> None:
-    before = hx.Robot(hx.loads(NESTED, "sdf"))
+    before = hx.loads(NESTED, "sdf")
     with before.edit() as e:
         for name, new in (("a", "base"), ("b", "shank"), ("inner::c", "inner::foot")):
             e.rename(e.bodies[name], new)
@@ -36,16 +36,16 @@ def test_references_follow_new_names() -> None:
     ):
         assert part in text
     assert "<child>f</child>" in text
-    after = hx.Robot(hx.loads(text, "sdf"))
+    after = hx.loads(text, "sdf")
     assert places(after, ["base", "shank", "inner::foot", "inner::d"]) == places(before, ["a", "b", "inner::c", "inner::d"])
     assert after.frames["f"].world_pose().xyz == before.frames["f"].world_pose().xyz
     assert hx.dumps(after, "sdf") == text
 
 
 def test_references_in_a_part_get_its_prefix() -> None:
-    part = hx.Robot(hx.loads(NESTED, "sdf"))
+    part = hx.loads(NESTED, "sdf")
     whole = part.attach(part, at="b", prefix="left_")
-    after = hx.Robot(hx.loads(hx.dumps(whole, "sdf"), "sdf"))
+    after = hx.loads(hx.dumps(whole, "sdf"), "sdf")
     names = [*part.bodies]
     assert places(after, [f"left_{name}" for name in names]) == [
         pytest.approx([a + b for a, b in zip(one, (1, 0, 1), strict=True)]) for one in places(part, names)
@@ -53,9 +53,9 @@ def test_references_in_a_part_get_its_prefix() -> None:
 
 
 def test_a_frame_that_is_gone_is_not_named() -> None:
-    with hx.Robot(hx.loads(NESTED, "sdf")).edit() as e:
+    with hx.loads(NESTED, "sdf").edit() as e:
         e.remove(e.bodies["inner::d"])
         e.remove(e.frames["f"])
-    after = hx.Robot(hx.loads(hx.dumps(e.robot, "sdf"), "sdf"))
+    after = hx.loads(hx.dumps(e.robot, "sdf"), "sdf")
     assert [*after.bodies] == ["a", "b", "inner::c"]
     assert after.bodies["b"].world_pose().xyz == (1, 0, 1)

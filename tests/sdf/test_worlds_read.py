@@ -16,7 +16,7 @@ FRAMES = """<sdf version="1.9"><world name="w"><frame name="f"><pose>1 2 3 0 0 0
 
 
 def test_the_pose_of_the_only_model_is_relative_to_a_frame_of_the_world() -> None:
-    robot = hx.loads(FRAMES, "sdf")
+    robot = hx.loads(FRAMES, "sdf").mechanism
     assert [joint.parent_pose.xyz for joint in robot.joints.values()] == [(2.0, 2.0, 3.0)]
     assert canonical(hx.dumps(robot, "sdf").encode()) == canonical(FRAMES.encode())
 
@@ -26,7 +26,7 @@ def test_a_bare_name_is_that_of_a_model_in_the_resource_path(tmp_path: Path) -> 
     folder.mkdir(parents=True)
     (folder / "model.sdf").write_text('<sdf version="1.9"><model name="p"><link name="l"/></model></sdf>', "utf-8")
     (tmp_path / "w.sdf").write_text('<sdf version="1.9"><world name="w"><include><uri>part</uri></include></world></sdf>', "utf-8")
-    assert hx.load(tmp_path / "w.sdf", search_path=(tmp_path / "models",)).name == "p"
+    assert hx.load(tmp_path / "w.sdf", search_path=(tmp_path / "models",)).mechanism.name == "p"
 
 
 STATIC = """<sdf version="1.9"><model name="m"><static>true</static><link name="a"/><link name="b"/>
@@ -34,7 +34,7 @@ STATIC = """<sdf version="1.9"><model name="m"><static>true</static><link name="
 
 
 def test_a_joint_of_a_static_model_is_fixed_in_other_formats() -> None:
-    robot = hx.loads(STATIC, "sdf")
+    robot = hx.loads(STATIC, "sdf").mechanism
     assert canonical(hx.dumps(robot, "sdf").encode()) == canonical(STATIC.encode())
     report = hx.Report()
     assert "<joint" not in hx.dumps(robot, "mjcf", report=report)
@@ -45,6 +45,6 @@ def test_a_joint_of_a_static_model_is_fixed_in_other_formats() -> None:
 def test_a_joint_of_a_nested_model_is_as_static_as_the_models_around_it() -> None:
     inner = STATIC.removeprefix('<sdf version="1.9">').removesuffix("</sdf>")
     moving, around = inner.replace("<static>true</static>", ""), '<sdf version="1.9"><model name="n">{}<link name="l"/>{}</model></sdf>'
-    assert "<joint" not in hx.dumps(hx.loads(around.format("", inner), "sdf"), "mjcf").replace("<freejoint", "")
-    assert "<joint" not in hx.dumps(hx.loads(around.format("<static>1</static>", moving), "sdf"), "mjcf")
-    assert "<joint" in hx.dumps(hx.loads(around.format("", moving), "sdf"), "mjcf")
+    assert "<joint" not in hx.dumps(hx.loads(around.format("", inner), "sdf").mechanism, "mjcf").replace("<freejoint", "")
+    assert "<joint" not in hx.dumps(hx.loads(around.format("<static>1</static>", moving), "sdf").mechanism, "mjcf")
+    assert "<joint" in hx.dumps(hx.loads(around.format("", moving), "sdf").mechanism, "mjcf")

@@ -57,7 +57,7 @@ def test_the_stage_keeps_every_rule(folder: Path) -> None:
 
 
 def test_links_without_mass_and_shapes_are_frames_and_come_back_as_links(folder: Path, tmp_path: Path) -> None:
-    robot = hx.load(folder / "arm.usda")
+    robot = hx.load(folder / "arm.usda").mechanism
     assert [key.name for key, _ in robot.vertices(Body)] == ["base", "upper", "fore", "lens"]
     assert sorted(key.name for key, _ in robot.vertices(Frame)) == ["plate", "tool"]
     assert {view.id.name: (view.parent.name, view.parent_pose.xyz[2]) for view in robot.joints.values()} == {
@@ -67,7 +67,7 @@ def test_links_without_mass_and_shapes_are_frames_and_come_back_as_links(folder:
         "eye": ("fore", 0.0),
     }
     hx.convert(folder / "arm.usda", tmp_path / "arm.urdf", target="ros2")
-    links = [key.name for key, _ in hx.load(tmp_path / "arm.urdf").vertices(Body)]
+    links = [key.name for key, _ in hx.load(tmp_path / "arm.urdf").mechanism.vertices(Body)]
     assert sorted(links) == ["base", "fore", "lens", "plate", "tool", "upper", "world"]
 
 

@@ -114,7 +114,7 @@ def test_a_floating_base_is_open_and_a_virtual_joint_of_the_srdf(tmp_path: Path)
     assert [dict(node.attrib) for node in srdf_of(urdf).findall("virtual_joint")] == [
         {"name": "root", "type": "floating", "parent_frame": "world", "child_link": "base"}
     ]
-    back = hx.load(urdf)
+    back = hx.load(urdf).mechanism
     assert [dof.kind.value for view in back.joints.values() if view.id.name == "root" for dof in view.joint.dofs] == ["free"]
 
 
@@ -155,7 +155,7 @@ def test_the_world_comes_first_and_ros2_control_last(tmp_path: Path) -> None:
 def test_an_interface_without_a_type_is_a_command_of_unknown_gains() -> None:
     text = '<ros2_control name="s" type="system"><joint name="j"><command_interface name="position"/></joint></ros2_control>'
     joint = '<joint name="j" type="continuous"><parent link="a"/><child link="b"/></joint>'
-    robot = hx.loads(f'<robot name="r"><link name="a"/><link name="b"/>{joint}{text}</robot>', "urdf")
+    robot = hx.loads(f'<robot name="r"><link name="a"/><link name="b"/>{joint}{text}</robot>', "urdf").mechanism
     assert [(key.name, part) for key, part in robot.vertices(Actuator)] == [("j", Actuator("transmission"))]
 
 
@@ -265,7 +265,7 @@ def test_the_srdf_has_the_group_the_pose_and_the_exclusions_with_their_reasons(u
 
 def test_the_srdf_beside_a_urdf_is_read_with_it_and_one_line_says_so(urdf: Path, tmp_path: Path) -> None:
     report = Report()
-    robot = hx.load(urdf, report=report)
+    robot = hx.load(urdf, report=report).mechanism
     assert [str(diagnostic) for diagnostic in report] == [
         "note[HX014]: 'arm.srdf' beside the robot is read with it: its exclusions, poses and groups"
     ]
@@ -282,7 +282,7 @@ def test_the_srdf_beside_a_urdf_is_read_with_it_and_one_line_says_so(urdf: Path,
 def test_an_srdf_that_cannot_be_read_is_left_out_with_a_warning(damage: str, urdf: Path) -> None:
     urdf.with_suffix(".srdf").write_text(damage, "utf-8")
     report = Report()
-    robot = hx.load(urdf, report=report)
+    robot = hx.load(urdf, report=report).mechanism
     assert [diagnostic.severity.value for diagnostic in report if diagnostic.code.id == "HX014"] == ["warning"]
     assert not [key for key in robot.graph.edges if key.kind == "contact"]
 

@@ -12,7 +12,9 @@ def joint(child: str, inner: str) -> str:
 
 
 def written(**inner: str) -> str:
-    robot = hx.loads(f'<robot name="r"><link name="base"/>{"".join(joint(child, text) for child, text in inner.items())}</robot>', "urdf")
+    robot = hx.loads(
+        f'<robot name="r"><link name="base"/>{"".join(joint(child, text) for child, text in inner.items())}</robot>', "urdf"
+    ).mechanism
     return hx.dumps(robot, "urdf")
 
 

@@ -154,7 +154,7 @@ def test_a_servo_that_inherits_its_range_comes_back_as_itself(law: str, tmp_path
     (tmp_path / "a.xml").write_text(text)
     hx.convert(tmp_path / "a.xml", tmp_path / "b.usda")
     hx.convert(tmp_path / "b.usda", tmp_path / "c.xml")
-    ours, theirs = (hx.load(tmp_path / name).vertex(Id("actuator", "p"), Actuator) for name in ("c.xml", "a.xml"))
+    ours, theirs = (hx.load(tmp_path / name).mechanism.vertex(Id("actuator", "p"), Actuator) for name in ("c.xml", "a.xml"))
     assert (ours.kind, dict(ours.parameters)) == (theirs.kind, dict(theirs.parameters))
     ranges = [mujoco.MjModel.from_xml_path(str(tmp_path / name)).actuator_ctrlrange.tolist() for name in ("a.xml", "c.xml")]
     assert ranges == [[[-1.0, 1.0]], [[-1.0, 1.0]]]
@@ -169,7 +169,7 @@ def test_a_servo_of_a_joint_that_inherits_its_range_is_a_drive_and_comes_back_as
     hx.convert(tmp_path / "a.xml", tmp_path / "b.usda")
     assert "drive:angular:physics:stiffness" in (tmp_path / "b.usda").read_text()
     hx.convert(tmp_path / "b.usda", tmp_path / "c.xml")
-    assert dict(hx.load(tmp_path / "c.xml").vertex(Id("actuator", "j"), Actuator).parameters) == {
+    assert dict(hx.load(tmp_path / "c.xml").mechanism.vertex(Id("actuator", "j"), Actuator).parameters) == {
         "kp": 10.0,
         "kv": 1.0,
         "inheritrange": 1.0,

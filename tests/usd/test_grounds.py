@@ -30,4 +30,4 @@ def test_the_validators_accept_a_world_with_a_floor(tmp_path: Path, stands: str,
     (tmp_path / "w.sdf").write_text(WORLD.format(stands), "utf-8")
     hx.convert(tmp_path / "w.sdf", tmp_path / "w.usda")
     assert problems(tmp_path / "w.usda") == expected
-    assert hx.verify(hx.load(tmp_path / "w.sdf"), tmp_path / "w.usda", samples=2).is_same
+    assert hx.verify(hx.load(tmp_path / "w.sdf").mechanism, tmp_path / "w.usda", samples=2).is_same

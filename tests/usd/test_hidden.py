@@ -35,7 +35,7 @@ def stage(folder: Path) -> Path:
 
 
 def test_what_is_hidden_is_only_felt(tmp_path: Path) -> None:
-    robot = hx.load(stage(tmp_path / "home"))
+    robot = hx.load(stage(tmp_path / "home")).mechanism
     assert {view.shape.name: view.shape.role for view in robot.every_shape()} == {
         "seen": Role.VISUAL,
         "hull_invisible": Role.COLLISION,
@@ -52,7 +52,7 @@ def test_it_stays_hidden_elsewhere_is_named_as_lost_and_comes_back(target: str, 
     assert sum(loss.field.startswith("usd ") and "def Cube" in str(loss.before) for loss in losses) == 3
     assert hx.verify(source, tmp_path / target).verdict == "same"
     hx.convert(tmp_path / target, tmp_path / "back" / "r.usda")
-    assert hx.diff(hx.load(source), hx.load(tmp_path / "back" / "r.usda")) == ()
+    assert hx.diff(hx.load(source).mechanism, hx.load(tmp_path / "back" / "r.usda").mechanism) == ()
     assert hx.verify(source, tmp_path / "back" / "r.usda").verdict == "same"
 
 

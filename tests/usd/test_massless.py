@@ -21,6 +21,6 @@ def test_a_body_with_a_tensor_that_nothing_gives_a_mass_has_none(tmp_path: Path)
     hx.convert(source, stage)
     hx.convert(stage, back)
     tip = Id("body", "c")
-    assert hx.load(back).vertex(tip, Body).inertial == hx.load(source).vertex(tip, Body).inertial
+    assert hx.load(back).mechanism.vertex(tip, Body).inertial == hx.load(source).mechanism.vertex(tip, Body).inertial
     assert hx.verify(stage, back, samples=2).is_same
     assert hx.verify(source, back, samples=2).is_same

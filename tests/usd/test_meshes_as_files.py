@@ -73,7 +73,7 @@ def test_that_points_have_become_a_file_is_no_loss_and_nothing_of_them_is_carrie
     assert [loss for loss in result.losses or () if loss.field in ("vertices", "faces", "texcoords", "texfaces", "uri")] == []
     assert (tmp_path / "away" / target).stat().st_size < 5000
     hx.convert(tmp_path / "away" / target, tmp_path / "back" / "r.usda", keep="inside")
-    assert hx.diff(hx.load(source), hx.load(tmp_path / "back" / "r.usda")) == ()
+    assert hx.diff(hx.load(source).mechanism, hx.load(tmp_path / "back" / "r.usda").mechanism) == ()
     assert hx.verify(source, tmp_path / "back" / "r.usda").verdict == "same"
 
 
@@ -89,7 +89,7 @@ def test_a_point_that_is_not_as_it_was_is_a_loss(tmp_path: Path, monkeypatch: py
 
 @pytest.mark.unread("HX204")
 def test_on_standard_output_a_model_stands_alone(tmp_path: Path) -> None:
-    text = hx.dumps(hx.load(stage(tmp_path / "home")), "mjcf", keep="inside")
+    text = hx.dumps(hx.load(stage(tmp_path / "home")).mechanism, "mjcf", keep="inside")
     assert "ball" in text
     assert "ball.obj" not in text
 

@@ -58,7 +58,7 @@ def test_where_the_package_is_the_file_is_named_as_before_elsewhere_the_points_s
     at_home, back = stage.rename(tmp_path / "home" / "r.usdc"), tmp_path / "home" / "back.urdf"
     hx.convert(at_home, back, packages={"p": tmp_path / "home"}, keep="inside")
     assert 'filename="package://p/a.dae"' in back.read_text()
-    assert hx.diff(hx.load(source), hx.load(back)) == ()
+    assert hx.diff(hx.load(source).mechanism, hx.load(back).mechanism) == ()
     assert not (tmp_path / "home" / "shapes").exists()
 
 
@@ -88,7 +88,9 @@ def test_the_colours_of_the_file_stand_in_with_its_points(materials: int, tmp_pa
     hx.convert(stage, tmp_path / "away" / "back.xml")
     assert [f'rgba="{colour} 1"' in (tmp_path / "away" / "back.xml").read_text() for colour in colours] == [True] * materials
     hx.convert(stage, tmp_path / "away" / "back.usda")
-    shown = {view.material.name: view.faces for views in hx.load(tmp_path / "away" / "back.usda").subsets.values() for view in views}
+    shown = {
+        view.material.name: view.faces for views in hx.load(tmp_path / "away" / "back.usda").mechanism.subsets.values() for view in views
+    }
     assert sorted(shown.values()) == ([(0, 1), (2, 3), (4, 5)] if materials == 3 else [])  # one material is that of the whole shape
 
 

@@ -97,9 +97,9 @@ def test_mujocos_converter_writes_the_tendons_that_we_read_from_its_source(tmp_p
     sources = files_of("mjcf", WITH_TENDONS)
     answers = MUJOCO_USD_CONVERTER.run([{"source": str(path), "folder": str(tmp_path / path.stem)} for path in sources])
     for path, answer in zip(sources, answers, strict=True):
-        expected = tendons_of(hx.load(path))
+        expected = tendons_of(hx.load(path).mechanism)
         assert expected
-        assert tendons_of(hx.load(answer["stage"])) == expected, path.stem
+        assert tendons_of(hx.load(answer["stage"]).mechanism) == expected, path.stem
 
 
 def test_newton_leads_cables_through_our_stages_as_through_the_source(tmp_path: Path) -> None:
@@ -107,7 +107,7 @@ def test_newton_leads_cables_through_our_stages_as_through_the_source(tmp_path: 
     sources = files_of("mjcf", names("tendon pulley_fixed_site_wrap arm21 stacker"))
     stages = [tmp_path / f"{path.stem}.usda" for path in sources]
     for source, stage in zip(sources, stages, strict=True):
-        hx.dump(hx.load(source), stage)
+        hx.dump(hx.load(source).mechanism, stage)
     answers = NEWTON.run([{"source": str(path), "tendons": True} for path in (*sources, *stages)])
     assert [answer["error"] for answer in answers if "error" in answer] == []
     assert [answer["tendons"] for answer in answers[: len(sources)]] == [answer["tendons"] for answer in answers[len(sources) :]]
@@ -140,7 +140,7 @@ def step_name(mechanism: Mechanism, arc: RobotArc) -> str:
 
 def differences(source: Path, stage: str, peer: str) -> list[str]:
     """Names and motion that are not those of the source, as its reference reader sees it, to single precision."""
-    model = replace(model_of(hx.load(stage)), precision=SINGLE)
+    model = replace(model_of(hx.load(stage).mechanism), precision=SINGLE)
     verdict = verify(source, model, samples=10, meshes=False)
     assert verdict.checks, verdict.reason
     wrong = []
@@ -173,7 +173,7 @@ def test_newton_builds_the_same_model_from_our_usd_as_from_the_source(format: st
     jobs = []
     for path in sources:
         out = tmp_path / f"{path.stem}.usda"
-        hx.dump(hx.load(path), out)
+        hx.dump(hx.load(path).mechanism, out)
         jobs += [{"source": str(path)}, {"source": str(out)}]
     answers = NEWTON.run(jobs)
     assert [answer["error"] for answer in answers if "error" in answer] == []

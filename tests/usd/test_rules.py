@@ -77,7 +77,7 @@ def test_an_ellipsoid_collides_as_the_hull_of_a_mesh_and_is_an_ellipsoid_again(t
     assert UsdPhysics.MeshCollisionAPI(prims["shell"]).GetApproximationAttr().Get() == "convexHull"
     assert UsdGeom.Boundable(prims["shell"]).ComputeLocalBound(0, "default").ComputeAlignedRange().GetMax()[2] == pytest.approx(0.04)
     assert prims["shine"].GetTypeName() == "Sphere"
-    back = hx.load(tmp_path / "egg.usda")
+    back = hx.load(tmp_path / "egg.usda").mechanism
     sizes = {view.shape.name: view.shape.geometry for views in back.shapes.values() for view in views}
     assert {name: getattr(geometry, "radii", None) for name, geometry in sizes.items()} == {
         "shell": pytest.approx((0.03, 0.03, 0.04)),
@@ -119,9 +119,9 @@ def test_a_closure_of_the_world_with_itself_is_left_out_and_there_again_with_the
     source.write_text(
         "r : robot { a { mass 1 inertia [1 1 1] } @j { + world - a } @l : loop.weld { ~ world ~ world } }\n", encoding="utf-8"
     )
-    assert [key.name for key, _, _ in hx.load(source).edges(Loop)] == ["l"]
+    assert [key.name for key, _, _ in hx.load(source).mechanism.edges(Loop)] == ["l"]
     report = hx.convert(source, stage, keep="inside")
     assert complaints(stage) == []
     assert "loop 'l'" in {loss.element for loss in report.losses or ()}
     hx.convert(stage, back, keep="inside")
-    assert diff(hx.load(source), hx.load(back)) == ()
+    assert diff(hx.load(source).mechanism, hx.load(back).mechanism) == ()

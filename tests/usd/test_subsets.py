@@ -209,7 +209,7 @@ def test_a_subset_goes_when_its_shape_or_its_material_goes() -> None:
 
 
 def read_residue(text: str) -> Mechanism:
-    return hx.loads(text, "usd")
+    return hx.loads(text, "usd").mechanism
 
 
 @pytest.mark.parametrize("layout", ["single", "layered"])
@@ -230,7 +230,7 @@ def test_other_formats_give_the_stage_back(tmp_path: Path, target: str, apis: st
     source = lay(tmp_path, *TWO, apis=apis)
     hx.convert(source, tmp_path / target, keep="inside")
     hx.convert(tmp_path / target, tmp_path / "back.usda", keep="inside")
-    assert hx.diff(hx.load(source), hx.load(tmp_path / "back.usda")) == ()
+    assert hx.diff(hx.load(source).mechanism, hx.load(tmp_path / "back.usda").mechanism) == ()
     assert hx.verify(source, tmp_path / target).is_same
 
 
@@ -286,7 +286,7 @@ def test_in_mjcf_each_look_is_a_geom(tmp_path: Path) -> None:
 def test_hymeko_text_says_which_triangles_show_which_material() -> None:
     text = hx.dumps(read_text(stage(*TWO)), "hymeko")
     assert "@part : subset { + hull - red faces [1 2]" in text
-    assert shown(hx.loads(text, "hymeko")) == {"part": ((1, 2), "red"), "tip": ((4, 5), "blue")}
+    assert shown(hx.loads(text, "hymeko").mechanism) == {"part": ((1, 2), "red"), "tip": ((4, 5), "blue")}
 
 
 BROKEN = """r : robot {
@@ -303,8 +303,8 @@ BROKEN = """r : robot {
 @pytest.mark.parametrize("format", ["urdf", "xacro", "mjcf", "usd"])
 @pytest.mark.unread("HX203", "HX204")
 def test_subsets_of_what_is_not_there_are_carried(format: str) -> None:
-    robot = hx.loads(BROKEN, "hymeko")
-    assert hx.diff(robot, hx.loads(hx.dumps(robot, format, keep="inside"), format)) == ()
+    robot = hx.loads(BROKEN, "hymeko").mechanism
+    assert hx.diff(robot, hx.loads(hx.dumps(robot, format, keep="inside"), format).mechanism) == ()
 
 
 # ---- real robots ------------------------------------------------------------------------------------------------------------------
@@ -316,10 +316,10 @@ PANDA = [file for file in development_files("urdf") if file.path.endswith("panda
 @pytest.mark.parametrize("robot", PANDA, ids=lambda file: file.id, indirect=True)
 def test_a_real_robot_has_one_mesh_for_each_file(robot: Path, tmp_path: Path) -> None:
     hx.convert(robot, tmp_path / "r.usdc", keep="inside")
-    source, out = hx.load(robot), Usd.Stage.Open(str(tmp_path / "r.usdc"))
+    source, out = hx.load(robot).mechanism, Usd.Stage.Open(str(tmp_path / "r.usdc"))
     assert len(meshes(out)) == sum(view.mesh is not None for views in source.shapes.values() for view in views)
     assert sum(prim.GetTypeName() == "GeomSubset" for prim in out.Traverse()) > 10
     assert set(families(out)) >= {"nonOverlapping"}
     assert complaints(tmp_path / "r.usdc") == []
-    assert hx.diff(source, hx.load(tmp_path / "r.usdc")) == ()
+    assert hx.diff(source, hx.load(tmp_path / "r.usdc").mechanism) == ()
     assert hx.verify(robot, tmp_path / "r.usdc", samples=5).is_same

@@ -199,7 +199,7 @@ def test_tendons_come_back_exactly_from_a_stage(robot: Path, tmp_path: Path) -> 
     stage, result = tmp_path / "cables.usda", tmp_path / "back.xml"
     hx.convert(robot, stage, keep="inside")
     hx.convert(stage, result, keep="inside")
-    assert diff(hx.load(robot), hx.load(result)) == ()
+    assert diff(hx.load(robot).mechanism, hx.load(result).mechanism) == ()
     assert hx.verify(robot, stage).is_same
     assert hx.verify(robot, result).is_same
     assert different(model_of(robot), model_of(result)) == []

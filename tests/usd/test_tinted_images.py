@@ -14,7 +14,7 @@ MJCF = """<mujoco><asset><texture name="t" type="2d" file="wood.png"/><material 
 
 
 def stage_of(rgba: str) -> str:
-    return hx.dumps(hx.loads(MJCF.format(rgba=rgba), "mjcf"), "usd")
+    return hx.dumps(hx.loads(MJCF.format(rgba=rgba), "mjcf").mechanism, "usd")
 
 
 def colour(mechanism: Mechanism) -> tuple[float, ...] | None:
@@ -39,11 +39,11 @@ def test_a_colour_is_the_scale_of_the_image_and_comes_back(
     (image,) = (shader for prim in stage.Traverse() if (shader := UsdShade.Shader(prim)) and shader.GetShaderId() == "UsdUVTexture")
     found = image.GetInput("scale")
     assert (tuple(found.Get()) if found else None) == scale
-    assert colour(hx.loads(text, "usd")) == back
+    assert colour(hx.loads(text, "usd").mechanism) == back
 
 
 @pytest.mark.unread
 def test_a_network_with_a_scale_is_typed_in_full() -> None:
     """Nothing of it is kept as text, so that another colour is written."""
-    mechanism = hx.loads(stage_of('rgba=".5 .25 1 1"'), "usd")
+    mechanism = hx.loads(stage_of('rgba=".5 .25 1 1"'), "usd").mechanism
     assert not any("scale" in extra.path or "UVTexture" in extra.text for found in mechanism.extras.values() for extra in found)

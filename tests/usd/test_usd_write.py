@@ -128,10 +128,10 @@ def test_without_a_residue_too_the_link_that_stands_for_the_world_is_held(tmp_pa
       <joint name="j" type="fixed"><parent link="world"/><child link="a"/></joint></robot>"""
     )
     hx.convert(tmp_path / "r.urdf", tmp_path / "r.usda")
-    stage = hx.load(tmp_path / "r.usda")
+    stage = hx.load(tmp_path / "r.usda").mechanism
     assert [view.joint.dofs for view in stage.joints.values()] == [(), ()]
     hx.convert(tmp_path / "r.usda", tmp_path / "back.urdf")
-    back = hx.load(tmp_path / "back.urdf")
+    back = hx.load(tmp_path / "back.urdf").mechanism
     assert ([root.name for root in back.roots], list(back.joints)) == (["world"], [Id("joint", "j")])
 
 

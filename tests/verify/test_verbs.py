@@ -211,7 +211,7 @@ def test_a_check_of_numbers_of_numpy_is_json() -> None:
 
 
 def test_a_mechanism_in_memory_is_verified_and_not_trusted(arm: str) -> None:
-    verdict = hx.verify(arm, hx.load(arm))
+    verdict = hx.verify(arm, hx.load(arm).mechanism)
     assert verdict.verdict == "same"
     assert any(note.startswith("trust: the mechanism side was read by hymeko-x itself") for note in verdict.not_compared)
 

@@ -21,7 +21,7 @@ def here(folder: Folder, monkeypatch: pytest.MonkeyPatch) -> Folder:
 
 
 def links(folder: Folder) -> list[str]:
-    return [key.name for key in hx.load(folder.path / "out.urdf").graph.vertices if key.kind == "body"]
+    return [key.name for key in hx.load(folder.path / "out.urdf").mechanism.graph.vertices if key.kind == "body"]
 
 
 def test_arguments_and_variables_are_passed_on(here: Folder, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -57,7 +57,7 @@ def test_a_failed_expansion_is_one_message_and_exit_1(here: Folder, capsys: pyte
 
 def test_the_api_takes_arguments_and_variables(here: Folder) -> None:
     words = {"arguments": {"side": "right"}, "environment": {"HYMEKO_X_TEST": "told"}}
-    assert [key.name for key in hx.load("r.urdf.xacro", **words).graph.vertices if key.kind == "body"] == ["right_told"]
+    assert [key.name for key in hx.load("r.urdf.xacro", **words).mechanism.graph.vertices if key.kind == "body"] == ["right_told"]
     hx.convert("r.urdf.xacro", "out.urdf", **words)
     assert links(here) == ["right_told"]
 
@@ -68,7 +68,7 @@ def test_meshes_beside_an_included_file_are_found_from_the_main_file(here: Folde
     mesh = '<link name="a"><visual><geometry><mesh filename="mesh.stl"/></geometry></visual></link>'
     here.put("parts/p.xacro", f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{mesh}</robot>')
     here.put("main.xacro", robot('<xacro:include filename="parts/p.xacro"/>'))
-    loaded = hx.load("main.xacro")
+    loaded = hx.load("main.xacro").mechanism
     (here.path / "out").mkdir()
     hx.dump(loaded, "out/r.urdf", assets="copy")
     assert [path.name for path in (here.path / "out").rglob("*.stl")] == ["mesh.stl"]
