@@ -9,7 +9,7 @@ from msgspec.structs import replace
 from hymeko_x import formats
 from hymeko_x.ir.graph import Hypergraph
 from hymeko_x.ir.mechanism import ROOT, WORLD, Id, pose_weight
-from hymeko_x.ir.names import rename
+from hymeko_x.ir.names import rename, with_dof_names
 from hymeko_x.ir.parts import DofKind, Joint, Material, Mesh, Shape, Texture
 from hymeko_x.ir.values import IDENTITY, Pose, compose
 from hymeko_x.rewrite.references import with_references
@@ -48,9 +48,7 @@ def _named(part: VertexPart, change: Callable[[str], str]) -> VertexPart:
 def _edge_named(part: EdgePart, change: Callable[[str], str]) -> EdgePart:
     if isinstance(part, Shape) and part.name:
         return replace(part, name=change(part.name))
-    if isinstance(part, Joint) and any(dof.name for dof in part.dofs):
-        return replace(part, dofs=tuple([replace(dof, name=change(dof.name)) if dof.name else dof for dof in part.dofs]))
-    return part
+    return with_dof_names(part, change) if isinstance(part, Joint) else part
 
 
 def _arcs(edge: RobotEdge, edges: Mapping[Id, RobotEdge], change: Callable[[str], str]) -> tuple[RobotArc, ...]:

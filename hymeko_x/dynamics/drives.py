@@ -48,14 +48,13 @@ class Motor(Struct, frozen=True):
 
 def terms_of(mechanism: Mechanism, tree: Tree, arcs: Sequence[RobotArc]) -> Terms | None:
     """The links of one coordinate that arcs lead to, with the first number of their weights; None where an arc leads elsewhere."""
-    places = {(link.joint, link.number): place for place, link in enumerate(tree.links) if link.coordinates == 1}
     found = []
     for arc in arcs:
         edge = mechanism.graph.edges.get(arc.target)
         number = dof_number(edge.data, arc.role) if edge is not None and isinstance(edge.data, parts.Joint) else None
-        if number is None or (arc.target, number) not in places:
+        if number is None or (arc.target, number) not in tree.places:
             return None
-        found.append((places[arc.target, number], (numbers_weight(arc) or (1.0,))[0]))
+        found.append((tree.places[arc.target, number], (numbers_weight(arc) or (1.0,))[0]))
     return tuple(found)
 
 

@@ -7,6 +7,7 @@ joint is fixed to the world, or free on request.
 from __future__ import annotations
 
 from collections import Counter
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from msgspec import Struct
@@ -63,7 +64,7 @@ class Link(Struct, frozen=True):
         return COORDINATES.get(self.dof.kind, 1)
 
 
-class Tree(Struct, frozen=True):
+class Tree(Struct, frozen=True, dict=True):
     """The links of a mechanism, parents before children; ``bodies`` by id the link that each is part of, and its pose in it."""
 
     name: str
@@ -71,6 +72,11 @@ class Tree(Struct, frozen=True):
     nq: int
     nv: int
     bodies: Mapping[Id, tuple[int, Frame]]
+
+    @cached_property
+    def places(self) -> Mapping[tuple[Id, int], int]:
+        """The places of the links with one coordinate, by joint and number of the dof."""
+        return {(link.joint, link.number): place for place, link in enumerate(self.links) if link.coordinates == 1}
 
     @property
     def rest(self) -> list[float]:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
     from hymeko_x.ir.mechanism import Extra, Mechanism
+    from hymeko_x.ir.parts import Joint
 
 T = TypeVar("T")
 
@@ -57,6 +58,13 @@ def free_name(wanted: str, is_taken: Callable[[str], bool], mark: str = "#") -> 
     while is_taken(name):
         name, number = f"{wanted}{mark}{number}", number + 1
     return name
+
+
+def with_dof_names(joint: Joint, change: Callable[[str], str]) -> Joint:
+    """The joint, whose dofs that have names have changed ones."""
+    if not any(dof.name for dof in joint.dofs):
+        return joint
+    return replace(joint, dofs=tuple([replace(dof, name=change(dof.name)) if dof.name else dof for dof in joint.dofs]))
 
 
 def rename(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:

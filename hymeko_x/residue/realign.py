@@ -10,7 +10,7 @@ from msgspec.structs import replace
 from hymeko_x.compare.diff import Difference
 from hymeko_x.ir.graph import Edge
 from hymeko_x.ir.mechanism import WORLD, Id, joint_edge, pose_weight
-from hymeko_x.ir.names import rename
+from hymeko_x.ir.names import rename, with_dof_names
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Dof, Joint, Role, Shape, World
 from hymeko_x.ir.values import IDENTITY, apply, compose, inverse, numbers_text, rotate, rotate_tensor
@@ -237,7 +237,4 @@ def _renamed(mechanism: Mechanism, names: Mapping[Id, Id]) -> Mechanism:
 
 def _with_dof_names(edge: RobotEdge, names: Mapping[str, str]) -> RobotEdge:
     assert isinstance(edge.data, Joint)
-    if not any(dof.name in names for dof in edge.data.dofs):
-        return edge
-    dofs = tuple(replace(dof, name=names.get(dof.name, dof.name)) if dof.name else dof for dof in edge.data.dofs)
-    return Edge(replace(edge.data, dofs=dofs), edge.arcs)
+    return Edge(with_dof_names(edge.data, lambda name: names.get(name, name)), edge.arcs)

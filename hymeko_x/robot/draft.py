@@ -13,7 +13,7 @@ from msgspec.structs import replace
 
 from hymeko_x.ir.graph import Arc, Hypergraph
 from hymeko_x.ir.mechanism import KINDS, WORLD, Id, Mechanism
-from hymeko_x.ir.names import names_in_use
+from hymeko_x.ir.names import names_in_use, with_dof_names
 from hymeko_x.ir.notations import UNNAMED
 from hymeko_x.ir.parts import Body, Joint, Material, Mesh, Shape, Texture, World
 from hymeko_x.rewrite.references import with_references
@@ -287,7 +287,7 @@ def _name_of(edge: RobotEdge) -> str | None:
 def _renamed(part: VertexPart | EdgePart, old: str, new: str) -> VertexPart | EdgePart:
     """The part of an element with another name, where the part holds its name."""
     if isinstance(part, Joint):
-        return replace(part, dofs=tuple([replace(dof, name=new) if dof.name == old else dof for dof in part.dofs]))
+        return with_dof_names(part, lambda name: new if name == old else name)
     return replace(part, name=new) if isinstance(part, Material | Mesh | Texture) and part.name is not None else part
 
 

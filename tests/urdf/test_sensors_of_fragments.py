@@ -21,7 +21,7 @@ CAMERA = """<gazebo reference="head"><sensor name="eye" type="{kind}">
 <pose>0.1 0 0.2 0 0 1.5707963267948966</pose><update_rate>30</update_rate>
 <camera><horizontal_fov>1.2</horizontal_fov><image><width>640</width><height>320</height></image></camera></sensor></gazebo>"""
 GYRO = '<gazebo reference="head"><sensor name="imu" type="imu"><pose>0 0 0.5 0 0 0</pose><update_rate>100</update_rate></sensor></gazebo>'
-NOBODY = '<gazebo reference="nobody"><sensor name="x" type="imu"/></gazebo>'
+NO_LINK = '<gazebo reference="no_link"><sensor name="x" type="imu"/></gazebo>'
 OTHERS = '<gazebo reference="head"><sensor name="far" type="ray"/></gazebo>'
 
 
@@ -60,7 +60,7 @@ def test_an_imu_measures_accelerations_and_angular_velocities_at_its_pose(tmp_pa
 
 
 def test_other_sensors_and_unknown_links_are_left_alone(tmp_path: Path) -> None:
-    model = model_of(robot(OTHERS, NOBODY), tmp_path)
+    model = model_of(robot(OTHERS, NO_LINK), tmp_path)
     assert (model.ncam, model.nsensor, model.nsite) == (0, 0, 0)
 
 

@@ -23,7 +23,7 @@ from hymeko_x.formats.mjcf.classes import PARTIAL, Classes
 from hymeko_x.formats.mjcf.roles import ATTRIBUTES
 from hymeko_x.formats.mjcf.tree import parse_text
 from hymeko_x.ir.names import free_name
-from hymeko_x.xml.printing import Tag
+from hymeko_x.xml.printing import Tag, ready
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -35,14 +35,8 @@ _ROLES: Mapping[str, Mapping[str, str]] = MappingProxyType({name: ATTRIBUTES[rol
 """The attributes of geoms that are only seen and of those that only touch."""
 _MASSLESS = {"density": "0"}
 
-ROLE_CLASSES = Classes(
-    [
-        parse_text(
-            '<default><geom density="0"/><default class="visual"><geom contype="0" conaffinity="0" group="2"/></default>'
-            '<default class="collision"><geom group="3"/></default></default>'
-        )
-    ]
-)
+_OF_ROLES = [Tag("default", {"class": name}, [Tag("geom", dict(attributes))]) for name, attributes in _ROLES.items()]
+ROLE_CLASSES = Classes([parse_text(ready(Tag("default", {}, [Tag("geom", dict(_MASSLESS)), *_OF_ROLES]), 0))])
 """The classes of every robot from elsewhere. Geoms have no mass: bodies have their inertials."""
 
 _LIKENESS = frozenset(("type", "size", "material", "rgba", "density", "friction"))

@@ -68,7 +68,7 @@ def _add_models(place: Tag, sheet: SdfSheet) -> None:
 def _begin(tag: Tag, scope: str, sheet: SdfSheet) -> None:
     """Whether a model stands, and where it is."""
     key = sheet.places.model_frame(scope) if scope else ROOT
-    outer = words.split_scope(scope.removesuffix(words.SCOPE))[0]
+    outer = words.scope_around(scope)
     around = sheet.places.model_frame(outer) if outer or not _is_top(scope, sheet) else WORLD
     text = sheet.text(TRUTH, sheet.says_static(scope, key), False, sheet.written(key).get("static"))
     if text is not None:
@@ -139,7 +139,7 @@ def _enter(found: dict[str, dict[Id, None]], scope: str) -> None:
         missing.append(scope)
         if not scope or scope == words.WORLD_SCOPE:
             return
-        scope = words.split_scope(scope.removesuffix(words.SCOPE))[0]
+        scope = words.scope_around(scope)
     for inner in missing:
         outer = words.split_scope(inner.removesuffix(words.SCOPE))[0]
         frame = Id("frame", inner + words.MODEL_FRAME)

@@ -24,7 +24,7 @@ class Nesting(NamedTuple):
         """The scope of the innermost model that an element is in by its name, together with all that it is connected to."""
         scope = words.split_scope(key.name)[0] if self.models else ""
         while scope and not (scope in self.models and all(_is_in(other, scope) for other in self.connected.get(key, ()))):
-            scope = _around(scope)
+            scope = words.scope_around(scope)
         return scope
 
 
@@ -37,7 +37,7 @@ def nesting_of(mechanism: Mechanism) -> Nesting:
     frames = [(*words.split_scope(key.name), key) for key, _ in mechanism.vertices(Frame)]
     models: dict[str, Id] = {}
     for scope, own, key in sorted(frames):  # a model comes before those in it
-        around = _around(scope)
+        around = words.scope_around(scope)
         is_inside = bool(scope) and (not around or around in models)
         if own == words.MODEL_FRAME and is_inside and bodies.get(key, ROOT).name.startswith(scope):
             models[scope] = key
@@ -59,7 +59,3 @@ def _connected(mechanism: Mechanism, bodies: Mapping[Id, Id]) -> dict[Id, list[I
 
 def _is_in(key: Id, scope: str) -> bool:
     return key == WORLD or key.name.startswith(scope)
-
-
-def _around(scope: str) -> str:
-    return words.split_scope(scope.removesuffix(words.SCOPE))[0]

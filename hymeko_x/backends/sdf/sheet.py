@@ -93,7 +93,7 @@ class SdfSheet:
         own = "static" in self.written(key)
         if scope not in self._bodies_stand:
             return own  # a model without links
-        outer = words.split_scope(scope.removesuffix(words.SCOPE))[0]
+        outer = words.scope_around(scope)
         is_outer = bool(scope) and (bool(outer) or not self.has_several_models) and self.is_static(outer)
         return self.is_static(scope) and (own or not (self._said_static or is_outer))
 
@@ -137,7 +137,7 @@ class SdfSheet:
                 found[scope] = found.get(scope, True) and key in standing
                 if not scope:
                     break
-                scope = words.split_scope(scope.removesuffix(words.SCOPE))[0]
+                scope = words.scope_around(scope)
         return found
 
     def is_sensor(self, key: Id) -> bool:

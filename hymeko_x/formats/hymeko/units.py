@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
 _LENGTH = {"m": 1.0, "mm": 1e-3, "cm": 1e-2, "km": 1e3, "um": 1e-6, "µm": 1e-6, "in": 0.0254, "ft": 0.3048}
 _ANGLE = {"rad": 1.0, "deg": math.pi / 180.0, "°": math.pi / 180.0, "rev": 2.0 * math.pi, "mrad": 1e-3}
@@ -29,17 +29,23 @@ def unit_factor(unit: str) -> float | None:
     if unit in _FACTORS:
         return _FACTORS[unit]
     factor = 1.0
+    for name, power in _factors(unit):
+        if name not in _FACTORS or power is None:
+            return None
+        factor *= _FACTORS[name] ** power
+    return factor
+
+
+def _factors(unit: str) -> Iterator[tuple[str, int | None]]:
+    """The units of a product with their powers, which are negative behind a ``/``; None for a power that is no number."""
     sign = 1
     for part in unit.replace("/", " / ").replace("*", " ").replace("·", " ").replace("-", " ").split():
         if part == "/":
             sign = -1
             continue
         name, _, power = part.partition("^")
-        if name not in _FACTORS or not (power.isdecimal() or not power):
-            return None
-        factor *= _FACTORS[name] ** (sign * int(power or "1"))
+        yield name, sign * int(power or "1") if power.isdecimal() or not power else None
         sign = 1
-    return factor
 
 
 _EXPONENTS: Mapping[str, tuple[int, int, int, int]] = MappingProxyType(
@@ -60,16 +66,10 @@ _EXPONENTS: Mapping[str, tuple[int, int, int, int]] = MappingProxyType(
 def unit_exponents(unit: str) -> tuple[int, int, int, int] | None:
     """The exponents of length, mass, time and angle in a unit: (0, 1, -2, 0) for ``N/m``. None where it is not mechanical."""
     total = [0, 0, 0, 0]
-    sign = 1
-    for part in unit.replace("/", " / ").replace("*", " ").replace("·", " ").replace("-", " ").split():
-        if part == "/":
-            sign = -1
-            continue
-        name, _, power = part.partition("^")
-        if name not in _EXPONENTS:
+    for name, power in _factors(unit):
+        if name not in _EXPONENTS or power is None:
             return None
-        total = [old + sign * int(power or "1") * new for old, new in zip(total, _EXPONENTS[name], strict=True)]
-        sign = 1
+        total = [old + power * new for old, new in zip(total, _EXPONENTS[name], strict=True)]
     length, mass, time, angle = total
     return (length, mass, time, angle)
 

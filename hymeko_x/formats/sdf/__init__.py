@@ -63,6 +63,11 @@ def split_scope(name: str) -> tuple[str, str]:
     return scope + mark, own
 
 
+def scope_around(scope: str) -> str:
+    """The scope of the model around the one with this scope; empty for the outermost."""
+    return split_scope(scope.removesuffix(SCOPE))[0]
+
+
 # ---- joints ------------------------------------------------------------------------------------------------------------------
 
 

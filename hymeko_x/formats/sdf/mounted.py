@@ -36,7 +36,7 @@ def mounted_in(text: str) -> Iterator[Mounted]:
         return
     link = fragment.attributes.get("reference", "")
     for node in (child for child in fragment.children if child.tag == "sensor" and link):
-        kind, name, camera = node.attributes.get("type"), node.attributes.get("name", "sensor"), _child(node, "camera")
+        kind, name, camera = node.attributes.get("type"), node.attributes.get("name", "sensor"), node.child("camera")
         if kind in CAMERAS and camera is not None:
             pose = compose(_pose(node), _pose(camera))
             yield link, name, compose(pose, Pose(quat=CAMERA_TURN)), _camera(camera)
@@ -80,7 +80,7 @@ def _number(node: Node, path: str, usual: float) -> float:
     """The number below a node at a path of tags."""
     found: Node | None = node
     for tag in path.split("/"):
-        found = None if found is None else _child(found, tag)
+        found = None if found is None else found.child(tag)
     try:
         return usual if found is None else float(NUMBER.read(" ".join((found.text or "").split())))
     except BadText:
@@ -89,7 +89,7 @@ def _number(node: Node, path: str, usual: float) -> float:
 
 def _pose(node: Node) -> Pose:
     """The pose of a node in its parent; the identity without one that can be read."""
-    child = _child(node, "pose")
+    child = node.child("pose")
     if child is None:
         return IDENTITY
     text = " ".join((child.text or "").split())
@@ -97,7 +97,3 @@ def _pose(node: Node) -> Pose:
         return read_pose(WrittenPose(None, child.attributes.get("rotation_format"), child.attributes.get("degrees"), text))
     except BadText:
         return IDENTITY
-
-
-def _child(node: Node, tag: str) -> Node | None:
-    return next((child for child in node.children if child.tag == tag), None)

@@ -40,7 +40,7 @@ def _follower(was: Id, now: Id, frames: Mapping[str, str]) -> Callable[[str], st
 def _scope(key: Id) -> str:
     """The scope in which the element names frames: that of its model; that around it for a model."""
     scope, own = words.split_scope(key.name)
-    return words.split_scope(scope.removesuffix(words.SCOPE))[0] if own == words.MODEL_FRAME else scope
+    return words.scope_around(scope) if own == words.MODEL_FRAME else scope
 
 
 def _element(texts: Mapping[str, str], follow: Callable[[str], str]) -> Mapping[str, str]:

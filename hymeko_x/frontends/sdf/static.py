@@ -56,5 +56,5 @@ def _is_within(scope: str, static: set[str]) -> bool:
     while scope not in static:
         if not scope:
             return False
-        scope = words.split_scope(scope.removesuffix(words.SCOPE))[0]
+        scope = words.scope_around(scope)
     return True
